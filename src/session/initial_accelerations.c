@@ -2,16 +2,16 @@
    as a step is, with the members' balance of forces at t^0 in place of their way to t^{n+1}; time stands meanwhile. */
 #include "initial_accelerations.h"
 
-#include "../comm/enter.h"
-#include "../fluid/fluid.h"
-#include "../member/checks.h"
-#include "../member/joint.h"
 #include "../assembly/assembly.h"
-#include "../time/fidelity.h"
-#include "../solve/life.h"
+#include "../comm/enter.h"
 #include "../coupling/coupling.h"
 #include "../exchange/exchange.h"
 #include "../exchange/session_private.h"
+#include "../fluid/fluid.h"
+#include "../member/checks.h"
+#include "../member/joint.h"
+#include "../solve/life.h"
+#include "../time/fidelity.h"
 
 #include <math.h>
 #include <string.h>
@@ -29,13 +29,6 @@ static int check_start(spar_session *s, const char *call, double dt) {
     return spari_session_pushes(s, call);
 }
 
-static int room_for_start(spar_session *s) {
-    for (spar_member *m = s->members; m; m = m->next) {
-        SPARI_TRY(spari_member_begin_start(m));
-    }
-    return SPAR_OK;
-}
-
 static void copy_start_loads(const spar_member *m, const double *from, double *to) {
     memcpy(to, from, (size_t)(6 * m->nodes) * sizeof *to);
 }
@@ -46,7 +39,11 @@ int spari_start_begin(spar_session *s, const char *call, double dt) {
                                  spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
     SPARI_TRY(spari_enter_alike(s, call, alike, 2, check_start(s, call, dt)));
     SPARI_TRY(spari_named(s, call, spari_solvers_place(s, call)));
-    SPARI_TRY(spari_named(s, call, spari_session_seal(s, room_for_start(s))));
+    int status = SPAR_OK;
+    for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
+        status = spari_member_begin_start(m);
+    }
+    SPARI_TRY(spari_named(s, call, spari_session_seal(s, status)));
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     int scheme = spari_coupling_scheme_of(s->scheme)->iterates ? s->scheme : SPAR_COUPLING_IQN_ILS;
     SPARI_TRY(spari_named(s, call, spari_coupling_lay_aside(s, scheme)));

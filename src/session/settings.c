@@ -4,12 +4,12 @@
 
 #include "../base/environment.h"
 #include "../comm/comm.h"
+#include "../coupling/schemes.h"
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"
 #include "../member/mean_acceleration.h"
 #include "../member/structure.h"
 #include "../solve/life.h"
-#include "../coupling/schemes.h"
 
 #include <assert.h>
 #include <float.h>
@@ -280,8 +280,9 @@ int spar_session_get_newton(const spar_session *session, double *atol, double *r
     return get(session, __func__, NEWTON, INTO(atol, rtol, max_iterations));
 }
 
-/* Room for the past loads that the order looks back on. */
-static int keep_history(spar_session *session, int order) {
+int spar_session_set_predictor(spar_session *session, int order) {
+    SPARI_QUIET;
+    SPARI_TRY(check_given(session, __func__, PREDICTOR, (const double[]){order}));
     int status = SPAR_OK;
     for (spar_member *m = session->members; m && status == SPAR_OK; m = m->next) {
         status = m->committed ? spari_history_keep(m->load_history, 6 * m->nodes, order) : SPAR_OK;
@@ -289,13 +290,6 @@ static int keep_history(spar_session *session, int order) {
     for (spar_fluid *f = session->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
         status = spari_fluid_keep(f, order);
     }
-    return status;
-}
-
-int spar_session_set_predictor(spar_session *session, int order) {
-    SPARI_QUIET;
-    SPARI_TRY(check_given(session, __func__, PREDICTOR, (const double[]){order}));
-    int status = keep_history(session, order);
     SPARI_REQUIRE(session, status == SPAR_OK, status, "%s: no memory for the loads of order %d", __func__, order);
     store_given(session, PREDICTOR, (const double[]){order});
     session->past = session->past < order ? session->past : order;
@@ -391,28 +385,20 @@ int spar_session_set_option(spar_session *session, const char *key, const char *
     return SPAR_OK;
 }
 
-/* The shortest text that is read as the same number. */
-static void write_number(double x, char *text, size_t size) {
-    for (int digits = 15; digits <= 17; digits++) {
-        (void)snprintf(text, size, "%.*g", digits, x);
-        if (strtod(text, NULL) == x) {
-            return;
-        }
-    }
-}
-
 int spar_session_get_option(const spar_session *session, const char *key, int64_t capacity, char *text) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_REQUIRE(session, key && text, SPAR_ERR_ARGUMENT, "%s: key or text is NULL", __func__);
     const spari_setting *of = find_option(key);
     SPARI_REQUIRE(session, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
-    char value[40];
+    char value[40] = "";
     double x = spari_setting_value(session, of);
     if (of->kind == SPARI_IS_WORD) {
         (void)snprintf(value, sizeof value, "%s", of->words[x > 0]);
-    } else {
-        write_number(x, value, sizeof value);
+    } else { /* the shortest text that is read as the same number */
+        for (int digits = 15; digits <= 17 && (digits == 15 || strtod(value, NULL) != x); digits++) {
+            (void)snprintf(value, sizeof value, "%.*g", digits, x);
+        }
     }
     int64_t needed = (int64_t)strlen(value) + 1;
     SPARI_TRY(spari_need_capacity(session, __func__, capacity));

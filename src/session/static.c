@@ -1,19 +1,19 @@
 /* Static equilibrium in a session: of one member, and of all members with the fluid's answer. */
+#include "../assembly/assembly.h"
 #include "../base/environment.h"
 #include "../comm/enter.h"
+#include "../coupling/coupling.h"
+#include "../coupling/schemes.h"
+#include "../exchange/exchange.h"
+#include "../exchange/session_private.h"
+#include "../exchange/sparse.h"
 #include "../fluid/fluid.h"
 #include "../member/body.h"
 #include "../member/checks.h"
 #include "../member/joint.h"
-#include "../assembly/assembly.h"
-#include "../time/fidelity.h"
 #include "../solve/life.h"
-#include "../coupling/schemes.h"
-#include "../coupling/coupling.h"
-#include "../exchange/exchange.h"
+#include "../time/fidelity.h"
 #include "callbacks.h"
-#include "../exchange/session_private.h"
-#include "../exchange/sparse.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -326,12 +326,6 @@ static const spar_member *most_changed(const spar_session *s) {
     return found;
 }
 
-/* Mean factor from iteration to iteration in the later half of them, 0: too few to tell. */
-static double growth(const spari_coupling *c) {
-    int last = c->iterations - 1, from = last / 2;
-    return last > 0 && c->residual[from] > 0 ? pow(c->residual[last] / c->residual[from], 1.0 / (last - from)) : 0;
-}
-
 static const char *cure_for(const spar_session *s) {
     return spari_coupling_scheme_of(s->scheme)->columns
                ? "where loads grow faster with the shape than the stiffness (static divergence) there is no stable "
@@ -343,8 +337,10 @@ static const char *cure_for(const spar_session *s) {
 /* why: what ended the iteration, this rank's or a peer's message; NULL: its limit. */
 static int not_settled(spar_session *s, const char *call, int status, const char *why) {
     const spari_coupling *c = s->own->coupling;
-    int n = c->iterations;
-    double factor = growth(c);
+    int n = c->iterations, last = n - 1, half = last / 2;
+    /* mean factor from iteration to iteration in the later half of them; 0: too few to tell */
+    double factor =
+        last > 0 && c->residual[half] > 0 ? pow(c->residual[last] / c->residual[half], 1.0 / (last - half)) : 0;
     if (n == 0 || !s->members || (factor <= 1 && why)) {
         return spari_fail(s, status, "%s: %s", call, why ? why : "no iterations");
     }

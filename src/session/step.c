@@ -1,24 +1,24 @@
 /* One coupling step: predict, solve, check, accept or reject. */
 #include "step.h"
-#include "../base/environment.h"
-#include "../fluid/fluid.h"
-#include "../member/added_mass.h"
-#include "../member/checks.h"
-#include "../member/joint.h"
-#include "../member/added_mass_fit.h"
-#include "../member/mean_acceleration.h"
 #include "../assembly/assembly.h"
-#include "../time/fidelity.h"
-#include "../solve/life.h"
-#include "../time/scheme.h"
-#include "../solve/work.h"
+#include "../base/environment.h"
 #include "../coupling/coupling.h"
 #include "../exchange/exchange.h"
-#include "callbacks.h"
 #include "../exchange/session_private.h"
-#include "step_control.h"
 #include "../exchange/sparse.h"
+#include "../fluid/fluid.h"
+#include "../member/added_mass.h"
+#include "../member/added_mass_fit.h"
+#include "../member/checks.h"
+#include "../member/joint.h"
+#include "../member/mean_acceleration.h"
+#include "../solve/life.h"
+#include "../solve/work.h"
+#include "../time/fidelity.h"
+#include "../time/scheme.h"
+#include "callbacks.h"
 #include "initial_accelerations.h"
+#include "step_control.h"
 #include "work_shares.h"
 
 #include "../comm/enter.h"
@@ -114,14 +114,6 @@ static void predict_loads(spar_member *m, int order, double dt, const double las
     }
 }
 
-/* A driven root that was not driven for this step stays where it is. */
-static void hold_root(spar_member *m) {
-    if ((m->root == SPAR_ROOT_DRIVEN || m->kind == SPARI_POINT) && !m->drive_given) {
-        const double rest[6] = {0};
-        m->drive[1] = spari_pose_of(m->drive[0].q, rest, rest);
-    }
-}
-
 /* A step as it begins for a member. */
 typedef struct step_begun {
     const spar_session *s;
@@ -131,7 +123,10 @@ typedef struct step_begun {
 
 static void begin_member(spar_member *m, const void *context) {
     const step_begun *t = context;
-    hold_root(m);
+    if ((m->root == SPAR_ROOT_DRIVEN || m->kind == SPARI_POINT) && !m->drive_given) { /* the root stays in place */
+        const double rest[6] = {0};
+        m->drive[1] = spari_pose_of(m->drive[0].q, rest, rest);
+    }
     if (!t->s->aside) {
         predict_loads(m, t->order, t->dt, t->s->dt_last);
     }
@@ -355,15 +350,6 @@ static void shift_history(spar_member *m, const void *session) {
     spari_history_shift(m->load_history, 6 * m->nodes, s->predictor, m->load_pushed);
 }
 
-/* What is made of the loads. */
-static void accept_loads(spar_session *s) {
-    spari_coupling_accept(s);
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        spari_work_of_joint(j);
-    }
-    spari_threads_each(s, shift_history, s);
-}
-
 static void accept_member(spar_member *m, const void *unused) {
     (void)unused;
     spari_member_accept(m);
@@ -407,7 +393,11 @@ int spar_step_accept(spar_session *session) {
         return SPAR_OK;
     }
     if (!s->aside) {
-        accept_loads(s);
+        spari_coupling_accept(s);
+        for (spar_joint *j = s->joints; j; j = j->next) {
+            spari_work_of_joint(j);
+        }
+        spari_threads_each(s, shift_history, s);
     }
     spari_pace_accept(s);
     spari_threads_each(s, accept_member, NULL);
@@ -482,15 +472,6 @@ static int solve_for(spar_session *s, const char *call) {
     return spari_start_solve(s, call);
 }
 
-/* Where the host has given, with its loads, the motion of what joints tie, their loads are to be those of that motion.
-   status: of what this rank's host has done. */
-static int solve_with_given(spar_session *s, const char *call, int status) {
-    int moved = 0;
-    SPARI_TRY(spari_enter(s, call, status));
-    SPARI_TRY(spari_session_moved(s, &moved));
-    return moved ? solve_for(s, call) : SPAR_OK;
-}
-
 static int iterate(spar_session *s, const char *call, spar_fluid_solver solve, void *context) {
     int done = 0;
     while (!done) {
@@ -499,8 +480,11 @@ static int iterate(spar_session *s, const char *call, spar_fluid_solver solve, v
         if (status == SPAR_ERR_COMM) {
             return status;
         }
-        if (spari_joints_tie_given(s)) {
-            SPARI_TRY(solve_with_given(s, call, status));
+        if (spari_joints_tie_given(s)) { /* the host may have moved tied members: joints' loads are of that motion */
+            int moved = 0;
+            SPARI_TRY(spari_enter(s, call, status));
+            SPARI_TRY(spari_session_moved(s, &moved));
+            SPARI_TRY(moved ? solve_for(s, call) : SPAR_OK);
         }
         SPARI_TRY(check_iteration(s, call, status, &done));
     }

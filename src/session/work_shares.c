@@ -1,16 +1,16 @@
 /* Threads: asked for, and what they solve. */
 #include "work_shares.h"
 
-#include "../base/thread_pool.h"
+#include "../assembly/assembly.h"
 #include "../base/environment.h"
+#include "../base/thread_pool.h"
+#include "../coupling/coupling.h"
+#include "../exchange/session_private.h"
 #include "../fluid/fluid.h"
 #include "../member/body.h"
 #include "../member/structure.h"
-#include "../assembly/assembly.h"
-#include "../time/fidelity.h"
 #include "../solve/life.h"
-#include "../coupling/coupling.h"
-#include "../exchange/session_private.h"
+#include "../time/fidelity.h"
 
 #include <stdlib.h>
 
@@ -71,14 +71,6 @@ static int solve_next(spar_session *s, spar_member *m, spari_assembly *a, int st
     return status;
 }
 
-static int solve_told(spar_session *s) {
-    int status = SPAR_OK;
-    for (spar_member *m = s->members; m; m = m->next) {
-        status = is_unit(m) && is_told(m) ? solve_next(s, m, NULL, status) : status;
-    }
-    return status;
-}
-
 static int solve_in_turn(spar_session *s, int status) {
     for (spar_member *m = s->members; m; m = m->next) {
         status = is_unit(m) && !is_told(m) ? solve_next(s, m, NULL, status) : status;
@@ -117,7 +109,10 @@ static int64_t list_units(const spar_session *s, spari_unit *unit) {
 static int solve_units(spar_session *s) {
     int ready = s->crew && s->own->listed == s->member_count; /* not in a step that came from a file */
     int64_t n = ready ? list_units(s, s->own->unit) : 0;
-    int status = solve_told(s);
+    int status = SPAR_OK;
+    for (spar_member *m = s->members; m; m = m->next) {
+        status = is_unit(m) && is_told(m) ? solve_next(s, m, NULL, status) : status;
+    }
     if (n < 2 || n < spari_crew_threads(s->crew)) {
         return solve_in_turn(s, status);
     }

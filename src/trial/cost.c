@@ -2,10 +2,10 @@
 #include "cost.h"
 
 #include "../comm/comm.h"
-#include "../fluid/fluid.h"
-#include "../member/beam.h"
 #include "../coupling/coupling.h"
 #include "../exchange/session_private.h"
+#include "../fluid/fluid.h"
+#include "../member/beam.h"
 #include "../time/fidelity.h"
 #include "rules.h"
 
@@ -111,19 +111,14 @@ double spari_cost_fluids(const spar_session *s) {
     return sum;
 }
 
-/* The time of a solution, in what its nodes lead one to expect. */
-static double times_expected(double by_nodes, double seconds, int64_t solutions) {
-    const spari_prices *p = &spari_rule.price;
-    double timed = solutions > 0 ? seconds / (double)solutions * p->second : 0;
-    return timed / fmax(by_nodes, p->fluid);
-}
-
 double spari_cost_solution(const spar_session *s, double by_nodes, double seconds, int64_t solutions) {
     const spari_prices *p = &spari_rule.price;
     if (s->fluid_cost > 0) {
         return whole(fmin(s->fluid_cost * p->second, 1e15));
     }
-    double times = times_expected(by_nodes, seconds, solutions);
+    /* the time of a solution, relative to what its nodes lead one to expect */
+    double timed = solutions > 0 ? seconds / (double)solutions * p->second : 0,
+           times = timed / fmax(by_nodes, p->fluid);
     double power = times > p->believed ? floor(0.5 * log(times) / log(p->believed) + 0.5) : 0;
     return whole(fmax(by_nodes, p->fluid) * pow(p->believed, 2 * power));
 }

@@ -179,16 +179,6 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
     return SPAR_OK;
 }
 
-static double fastest_turn(const spar_session *s) {
-    double most = 0;
-    for (const spar_member *m = s->members; m; m = m->next) {
-        for (int64_t i = 0; i < m->nodes; i++) {
-            most = fmax(most, spari_norm(m->now.v + 6 * i + 3));
-        }
-    }
-    return most;
-}
-
 /* What a run has shown so far: sums of the terms' squares, the largest angular velocity. */
 typedef struct sizes {
     double sum[TERMS], rate;
@@ -201,8 +191,10 @@ static int add_state(spar_session *s, void *to) {
         if (m->body) {
             status = member_terms(m, so_far->sum);
         }
+        for (int64_t i = 0; i < m->nodes; i++) {
+            so_far->rate = fmax(so_far->rate, spari_norm(m->now.v + 6 * i + 3));
+        }
     }
-    so_far->rate = fmax(so_far->rate, fastest_turn(s));
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }
 

@@ -315,18 +315,15 @@ static int share_costs(spar_session *s, spari_record *r) {
     return spari_comm_sum(s->comm, r->member_work, r->members, SPAR_OK, s->message, sizeof s->message);
 }
 
-/* As the host has begun its own run. */
-static int balance_start(spar_session *s, const spari_run *run, spari_record *r) {
-    int iterations = 0, status = spar_session_start(s, run->dt, run->solve, run->context, &iterations);
-    r->solutions += iterations;
-    return status;
-}
-
 /* The members and fluids there now are the trial's. balanced: the run begins with a balanced start. */
 static int run_there(spar_session *s, const spari_run *run, int balanced, spari_record *r) {
     int status = spari_record_create(s, run->steps, run->goals, r);
     status = spari_session_seal(s, status);
-    status = status == SPAR_OK && balanced ? balance_start(s, run, r) : status;
+    if (status == SPAR_OK && balanced) { /* as the host has begun its own run */
+        int iterations = 0;
+        status = spar_session_start(s, run->dt, run->solve, run->context, &iterations);
+        r->solutions += iterations;
+    }
     if (status == SPAR_OK) {
         spari_record_begin(r, s);
         status = march(s, run, r);

@@ -3,8 +3,8 @@
    then single and double moves that still pay; at last a longer run, whether what is cheapest stays stable. Errors are
    those of whole runs, costs what is counted in them (cost.h). */
 #include "../base/environment.h"
-#include "apply.h"
 #include "../trial/cost.h"
+#include "apply.h"
 #include "settings_trial.h"
 
 #include "../math/basis.h"
@@ -518,12 +518,6 @@ static int try_iterated(spari_advisor *d, const spari_plan *structure, spari_out
     return SPAR_OK;
 }
 
-/* What explicit coupling costs at best that keeps the tolerance, its error being of that order: a run of finer steps,
-   which cost less each. */
-static double explicit_cost(const spari_outcome *o, double order, double goal) {
-    return pow(fmax(1, o->error / goal), finer_power / order) * o->cost;
-}
-
 static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outcome *best) {
     const spar_session *s = d->session;
     double goal = spari_rule.good * d->tolerance;
@@ -556,7 +550,8 @@ static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outc
         direct.plan.newton = structure->newton;
         direct.plan.steps = spari_plan_steps(d, begin);
     }
-    double cost = explicit_cost(&direct, order, goal);
+    /* what keeps the tolerance costs at best: a run of finer steps, which cost less each */
+    double cost = pow(fmax(1, direct.error / goal), finer_power / order) * direct.cost;
     if (!isfinite(best->cost) || (cost < best->cost && spari_plan_pays(d, cost, best->cost - cost))) {
         SPARI_TRY(search_steps(d, &direct.plan, direct.plan.steps, best));
     }
@@ -671,15 +666,14 @@ static int improve(spari_advisor *d, spari_outcome *best) {
 
 /* ---- the answer ---- */
 
-/* Whether a is bound to be unstable where b is: the same in time, with no finer steps and no tighter coupling. */
-static int is_no_stabler(const spari_plan *a, const spari_plan *b) {
-    return a->scheme == b->scheme && a->predictor == b->predictor && a->substeps == b->substeps &&
-           a->steps <= b->steps && (a->scheme == SPAR_COUPLING_EXPLICIT || a->rtol >= b->rtol);
-}
-
 /* Of one kind in time, whatever the steps. */
 static int is_same_kind(const spari_plan *a, const spari_plan *b) {
     return a->scheme == b->scheme && a->predictor == b->predictor && a->substeps == b->substeps;
+}
+
+/* Whether a is bound to be unstable where b is: the same in time, with no finer steps and no tighter coupling. */
+static int is_no_stabler(const spari_plan *a, const spari_plan *b) {
+    return is_same_kind(a, b) && a->steps <= b->steps && (a->scheme == SPAR_COUPLING_EXPLICIT || a->rtol >= b->rtol);
 }
 
 /* The cheapest of what is known that keeps the tolerance, of another kind than what drifts away; or, at last, of the
@@ -753,12 +747,6 @@ static int find_stable(spari_advisor *d, const spari_outcome *now, spari_outcome
                       SPARI_ADVISE);
 }
 
-/* The session as it is, measured when there is something to measure it against. */
-static int judge_present(spari_advisor *d, const spari_plan *present, const spari_record *run, spari_outcome *now) {
-    *now = (spari_outcome){.plan = *present, .error = INFINITY, .cost = INFINITY};
-    return run->value ? spari_plan_judge(d, run, now) : SPAR_OK;
-}
-
 /* The cheapest of what is known to keep the tolerance: among it are runs that were made for the structure. */
 static void take_known(const spari_advisor *d, spari_outcome *best) {
     for (int k = 0; k < d->known_count; k++) {
@@ -821,7 +809,8 @@ static int search_structure(spari_advisor *d, const spari_plan *present, const s
                             spari_plan *finest, spari_plan *structure) {
     for (int twice = 0; twice < 2; twice++) {
         SPARI_TRY(spari_plan_reference(d, present, finest));
-        SPARI_TRY(judge_present(d, present, run, now));
+        *now = (spari_outcome){.plan = *present, .error = INFINITY, .cost = INFINITY};
+        SPARI_TRY(run->value ? spari_plan_judge(d, run, now) : SPAR_OK);
         SPARI_TRY(spari_plan_judge_levels(d));
         take_stock(d, now);
         spari_plan_begin(d, SPARI_STAGE_SHAPES);
@@ -875,13 +864,6 @@ static int make_remakes(const spari_advisor *d, spari_remake ***room) {
         ok = m->advice || (all[k] = spari_zalloc(1, sizeof *all[k]));
     }
     return ok ? SPAR_OK : spari_fail(d->session, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);
-}
-
-static void free_room(const spari_advisor *d, spari_remake **room) {
-    for (int k = 0; room && k < d->session->member_count; k++) {
-        free(room[k]);
-    }
-    free(room);
 }
 
 static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_outcome *best, spari_remake **room,
@@ -973,7 +955,10 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
         hand_over(&d, &now, &best, room, made);
         spari_fill(capacity, advice, SPAR_ADVICE_COUNT, made);
     }
-    free_room(&d, room);
+    for (int k = 0; room && k < s->member_count; k++) {
+        free(room[k]);
+    }
+    free(room);
     free(d.group);
     free(d.known);
     spari_plan_forget(&d);

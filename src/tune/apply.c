@@ -64,12 +64,6 @@ static void put_settings(spar_session *s, const double *values, int past) {
     s->past = past < s->predictor ? past : s->predictor;
 }
 
-static void set_advised(spar_session *s, change *c) {
-    (void)spari_settings_varied(s, c->before);
-    c->past = s->past;
-    put_settings(s, s->own->advised->setting, s->past);
-}
-
 static int is_as_advised(const spar_member *m) {
     const spari_remake *to = m->advice;
     return !to ||
@@ -77,25 +71,11 @@ static int is_as_advised(const spar_member *m) {
             to->fidelity == m->fidelity && to->modes == m->modes && (to->points == 0 || to->points == m->beam->points));
 }
 
-/* Members that are tied begin anew together: whether one of them has to. */
-static int ties_change(const spar_session *s) {
-    int any = 0;
-    for (const spar_member *m = s->members; m && s->joints; m = m->next) {
-        any = any || (!is_as_advised(m) && spari_member_is_tied(m));
-    }
-    return any;
-}
-
-static int remake_member(spar_member *m, spar_member *was) {
-    const spari_remake as_it_is = spari_remake_of(m);
-    SPARI_TRY(spari_member_remake(m, m->advice ? m->advice : &as_it_is, was));
-    SPARI_TRY(spari_ties_follow(m, was));
-    spari_work_carry(was, m);
-    return SPAR_OK;
-}
-
 static int remake_members(spar_session *s, change *c) {
-    int tied = ties_change(s);
+    int tied = 0; /* members that are tied begin anew together: whether one of them has to */
+    for (const spar_member *m = s->members; m && s->joints; m = m->next) {
+        tied = tied || (!is_as_advised(m) && spari_member_is_tied(m));
+    }
     if (tied) {
         SPARI_TRY(spari_ties_lay_aside(s, &c->ties));
     }
@@ -108,7 +88,10 @@ static int remake_members(spar_session *s, change *c) {
         }
         anew *a = &c->made[c->count++];
         a->member = m;
-        SPARI_TRY(remake_member(m, &a->was));
+        const spari_remake as_it_is = spari_remake_of(m);
+        SPARI_TRY(spari_member_remake(m, m->advice ? m->advice : &as_it_is, &a->was));
+        SPARI_TRY(spari_ties_follow(m, &a->was));
+        spari_work_carry(&a->was, m);
     }
     return SPAR_OK;
 }
@@ -168,14 +151,6 @@ static void swap_exchange(spari_own *own, change *c) {
     c->pack = pack, c->motion = motion, c->first = first, c->pack_count = count;
 }
 
-static void change_free(change *c) {
-    free(c->pack);
-    free(c->motion);
-    free(c->first);
-    free(c->made);
-    free(c->carried);
-}
-
 /* The message of the failure stays. */
 static void undo(spar_session *s, change *c) {
     for (int64_t k = c->count - 1; k >= 0; k--) {
@@ -226,11 +201,6 @@ static int check_apply(spar_session *s, const char *call) {
     return SPAR_OK;
 }
 
-static int make_change(spar_session *s, change *c) {
-    SPARI_TRY(remake_members(s, c));
-    return remake_fluids(s, c);
-}
-
 int spar_session_apply_advice(spar_session *session, double *dt) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
@@ -240,8 +210,11 @@ int spar_session_apply_advice(spar_session *session, double *dt) {
     int status = change_create(s, &c), begun = status == SPAR_OK;
     if (begun) {
         lay_exchange_aside(s->own, &c);
-        set_advised(s, &c);
-        status = make_change(s, &c);
+        (void)spari_settings_varied(s, c.before);
+        c.past = s->past;
+        put_settings(s, s->own->advised->setting, s->past);
+        status = remake_members(s, &c);
+        status = status == SPAR_OK ? remake_fluids(s, &c) : status;
     }
     if (s->joints) { /* whether there are any is alike on all ranks, whether they change too where all goes well */
         status = spari_enter(s, "advice", status);
@@ -254,7 +227,11 @@ int spar_session_apply_advice(spar_session *session, double *dt) {
     } else if (begun) {
         undo(s, &c);
     }
-    change_free(&c);
+    free(c.pack);
+    free(c.motion);
+    free(c.first);
+    free(c.made);
+    free(c.carried);
     if (status == SPAR_OK && dt) {
         *dt = s->own->advised->dt;
     }

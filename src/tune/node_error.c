@@ -7,8 +7,8 @@
 #include "../math/resample.h"
 #include "../member/body.h"
 #include "../session/step_control.h"
-#include "../time/fidelity.h"
 #include "../time/body_solver.h"
+#include "../time/fidelity.h"
 #include "../trial/rebuild.h"
 
 #include <math.h>
@@ -161,10 +161,6 @@ static int has_nodes(const spar_member *m) {
     return m->kind == SPARI_BEAM && !m->external && m->row->solved && m->fidelity >= SPAR_FIDELITY_LINEAR;
 }
 
-static int is_judged(const spar_member *m) {
-    return m->fidelity == SPAR_FIDELITY_EXACT && m->per_element < SPARI_MAX_NODES;
-}
-
 int spar_member_get_error(spar_member *member, double *step, double *nodes) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
@@ -188,7 +184,8 @@ int spar_member_get_error(spar_member *member, double *step, double *nodes) {
     }
     if (nodes && has_nodes(m)) {
         found[1] = -1;
-        SPARI_TRY(is_judged(m) ? spari_named(s, __func__, find_nodes_error(m, found + 1)) : SPAR_OK);
+        const int finds = m->fidelity == SPAR_FIDELITY_EXACT && m->per_element < SPARI_MAX_NODES;
+        SPARI_TRY(finds ? spari_named(s, __func__, find_nodes_error(m, found + 1)) : SPAR_OK);
     }
     if (step) {
         *step = found[0];

@@ -4,10 +4,10 @@
 #include "../trial/cost.h"
 #include "../trial/move_joints.h"
 
+#include "../coupling/schemes.h"
 #include "../math/basis.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
-#include "../coupling/schemes.h"
 #include "../time/fidelity.h"
 
 #include <float.h>
@@ -20,11 +20,6 @@
 
 static int is_varied(const spar_member *m) {
     return m->kind == SPARI_BEAM && !m->external && !spari_ties_hold_within(m, m->elements);
-}
-
-/* Whether two beams are copies of each other. */
-static int alike(const spar_member *a, const spar_member *b) {
-    return spari_member_make(a) == spari_member_make(b);
 }
 
 const spar_member *spari_plan_member(const spari_advisor *d, int group) {
@@ -45,7 +40,7 @@ int spari_plan_groups(spari_advisor *d) {
     for (const spar_member *m = s->members; m; m = m->next, k++) {
         d->group[k] = -1;
         for (int g = 0; g < d->groups && is_varied(m) && d->group[k] < 0; g++) {
-            d->group[k] = alike(spari_plan_member(d, g), m) ? g : -1;
+            d->group[k] = spari_member_make(spari_plan_member(d, g)) == spari_member_make(m) ? g : -1;
         }
         if (d->group[k] < 0 && is_varied(m) && d->groups < SPARI_GROUPS) {
             d->group[k] = d->groups++;
@@ -426,16 +421,12 @@ static double most_of_level(const spari_advisor *d, const spari_plan *p) {
     return d->now > 0 && p->steps < d->run.steps ? spari_rule.coarse_most * d->now : INFINITY;
 }
 
-/* A level of it need not be. */
-static double most_of_finer(const spari_advisor *d, const spari_plan *p) {
-    return spari_rule.level_most / spari_rule.coarse_most * most_of_level(d, p);
-}
-
 /* Runs it as the next level, which stays empty where it fails. */
 static int run_level(spari_advisor *d, const spari_plan *p, int *made) {
     spari_level *l = &d->level[d->levels];
     l->plan = *p;
-    int status = spari_plan_run(d, p, 1, most_of_finer(d, p), &l->record);
+    double most = spari_rule.level_most / spari_rule.coarse_most * most_of_level(d, p); /* it need not be cheap */
+    int status = spari_plan_run(d, p, 1, most, &l->record);
     *made = status == SPAR_OK;
     if (*made) {
         d->levels++;
@@ -444,15 +435,6 @@ static int run_level(spari_advisor *d, const spari_plan *p, int *made) {
         spari_record_free(&l->record);
     }
     return spari_plan_fails(status) ? SPAR_OK : status;
-}
-
-/* The coarsest level there may be. */
-static int first_level(const spari_advisor *d) {
-    int level = d->session->keep_dt ? 0 : -SPARI_COARSEST;
-    while (level < 0 && spari_plan_steps(d, 2 * level) < 2 * SPARI_MULTIPLE) {
-        level++;
-    }
-    return level;
 }
 
 /* What a level is run with where it is for comparisons only. */
@@ -609,11 +591,6 @@ static double error_of_level(const spari_advisor *d, int k) {
     return after + (part > 0 ? last / spari_rule.believed : last);
 }
 
-static double error_of_steps(const spari_advisor *d) {
-    double part;
-    return d->levels > 1 ? left_in_levels(d, &part) : INFINITY;
-}
-
 static int copy_reference(spari_advisor *d) {
     double part = 0;
     spari_level *l = &d->level[d->levels - 1];
@@ -658,7 +635,7 @@ static int finer_pays(spari_advisor *d) {
    small enough and the next run would not pay. */
 static int refine(spari_advisor *d, const spari_plan *present, int level, int more, double nodes) {
     int made, keeps = d->session->keep_dt, ends = keeps ? level : SPARI_FINEST;
-    double goal = spari_rule.reference_ends * d->tolerance;
+    double goal = spari_rule.reference_ends * d->tolerance, part;
     d->reference_error = INFINITY;
     for (; level <= ends && d->levels < SPARI_LEVELS && d->reference_error > goal; level++) {
         if (isfinite(d->reference_error) && !finer_pays(d)) {
@@ -672,7 +649,7 @@ static int refine(spari_advisor *d, const spari_plan *present, int level, int mo
         } else if (made) {
             SPARI_TRY(compare_runs(d, &l->record, &d->level[d->levels - 2].record, d->longer, &l->change));
             l->change /= d->tolerance;
-            d->reference_error = error_of_steps(d) + nodes;
+            d->reference_error = left_in_levels(d, &part) + nodes;
         }
         tell_plan(d, &p, made ? l->change * d->tolerance : INFINITY, made ? spari_plan_cost(d, &l->record) : 0);
     }
@@ -720,8 +697,11 @@ static int check_reference(spari_advisor *d) {
 }
 
 int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan *finest) {
-    int level = first_level(d), more;
+    int level = d->session->keep_dt ? 0 : -SPARI_COARSEST, more; /* the coarsest there may be */
     double nodes;
+    while (level < 0 && spari_plan_steps(d, 2 * level) < 2 * SPARI_MULTIPLE) {
+        level++;
+    }
     SPARI_TRY(reference_nodes(d, present, &level, &more, &nodes));
     SPARI_TRY(refine(d, present, level, more, nodes));
     SPARI_REQUIRE(d->session, d->levels > 0, SPAR_ERR_NUMERIC, "%s: no reference run comes to its end: %.400s",
@@ -767,12 +747,6 @@ int64_t spari_plan_least_steps(const spari_advisor *d) {
 
 /* ---- stability ---- */
 
-/* What of the loads turns round with every step, squared, where an iterated coupling ends as its tolerance allows: as
-   much either way, in each of the second differences' four parts. It stays so, and is in the error of the motion. */
-static double left_to_turn(const spari_plan *p) {
-    return spari_coupling_scheme_of(p->scheme)->iterates ? 16 * p->rtol * p->rtol : 0;
-}
-
 /* Whether a part of the loads that turns round with every step grows, and not with the motion itself, as the finer run
    shows it, until it counts in the host's run; `longer`: the look's. */
 static int seesaws(const spari_advisor *d, const spari_plan *p, const spari_record *r, const spari_record *finer,
@@ -780,7 +754,10 @@ static int seesaws(const spari_advisor *d, const spari_plan *p, const spari_reco
     double same = fmax(1, finer->alternating[1] / fmax(finer->alternating[0], DBL_MIN)),
            grows = r->alternating[1] / fmax(r->alternating[0], DBL_MIN) / same,
            more = fmax(0, d->longer - longer) / (0.5 * longer), limit = spari_rule.seesaw * d->tolerance;
-    return grows > spari_rule.grows && r->alternating[1] > left_to_turn(p) &&
+    /* Square of the part of the loads that alternates because an iterated coupling ends at its tolerance: as much
+       either way, in each of the second differences' four parts. It does not grow; the error of the motion has it. */
+    double left = spari_coupling_scheme_of(p->scheme)->iterates ? 16 * p->rtol * p->rtol : 0;
+    return grows > spari_rule.grows && r->alternating[1] > left &&
            r->alternating[1] * pow(grows, fmin(more, 100)) > limit * limit;
 }
 
