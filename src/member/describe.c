@@ -1,11 +1,11 @@
-/* The description of a member before commit: creation, setters and what they refuse. */
+/* Description of a member before commit: create calls and setters. */
 #include "../base/blas.h"
 #include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../math/rotation.h"
+#include "added_mass_fit.h"
 #include "beam.h"
 #include "checks.h"
-#include "added_mass_fit.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
@@ -124,7 +124,7 @@ int spar_beam_create(spar_session *session, const char *name, int elements, int 
     return SPAR_OK;
 }
 
-/* ---- describe ---- */
+/* ---- description ---- */
 
 int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const double *xyz, const double *twist) {
     SPARI_QUIET;
@@ -336,7 +336,7 @@ int spar_member_set_owner(spar_member *member, int rank) {
     return SPAR_OK;
 }
 
-/* ---- what has been said ---- */
+/* ---- getters ---- */
 
 static void hand_int(int *to, int from) {
     if (to) {
@@ -430,7 +430,7 @@ int spar_member_get_owner(const spar_member *member, int *rank) {
     return SPAR_OK;
 }
 
-/* FNV-1a over what the ranks must agree on. */
+/* FNV-1a hash of everything the ranks must agree on. */
 uint64_t spari_member_make(const spar_member *m) {
     uint64_t h = SPARI_HASH_BEGIN;
     int numbers[] = {m->kind,     m->external,    m->root,     m->effects,   m->effects_given,

@@ -1,4 +1,4 @@
-/* A body that is linear about its reference: see linear_body.h. */
+/* Forces, tangent and energy of a linearised body: see linear_body.h. */
 #include "linear_body.h"
 
 #include "../base/blas.h"
@@ -31,7 +31,7 @@ void spari_linear_energy(const spari_body *body, const double *q, const double *
         energy[1] += 0.5 * quadratic_form(n, body->linear[0] + at, x, x + n);
         energy[0] += body->linear[2] && v ? 0.5 * quadratic_form(n, body->linear[2] + at, v + 6 * first, x + n) : 0;
         energy[3] += body->linear[1] && v ? quadratic_form(n, body->linear[1] + at, v + 6 * first, x + n) : 0;
-        for (int i = e > 0 ? 6 : 0; i < n && body->weights; i++) { /* a joint counts once */
+        for (int i = e > 0 ? 6 : 0; i < n && body->weights; i++) { /* an element boundary counts once */
             energy[2] += body->weights[6 * first + i] * x[i];
         }
         for (int i = e > 0 ? 6 : 0; i < n && body->pull; i++) {
@@ -44,7 +44,7 @@ double spari_linear_residual(const spari_body *body, const double *q, const doub
                              double *r, double *power) {
     int P = body->per_element, n = 6 * P;
     double *x = body->scratch, scale = 0, damped = 0;
-    if (v && body->drag > 0) { /* strains' rates are those of what the root sees as well */
+    if (v && body->drag > 0) { /* damping acts on velocities relative to the root */
         spari_body_see(body, NULL, v, body->seen);
     }
     const double *rate = v && body->drag > 0 ? body->seen : v;

@@ -1,4 +1,4 @@
-/* A body that is linear about its reference: what it answers instead of the exact one, from matrices formed once. */
+/* Forces, tangent and energy of a body linearised about its reference, from matrices that are formed once. */
 #ifndef SPARI_LINEAR_BODY_H
 #define SPARI_LINEAR_BODY_H
 

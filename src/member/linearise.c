@@ -1,4 +1,4 @@
-/* A body made linear: its element matrices and its weight, from the exact forces and tangents at the reference. */
+/* Linearises a body: element matrices and weight from the exact forces and tangents at the reference. */
 #include "body.h"
 
 #include "../base/status.h"
@@ -7,7 +7,7 @@
 #include <string.h>
 
 void spari_body_gravity_changed(spari_body *body) {
-    if (body->linear[0] && body->weights) { /* the exact forces at the reference are the weight, and the pretension */
+    if (body->linear[0] && body->weights) { /* the exact forces at the reference are weight and pretension */
         spari_body_exact_residual(body, body->at_rest, NULL, NULL, 1, body->weights, NULL);
         for (int64_t i = 0; i < 6 * (int64_t)body->unique && body->pull; i++) {
             body->weights[i] -= body->pull[i];
@@ -34,7 +34,7 @@ int spari_body_linearise(spari_body *body, int heavy) {
         q[7 * i + 3] = 1;
     }
     for (int e = 0; e < body->elements; e++) {
-        double *K = matrices[0] + size * e; /* gravity stays out of it: first order */
+        double *K = matrices[0] + size * e; /* without gravity, whose change is of second order */
         spari_body_tangent(body, e, q, NULL, NULL, 0, 0, 0, NULL, K);
         spari_body_rates(body, e, q, NULL, NULL, 0, K, there[1] ? matrices[1] + size * e : NULL,
                          there[2] ? matrices[2] + size * e : NULL);
