@@ -1,4 +1,4 @@
-/* The host's progress call: see progress.h. */
+/* Calls the host's progress callback: see progress.h. */
 #include "progress.h"
 
 #include "../base/environment.h"
@@ -8,7 +8,7 @@ spari_progress spari_progress_of(const spar_session *s, const char *call) {
     return (spari_progress){.call = call, .tell = s->progress, .context = s->progress_context};
 }
 
-/* Between trials the session stands as the host left it; what would try or save it is refused as within one. */
+/* Between trials the session is as the host left it. Calls that would run trials or save are refused, as in a trial. */
 static int ask_host(spar_session *s, const spari_progress *p, double done, double expected) {
     spari_host host;
     s->parted = 0;
@@ -17,7 +17,7 @@ static int ask_host(spar_session *s, const spari_progress *p, double done, doubl
     int answer = p->tell(s, done, expected, p->context);
     s->trial = 0;
     spari_host_end(&host);
-    if (s->parted) { /* this rank alone called the others from here: they met it, and know */
+    if (s->parted) { /* this rank alone called the others from the callback: they noticed */
         return SPAR_ERR_COMM;
     }
     int status = answer == 0 ? SPAR_OK

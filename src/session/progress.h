@@ -1,4 +1,4 @@
-/* The host hears how far a call that makes trials is, ahead of each of its runs, and may stop it. */
+/* Progress of a call that runs trials: the host is called before each run and may cancel. */
 #ifndef SPARI_PROGRESS_H
 #define SPARI_PROGRESS_H
 
@@ -6,16 +6,16 @@
 
 typedef struct spari_progress {
     const char *call;
-    spar_progress tell; /* as it was at the entry of the call; NULL: nobody */
+    spar_progress tell; /* callback at the entry of the call; may be NULL */
     void *context;
-    int stopped; /* what the call is to answer, once it has been stopped; else SPAR_OK */
+    int stopped; /* status of the call after it was cancelled; otherwise SPAR_OK */
 } spari_progress;
 
 spari_progress spari_progress_of(const spar_session *session, const char *call);
-/* SPAR_OK, or SPAR_ERR_LIMIT on all ranks, where one of them stops: no trial fails with that, so that nothing else is
-   tried in its place. Collective where there is somebody, else nothing. */
+/* SPAR_OK, or SPAR_ERR_LIMIT on all ranks if one of them cancels. No trial fails with this status, so nothing else
+   is tried instead. Collective if there is a callback, otherwise nothing. */
 int spari_progress_tell(spar_session *session, spari_progress *progress, double done, double expected);
-/* The status of a call that has been stopped, else `status`. */
+/* The status of a cancelled call, otherwise `status`. */
 int spari_progress_ends(const spari_progress *progress, int status);
 
 #endif
