@@ -1,17 +1,17 @@
-/* What a run costs: see cost.h. */
+/* Cost of a run, counted: see cost.h. */
 #include "cost.h"
 
 #include "../comm/comm.h"
-#include "../fluid/fluid.h"
-#include "../member/beam.h"
 #include "../coupling/coupling.h"
 #include "../exchange/session_private.h"
+#include "../fluid/fluid.h"
+#include "../member/beam.h"
 #include "../time/fidelity.h"
 #include "rules.h"
 
 #include <math.h>
 
-/* Whole numbers: their sum over the ranks is the same in any order. */
+/* Integers: their sum over the ranks does not depend on the order. */
 static double whole(double cost) {
     return floor(cost + 0.5);
 }
@@ -80,7 +80,7 @@ static double count_nodes(const spar_fluid *f) {
     return (double)n;
 }
 
-/* Motion to the fluids and loads from them, once. */
+/* Transfer of motion to the fluids and of loads from them, once. */
 static double map_cost(const spar_session *s) {
     const spari_prices *p = &spari_rule.price;
     double sum = 0;
@@ -111,7 +111,7 @@ double spari_cost_fluids(const spar_session *s) {
     return sum;
 }
 
-/* The time of a solution, in what its nodes lead one to expect. */
+/* Time of a solution, in units of the expectation from its nodes. */
 static double times_expected(double by_nodes, double seconds, int64_t solutions) {
     const spari_prices *p = &spari_rule.price;
     double timed = solutions > 0 ? seconds / (double)solutions * p->second : 0;
@@ -129,7 +129,7 @@ double spari_cost_solution(const spar_session *s, double by_nodes, double second
 }
 
 int spari_cost_wavers(const spar_session *s, double by_nodes, double seconds, int64_t solutions) {
-    const double near = 2; /* what a busy machine makes of a clock */
+    const double near = 2; /* timing error of a busy machine */
     return spari_cost_solution(s, by_nodes, seconds / near, solutions) !=
            spari_cost_solution(s, by_nodes, seconds * near, solutions);
 }
