@@ -1,21 +1,21 @@
-/* Advice comes into force: settings, and members made anew in place as trials make them, to stay. */
+/* Puts advice in force: settings, and members rebuilt in place as in trials, permanently. */
 #include "apply.h"
 
 #include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../comm/enter.h"
+#include "../exchange/exchange.h"
+#include "../exchange/session_private.h"
+#include "../exchange/sparse.h"
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"
 #include "../member/beam.h"
 #include "../member/joint.h"
 #include "../member/mean_acceleration.h"
-#include "../exchange/exchange.h"
-#include "../exchange/session_private.h"
-#include "../exchange/sparse.h"
 #include "../solve/work.h"
+#include "../trial/move_joints.h"
 #include "../trial/move_loads.h"
 #include "../trial/rebuild.h"
-#include "../trial/move_joints.h"
 
 #include <stdlib.h>
 
@@ -28,23 +28,23 @@ uint64_t spari_advised_of(const spar_session *s) {
     return h;
 }
 
-/* ---- there, and back where it fails ---- */
+/* ---- apply, and undo after a failure ---- */
 
-/* A member or a fluid made anew, and what it was. */
+/* A rebuilt member or fluid, and the old one. */
 typedef struct anew {
     spar_member *member, was;
     spar_fluid *fluid, *fluid_was;
 } anew;
 
 typedef struct change {
-    double before[SPARI_MOST_VARIED]; /* the settings there were */
+    double before[SPARI_MOST_VARIED]; /* old settings */
     int past;
-    double *pack, *motion; /* what the ranks exchange through, likewise */
+    double *pack, *motion; /* exchange memory of the ranks, likewise */
     int64_t pack_count, *first;
-    anew *made; /* [count] in their order */
+    anew *made; /* [count] in order */
     int64_t count;
     spari_carried *carried; /* [count] room for the fluids with other nodes */
-    spari_ties ties;        /* of the members; laid aside where one that is tied is made anew */
+    spari_ties ties;        /* of the members; copied if a connected one is rebuilt */
 } change;
 
 static int change_create(spar_session *s, change *c) {
@@ -75,7 +75,7 @@ static int is_as_advised(const spar_member *m) {
             to->fidelity == m->fidelity && to->modes == m->modes && (to->points == 0 || to->points == m->beam->points));
 }
 
-/* Members that are tied begin anew together: whether one of them has to. */
+/* Whether a connected member must be rebuilt; then all of them are. */
 static int ties_change(const spar_session *s) {
     int any = 0;
     for (const spar_member *m = s->members; m && s->joints; m = m->next) {
@@ -174,7 +174,7 @@ static void change_free(change *c) {
     free(c->carried);
 }
 
-/* The message of the failure stays. */
+/* The message of the failure is kept. */
 static void undo(spar_session *s, change *c) {
     for (int64_t k = c->count - 1; k >= 0; k--) {
         anew *a = &c->made[k];
@@ -203,7 +203,7 @@ static void confirm(spar_session *s, change *c) {
     s->own->advised->of = spari_advised_of(s);
 }
 
-/* ---- the call ---- */
+/* ---- public call ---- */
 
 static int check_apply(spar_session *s, const char *call) {
     const spari_advised *a = s->own->advised;
@@ -241,7 +241,7 @@ int spar_session_apply_advice(spar_session *session, double *dt) {
         set_advised(s, &c);
         status = make_change(s, &c);
     }
-    if (s->joints) { /* whether there are any is alike on all ranks, whether they change too where all goes well */
+    if (s->joints) { /* whether there are joints agrees on all ranks; they change only on success */
         status = spari_enter(s, "advice", status);
         status = status == SPAR_OK ? spari_assemblies_make(s, __func__) : status;
     }

@@ -1,4 +1,4 @@
-/* Numbers of the host's own that advice is to keep. */
+/* The host's own numbers as a goal of the advice. */
 #include "../base/environment.h"
 #include "../base/session.h"
 #include "../exchange/session_private.h"
