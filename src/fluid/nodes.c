@@ -190,7 +190,7 @@ static void take_out(spar_fluid *fluid) {
     spari_fluid_free(fluid);
 }
 
-/* A fluid destroyed during a trial: removes its loads and callbacks; it is freed when the trial has ended. */
+/* A fluid destroyed during a trial: it has no loads from now on, and is freed when the trial has ended. */
 static void fall_silent(spar_fluid *fluid) {
     double *load[] = {fluid->load, fluid->load_new, fluid->load_accepted};
     for (int k = 0; k < 3 && fluid->load; k++) {
