@@ -194,8 +194,8 @@ int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const dou
     return SPAR_OK;
 }
 
-/* Symmetric to 1e-6 of the diagonal entries, and positive definite after scaling to a unit diagonal (so that units do
- * not matter). */
+/* Symmetric to 1e-6 of the diagonal entries, and positive definite after scaling to a unit diagonal, so that units
+   do not matter. */
 const char *spari_stiffness_fault(const double C[36]) {
     double d[6], scaled[36];
     for (int i = 0; i < 6; i++) {

@@ -16,8 +16,8 @@ typedef struct spari_pose {
     double q[7], v[6], a[6];
 } spari_pose;
 
-/* Motion of all nodes at one time: q [n][7] (u, quaternion relative to the reference), v [n][6] (u-dot, omega), a
- * [n][6]. */
+/* Motion of all nodes at one time: q [n][7] (u, quaternion relative to the reference), v [n][6] (u-dot, omega),
+   a [n][6]. */
 typedef struct spari_motion {
     double *q, *v, *a;
 } spari_motion;
