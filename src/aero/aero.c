@@ -1,13 +1,13 @@
-/* The blade-element fluid: public calls. What it asks of session, members and fluids it asks by the installed headers.
- */
+/* Public calls of the blade-element fluid model. It uses sessions, members and fluids through the public headers
+   alone. */
 #include "aero.h"
-#include "../base/message.h"
 #include "../base/environment.h"
+#include "../base/message.h"
 #include "../math/rotation.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* What a solve without momentum theory of its own asking has. */
+/* All effects (SPAR_AERO_*). */
 enum { SPARI_AERO_ALL = 2 * SPAR_AERO_UNSTEADY - 1 };
 static const int momentum_effects = SPAR_AERO_INDUCTION | SPAR_AERO_TIP_LOSS | SPAR_AERO_HUB_LOSS | SPAR_AERO_SWIRL;
 static const int wind_effects = SPAR_AERO_SHEAR | SPAR_AERO_TOWER;
@@ -17,7 +17,7 @@ static int64_t count(const spar_aero *aero) {
     return aero->blades * aero->n;
 }
 
-/* ---- life ---- */
+/* ---- create and destroy ---- */
 
 static void aero_free(spar_aero *aero) {
     for (int64_t i = 0; aero->section && i < aero->n; i++) {
@@ -65,7 +65,7 @@ static int find_session(const spar_fluid *fluid, spar_session **session) {
     return spar_member_get_session(member, session);
 }
 
-/* Its arrays are packed: a fluid with a layout would read and write others. */
+/* Its arrays are packed, so a fluid with another layout is refused. */
 static int check_packed(spar_session *session, const spar_fluid *fluid, int status, const char *call) {
     for (int which = SPAR_NODES_MOTION; which <= SPAR_NODES_FORCE; which++) {
         int64_t node = 3, component = 1;
@@ -77,7 +77,7 @@ static int check_packed(spar_session *session, const spar_fluid *fluid, int stat
     return SPAR_OK;
 }
 
-/* All fluids there, of one session, made of n >= 2 sections each. */
+/* Checks that all fluids exist, belong to one session, and have n >= 2 sections each. */
 static int check_blade_fluids(int blades, spar_fluid *const *fluid, const char *call, spar_session **first,
                               int64_t *n) {
     for (int b = 0; b < blades; b++) {
@@ -104,7 +104,7 @@ static int check_blade_fluids(int blades, spar_fluid *const *fluid, const char *
     return SPAR_OK;
 }
 
-/* Reference places of the aerodynamic centres and the lengths between them. */
+/* Reference positions of the aerodynamic centres and the distances between them. */
 static int find_centres(spar_aero *aero, const char *call) {
     for (int b = 0; b < aero->blades; b++) {
         double *x = aero->place + 3 * b * aero->n;
@@ -161,7 +161,7 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
     SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create",       \
                   __func__)
 
-/* Effects the description implies, unless they were given. */
+/* Effects that follow from the description, unless the host chose them. */
 static int implied_effects(const spar_aero *aero) {
     if (aero->effects_given) {
         return aero->rotor.effects;
@@ -177,18 +177,18 @@ static int implied_effects(const spar_aero *aero) {
     return effects;
 }
 
-/* n doubles into *x, unless they are there. */
+/* Allocates n doubles in *x unless they exist. */
 static int have(double **x, int64_t n) {
     *x = *x ? *x : spari_zalloc(n, sizeof **x);
     return *x != NULL;
 }
 
-/* Moments that are pushed. */
+/* Whether moments are pushed. */
 static int has_moments(int effects) {
     return (effects & (SPAR_AERO_MOMENT | SPAR_AERO_UNSTEADY)) != 0;
 }
 
-/* Memory of what remembers. */
+/* Allocates the memory of unsteady effects. */
 static int have_memory(spar_aero *aero, int effects) {
     int64_t all = count(aero);
     int moving = (effects & SPAR_AERO_UNSTEADY) != 0;
@@ -198,8 +198,8 @@ static int have_memory(spar_aero *aero, int effects) {
            (!moving || (have(&aero->omega, 3 * all) && have(&aero->a, 3 * all) && have(&aero->omega_a, 3 * all)));
 }
 
-/* What the sections remember goes with the fluids. As long as none does they have no numbers, and nothing is lost where
-   one of them cannot. */
+/* Stores the unsteady state of the sections with the fluids. As long as nothing is stored the fluids have no
+   numbers, so nothing is lost if one of them fails. */
 static int keep_states(const spar_aero *aero, const char *caller) {
     for (int b = 0; b < aero->blades; b++) {
         int64_t width;
@@ -213,14 +213,14 @@ static int keep_states(const spar_aero *aero, const char *caller) {
     return SPAR_OK;
 }
 
-/* Its polar is another one. */
+/* The section has got another polar. */
 static void forget_attached(spar_aero *aero, int64_t i) {
     if (aero->attached) {
         aero->attached[i].known = 0;
     }
 }
 
-/* Attached flow of the sections that have polars. */
+/* Attached-flow data of the sections that have polars. */
 static int find_attached(spar_aero *aero) {
     aero->attached = aero->attached ? aero->attached : spari_zalloc(aero->n, sizeof *aero->attached);
     for (int64_t i = 0; aero->attached && i < aero->n; i++) {
@@ -233,7 +233,7 @@ static int find_attached(spar_aero *aero) {
     return aero->attached != NULL;
 }
 
-/* Puts effects in force, with the memory that they and a rotor need. */
+/* Puts effects in force, and allocates the memory that they and a rotor need. */
 static int adopt(spar_aero *aero, int effects, const char *caller) {
     int64_t all = count(aero);
     int whole = !has_moments(effects) || have(&aero->moment, 3 * all);
@@ -291,7 +291,7 @@ int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist
     }
     spari_table_release(old.table);
     for (int b = 0; b < aero->blades; b++) {
-        aero->accel[b * aero->n + i] = (gsl_interp_accel){0, 0, 0}; /* its interval was one of the old table */
+        aero->accel[b * aero->n + i] = (gsl_interp_accel){0, 0, 0}; /* the interval belongs to the old table */
     }
     return SPAR_OK;
 }
@@ -327,14 +327,14 @@ int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[
     return status;
 }
 
-/* Place for the description of the wind. */
+/* Allocates the description of the wind. */
 static int have_wind(spar_aero *aero, const char *caller) {
     aero->wind = aero->wind ? aero->wind : spari_zalloc(1, sizeof *aero->wind);
     SPARI_REQUIRE(aero->session, aero->wind, SPAR_ERR_MEMORY, "%s: no memory for the wind", caller);
     return SPAR_OK;
 }
 
-/* What is described now is in force, or all is as of old. */
+/* Puts the new description in force, or restores the old one. */
 static int adopt_wind(spar_aero *aero, const spari_wind *old, const char *caller) {
     int status = adopt(aero, implied_effects(aero), caller);
     if (status != SPAR_OK) {
@@ -343,7 +343,7 @@ static int adopt_wind(spar_aero *aero, const spari_wind *old, const char *caller
     return status;
 }
 
-/* What a law of shear is given: in range, with texts that say what that is. */
+/* Checks the arguments of a shear law; the messages name the allowed range. */
 static int check_shear(const spar_aero *aero, int law, double height, double parameter, const char *call) {
     SPARI_REQUIRE(aero->session, law >= SPAR_SHEAR_POWER && law <= SPAR_SHEAR_LINEAR, SPAR_ERR_ARGUMENT,
                   "%s: no law %d; give SPAR_SHEAR_POWER, _LOG or _LINEAR", call, law);
@@ -358,7 +358,7 @@ static int check_shear(const spar_aero *aero, int law, double height, double par
     return SPAR_OK;
 }
 
-/* The direction of v and its length, which must be one. */
+/* Direction and length of v; the length must not be zero. */
 static int find_direction(const spar_aero *aero, const double v[3], double unit[3], double *length, const char *what,
                           const char *call) {
     *length = spari_first_nonfinite(v, 3) < 0 ? hypot(hypot(v[0], v[1]), v[2]) : NAN;
@@ -439,8 +439,8 @@ int spar_aero_set_effects(spar_aero *aero, int effects) {
 
 /* ---- solve ---- */
 
-/* The fluids are as they were when the object was made, mapped, and would take loads: what one of them refuses later
-   the others have had. */
+/* Checks that the fluids are unchanged since creation, mapped, and would accept loads: a late refusal would leave
+   the others with new loads. */
 static int check_blades(const spar_aero *aero, const char *call) {
     int phase = SPAR_PHASE_START;
     SPARI_TRY(aero->blades > 0 ? spar_session_get_phase(aero->session, &phase) : SPAR_OK);
@@ -472,7 +472,7 @@ static int check_described(const spar_aero *aero, const char *call) {
     return SPAR_OK;
 }
 
-/* What is remembered goes over whole steps. */
+/* Unsteady effects need whole steps. */
 static int check_remembered(const spar_aero *aero, double theta, const char *call) {
     for (int b = 0; b < aero->blades && (aero->rotor.effects & memory_effects) != 0; b++) {
         double dt;
@@ -527,8 +527,7 @@ static int pull_centres(spar_aero *aero, double theta) {
     return SPAR_OK;
 }
 
-/* Loads per length (those of element.load from `from` on), linear over each interval of a blade, shared consistently
-   between its ends. */
+/* Consistent nodal loads of loads per length (element.load from `from` on), linear over each interval of a blade. */
 static void lump(const spar_aero *aero, int blade, int from, double *node) {
     int64_t at = blade * aero->n;
     memset(node + 3 * at, 0, (size_t)(3 * aero->n) * sizeof *node);
@@ -543,7 +542,7 @@ static void lump(const spar_aero *aero, int blade, int from, double *node) {
     }
 }
 
-/* Loads that every fluid can take: none of its sums leaves the range of numbers. */
+/* Checks that the sums of loads of all fluids stay in the range of numbers. */
 static int check_loads(const spar_aero *aero, const double *load, const char *what, const char *call) {
     for (int64_t i = 0; i < 3 * count(aero); i++) {
         SPARI_REQUIRE(aero->session, fabs(load[i]) < 1e200, SPAR_ERR_NUMERIC,
@@ -554,7 +553,7 @@ static int check_loads(const spar_aero *aero, const double *load, const char *wh
     return SPAR_OK;
 }
 
-/* The wind at the sections, where shear or a tower change it. */
+/* Wind at the sections with shear and tower. */
 static const double *meet_wind(spar_aero *aero, const double *inflow) {
     for (int64_t k = 0; k < count(aero); k++) {
         aero->inside[k] =
@@ -569,7 +568,7 @@ static void flag_inside(spar_aero *aero) {
     }
 }
 
-/* What the sections remember of t^n, and the time since. A rank without blades has none. */
+/* Unsteady state at t^n, and the time since. A rank without blades has none. */
 static int recall_sections(spar_aero *aero, double *dt) {
     *dt = 0.0;
     for (int b = 0; b < aero->blades; b++) {
@@ -592,7 +591,7 @@ static int remember_sections(const spar_aero *aero) {
     return SPAR_OK;
 }
 
-/* What section i of a blade, k of all, needs of the step before. */
+/* Unsteady data of section i of a blade, number k of all. */
 static spari_past past_of(const spar_aero *aero, int64_t i, int64_t k, double dt) {
     spari_past past = {.step = {dt, aero->was + k, aero->is + k}};
     past.attached = aero->attached ? aero->attached + i : NULL;
@@ -656,7 +655,7 @@ int spar_aero_solve(spar_aero *aero, double density, const double *inflow, doubl
     SPARI_QUIET;
     REQUIRE_HANDLE(aero);
     int status = spari_named(aero->session, __func__, solve_elements(aero, density, inflow, theta, __func__));
-    if (status != SPAR_OK && aero->blades > 0) { /* a step under way must not go on as if it had its loads */
+    if (status != SPAR_OK && aero->blades > 0) { /* a step must not go on with old loads */
         (void)spar_fluid_fail(aero->fluid[0], status, spar_session_message(aero->session));
     }
     return status;
@@ -670,7 +669,7 @@ static int check_solved(const spar_aero *aero, const char *caller) {
     return SPAR_OK;
 }
 
-/* Thrust, torque about the shaft and speed of the blades here, in the last solve. */
+/* Thrust, torque about the shaft and speed of the blades on this rank in the last solution. */
 static void sum_rotor(const spar_aero *aero, double *thrust, double *torque, double *speed) {
     const spari_rotor *rotor = &aero->used;
     *thrust = *torque = *speed = 0.0;

@@ -1,4 +1,4 @@
-/* A rotor or wing of blade elements: what its calls share. */
+/* Data of a rotor or wing of blade elements, shared by the files of this room. */
 #ifndef SPARI_AERO_H
 #define SPARI_AERO_H
 
@@ -12,25 +12,25 @@ struct spar_aero {
     int blades;            /* on this rank */
     int64_t n;             /* sections per blade */
     spar_fluid **fluid;
-    spari_rotor rotor, first; /* first: as it was described first */
+    spari_rotor rotor, first; /* first: as described first */
     int rotor_given, effects_given, solved;
     spari_section *section;   /* [n] */
     gsl_interp_accel *accel;  /* [blades][n] */
-    gsl_root_fsolver *solver; /* NULL: no induction so far */
-    double *place;            /* reference places [blades][n][3] */
+    gsl_root_fsolver *solver; /* NULL: induction was never requested */
+    double *place;            /* reference positions [blades][n][3] */
     double *length;           /* [blades][n - 1] */
-    double *loss_radius;      /* [blades][n], of the first rotor; NULL: no loss asked for so far */
+    double *loss_radius;      /* [blades][n], of the first rotor; NULL: tip or hub losses were never requested */
     double *x, *v, *q;
-    double *omega;            /* NULL: no rotor, no unsteady airfoil so far */
-    double *a, *omega_a;      /* NULL: no unsteady airfoil so far */
+    double *omega;            /* NULL: no rotor and no unsteady airfoil yet */
+    double *a, *omega_a;      /* NULL: no unsteady airfoil yet */
     spari_element *element;   /* [blades][n] */
-    double *force, *moment;   /* moment: NULL before there is one to push */
-    spari_memory *was, *is;   /* [blades][n] at t^n and at t^{n+1}; NULL: nothing that remembers so far */
-    spari_attached *attached; /* [n]; NULL: no dynamic stall so far */
-    spari_wind *wind;         /* NULL: neither shear nor tower described so far */
-    double *met;              /* [blades][n][3] wind with these; NULL: not in force so far */
+    double *force, *moment;   /* moment: NULL before one is pushed */
+    spari_memory *was, *is;   /* [blades][n] at t^n and at t^{n+1}; NULL: no unsteady effects yet */
+    spari_attached *attached; /* [n]; NULL: no dynamic stall yet */
+    spari_wind *wind;         /* NULL: neither shear nor tower described */
+    double *met;              /* [blades][n][3] wind with shear and tower; NULL: not in force yet */
     int *inside;              /* [blades][n] SPAR_AERO_FLAG_TOWER or 0 */
-    spari_rotor used;         /* in the last solve; rotor_used: it was given then */
+    spari_rotor used;         /* in the last solution; rotor_used: it was set then */
     int rotor_used;
 };
 

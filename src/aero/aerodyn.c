@@ -1,32 +1,31 @@
-/* Blades by AeroDyn's files: where the aerodynamic centres are, and chord, twist and polar of each section.
-
-   AeroDyn's blade axes are x downwind, y to the trailing edge, z along the blade. In our order, z x y, a centre stands
-   at (span, curve, sweep), and a section's chord, from leading to trailing edge, is the third axis, turned by the twist
-   from the third to the second one: the leading edge goes upwind. */
+/* Blades from AeroDyn's files: positions of the aerodynamic centres, and chord, twist and polar of each section.
+   AeroDyn's blade axes are x downwind, y towards the trailing edge, z along the blade. In spar's order, z x y, a
+     centre is at (span, curve, sweep). The chord of a section, from leading to trailing edge, is the third axis,
+     rotated by the twist from the third towards the second: the leading edge moves upwind. */
 #include "aerodyn.h"
-#include "../base/message.h"
 #include "../base/environment.h"
+#include "../base/message.h"
 #include "../math/rotation.h"
 #include "aero.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Slack of a span on the blade's ends, of its length; of unit length; of alike blades' twists, rad; of alike angles of
-   two tables, rad. */
+/* Tolerances: span at the ends of the blade, relative to its length; unit length; twist differences between blades,
+   rad; equal angles of two tables, rad. */
 #define SPARI_SPAN_SLACK 1e-6
 #define SPARI_UNIT_SLACK 1e-6
 #define SPARI_TWIST_SLACK 1e-6
 #define SPARI_ROW_SLACK 1e-9
 #define SPARI_TURN (2.0 * 3.14159265358979323846)
 
-/* ---- the blade at a span ---- */
+/* ---- interpolation along the blade ---- */
 
 static double station(const spari_blade *blade, int i, int column) {
     return blade->row[(int64_t)i * SPARI_BLADE_COLUMNS + column];
 }
 
-/* The stations i and i + 1 that a span lies between, and how far on. */
+/* Stations i and i + 1 around a span, and the fraction between them. */
 static int find_stations(const spari_blade *blade, double span, int *i, double *t) {
     double first = station(blade, 0, SPARI_BLADE_SPAN), last = station(blade, blade->stations - 1, SPARI_BLADE_SPAN);
     double slack = SPARI_SPAN_SLACK * (last - first);
@@ -60,7 +59,7 @@ static int check_spans(const spar_session *session, const char *call, const char
     return SPAR_OK;
 }
 
-/* The orientation of AeroDyn's axes on a member's reference: its placement times q, where that is given. */
+/* Orientation of AeroDyn's axes on the member's reference: its placement times q, if given. */
 static int find_axes(const spar_session *session, const char *call, const spar_member *member, const double *q,
                      double x[3], double axes[4]) {
     SPARI_TRY(spar_member_get_placement(member, x, axes));
@@ -75,9 +74,9 @@ static int find_axes(const spar_session *session, const char *call, const spar_m
     return SPAR_OK;
 }
 
-/* ---- the centres ---- */
+/* ---- aerodynamic centres ---- */
 
-/* Their places in the reference; span NULL: the stations. */
+/* Their reference positions; span NULL: at the stations. */
 static void place_centres(const spari_blade *blade, int64_t n, const double *span, const double root[3],
                           const double axes[4], double *x) {
     for (int64_t k = 0; k < n; k++) {
@@ -94,8 +93,8 @@ static void place_centres(const spari_blade *blade, int64_t n, const double *spa
     }
 }
 
-/* Feet of the places on the member's line, by a fluid that comes and goes: xi, and the arms from there in the section
-   frames, which take the places' place. work [7 n] */
+/* Nearest points of the positions on the member's line, by a temporary fluid: xi, and lever arms in the section
+   frames, which replace x. work [7 n] */
 static int find_feet(spar_member *member, const char *name, int64_t n, double *x, double *xi, double *work) {
     spar_fluid *fluid = NULL;
     double *q = work, *arm = work + 4 * n;
@@ -164,7 +163,7 @@ static int make_polar(const spari_airfoil *a, spar_polar **polar) {
     return status;
 }
 
-/* All angles of both tables, each once, over a turn at most. */
+/* All angles of both tables, each once, over one full circle at most. */
 static int64_t merge_rows(const spari_airfoil *a, const spari_airfoil *b, double *alpha) {
     int64_t n = 0;
     for (int64_t i = 0, j = 0; i < a->n || j < b->n;) {
@@ -173,7 +172,7 @@ static int64_t merge_rows(const spari_airfoil *a, const spari_airfoil *b, double
             alpha[n++] = next;
         }
     }
-    if (alpha[n - 1] - alpha[0] > SPARI_TURN - SPARI_ROW_SLACK) { /* a turn ends where it began */
+    if (alpha[n - 1] - alpha[0] > SPARI_TURN - SPARI_ROW_SLACK) { /* a full circle ends where it began */
         while (alpha[n - 1] - alpha[0] > SPARI_TURN - SPARI_ROW_SLACK) {
             n--;
         }
@@ -182,7 +181,7 @@ static int64_t merge_rows(const spari_airfoil *a, const spari_airfoil *b, double
     return n;
 }
 
-/* What lies between two airfoils: their coefficients' mean by weights, at every angle of either. */
+/* Polar between two airfoils: weighted mean of their coefficients at every angle of either. */
 static int blend_polars(const spari_airfoil *a, const spari_airfoil *b, double t, spar_polar **polar) {
     spar_polar *part[2] = {NULL, NULL};
     int64_t most = a->n + b->n;
@@ -212,7 +211,7 @@ static int blend_polars(const spari_airfoil *a, const spari_airfoil *b, double t
     return status;
 }
 
-/* The polar at a span: a station's own, or between two of them. */
+/* Polar at a span: that of a station, or between two. */
 static int polar_at(const spari_blade *blade, int i, double t, spar_polar **polar) {
     const spari_airfoil *a = blade->airfoil + (int)station(blade, i, SPARI_BLADE_AIRFOIL) - 1,
                         *b = blade->airfoil + (int)station(blade, i + 1, SPARI_BLADE_AIRFOIL) - 1;
@@ -224,7 +223,7 @@ static int polar_at(const spari_blade *blade, int i, double t, spar_polar **pola
 
 /* ---- sections ---- */
 
-/* What the sections' frames lack of the chord's direction: the twist of spar_aero_set_section. work [4 n] */
+/* Rotation from the section frames to the chord direction: the twist of spar_aero_set_section. work [4 n] */
 static int find_twists(const spar_aero *aero, const char *call, int b, const spari_blade *blade, const double *span,
                        const double *q, double *twist, double *work) {
     double root[3], axes[4];
@@ -245,7 +244,7 @@ static int find_twists(const spar_aero *aero, const char *call, int b, const spa
     return SPAR_OK;
 }
 
-/* One set of sections serves all blades: their frames must lack the same twist. twist [n]; work [5 n] */
+/* All blades share one set of sections, so the twist must be the same on all. twist [n]; work [5 n] */
 static int find_common_twists(const spar_aero *aero, const char *call, const spari_blade *blade, const double *span,
                               const double *q, double *twist, double *work) {
     SPARI_TRY(find_twists(aero, call, 0, blade, span, q, twist, work));
@@ -262,7 +261,7 @@ static int find_common_twists(const spar_aero *aero, const char *call, const spa
     return SPAR_OK;
 }
 
-/* Moments first: only the first of them may need memory, so that all of this happens or nothing. */
+/* Moments first: only the first of them may need memory, so the change is all or nothing. */
 static int set_all(spar_aero *aero, const spari_blade *blade, const double *span, const double *twist,
                    spar_polar *const *polar) {
     for (int moments = 1; moments >= 0; moments--) {
@@ -294,7 +293,7 @@ static int make_polars(const spar_aero *aero, const char *call, const spari_blad
     return SPAR_OK;
 }
 
-/* The fluids have the sections that the object was made with. */
+/* Checks that the fluids have the number of sections of the object. */
 static int check_counts(const spar_aero *aero, const char *call) {
     for (int b = 0; b < aero->blades; b++) {
         int64_t n;

@@ -1,10 +1,10 @@
-/* A blade as AeroDyn's files describe it: stations and airfoils. */
+/* A blade as in AeroDyn's files: stations and airfoils. */
 #ifndef SPARI_AERODYN_H
 #define SPARI_AERODYN_H
 
 #include <spar/spar_aero.h>
 
-/* What stands in a row of the blade file, and in which order. Angles in radians. */
+/* Columns of the blade file, in order. Angles in radians. */
 enum {
     SPARI_BLADE_SPAN,
     SPARI_BLADE_CURVE,
@@ -19,17 +19,20 @@ enum {
 typedef struct spari_airfoil {
     int64_t n;
     int kind;                     /* SPAR_POLAR_LINEAR, _CUBIC */
-    double *alpha, *cl, *cd, *cm; /* one block, which is alpha's */
+    double *alpha, *cl, *cd, *cm; /* one memory block, owned through alpha */
 } spari_airfoil;
 
 typedef struct spari_blade {
     int stations, airfoils;
     double *row;            /* [stations][SPARI_BLADE_COLUMNS] */
-    spari_airfoil *airfoil; /* [airfoils]; those that no station has are empty */
+    spari_airfoil *airfoil; /* [airfoils]; unused ones are empty */
 } spari_blade;
 
-/* Reads the files; blade_path NULL: the primary file's first blade. polars 0: stations only. Messages go to the session
-   (NULL: the thread) and begin with call and subject. blade is to be freed in any case. */
+/* Reads the files.
+   blade: to be freed in any case
+   session, call, subject: of the messages, which begin with call and subject; session NULL: the thread's message
+   blade_path: NULL: the first blade of the primary file
+   polars: 0: stations only */
 int spari_blade_read(spari_blade *blade, const spar_session *session, const char *call, const char *subject,
                      const char *primary_path, const char *blade_path, int polars);
 void spari_blade_free(spari_blade *blade);

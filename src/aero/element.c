@@ -1,15 +1,15 @@
-/* Loads of a blade element: inflow, angle of attack and coefficients at one aerodynamic centre. */
+/* Loads of a blade element: relative flow, angle of attack and coefficients at one aerodynamic centre. */
 #include "element.h"
 #include "../math/rotation.h"
 
-/* Nearer to the tip or hub than this share of its radius, a section counts as lying on it: there the loss factor is 0
-   and the equation has no root, and just beside it the swirl of drag-free momentum theory grows without bound. */
+/* A section closer to the tip or hub than this fraction of its radius counts as at the end. There the loss factor is
+   0 and the equation has no root. Close to it the swirl of drag-free momentum theory is unbounded. */
 #define SPARI_END_SHARE 1e-4
-/* Smallest sine of the angle between span and shaft with which the section's plane has an axial direction. */
+/* Smallest sine of the angle between span and shaft for which the section's plane has an axial direction. */
 #define SPARI_SPAN_SINE 1e-3
 
-/* The section's plane: chord from leading to trailing edge, normal to it towards the suction side, both across the
- * span. */
+/* The section's plane: chord from leading to trailing edge, and normal towards the suction side, both perpendicular
+   to the span. */
 typedef struct frame {
     double span[3], chord[3], normal[3];
 } frame;
@@ -44,8 +44,8 @@ static int is_at_end(const spari_rotor *rotor, double radius) {
             radius <= (1.0 + SPARI_END_SHARE) * rotor->hub_radius);
 }
 
-/* Turns the flow in the section's plane, flow[0] along the chord and flow[1] along the normal, into that with
- * induction. */
+/* Adds the induced velocity to the flow in the section's plane, flow[0] along the chord and flow[1] along the
+   normal. */
 static void induce(const spari_rotor *rotor, const spari_section *section, const spari_centre *station, const frame *f,
                    gsl_root_fsolver *solver, double flow[2], spari_element *element) {
     double along = spari_dot(rotor->axis, f->span), p[3], s[3];
@@ -98,7 +98,7 @@ static void induce(const spari_rotor *rotor, const spari_section *section, const
     flow[1] = wx * to_s - wy * to_p;
 }
 
-/* What the shed wake leaves of the downwash at three quarters of the chord, which takes the place of flow[1]. */
+/* Effective downwash at three quarters of the chord with the shed wake; replaces flow[1]. */
 static void shed(const spari_rotor *rotor, const spari_section *section, const spari_centre *station, const frame *f,
                  double flow[2]) {
     double half = 0.5 * section->chord, pitching = rotor->turn * spari_dot(station->past->omega, f->span);
@@ -106,8 +106,9 @@ static void shed(const spari_rotor *rotor, const spari_section *section, const s
     flow[1] = spari_wake_step(&station->past->step, rate, flow[1] + half * pitching);
 }
 
-/* Loads of the air that a thin airfoil accelerates (Theodorsen), per length: pi rho b^2 times the rate of the downwash
-   at half chord, there and across the chord; and what turning it about that place takes. stream: along the chord. */
+/* Added-mass loads of a thin airfoil (Theodorsen) per length: pi rho b^2 times the rate of the downwash at half
+   chord, acting there across the chord, and the moment of rotational inertia about this point. stream: velocity
+   along the chord. */
 static void accelerate_air(const spari_rotor *rotor, const spari_section *section, const spari_centre *station,
                            const frame *f, double density, double stream, double load[6]) {
     double half = 0.5 * section->chord, arm[3], at_arm[3], carried[3], again[3], turned[3], rate = 0.0;
@@ -131,8 +132,8 @@ static void accelerate_air(const spari_rotor *rotor, const spari_section *sectio
     }
 }
 
-/* Lift where the point of separation lags behind its place of steady flow. Beyond half a right angle from the angle
-   without lift there is less of it, beyond a right angle none: attached flow is nothing to be compared with. */
+/* Lift with a lag of the separation point behind its steady position. Beyond 45 degrees from the zero-lift angle the
+   effect fades, beyond 90 degrees there is none, because attached flow is no reference there. */
 static double lag_stall(const spari_section *section, const spari_centre *station, double alpha, double speed,
                         double lift) {
     const spari_attached *flow = station->past->attached;
@@ -163,7 +164,7 @@ void spari_element_solve(const spari_rotor *rotor, const spari_section *section,
     double place = spari_table_wrap(section->table, element->alpha, &beyond);
     element->flags |= beyond ? SPAR_AERO_FLAG_BEYOND_POLAR : 0;
     element->cl = spari_table_lift(section->table, place, station->accel);
-    /* lift across the flow towards the suction side, drag along it */
+    /* lift perpendicular to the flow towards the suction side, drag along the flow */
     double speed = hypot(flow[0], flow[1]), scale = 0.5 * density * section->chord * speed;
     if (past && (rotor->effects & SPAR_AERO_STALL) && past->attached->slope > 0.0) {
         element->cl = lag_stall(section, station, element->alpha, speed, element->cl);

@@ -1,14 +1,14 @@
-/* One blade element: from its place, motion and wind to its loads per unit span. Knows no fluid and no session. */
+/* One blade element: loads per unit span from position, motion and wind. Independent of fluid and session. */
 #ifndef SPARI_ELEMENT_H
 #define SPARI_ELEMENT_H
 
 #include "momentum.h"
 #include "unsteady.h"
 
-/* What the sections of a rotor share. */
+/* Data that the sections of a rotor share. */
 typedef struct spari_rotor {
     int effects; /* SPAR_AERO_* in force */
-    int turn;    /* 1, or -1: mirrored blades */
+    int turn;    /* 1, or -1 for mirrored blades */
     int blades;  /* of the whole rotor */
     double hub[3], axis[3];
     double hub_radius, tip_radius;
@@ -16,27 +16,27 @@ typedef struct spari_rotor {
 
 typedef struct spari_section {
     double chord, cos_twist, sin_twist;
-    spari_table *table; /* NULL: not set yet */
+    spari_table *table; /* NULL: not set */
 } spari_section;
 
-/* Attached flow by a section's table: the angle without lift, the slope. */
+/* Attached flow of a section's table: zero-lift angle and slope. */
 typedef struct spari_attached {
     int known;
     double zero, slope;
 } spari_attached;
 
-/* What effects that remember need of a section. */
+/* State of a section for unsteady effects. */
 typedef struct spari_past {
     spari_passage step;
-    const spari_attached *attached;    /* of dynamic stall */
-    const double *omega, *a, *omega_a; /* of an unsteady airfoil: angular velocity, accelerations of the centre */
+    const spari_attached *attached;    /* for dynamic stall */
+    const double *omega, *a, *omega_a; /* for an unsteady airfoil: angular velocity, accelerations of the centre */
 } spari_past;
 
 typedef struct spari_centre {
-    const double *x, *q, *v, *wind; /* place, orientation, velocity of the aerodynamic centre; wind there */
+    const double *x, *q, *v, *wind; /* position, orientation and velocity of the aerodynamic centre; wind there */
     double loss_radius;             /* distance from the axis in the reference configuration */
     gsl_interp_accel *accel;
-    const spari_past *past; /* NULL: no such effect in force */
+    const spari_past *past; /* NULL: no unsteady effect in force */
 } spari_centre;
 
 typedef struct spari_element {

@@ -1,12 +1,12 @@
-/* The balance of an annulus between what its elements take and what the wind loses, with Prandtl's losses. */
+/* Solves the blade-element momentum equation of an annulus, with Prandtl's losses: see momentum.h. */
 #include "momentum.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_math.h>
 #include <math.h>
 
-/* Where cl < 0 the equation has a pole at phi = 0; brackets begin this far from it. */
+/* If cl < 0 the equation has a pole at phi = 0; brackets begin this far from it. */
 #define SPARI_PHI_MIN 1e-8
-/* sin phi below which the swirl fades towards that of the other side. */
+/* sin phi below which the swirl changes smoothly between the two signs. */
 #define SPARI_SWIRL_SINE 0.01
 enum { SPARI_SCAN = 32, SPARI_BRENT_MAX = 100 };
 
@@ -19,7 +19,7 @@ double spari_swirl_sign(double sin_phi) {
     return x * (1.5 - 0.5 * x * x);
 }
 
-/* g of sin phi = s, F and K = k s^2, which stays finite where s is 0. */
+/* g for sin phi = s, F and K = k s^2, which is finite at s = 0. */
 static double axial(double s, double big_k, double loss) {
     double s2 = s * s;
     if (s < 0.0) {
@@ -55,14 +55,14 @@ static double residual(double phi, void *annulus) {
     return spari_momentum_balance(annulus, phi).residual;
 }
 
-/* A root counts when the flow speed it stands for is positive. */
+/* Whether the flow speed at the root is positive. */
 static int is_sound(const spari_annulus *annulus, double phi, double *speed) {
     spari_balance b = spari_momentum_balance(annulus, phi);
     *speed = (fabs(annulus->vx) * b.g + annulus->vy * b.h) / (b.g * b.g + b.h * b.h);
     return isfinite(*speed) && *speed > 0.0;
 }
 
-/* Root between lo and hi, where the residual is of opposite signs. */
+/* Root between lo and hi, where the residual has opposite signs. */
 static double refine_bracket(const spari_annulus *annulus, gsl_root_fsolver *solver, double lo, double hi) {
     gsl_function f = {residual, (void *)annulus};
     if (gsl_root_fsolver_set(solver, &f, lo, hi)) {
@@ -81,7 +81,7 @@ static double refine_bracket(const spari_annulus *annulus, gsl_root_fsolver *sol
     return gsl_root_fsolver_root(solver);
 }
 
-/* Tries the interval from a to b in `parts` pieces that lie closer towards a; takes the first sound root. */
+/* Searches the range in `parts` intervals, finer towards its first end, for the first valid root. */
 static int search_bracket(const spari_annulus *annulus, gsl_root_fsolver *solver, const double range[2], int parts,
                           double *phi, double *speed) {
     double x0 = range[0], r0 = residual(x0, (void *)annulus);
@@ -100,7 +100,7 @@ static int search_bracket(const spari_annulus *annulus, gsl_root_fsolver *solver
     return 0;
 }
 
-/* Whether the free flow itself balances, as it does where there is no lift (cylinders). */
+/* Whether the free flow satisfies the equation, as without lift (cylinders). */
 static int is_free(const spari_annulus *annulus) {
     int beyond;
     double place = spari_table_wrap(annulus->table, atan2(annulus->vx, annulus->vy) - annulus->twist, &beyond);
@@ -108,9 +108,9 @@ static int is_free(const spari_annulus *annulus) {
 }
 
 int spari_momentum_solve(const spari_annulus *annulus, gsl_root_fsolver *solver, double *wx, double *wy) {
-    /* Quadrants in the order of likelihood for vy >= 0 (Ning's: windmill, brake, then tangential flow reversed); the
-       halves change places for vy < 0. Each begins at the end where the equation changes fastest; the short pieces are
-       what lies between two. */
+    /* Search ranges in order of likelihood for vy >= 0 (Ning's: windmill, brake, then reversed tangential flow); for
+       vy < 0 the halves are exchanged. Each begins at the end where the equation changes fastest; the short ranges
+       are between two of them. */
     static const double range[6][2] = {{SPARI_PHI_MIN, M_PI_2},         {-SPARI_PHI_MIN, -M_PI_2},
                                        {-SPARI_PHI_MIN, SPARI_PHI_MIN}, {M_PI - SPARI_PHI_MIN, M_PI_2},
                                        {SPARI_PHI_MIN - M_PI, -M_PI_2}, {M_PI - SPARI_PHI_MIN, M_PI + SPARI_PHI_MIN}};

@@ -1,21 +1,24 @@
-/* Blade element and momentum balance of one annulus as one equation for the inflow angle (Ning 2014,
+/* Blade-element momentum balance of one annulus as one equation for the inflow angle phi (Ning 2014,
    doi 10.1002/we.1636).
 
-   In the plane of the section, p is the direction of the shaft axis (downwind) and s that of the flow a turning blade
-   meets. The free flow is vx p + vy s, the flow with induction W (sin phi p + cos phi s). With solidity sigma = B c /
-   (2 pi r), loss factor F and lift alone (drag takes no part in either induction), angles turned so that vx counts as
-   positive and k = sigma cl cos phi / (4 F sin^2 phi), balance of axial and of angular momentum give vx / W = g(phi),
-   vy / W = h(phi) = cos phi - sign(phi) sigma cl / (4 F), where g = sin phi / (1 - a) follows from the thrust
-   coefficient CT = 4 F k (1 - a)^2 of the annulus, which is 4 F a (1 - a)                                     k <= 2/3,
-   phi > 0 (a <= 0.4): momentum theory 8/9 + (4F - 40/9) a + (50/9 - 4F) a^2             k > 2/3, phi > 0 (a < 1):
-   Buhl's empirical curve max(4 F a (a - 1), 2 + (20/3 - 4F) (a - 1))       phi < 0 (a > 1): propeller brake, k > 1
-   Ning's brake is the first of the two alone. It leaves a jump from a = 1 to where 4 F a (a - 1) = 2, which the flow of
-   a blade that gives way downwind would leap over to and fro for ever; Buhl's curve continued by its tangent bridges
-   it. So that the swirl does not jump at phi = 0 either, sign(phi) rises smoothly from -1 to 1 within half a degree.
+   In the plane of the section, p is the direction of the shaft axis (downwind) and s that of the tangential flow. The
+   free flow is vx p + vy s, the flow with induction W (sin phi p + cos phi s). Notation: solidity
+   sigma = B c / (2 pi r), loss factor F, lift alone (drag does not take part in the induction), angles oriented so that
+   vx counts as positive, and k = sigma cl cos phi / (4 F sin^2 phi). Balance of axial and of angular momentum gives
+       vx / W = g(phi),   vy / W = h(phi) = cos phi - sign(phi) sigma cl / (4 F).
+   g = sin phi / (1 - a) follows from the thrust coefficient CT = 4 F k (1 - a)^2 of the annulus:
 
-   The residual vy g - vx h is Ning's with the denominators cleared, and Buhl's root written without its removable
-   singularity. For cl > 0 it is continuous across phi = 0, and it has no pole anywhere else, for any vx >= 0 and any
-   vy. */
+       CT                                          range                          model
+       4 F a (1 - a)                               k <= 2/3, phi > 0 (a <= 0.4)   momentum theory
+       8/9 + (4F - 40/9) a + (50/9 - 4F) a^2       k > 2/3, phi > 0 (a < 1)       Buhl's empirical curve
+       max(4 F a (a - 1), 2 + (20/3 - 4F) (a - 1)) phi < 0 (a > 1)                propeller brake, k > 1
+
+   Ning's brake is the first argument of max alone. It has a jump from a = 1 to where 4 F a (a - 1) = 2, across which
+   the flow of a blade that deflects downwind would oscillate. Buhl's curve, continued by its tangent, bridges the jump.
+   So that the swirl has no jump at phi = 0 either, sign(phi) changes smoothly from -1 to 1 within half a degree.
+
+   The residual vy g - vx h is Ning's multiplied by the denominators, with Buhl's root written without its removable
+   singularity. For cl > 0 it is continuous across phi = 0. It has no pole elsewhere for any vx >= 0 and any vy. */
 #ifndef SPARI_MOMENTUM_H
 #define SPARI_MOMENTUM_H
 
@@ -26,13 +29,13 @@ typedef struct spari_annulus {
     double vx, vy;   /* free flow along p and s */
     double twist;    /* from s to the chord, towards p */
     double sigma;    /* B c / (2 pi r) */
-    double tip, hub; /* B (R - r) / (2 r) and B (r - Rh) / (2 Rh) >= 0; negative: that loss is off */
+    double tip, hub; /* B (R - r) / (2 r) and B (r - Rh) / (2 Rh) >= 0; negative: this loss is off */
     int swirl;       /* tangential induction */
     const spari_table *table;
     gsl_interp_accel *accel;
 } spari_annulus;
 
-/* What the equation says at an inflow angle, angles and flow turned so that vx >= 0. */
+/* The equation at an inflow angle, with angles and flow oriented so that vx >= 0. */
 typedef struct spari_balance {
     double residual; /* vy g - vx h */
     double g, h;     /* vx / W and vy / W if phi were the root */
@@ -41,12 +44,12 @@ typedef struct spari_balance {
 
 /* Prandtl's factor 2/pi acos(exp(-f / |sin phi|)); f < 0: 1. */
 double spari_prandtl(double f, double sin_phi);
-/* Smooth sign of sin phi: -1 or 1 but near 0. */
+/* Smooth sign of sin phi: -1 or 1 except near 0. */
 double spari_swirl_sign(double sin_phi);
 spari_balance spari_momentum_balance(const spari_annulus *annulus, double phi);
 
-/* Flow with induction: *wx along p, *wy along s. Returns 0, or 1 when no inflow angle balances: then the flow is the
-   free one. No memory is taken: solver is a Brent solver of the caller's. */
+/* Flow with induction: *wx along p, *wy along s. Returns 0, or 1 if no inflow angle satisfies the equation; then the
+   flow is the free one. Allocates no memory: solver is the caller's Brent solver. */
 int spari_momentum_solve(const spari_annulus *annulus, gsl_root_fsolver *solver, double *wx, double *wy);
 
 #endif

@@ -1,13 +1,13 @@
-/* Tables of lift, drag and moment by the angle of attack, and what is read out of them between their rows. */
+/* Tables of lift, drag and moment over the angle of attack, and their interpolation. */
 #include "polar.h"
-#include "../base/message.h"
 #include "../base/environment.h"
+#include "../base/message.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Slack on the width of a full circle (degrees turned into radians) and on ends that are the same angle. */
+/* Tolerance of a full circle (degrees converted to radians) and of equal end angles. */
 #define SPARI_TURN (2.0 * 3.14159265358979323846)
 #define SPARI_TURN_SLACK 1e-9
 #define SPARI_END_SLACK 1e-6
@@ -16,7 +16,7 @@ enum { SPARI_CL, SPARI_CD, SPARI_CM, SPARI_COEFFICIENTS };
 
 struct spari_table {
     atomic_int users;
-    int full, has_moment; /* covers the whole circle; any cm not zero */
+    int full, has_moment; /* covers the full circle; any cm not zero */
     int64_t n;
     double *alpha;
     double *value[SPARI_COEFFICIENTS];
@@ -61,7 +61,7 @@ static const gsl_interp_type *fit_type(int kind, int full) {
     }
 }
 
-/* One block holds alpha and the three coefficients; cm NULL: zero. */
+/* One memory block holds alpha and the three coefficients; cm NULL: zero. */
 static spari_table *table_create(int64_t n, const double *alpha, const double *const value[], int kind) {
     spari_table *table = spari_zalloc(1, sizeof *table);
     double *block = spari_zalloc(4 * n, sizeof *block);
@@ -81,7 +81,7 @@ static spari_table *table_create(int64_t n, const double *alpha, const double *c
             memcpy(table->value[c], value[c], bytes);
         }
         if (table->full) {
-            table->value[c][n - 1] = table->value[c][0]; /* one angle, one value to the last bit */
+            table->value[c][n - 1] = table->value[c][0]; /* same angle, same value to the last bit */
         }
         table->fit[c] = gsl_interp_alloc(fit_type(kind, table->full), (size_t)n);
         if (!table->fit[c] || gsl_interp_init(table->fit[c], table->alpha, table->value[c], (size_t)n)) {
@@ -95,7 +95,7 @@ static spari_table *table_create(int64_t n, const double *alpha, const double *c
     return table;
 }
 
-/* Every row finite and the angles in order; the row is counted from 0, as in the arrays. */
+/* Checks that every row is finite and the angles increase; messages count rows from 0. */
 static int check_rows(int64_t n, const double *alpha, const double *const value[], const char *call) {
     static const char *const name[] = {"cl", "cd", "cm"};
     for (int64_t i = 0; i < n; i++) {
@@ -113,7 +113,7 @@ static int check_rows(int64_t n, const double *alpha, const double *const value[
     return SPAR_OK;
 }
 
-/* No more than one turn, and after a whole turn the same coefficients as before it. */
+/* Checks that the angles span at most a full circle, and that the coefficients agree after a full circle. */
 static int check_turn(int64_t n, const double *alpha, const double *const value[], const char *call) {
     static const char *const name[] = {"cl", "cd", "cm"};
     double width = alpha[n - 1] - alpha[0];
@@ -217,7 +217,7 @@ double spari_table_moment(const spari_table *table, double place, gsl_interp_acc
     return look_up(table, SPARI_CM, place, accel);
 }
 
-/* Where lift is 0 between two rows, at the first of which it is not positive, at the second it is. */
+/* Zero of the lift between two rows, not positive at the first and positive at the second. */
 static double find_zero_lift(const spari_table *table, int64_t row) {
     gsl_interp_accel accel = {0, 0, 0};
     double low = table->alpha[row], high = table->alpha[row + 1];
@@ -242,7 +242,7 @@ void spari_table_find_attached(const spari_table *table, double *zero, double *s
             *zero = fabs(found) < fabs(*zero) ? found : *zero;
         }
     }
-    for (int64_t i = 0; i < table->n; i++) { /* nearer than 1e-3 the quotient is of roundings */
+    for (int64_t i = 0; i < table->n; i++) { /* closer than 1e-3 rad the quotient is dominated by rounding */
         double away = alpha[i] - *zero;
         if (fabs(away) > 1e-3 && fabs(away) < SPARI_TURN / 8.0) {
             *slope = fmax(*slope, lift[i] / away);

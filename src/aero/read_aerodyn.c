@@ -1,5 +1,5 @@
-/* Reads AeroDyn's input: the primary file (columns of tables, names of airfoil files and blade files), the blade file,
-   and the airfoil files that the blade has. Formats: OpenFAST documentation, AeroDyn user's guide, input files. */
+/* Reads AeroDyn's input: the primary file (table columns, names of airfoil and blade files), the blade file, and its
+   airfoil files. Formats: OpenFAST documentation, AeroDyn user's guide, input files. */
 #include "../base/reader.h"
 #include "aerodyn.h"
 
@@ -13,9 +13,9 @@ enum { MOST_COLUMN = 16 };
 
 static const double degree = 3.14159265358979323846 / 180;
 
-/* What the primary file says. */
+/* Contents of the primary file. */
 typedef struct deck {
-    int column[COLUMNS]; /* in the airfoils' tables, from 1; 0: not there */
+    int column[COLUMNS]; /* in the airfoil tables, from 1; 0: absent */
     int tables, airfoils, use_moment;
     char **airfoil; /* [airfoils] paths */
     char *blade;
@@ -39,7 +39,7 @@ void spari_blade_free(spari_blade *blade) {
 
 /* ---- the primary file ---- */
 
-/* The path in the first word of the line, beside the file. */
+/* Path in the first word of the line, relative to the file. */
 static int read_path(spari_reader *r, const char *what, char **path) {
     char *word = r->word;
     const char *at = r->line;
@@ -75,7 +75,7 @@ static int read_columns(spari_reader *r, deck *d) {
     return SPAR_OK;
 }
 
-/* On to the line of the blade's file, whose key is ADBlFile(1), or, in older files, ADBlFile. */
+/* Reads on to the line of the blade file, with key ADBlFile(1), or ADBlFile in older files. */
 static int find_blade(spari_reader *r) {
     char *word = r->word;
     for (;;) {
@@ -152,7 +152,7 @@ static int read_stations(spari_reader *r, const deck *d, spari_blade *b) {
 
 /* ---- an airfoil file ---- */
 
-/* The next line with something on it but a comment, which begins with one of !#%. */
+/* The next line that is not blank or a comment, which begins with one of !#%. */
 static int read_data(spari_reader *r, const char *what) {
     do {
         SPARI_TRY(spari_read_filled(r, what));
@@ -161,8 +161,8 @@ static int read_data(spari_reader *r, const char *what) {
     return SPAR_OK;
 }
 
-/* On to the line with a key. Coordinates, the lines that include files of them (@"...") and the coefficients of
-   unsteady aerodynamics stand before the keys and are passed over. */
+/* Reads on to the line with a key. Coordinates, lines that include files of them (@"...") and the coefficients of
+   unsteady aerodynamics precede the keys and are skipped. */
 static int find_data(spari_reader *r, const char *key, int *interpolation) {
     char *word = r->word;
     for (;;) {
@@ -202,7 +202,7 @@ static int read_rows(spari_reader *r, const deck *d, spari_airfoil *a) {
     return SPAR_OK;
 }
 
-/* A polar as the library takes it: what it refuses is told with file and line. */
+/* Checks a polar as the library does, with file and line in the message. */
 static int check_polar(const spari_reader *r, const spari_airfoil *a) {
     spar_polar *polar = NULL;
     int status = spar_polar_create(a->n, a->alpha, a->cl, a->cd, a->cm, &polar);
@@ -216,7 +216,7 @@ static int check_polar(const spari_reader *r, const spari_airfoil *a) {
     return status;
 }
 
-/* The first table; more of them are for other Reynolds numbers or controls, which AFTabMod 1 does not look at. */
+/* The first table; further ones are for other Reynolds numbers or controls, which AFTabMod 1 ignores. */
 static int read_airfoil(spari_reader *r, const deck *d, spari_airfoil *a) {
     int tables = 0, rows = 0;
     SPARI_TRY(find_data(r, "NumTabs", &a->kind));

@@ -1,7 +1,7 @@
-/* What the effects of a blade element fluid are worth: trials of the host's own steps with each and without. It is made
-   on the calls of spar.h alone. */
-#include "../base/message.h"
+/* Contribution of each effect of a blade-element fluid: trials of the host's own steps with and without it. Uses
+   public calls alone. */
 #include "../base/environment.h"
+#include "../base/message.h"
 #include "aero.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 typedef struct aero_row {
     const char *name;
     int effect;
-    int needs; /* without which it means nothing */
+    int needs; /* effect that it depends on */
 } aero_row;
 
 static const aero_row rows[SPAR_AERO_ROW_COUNT] = {
@@ -33,7 +33,7 @@ const char *spar_aero_effect_name(int r) {
     return r >= 0 && r < SPAR_AERO_ROW_COUNT ? rows[r].name : "";
 }
 
-/* What the host gives for a trial. */
+/* The host's arguments of a trial. */
 typedef struct aero_trial {
     double dt;
     int64_t steps;
@@ -54,7 +54,7 @@ static int polars_have_moments(const spar_aero *aero) {
     return any;
 }
 
-/* On this rank: switched on, and something there to do. */
+/* Whether an effect is in force on this rank, with something to act on. */
 static int is_in_force(const spar_aero *aero, int r) {
     int wanted = rows[r].effect | rows[r].needs;
     if (aero->blades == 0 || (aero->rotor.effects & wanted) != wanted) {
@@ -64,7 +64,8 @@ static int is_in_force(const spar_aero *aero, int r) {
                                                 : rows[r].effect != SPAR_AERO_MOMENT || polars_have_moments(aero);
 }
 
-/* On any rank: all of them make the same trials. status: of the arguments on this rank. */
+/* Whether effects are in force on any rank, because all ranks run the same trials. status: of the arguments on this
+   rank. */
 static int find_rows(spar_session *s, const spar_aero *aero, int status, double in_force[SPAR_AERO_ROW_COUNT]) {
     for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
         in_force[r] = status == SPAR_OK ? is_in_force(aero, r) : 0;
@@ -72,13 +73,13 @@ static int find_rows(spar_session *s, const spar_aero *aero, int status, double 
     return spar_session_sum(s, status, SPAR_AERO_ROW_COUNT, in_force);
 }
 
-/* A run that begins out of its own balance iterates more, and that is not what the effect costs: so the time of one
-   solution is compared. */
+/* Compares the time of one solution: a run that starts out of equilibrium iterates more, which is not the cost of
+   the effect. */
 static double cost_of_try(const double report[SPAR_TRY_COUNT]) {
     return report[SPAR_TRY_SECONDS] / fmax(report[SPAR_TRY_SOLUTIONS], 1);
 }
 
-/* The effects come back as they were, whatever fails. Times are the least of three, with and without in turn. */
+/* Restores the effects, whatever fails. Times are the smallest of three runs, with and without in turn. */
 static int try_without(spar_session *s, spar_aero *aero, const aero_trial *t, int r, const double *base, double *out) {
     enum { REPEATS = 3 };
     double with = cost_of_try(base), without = INFINITY, report[SPAR_TRY_COUNT];

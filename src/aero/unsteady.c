@@ -1,4 +1,4 @@
-/* Lags of induced velocities, of the downwash of a shed wake, and of the point of separation. */
+/* First-order lags of induced velocities, shed wake and separation point: see unsteady.h. */
 #include "unsteady.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 
 /* Jones' approximation of Wagner's function. */
 static const double jones_share[2] = {0.165, 0.335}, jones_rate[2] = {0.0455, 0.3};
-/* Of the quasi-steady induced velocity this part acts at the first lag's end at once (Oye). */
+/* Fraction of the quasi-steady induced velocity that acts without the first lag (Oye). */
 static const double oye_lead = 0.6;
 
 double spari_lag(double y, double u0, double u1, double x) {
@@ -14,13 +14,13 @@ double spari_lag(double y, double u0, double u1, double x) {
     return u1 - (u1 - u0) * fading + (y - u0) * exp(-x);
 }
 
-/* Whether the numbers of an effect go on from those of the step before. */
+/* Whether the state of an effect continues from the step before. */
 static int goes_on(const spari_passage *step, int effect) {
     double begun = step->was->begun;
     return step->dt > 0.0 && begun > 0.0 && begun < 2.0 * SPAR_AERO_UNSTEADY && ((int)begun & effect) != 0;
 }
 
-/* The step in times of a rate that goes from one to the other. */
+/* Step size in units of the time constant, whose rate changes over the step. */
 static double spent(const spari_passage *step, double from, double to) {
     return 0.5 * (from + to) * step->dt;
 }

@@ -1,11 +1,9 @@
-/* Wind shear by a law of height, and the dipole of a tower in the wind.
-
-   A cylinder of radius R in a flow U across it changes the flow at d from its axis, rho = |d|, by the gradient of the
-   dipole potential R^2 (U . d) / rho^2, which is (R / rho)^2 (U - 2 (U . d) d / rho^2): -U before and behind it at the
-   surface, +U beside it. It is taken slice by slice, with the radius at the section's height, and times (1 + t /
-   sqrt(t^2
-   + rho^2)) / 2, t below the top, by which a line of dipoles that ends there is less than one without end: a blade that
-   passes the top meets no jump. */
+/* Wind shear, and the potential-flow dipole of a tower in the wind.
+   A cylinder of radius R in a cross flow U changes the flow at d from its axis, rho = |d|, by the gradient of the
+     dipole potential R^2 (U . d) / rho^2, which is (R / rho)^2 (U - 2 (U . d) d / rho^2): -U upstream and downstream
+     at the surface, +U beside it. It is applied per slice with the tower radius at the section's height, times (1 +
+     t / sqrt(t^2 + rho^2)) / 2 with t the distance below the top. This is the ratio of a semi-infinite to an
+     infinite line of dipoles, so a blade that passes the top meets no jump. */
 #include "wind.h"
 #include "../math/rotation.h"
 
@@ -22,7 +20,7 @@ double spari_shear_factor(const spari_shear *shear, double z) {
     return z > 0.0 ? pow(z / shear->height, shear->parameter) : 0.0;
 }
 
-/* Adds what the tower does to the wind at x; 1: x is inside of it. */
+/* Adds the tower's influence to the wind at x. Returns 1 if x is inside the tower. */
 static int pass_tower(const spari_tower *tower, const double x[3], double wind[3]) {
     double d[3], across[3];
     for (int i = 0; i < 3; i++) {
@@ -37,7 +35,7 @@ static int pass_tower(const spari_tower *tower, const double x[3], double wind[3
     double radius = tower->top_radius + share * (tower->base_radius - tower->top_radius), rho = spari_norm(d);
     double far = hypot(below, rho), end = far > 0.0 ? 0.5 * (1.0 + below / far) : 0.5;
     int inside = rho < radius;
-    /* Inside, where no flow is, the change falls to 0 at the axis with the square of the distance. */
+    /* inside, without flow, the change decreases to 0 at the axis with the square of the distance */
     double square = inside ? rho / radius : radius / rho;
     square *= square;
     double turned = rho > 0.0 ? 2.0 * spari_dot(across, d) / (rho * rho) : 0.0;

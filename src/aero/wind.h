@@ -1,5 +1,4 @@
-/* The wind that a section meets: the inflow as it changes with height, and past the tower. Knows no fluid and no
-   session. */
+/* Wind at a section: inflow with shear and tower influence. Independent of fluid and session. */
 #ifndef SPARI_WIND_H
 #define SPARI_WIND_H
 
@@ -9,20 +8,20 @@ typedef struct spari_shear {
 } spari_shear;
 
 typedef struct spari_tower {
-    double top[3], up[3]; /* up: from base to top, of length 1 */
+    double top[3], up[3]; /* upwards, from base to top, unit length */
     double length, base_radius, top_radius;
 } spari_tower;
 
-/* What of it there is; a law or tower that was not described is not looked at. */
+/* Shear and tower; those that are not described are not read. */
 typedef struct spari_wind {
     int has_shear, has_tower;
     spari_shear shear;
     spari_tower tower;
 } spari_wind;
 
-/* What the inflow is times at a height above the ground. */
+/* Factor of the inflow at a height above the ground. */
 double spari_shear_factor(const spari_shear *shear, double z);
-/* Wind at x by the effects (SPAR_AERO_SHEAR, _TOWER) of what there is. Returns SPAR_AERO_FLAG_TOWER or 0. */
+/* Wind at x with the effects (SPAR_AERO_SHEAR, _TOWER). Returns SPAR_AERO_FLAG_TOWER or 0. */
 int spari_wind_meet(const spari_wind *wind, int effects, const double x[3], const double inflow[3], double met[3]);
 
 #endif

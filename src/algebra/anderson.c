@@ -1,4 +1,4 @@
-/* Newton's corrections mixed with those before them: see anderson.h. */
+/* Anderson acceleration of Newton's corrections: see anderson.h. */
 #include "anderson.h"
 
 #include "../base/status.h"
@@ -69,7 +69,7 @@ typedef struct mixing_pass {
     double *x, by[2];
 } mixing_pass;
 
-/* Two corrections were taken as they came, the second of which stands in w[0]: the first pair. */
+/* After two corrections without mixing (the second is in w[0]): forms the first pair. */
 static void make_first_pair(const spari_mixing *m, int64_t from, int64_t to) {
     const double *x = m->w[0];
     for (int64_t i = from; i < to; i++) {
@@ -103,7 +103,7 @@ static void exchange(double **a) {
     a[1] = there;
 }
 
-/* The sums over the spans in their order. */
+/* Adds the sums of the spans in their order. */
 static void add_up(const spari_mixing *m, double sums[SPARI_MIXED_SUMS]) {
     memcpy(sums, m->sums, SPARI_MIXED_SUMS * sizeof *sums);
     for (int64_t k = 1; k < spans_of(m->unknowns); k++) {
@@ -113,16 +113,16 @@ static void add_up(const spari_mixing *m, double sums[SPARI_MIXED_SUMS]) {
     }
 }
 
-/* What is less than this of the change before is left alone: mixing would spare nothing. The first pair knows no more
-   than that: it has the square of a first correction in it, which is large. */
+/* Below this ratio of successive corrections mixing saves nothing and is skipped. The first pair has a higher limit,
+   because it contains the second-order part of the first correction, which is large. */
 static const double slow = 0.03, slow_at_first = 0.2;
 
 static int is_within_a_pair(double x) {
     return fabs(x) <= 1;
 }
 
-/* by: the least |z - by[0] d[0] - by[1] d[1]|. With the newer pair alone where both say the same, or that they would
-   take back more than a pair, which is not what a tangent that contracts asks for; with none where it says so too. */
+/* by: minimises |z - by[0] d[0] - by[1] d[1]|. Uses the newer pair alone if the pairs are dependent, or if a
+   coefficient exceeds 1, which contradicts a contracting tangent. Uses no pair if that fails too. */
 static void find_parts(const spari_mixing *m, double by[2]) {
     double sums[SPARI_MIXED_SUMS];
     add_up(m, sums);
@@ -147,7 +147,8 @@ void spari_mixing_take(spari_mixing *m, spari_crew *crew, int lanes, double leng
         m->weight[i] = i % 6 < 3 ? 1 / (length * length) : 1;
     }
     mixing_pass t = {.m = m, .x = x};
-    if (m->seen < 2) { /* a pair of +-lambda is not seen in one change: two corrections are taken as they come */
+    if (m->seen < 2) { /* a pair of eigenvalues +-lambda does not show in one change: two corrections are applied
+                          without mixing */
         spari_crew_spread(crew, m->unknowns, SPAN, keep_span, &t);
         m->seen++;
         return;

@@ -1,9 +1,9 @@
-/* What mixing does of W unknowns at once. Included by anderson.c once per width with the macros of math/width.h. No
-   include guard: this is a body, not an interface.
+/* Kernels of Anderson acceleration for W unknowns at once. Included by anderson.c once per width with the macros of
+   math/width.h. No include guard: this is a body, not an interface.
+   Partial sums are taken over every 24th unknown at every width, and nothing is fused, so the bits are the same at
+     every width. */
 
-   Sums are those of every 24th unknown whatever the width, and nothing is fused: the same bits at every width. */
-
-/* The sum of a b over the unknowns from..to, whole stripes, each by its weight [24]. */
+/* Weighted sum of a b over the unknowns from..to, in whole stripes; weight [24]. */
 HERE double NAME(weighed)(const double *a, const double *b, const double *weight, int64_t from, int64_t to) {
     enum { EIGHT = STRIPE / 3, THIRD = EIGHT / W };
     L sum[STRIPE / W] = {0};
@@ -22,8 +22,8 @@ HERE double NAME(weighed)(const double *a, const double *b, const double *weight
     return ((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + (p[6] + p[7]));
 }
 
-/* d[1], which is not needed any more, becomes the change of z, z what it is now. Sums of products:
-   of that by itself, by the change before, of that one by itself, of both by z, and of z by itself. */
+/* Stores the change of z in d[1], whose content is no longer needed, and the new z. Sums: products of this change
+   with itself and with the change before, of that one with itself, of both with z, and of z with itself. */
 TARGET static void NAME(look)(const spari_mixing *m, const double *x, int64_t from, int64_t to, double *sums) {
     const double *old = m->d[0];
     double *z = m->z, *d = m->d[1];
@@ -40,7 +40,7 @@ TARGET static void NAME(look)(const spari_mixing *m, const double *x, int64_t fr
     sums[5] = NAME(weighed)(x, x, m->weight, from, to);
 }
 
-/* x less by[0] times the newer pair and by[1] times the older one; neither: x itself, whatever they are. */
+/* x minus by[0] times the newer pair and by[1] times the older one. If both are 0, x is unchanged. */
 TARGET static void NAME(mix)(const spari_mixing *m, const double *by, double *x, int64_t from, int64_t to) {
     const double *d = m->d[0], *old = m->w[1], newer = by[0], older = by[1];
     double *c = m->c, *w = m->w[0];

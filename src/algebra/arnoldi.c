@@ -1,7 +1,7 @@
-/* Arnoldi's method, restarted with Schur vectors (Krylov and Schur: Stewart, SIAM J. Matrix Anal. Appl. 23, 2001): T V
-   = V S + v b, S upper triangular, of which the vectors of the largest eigenvalues are kept and the subspace is grown
-   again. One vector sees one copy of a multiple eigenvalue, as of a beam that bends alike in two planes: what has
-   converged is therefore kept and searched beside, from another vector, until nothing new comes. */
+/* Arnoldi's method with Krylov-Schur restarts (Stewart, SIAM J. Matrix Anal. Appl. 23, 2001): T V = V S + v b, S
+   upper triangular. The Schur vectors of the largest eigenvalues are kept and the subspace is grown again. One start
+   vector finds one copy of a multiple eigenvalue, as of a beam with equal bending stiffness in two planes. So
+   converged vectors are locked and the search continues from another vector until nothing new is found. */
 #include "arnoldi.h"
 
 #include "../base/blas.h"
@@ -19,13 +19,13 @@ enum { MOST_RESTARTS = 200, MOST_SEARCHES = 8 };
 
 typedef struct krylov {
     const spari_arnoldi_problem *of;
-    int size, most, kept;          /* of a vector; of the subspace; vectors of S */
+    int size, most, kept;          /* size of a vector; largest and kept number of vectors */
     double complex *V;             /* [most + 1][size] orthonormal */
-    double complex *H;             /* [most + 1][most]; S is its square part once it is one */
+    double complex *H;             /* [most + 1][most]; S is its square part after a restart */
     double complex *S, *Q, *b, *h; /* [most][most] twice; [most + 1] twice */
-    double left;                   /* what the last vector has beside the subspace */
+    double left;                   /* norm of the last vector outside the subspace */
     double complex *room;          /* [most][size] */
-    double *last;                  /* [most] moduli that the search before has found */
+    double *last;                  /* [most] moduli found by the search before */
     uint64_t seed;
 } krylov;
 
@@ -50,7 +50,8 @@ static int krylov_create(krylov *k) {
     return k->V && k->H && k->S && k->room && k->last;
 }
 
-/* x less what is along the first `count` vectors of V, twice; h [count] gets what that was. Its size then. */
+/* Orthogonalises x against the first `count` vectors of V, twice; h [count]: the coefficients. Returns the norm of
+   x. */
 static double orthogonal_to(const krylov *k, int count, double complex *x, double complex *h) {
     const double complex one = 1, minus = -1, zero = 0;
     memset(h, 0, (size_t)count * sizeof *h);
@@ -66,7 +67,7 @@ static double orthogonal_to(const krylov *k, int count, double complex *x, doubl
     return cblas_dznrm2(k->size, x, 1);
 }
 
-/* Vector `at` of V: any that is orthogonal to those before it, in the range of the operator. 1: there is none. */
+/* Sets vector `at` of V to any vector orthogonal to those before it, in the range of the operator. 1: there is none. */
 static int any_vector(krylov *k, int at) {
     double complex *x = k->V + (int64_t)k->size * at, *y = k->room;
     for (int attempt = 0; attempt < 3; attempt++) {
@@ -84,7 +85,7 @@ static int any_vector(krylov *k, int at) {
     return 1;
 }
 
-/* Grows the subspace from `kept` vectors and one beside them to `most`, or to what there is; its size. */
+/* Grows the subspace from `kept` vectors and one more to `most`, or as far as possible; returns its size. */
 static int grow_subspace(krylov *k) {
     for (int j = k->kept; j < k->most; j++) {
         double complex *x = k->V + (int64_t)k->size * (j + 1);
@@ -107,7 +108,7 @@ static int grow_subspace(krylov *k) {
     return k->most;
 }
 
-/* Schur's form of the subspace's matrix, the largest eigenvalues first, and b. 0 or 1. */
+/* Schur form of the projected matrix with the largest eigenvalues first, and b. 0 or 1. */
 static int order_subspace(krylov *k, int m) {
     for (int i = 0; i < m; i++) {
         memcpy(k->S + (int64_t)m * i, k->H + (int64_t)k->most * i, (size_t)m * sizeof *k->S);
@@ -128,8 +129,8 @@ static int order_subspace(krylov *k, int m) {
     return 0;
 }
 
-/* Keeps the first p of the m Schur vectors, and what stands beside the subspace: its own vector, or another where
-   `beside` says that what is kept has converged. 1: there is no other. */
+/* Keeps the first p of the m Schur vectors and the residual vector, or another vector if `beside` says that the kept
+   ones have converged. 1: there is none. */
 static int restart(krylov *k, int m, int p, int beside) {
     const double complex one = 1, zero = 0;
     SPARI_BLAS(cblas_zgemm(CblasColMajor, CblasNoTrans, CblasTrans, k->size, p, m, &one, k->V, k->size, k->Q, m, &zero,
@@ -148,7 +149,7 @@ static int restart(krylov *k, int m, int p, int beside) {
     return 0;
 }
 
-/* How many of the largest have converged, up to the first that has not. */
+/* Number of leading eigenvalues that have converged. */
 static int count_converged(const krylov *k, int m, int wanted) {
     int count = 0;
     while (count < wanted && count < m && cabs(k->b[count]) <= converged_at * cabs(k->S[(int64_t)(m + 1) * count])) {
@@ -157,7 +158,7 @@ static int count_converged(const krylov *k, int m, int wanted) {
     return count;
 }
 
-/* Whether the search beside what had converged has found nothing new; keeps what there is for the next. */
+/* Whether the search after locking has found nothing new; stores the moduli for the next. */
 static int nothing_new(krylov *k, int m, int count) {
     int same = 1;
     for (int i = 0; i < count; i++) {
@@ -168,7 +169,7 @@ static int nothing_new(krylov *k, int m, int count) {
     return same;
 }
 
-/* No vector is left beside the p that are kept: they are the subspace. */
+/* No further vector exists: the p kept vectors are the subspace. */
 static int stay_with(krylov *k, int p) {
     for (int i = 0; i < p * p; i++) {
         k->S[i] = k->H[(int64_t)k->most * (i / p) + i % p];
@@ -177,7 +178,7 @@ static int stay_with(krylov *k, int p) {
     return p;
 }
 
-/* The subspace's size, or -1; *count of its first Schur vectors are those asked for. */
+/* Size of the subspace, or -1; *count of its first Schur vectors are the wanted ones. */
 static int search_subspaces(krylov *k, int wanted, int *count) {
     for (int pass = 0, searches = 0; pass < MOST_RESTARTS; pass++) {
         int m = grow_subspace(k);
@@ -200,7 +201,7 @@ static int search_subspaces(krylov *k, int wanted, int *count) {
     return -1;
 }
 
-/* z [count][size]: the vectors of T in the subspace. */
+/* z [count][size]: eigenvectors of T. */
 static void give_vectors(krylov *k, int m, int count, double complex *mu, double complex *z) {
     const double complex one = 1, zero = 0;
     for (int j = 0; j < count; j++) {

@@ -1,4 +1,4 @@
-/* An order for a narrow band, and the factors in it. */
+/* Sparse complex systems in band storage: ordering, factors and solution. See band.h. */
 #include "band.h"
 
 #include "../base/status.h"
@@ -9,15 +9,15 @@
 
 struct spari_band {
     int n, width;      /* half the bandwidth */
-    int *place;        /* where an unknown stands */
-    int *swap;         /* rows exchanged */
+    int *place;        /* position of an unknown in the band */
+    int *swap;         /* row exchanges */
     double complex *A; /* column by column, 3 width + 1 each: entry (i, j) at 2 width + i - j */
-    double complex *x; /* [n] room */
+    double complex *x; /* [n] workspace */
 };
 
-/* ---- order ---- */
+/* ---- ordering ---- */
 
-/* Neighbours of the unknowns: those of i are next[begin[i]] .. next[begin[i + 1] - 1]. */
+/* Adjacency lists: the neighbours of i are next[begin[i]] .. next[begin[i + 1] - 1]. */
 typedef struct band_graph {
     int n;
     int64_t *begin;
@@ -33,7 +33,7 @@ static int ascending_ints(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Each neighbour once. */
+/* Removes repeated neighbours. */
 static void single_neighbours(band_graph *g) {
     int64_t to = 0;
     for (int i = 0; i < g->n; i++) {
@@ -75,8 +75,8 @@ static int64_t neighbours(const band_graph *g, int i) {
     return g->begin[i + 1] - g->begin[i];
 }
 
-/* The unknowns from `start` on by their distance from it, each level in the order of its parents, those with few
-   neighbours first. queue: out; seen [n] gets `mark`. How many there are. */
+/* Breadth-first search from `start`; each level in the order of its parents, low degrees first. queue: output; seen
+   [n] is set to `mark`. Returns the number of unknowns reached. */
 static int walk_graph(const band_graph *g, int start, int mark, int *seen, int *queue) {
     int end = 0;
     queue[end++] = start;
@@ -99,7 +99,7 @@ static int walk_graph(const band_graph *g, int start, int mark, int *seen, int *
     return end;
 }
 
-/* place [n]: Cuthill and McKee's order, backwards, from an unknown at the far end of what hangs together. */
+/* place [n]: reverse Cuthill-McKee order, from a peripheral unknown of each connected part. */
 static int order_graph(const band_graph *g, int *place) {
     int *seen = spari_zalloc(2 * (int64_t)g->n, sizeof *seen), *queue = seen ? seen + g->n : NULL, done = 0, mark = 0;
     if (!seen) {
@@ -170,7 +170,7 @@ void spari_band_add(spari_band *b, int row, int column, double complex x) {
     *band_entry(b, b->place[row], b->place[column]) += x;
 }
 
-/* y [n] -= f x, without the care that C takes of what is no number: factors are looked at in the end. */
+/* y [n] -= f x, without C's treatment of NaN in complex products: the factors are checked at the end. */
 static void take_off_column(int n, double complex f, const double complex *x, double complex *y) {
     const double *a = (const double *)x, re = creal(f), im = cimag(f);
     double *b = (double *)y;

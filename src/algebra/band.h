@@ -1,5 +1,5 @@
-/* Sparse complex systems: the unknowns are put into an order in which the matrix has a narrow band (Cuthill and McKee,
-   reversed), which is factored with row exchanges. */
+/* Sparse complex linear systems: the unknowns are reordered to a narrow band (reverse Cuthill-McKee), which is
+   factored with row exchanges. */
 #ifndef SPARI_BAND_H
 #define SPARI_BAND_H
 
@@ -9,12 +9,12 @@
 
 typedef struct spari_band spari_band;
 
-/* Where entries may stand: (row[i], column[i]), `apart` bytes from each other. NULL: no memory. */
+/* Positions of the entries: (row[i], column[i]), `apart` bytes from each other in memory. NULL: no memory. */
 spari_band *spari_band_create(int n, int64_t entries, const int *row, const int *column, size_t apart);
 void spari_band_free(spari_band *band);
 void spari_band_zero(spari_band *band);
 void spari_band_add(spari_band *band, int row, int column, double complex x);
-/* 0, or 1 where it is singular or not finite. */
+/* Returns 0, or 1 if the matrix is singular or not finite. */
 int spari_band_factor(spari_band *band);
 /* x [n] := A^-1 x */
 void spari_band_solve(spari_band *band, double complex *x);

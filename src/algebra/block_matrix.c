@@ -8,26 +8,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A block in the order of elimination: its diagonal [size][size], and those it shares with the blocks eliminated after
-   it, as a row of blocks U [size][rows] and a column of blocks L [rows][size]. */
+/* A block row and column in elimination order: the diagonal [size][size], and the entries shared with later blocks,
+   as a row of blocks U [size][rows] and a column of blocks L [rows][size]. */
 typedef struct block_panel {
-    int unit; /* number before ordering */
+    int unit; /* block number before ordering */
     int size, first, rows;
-    int near, nears; /* the later blocks: where their list begins, and how many */
+    int near, nears; /* begin and length of the list of later blocks */
     double *D, *U, *L;
     int *pivot;
 } block_panel;
 
 struct spari_blocks {
     int n, rows;
-    int *position; /* of a unit in the order */
-    int *start;    /* of a unit's rows in a vector */
+    int *position; /* of a block in the order */
+    int *start;    /* first row of a block in a vector */
     block_panel *panel;
     int *near;   /* positions of later blocks, increasing */
-    int *offset; /* where each begins in U's columns and L's rows */
+    int *offset; /* their first column in U and row in L */
     int *pivot;
     double *entry, least;
-    int watched, negative; /* whether the signs are counted, and how many are negative */
+    int watched, negative; /* whether signs are counted; number of negative ones */
     int64_t entries;
 };
 
@@ -110,15 +110,15 @@ static void solve_block(int n, const double *A, int stride, const int *pivot, in
     }
 }
 
-/* ---- the order ---- */
+/* ---- ordering ---- */
 
-/* Neighbours of the blocks that are left, while the order is found. */
+/* Neighbours of the remaining blocks during ordering. */
 typedef struct block_graph {
     int n;
     int **near, *count;                   /* sorted lists */
-    int *waits;                           /* blocks that have to go first; -1: gone */
-    int *later, *later_at;                /* blocks that wait for each */
-    int *head, *next, *last, *key, least; /* those that wait for none, by degree: lists in both directions */
+    int *waits;                           /* number of blocks that must go first; -1: eliminated */
+    int *later, *later_at;                /* blocks that wait for each block */
+    int *head, *next, *last, *key, least; /* available blocks by degree, as doubly linked lists */
 } block_graph;
 
 static void graph_free(block_graph *g) {
@@ -232,7 +232,7 @@ static int graph_create(block_graph *g, int n, int64_t coupled_count, const spar
     return 0;
 }
 
-/* The neighbours of u without u and v, with those of v. 0 or 1. */
+/* Merges the neighbours of u and v, without u and v. 0 or 1. */
 static int merge_neighbours(block_graph *g, int u, int v) {
     const int *a = g->near[u], *b = g->near[v];
     int na = g->count[u], nb = g->count[v], i = 0, k = 0, n = 0, *both = spari_zalloc(na + nb, sizeof *both);
@@ -250,7 +250,7 @@ static int merge_neighbours(block_graph *g, int u, int v) {
     return !both;
 }
 
-/* The next block to eliminate; its neighbours become neighbours of each other. -1: no memory. */
+/* Eliminates the next block; its neighbours become neighbours of each other. -1: no memory. */
 static int eliminate_next(block_graph *g) {
     while (g->least < g->n && g->head[g->least] < 0) {
         g->least++;
@@ -280,7 +280,7 @@ static int eliminate_next(block_graph *g) {
 
 /* ---- memory ---- */
 
-/* Panels in the order found, with the lists of later units; those become positions at the end. 0 or 1. */
+/* Orders the blocks, with their lists of later blocks, which are positions at the end. 0 or 1. */
 static int find_order(spari_blocks *m, block_graph *g, const int *size) {
     int room = 0, used = 0;
     for (int p = 0; p < m->n; p++) {
@@ -388,7 +388,7 @@ void spari_blocks_zero(spari_blocks *m) {
     memset(m->entry, 0, (size_t)m->entries * sizeof *m->entry);
 }
 
-/* Where the later block q begins in the rows of a panel. */
+/* First row of the later block q in a panel. */
 static int offset_of(const spari_blocks *m, const block_panel *panel, int q) {
     int low = panel->near, high = panel->near + panel->nears;
     while (high - low > 1) {
@@ -412,7 +412,7 @@ double *spari_blocks_at(spari_blocks *m, int i, int j, int *stride) {
 
 /* ---- factors ---- */
 
-/* C [m][n] -= A [m][k] B [k][n], of these row strides */
+/* C [m][n] -= A [m][k] B [k][n], with row strides sa, sb, sc */
 static void less_product(int m, int n, int k, const double *A, int sa, const double *B, int sb, double *C, int sc) {
     for (int i = 0; i < m; i++) {
         double *row = C + i * sc;
@@ -426,7 +426,7 @@ static void less_product(int m, int n, int k, const double *A, int sa, const dou
     }
 }
 
-/* What a factored panel leaves to the blocks after it: L D^-1 U, with D^-1 U in U. */
+/* Updates the later blocks with L D^-1 U of a factored panel; U then holds D^-1 U. */
 static void update_later(spari_blocks *m, const block_panel *panel) {
     int s = panel->size;
     for (int k = panel->near; k < panel->near + panel->nears; k++) {

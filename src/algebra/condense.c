@@ -1,4 +1,4 @@
-/* A member seen from its ends: see condense.h. */
+/* Static condensation of a member to its interface nodes: see condense.h. */
 #include "condense.h"
 
 #include "../base/status.h"
@@ -37,7 +37,7 @@ void spari_condensed_free(spari_condensed *c) {
     }
 }
 
-/* The unknown of the member that is number j of the ends' */
+/* Unknown of the member for unknown j of the interface nodes */
 static int unknown_of(const spari_condensed *c, int j) {
     return 6 * c->node[j / 6] + j % 6;
 }
@@ -96,7 +96,7 @@ int spari_condensed_reduce(const spari_condensed *c, spari_linear *factors, doub
         c->held[j] = is_fixed(c, u) ? 0 : r[u];
         r[u] = 0;
     }
-    if (c->n > m) { /* there is more of it than its ends */
+    if (c->n > m) { /* the member has other nodes */
         if (spari_linear_solve(factors, r)) {
             return 1;
         }

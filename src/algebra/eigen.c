@@ -1,5 +1,5 @@
-/* Symmetric generalised eigenvalue problems, by Cholesky's factor and GSL's symmetric solver. That solver never ends
-   where an entry is no finite number or its square is none: all it is given is brought to the size of 1 first. */
+/* Symmetric generalised eigenvalue problems, by Cholesky factorisation and GSL's symmetric solver. That solver does
+   not terminate if an entry or its square is not finite, so all matrices are scaled to about 1 first. */
 #include "eigen.h"
 #include "../base/blas.h"
 
@@ -11,8 +11,8 @@
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 
-/* Divides A by a power of 4 near its largest entry, which changes no digit of what roots and quotients give; *exponent:
-   of 2. Returns 0 if an entry is not finite. */
+/* Divides A by a power of 4 near its largest entry, which changes no digit of roots and quotients; *exponent: of 2.
+   Returns 0 if an entry is not finite. */
 static int bring_to_one(gsl_matrix *A, int *exponent) {
     double largest = 0;
     for (size_t i = 0; i < A->size1; i++) {
@@ -44,7 +44,7 @@ static void unit_columns(gsl_matrix *x) {
     }
 }
 
-/* L^-1 A L^-T in A, L in B; 0, or 1: B is not positive definite. */
+/* A := L^-1 A L^-T, B := L. Returns 1 if B is not positive definite. */
 static int standardise(gsl_matrix *A, gsl_matrix *B) {
     int bad;
     SPARI_BLAS(bad = gsl_linalg_cholesky_decomp1(B) || gsl_eigen_gensymm_standardize(A, B));

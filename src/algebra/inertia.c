@@ -4,7 +4,7 @@
 #include <float.h>
 #include <math.h>
 
-/* Rows and columns p and q turned so that entry (p, q) becomes 0 (Jacobi). */
+/* Jacobi rotation of rows and columns p and q that makes entry (p, q) zero. */
 static void turn_pair(int n, double S[SPARI_INERTIA][SPARI_INERTIA], int p, int q) {
     double half = 0.5 * (S[q][q] - S[p][p]) / S[p][q];
     double t = (half < 0 ? -1 : 1) / (fabs(half) + sqrt(1 + half * half)), c = 1 / sqrt(1 + t * t), s = t * c;
@@ -20,7 +20,7 @@ static void turn_pair(int n, double S[SPARI_INERTIA][SPARI_INERTIA], int p, int 
     }
 }
 
-/* Rows and columns by the same factors, to largest entries of about 1: the signs stay (Sylvester). */
+/* Scales rows and columns equally, to largest entries of about 1: the signs are unchanged (Sylvester). */
 static void equilibrate(int n, double S[SPARI_INERTIA][SPARI_INERTIA]) {
     for (int pass = 0; pass < 3; pass++) {
         double f[SPARI_INERTIA];

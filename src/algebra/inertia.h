@@ -4,7 +4,7 @@
 
 enum { SPARI_INERTIA = 12 };
 
-/* How many eigenvalues of the symmetric part of A [n][n], n <= SPARI_INERTIA, are negative. */
+/* Number of negative eigenvalues of the symmetric part of A [n][n], n <= SPARI_INERTIA. */
 int spari_inertia_negative(int n, const double *A, int stride);
 
 #endif

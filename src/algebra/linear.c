@@ -1,9 +1,9 @@
-/* Dense and banded systems, of a chain of blocks that overlap or of any entries, factored and solved. */
+/* Dense and banded linear systems, with general entries or assembled along a chain of elements: see linear.h. */
 #include "linear.h"
 
 #include "../base/blas.h"
-#include "../base/thread_pool.h"
 #include "../base/status.h"
+#include "../base/thread_pool.h"
 #include "../math/lanes.h"
 
 #include <gsl/gsl_cblas.h>
@@ -14,57 +14,54 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Columns of a dense matrix are solved for so many at a time. */
+/* Number of columns of a dense matrix that are solved at a time. */
 enum { SPARI_CORNER = 8, SPARI_CORNERS = 4 };
 
 #define SPARI_KERNELS "../algebra/linear_lanes.h"
 #include "../math/widths.h"
 
-/* Chains of so many elements and more are cut in the middle; elements are worked on so many at a time. */
+/* Chains of at least LONG elements are split in the middle. ELEMENTS are processed at a time. */
 enum { LONG = 64, ELEMENTS = 16, GATHERED = 128 };
 
-/* An element's first unknowns, so many at most, are left out of a dense matrix where they are fixed. */
+/* At most this many constrained first unknowns of an element are removed from a dense matrix. */
 enum { MOST_LEAD = 8 };
 
-/* All memory is taken at the beginning: nothing in a step allocates, and GSL's dense LU does, without looking whether
-   it got any.
-
-   The unknowns that an element has to itself, where they are many, are taken out of its own matrix, element by element,
-   which leaves a chain of their ends with blocks of 2 overlap. Half the numbers of a band over all unknowns, and
-   elements are independent.
-
-   A long chain is cut at the joint in its middle: its first half is this system, its second half, from the far end
-   backwards, another; both end with the joint's unknowns. Each takes out all but these, and has then in their corner
-   what it adds to their own system: (S + S') x = b + b' (burning at both ends; van der Vorst, Parallel Computing 5,
-   1987). That takes no more operations than one half after the other, and two threads can do it. */
+/* All memory is allocated at creation: no call during a step allocates, except GSL's dense LU, which does not check.
+   Static condensation. If an element has many interior unknowns, they are eliminated element by element. The
+     remaining chain of element ends has blocks of 2 overlap. It has half the entries of a band over all unknowns,
+     and elements are independent.
+   Two-way factorisation. A long chain is split at the middle element boundary. Its first half is this system; its
+     second half, reversed, is another. Both end with the unknowns of the boundary. Each eliminates all others, which
+     leaves its contribution to the boundary's system: (S + S') x = b + b' (burning at both ends; van der Vorst,
+     Parallel Computing 5, 1987). The number of operations is unchanged, and two threads can share them. */
 struct spari_linear {
-    int elements, block, overlap; /* of a chain; else 0 */
+    int elements, block, overlap; /* of a chain; otherwise 0 */
     size_t n, band;               /* unknowns; half bandwidth (banded storage) */
-    size_t size, inner;           /* those that stand in A, and those that are taken out in it: all n, unless cut */
+    size_t size, inner;           /* unknowns in A, and those eliminated in it: all n, unless the chain is split */
     gsl_matrix *A;   /* dense n x n, column by column, or banded size x (3 band + 1) as gsl_linalg_LU_band has it */
-    int *swap;       /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
-    int *order;      /* dense: where row i came from by all of these */
-    unsigned fixed;  /* dense, of one element: which of its first unknowns are taken out */
-    size_t lead;     /* dense: so many of them that stand in A no longer */
-    size_t order_of; /* dense: unknowns in A when it is factored */
-    double *corners; /* dense: [n / 8, rounded up][4][8][8]: solve_dense */
-    double *y;       /* dense: [n, rounded up to eights] room */
-    double *room;    /* of the last two */
+    int *swap;       /* dense, else NULL: row i was exchanged with row swap[i] - 1, in sequence, as in LAPACK */
+    int *order;      /* dense: original row of row i after all exchanges */
+    unsigned fixed;  /* dense, one element: bit mask of its first unknowns that are constrained */
+    size_t lead;     /* dense: how many of them are not in A */
+    size_t order_of; /* dense: order of A when it was factored */
+    double *corners; /* dense: [n / 8, rounded up][4][8][8]: see solve_dense */
+    double *y;       /* dense: [n, rounded up to eights] workspace */
+    double *room;    /* memory of the last two */
     gsl_vector_uint *band_swap; /* banded */
-    gsl_matrix *symmetric;      /* spari_linear_watch; NULL: not asked for */
-    spari_linear *far, *joint;  /* of a chain that is cut: unknown i is n - 1 - i of `far`; else NULL */
-    double *x;                  /* of a far half: [size] room */
-    /* of a chain whose elements have unknowns to themselves; else NULL, 0 */
-    spari_linear *ends;      /* the chain without these */
-    size_t own;              /* how many in each */
-    double *parts;           /* [elements][block][block] column by column, first those, then the ends */
+    gsl_matrix *symmetric;      /* spari_linear_watch; NULL: not requested */
+    spari_linear *far, *joint;  /* of a split chain: unknown i is n - 1 - i of `far`; otherwise NULL */
+    double *x;                  /* of a second half: [size] workspace */
+    /* of a chain whose elements have interior unknowns; otherwise NULL, 0 */
+    spari_linear *ends;      /* the chain without the interior unknowns */
+    size_t own;              /* interior unknowns per element */
+    double *parts;           /* [elements][block][block] column by column, interior first, then the ends */
     int *part_swap;          /* [elements][own] */
-    double *z, *ends_x;      /* [elements][block], the ends of one at least; [ends->n] room */
-    unsigned char *bad;      /* [elements / ELEMENTS, rounded up] room */
-    spari_crew *const *crew; /* spari_linear_share; NULL: nobody */
+    double *z, *ends_x;      /* [elements][block], the ends of one at least; [ends->n] workspace */
+    unsigned char *bad;      /* [elements / ELEMENTS, rounded up] workspace */
+    spari_crew *const *crew; /* spari_linear_share; NULL: no threads */
 };
 
-/* Columns of n that begin with a cache line, `step` apart. */
+/* Allocates n columns, `step` apart, aligned to cache lines. */
 static gsl_matrix *make_aligned(size_t n, size_t step) {
     gsl_block *block = gsl_block_calloc(n * step + SPARI_CORNER);
     gsl_matrix *m = block ? gsl_matrix_alloc_from_block(block, (size_t)spari_to_line(block->data), n, n, step) : NULL;
@@ -76,7 +73,7 @@ static gsl_matrix *make_aligned(size_t n, size_t step) {
     return m;
 }
 
-/* Room for the matrix, whose size is known. */
+/* Allocates the matrix, whose size is known. */
 static spari_linear *with_room(spari_linear *s, int dense) {
     if (dense) {
         int64_t n = (int64_t)s->n, eights = (n + SPARI_CORNER - 1) / SPARI_CORNER * SPARI_CORNER;
@@ -97,7 +94,7 @@ static spari_linear *with_room(spari_linear *s, int dense) {
     return s;
 }
 
-/* A chain that is not cut. */
+/* A chain that is not split. */
 static spari_linear *make_chain(int elements, int block, int overlap) {
     spari_linear *s = spari_zalloc(1, sizeof *s);
     if (!s) {
@@ -109,7 +106,7 @@ static spari_linear *make_chain(int elements, int block, int overlap) {
     return with_room(s, elements == 1);
 }
 
-/* A chain that is cut. */
+/* A chain that is split. */
 static spari_linear *make_halves(int elements, int block, int overlap) {
     int near = elements / 2;
     spari_linear *s = make_chain(near, block, overlap);
@@ -129,7 +126,7 @@ static spari_linear *make_halves(int elements, int block, int overlap) {
     return s;
 }
 
-/* A chain whose elements have unknowns to themselves. */
+/* A chain whose elements have interior unknowns. */
 static spari_linear *make_parts(int elements, int block, int overlap) {
     spari_linear *s = spari_zalloc(1, sizeof *s);
     if (!s) {
@@ -155,7 +152,7 @@ static spari_linear *make_parts(int elements, int block, int overlap) {
 }
 
 spari_linear *spari_linear_create(int elements, int block, int overlap) {
-    if (elements > 1 && overlap > 0 && block >= 4 * overlap) { /* fewer are as cheap in the band of all */
+    if (elements > 1 && overlap > 0 && block >= 4 * overlap) { /* with fewer, the band of all unknowns is as cheap */
         return make_parts(elements, block, overlap);
     }
     return elements < LONG || overlap < 1 ? make_chain(elements, block, overlap)
@@ -210,7 +207,7 @@ void spari_linear_zero(spari_linear *s) {
     }
 }
 
-/* entry (i, j): row j of the storage is column j of the matrix; banded storage has A(i, j) at 2 band + i - j there */
+/* Entry (i, j). Row j of the storage is column j of the matrix; banded storage has A(i, j) at 2 band + i - j. */
 static double *entry(const spari_linear *s, size_t i, size_t j) {
     return s->A->data + j * s->A->tda + (s->swap ? i : 2 * s->band + i - j);
 }
@@ -220,7 +217,7 @@ double *spari_linear_entries(const spari_linear *s, int64_t *step) {
     return entry(s, 0, 0);
 }
 
-/* Where unknown i of an element stands in its matrix. */
+/* Position of unknown i of an element in its matrix. */
 static size_t stand(const spari_linear *s, size_t i) {
     size_t left = (size_t)s->overlap;
     return i < left ? i + s->own : i < left + s->own ? i - left : i;
@@ -232,7 +229,7 @@ static double *part_entry(const spari_linear *s, size_t e, size_t i, size_t j) {
     return s->parts + m * (m * e + stand(s, j)) + stand(s, i);
 }
 
-/* The elements [*first, *last] that unknown i belongs to. */
+/* First and last element that unknown i belongs to. */
 static void elements_of(const spari_linear *s, size_t i, size_t *first, size_t *last) {
     size_t step = (size_t)(s->block - s->overlap), e = i / step, end = (size_t)s->elements;
     *last = e < end ? e : end - 1;
@@ -296,7 +293,7 @@ void spari_linear_add(spari_linear *s, int element, const double *S) {
         add_to_element(s, element, S);
         return;
     }
-    if (s->far && first >= s->inner) { /* S backwards too */
+    if (s->far && first >= s->inner) { /* the second half is stored reversed */
         first = s->n - first - m;
         for (size_t j = 0; j < m; j++) {
             double *column = entry(s->far, first, first + j);
@@ -309,7 +306,7 @@ void spari_linear_add(spari_linear *s, int element, const double *S) {
     kernels_here()->add((int64_t)m, S, (int64_t)s->A->tda - (s->swap ? 0 : 1), entry(s, first, first));
 }
 
-/* The unknowns [from, to) that unknown i may have entries with in A */
+/* Range [from, to) of unknowns that may have entries with unknown i in A. */
 static void reach_of(const spari_linear *s, size_t i, size_t *from, size_t *to) {
     *from = !s->swap && i > s->band ? i - s->band : 0;
     *to = !s->swap && i + s->band + 1 < s->size ? i + s->band + 1 : s->size;
@@ -389,9 +386,9 @@ void spari_linear_fix(spari_linear *s, int i) {
     }
 }
 
-/* Before a dense matrix is factored: the unknowns that a root holds, where they are the first, go out of it, and the
-   others become the first. What they lack to whole eights, which solutions take faster than what is left over, others
-   of their own make up. */
+/* Removes constrained first unknowns from a dense matrix before it is factored; the others move to the front. The
+   matrix is padded to a multiple of eight by identity rows, because solutions process eights faster than a
+   remainder. */
 static void leave_out_lead(spari_linear *s, unsigned fixed) {
     const size_t lead = (size_t)s->overlap, step = s->A->tda, left = s->n > lead ? s->n - lead : 0;
     const size_t eights = (left + SPARI_CORNER - 1) / SPARI_CORNER * SPARI_CORNER;
@@ -410,7 +407,8 @@ static void leave_out_lead(spari_linear *s, unsigned fixed) {
     }
 }
 
-/* What a dense solution takes beyond the factors; loaded: these were not found here, with a part of it. */
+/* Prepares what a dense solution needs beyond the factors. loaded: the factors were not computed here, where a part
+   of it is done. */
 static void ready_dense(spari_linear *s, int loaded) {
     double *corner = s->corners;
     const size_t n = s->order_of;
@@ -428,12 +426,13 @@ static void ready_dense(spari_linear *s, int loaded) {
 }
 
 static int factor_part(spari_linear *s) {
-    /* before: a search for the largest of what are no numbers may answer anything */
+    /* checked first: a search for the largest of NaNs may return any index */
     if (spari_first_nonfinite(s->A->data, (int64_t)(s->A->size1 * s->A->tda)) >= 0) {
         return 1;
     }
     int bad = 0;
-    double least = s->elements > 0 ? 1 : 0.1; /* what is no chain has holes, which exchanges fill */
+    double least =
+        s->elements > 0 ? 1 : 0.1; /* a general matrix has zeros inside its profile, which row exchanges would fill */
     if (s->swap) {
         leave_out_lead(s, s->fixed);
         bad = kernels_here()->factor_dense((int64_t)s->order_of, (int64_t)s->order_of, least, s->A->data,
@@ -457,7 +456,7 @@ static int factor_part(spari_linear *s) {
     return 0;
 }
 
-/* ---- both halves ---- */
+/* ---- split chains ---- */
 
 typedef struct linear_halves {
     spari_linear *s;
@@ -477,7 +476,7 @@ static void factor_half(void *context, int64_t item, int worker) {
 
 /* ---- element by element ---- */
 
-/* Takes out what the element has to itself, which leaves the corner of its ends. */
+/* Eliminates the interior unknowns of an element, which leaves the block of its ends. */
 static int factor_element(const spari_linear *s, size_t e) {
     size_t m = (size_t)s->block;
     double *A = s->parts + m * m * e;
@@ -502,7 +501,7 @@ static void factor_elements(void *context, int64_t from, int64_t to) {
     s->bad[from / ELEMENTS] = bad != 0;
 }
 
-/* Elements by whoever there is to work on them. */
+/* Distributes the elements over the threads. */
 static void spread_elements(const spari_linear *s, spari_span work, void *context) {
     spari_crew_spread(s->crew ? *s->crew : NULL, s->elements, ELEMENTS, work, context);
 }
@@ -585,7 +584,7 @@ void spari_linear_unwatch(spari_linear *s) {
     s->symmetric = NULL;
 }
 
-/* Entry (i, j), wherever it stands. */
+/* Entry (i, j), in A or in an element. */
 static double value_at(const spari_linear *s, size_t i, size_t j) {
     size_t end = s->n - 1, first, last, of_first, of_last;
     if (s->ends) {
@@ -604,7 +603,7 @@ static double value_at(const spari_linear *s, size_t i, size_t j) {
 
 int spari_linear_definite(spari_linear *s) {
     size_t n = s->n, band = s->swap ? n - 1 : s->band;
-    /* scaled to a unit diagonal, shifted by what rounding can do to it */
+    /* after scaling to a unit diagonal; shift: bound of the rounding error */
     const double symmetric = 1e-9, shift = 4e-15;
     for (size_t i = 0; i < n; i++) {
         if (!(value_at(s, i, i) > 0)) {
@@ -690,14 +689,14 @@ static int solve_halves(spari_linear *s, double *x) {
     return bad || h.bad[0] || h.bad[1];
 }
 
-/* The solution x of a chain whose elements have unknowns to themselves. */
+/* Arguments of the solution x with interior unknowns. */
 typedef struct linear_elements {
     spari_linear *s;
     double *x;
     const linear_kernels *kernels;
 } linear_elements;
 
-/* Takes out what each has to itself; z is left with what that leaves of its ends, from 0. */
+/* Eliminates the interior unknowns of each element; z: the remaining right-hand side of its ends. */
 static void forth_elements(void *context, int64_t from, int64_t to) {
     const linear_elements *t = context;
     const spari_linear *s = t->s;
@@ -730,7 +729,7 @@ static void back_elements(void *context, int64_t from, int64_t to) {
     s->bad[from / ELEMENTS] = spari_first_nonfinite(s->z + m * (size_t)from, (int64_t)m * (to - from)) >= 0;
 }
 
-/* What is left of the unknowns between element e - 1 and element e. */
+/* Right-hand side of the unknowns between elements e - 1 and e. */
 static void gather_ends(void *context, int64_t from, int64_t to) {
     const linear_elements *t = context;
     const spari_linear *s = t->s;
@@ -797,7 +796,7 @@ void spari_linear_add_rows(int n, int count, const double *rows, double by, cons
     kernels_here()->rows(n, count, rows, by, x, y);
 }
 
-/* Of elements: their matrices, then what was exchanged in them. */
+/* Size of the element matrices and their row exchanges. */
 static int64_t size_of_parts(const spari_linear *s) {
     return (int64_t)s->elements * s->block * s->block;
 }
@@ -845,7 +844,7 @@ int64_t spari_linear_state_size(const spari_linear *s) {
     return part_size(s) + (s->far ? part_size(s->far) + part_size(s->joint) : 0);
 }
 
-/* Column i of the factors, with the unknowns that are left out of them. */
+/* Column i of the factors, with the removed unknowns. */
 static void save_dense(const spari_linear *s, size_t i, double *column) {
     const size_t lead = s->lead;
     if (lead == 0) {
@@ -860,11 +859,11 @@ static void save_dense(const spari_linear *s, size_t i, double *column) {
     }
 }
 
-/* Which of the first unknowns of loaded factors had been taken out. */
+/* Which first unknowns had been removed from loaded factors. */
 static unsigned fixed_of(const spari_linear *s) {
     unsigned fixed = 0;
     for (size_t i = 0; i < s->n; i++) {
-        if (s->swap[i] <= (int)i) { /* not of factors that were found here */
+        if (s->swap[i] <= (int)i) { /* the factors were not computed here */
             return 0;
         }
     }
@@ -878,7 +877,7 @@ static unsigned fixed_of(const spari_linear *s) {
     return fixed;
 }
 
-/* Factors that stand in A with all unknowns. */
+/* Loads factors of all unknowns into A. */
 static void load_dense(spari_linear *s) {
     leave_out_lead(s, fixed_of(s));
     for (size_t i = 0; i + s->lead < s->n && s->lead > 0; i++) {

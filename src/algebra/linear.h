@@ -1,5 +1,5 @@
-/* Linear systems: of a member, element matrices on a chain of elements, dense for one element, banded for more; and any
-   with a band. Nothing but create and watch takes memory. */
+/* Linear systems of members: element matrices assembled along a chain, dense for one element and banded for more;
+   and general banded systems. Only create and watch allocate memory. */
 #ifndef SPARI_LINEAR_H
 #define SPARI_LINEAR_H
 
@@ -7,42 +7,43 @@
 
 typedef struct spari_linear spari_linear;
 
-/* elements of block x block matrices; neighbours share the last and first `overlap` unknowns. A long chain is cut in
-   its middle: its halves are factored and solved apart, whoever does it, so that the bits are the same. NULL when there
-   is no memory. */
+/* Chain of elements with block x block matrices; neighbours share their last and first `overlap` unknowns. A long
+   chain is split in the middle and its halves are factored separately, with or without threads, so the bits are the
+   same. NULL: no memory. */
 spari_linear *spari_linear_create(int elements, int block, int overlap);
-/* n unknowns of which i and j have an entry where |i - j| <= band at most; dense where that takes no more room. */
+/* General system of n unknowns; entries (i, j) have |i - j| <= band. Stored dense if that takes no more memory. */
 spari_linear *spari_linear_create_banded(int n, int band);
 void spari_linear_free(spari_linear *system);
-/* Who works on the halves of a long chain (base/crew.h), from now on; NULL: the calling thread. */
+/* Threads for the halves of a long chain (base/thread_pool.h) from now on; NULL: the calling thread. */
 void spari_linear_share(spari_linear *system, spari_crew *const *crew);
 void spari_linear_zero(spari_linear *system);
 void spari_linear_add(spari_linear *system, int element, const double *S); /* S row-major [block][block] */
-/* Of no chain: entry (0, 0); (i, j), within the band, is i + step j further on. Factored, (i, i) is the pivot. */
+/* For general systems: entry (0, 0); entry (i, j), within the band, is i + step j further on. After factoring, (i,
+   i) is the pivot. */
 double *spari_linear_entries(const spari_linear *system, int64_t *step);
-/* Row and column of unknown i, [unknowns] each. Before factoring. */
+/* Row and column of unknown i, [unknowns] each. Call before factoring. */
 void spari_linear_read(const spari_linear *system, int i, double *row, double *column);
-/* Takes unknown i out: its row and column become those of the identity. Before factoring. */
+/* Constrains unknown i: its row and column become those of the identity. Call before factoring. */
 void spari_linear_fix(spari_linear *system, int i);
-/* Returns 0, or 1 when the matrix is singular or not finite. */
+/* Returns 0, or 1 if the matrix is singular or not finite. */
 int spari_linear_factor(spari_linear *system);
-/* Sign of the determinant of the matrix factored last. */
+/* Sign of the determinant of the last factored matrix. */
 int spari_linear_sign(const spari_linear *system);
-/* Memory to tell whether the matrix is definite, until unwatch: 0, or 1 when there is none. */
+/* Allocates memory for spari_linear_definite, until unwatch. Returns 0, or 1 if there is no memory. */
 int spari_linear_watch(spari_linear *system);
 void spari_linear_unwatch(spari_linear *system);
-/* Before factoring and while watched, leaves the matrix as it is. 1: symmetric and positive definite (within rounding),
- * 0: symmetric and not, -1: not symmetric. */
+/* Tests the matrix without changing it, before factoring and while watched. 1: symmetric positive definite (within
+   rounding), 0: symmetric indefinite, -1: not symmetric. */
 int spari_linear_definite(spari_linear *system);
-/* x := A^-1 x; 0, or 1 when the result is not finite. */
+/* x := A^-1 x. Returns 0, or 1 if the result is not finite. */
 int spari_linear_solve(spari_linear *system, double *x);
-/* x[n] -= `count` columns of n, one after the other, times by[count]; y[count] += by times as many rows times x[n]. */
+/* x[n] -= `count` consecutive columns of length n times by[count]; and y[count] += by times as many rows times x[n]. */
 void spari_linear_less_columns(int n, int count, const double *columns, const double *by, double *x);
 void spari_linear_add_rows(int n, int count, const double *rows, double by, const double *x, double *y);
-/* The factors as doubles, for save and load. */
+/* Factors as doubles, for save and load. */
 int64_t spari_linear_state_size(const spari_linear *system);
 void spari_linear_save(const spari_linear *system, double *state);
-/* Whether what was saved can be loaded: it names no rows that are not there. */
+/* Whether a saved state is valid: its row exchanges name existing rows. */
 int spari_linear_is_state(const spari_linear *system, const double *state);
 void spari_linear_load(spari_linear *system, const double *state);
 

@@ -1,9 +1,9 @@
-/* Factors and back-substitution for one width of vectors. Included by linear.c once per width with the macros of
-   math/width.h. No include guard: this is a body, not an interface. Columns lie one after the other, contiguous. BLAS
-   takes three to four times as many instructions for so few unknowns (docs/performance.md). */
+/* Factorisation and back-substitution for one vector width. Included by linear.c once per width with the macros of
+   math/width.h. No include guard: this is a body, not an interface. Columns are contiguous, one after the other. For
+   so few unknowns BLAS takes three to four times as many instructions (docs/performance.md). */
 #include "../math/rotation_lanes.h"
 
-/* Columns [m] of A, `step` apart, += S [m][m] row by row: two columns of W rows at a time. */
+/* Columns [m] of A, `step` apart, += S [m][m] row by row; W rows of two columns at a time. */
 TARGET static void NAME(add_by_columns)(int64_t m, const double *S, int64_t step, double *A) {
     int64_t i = 0;
     for (; i + W <= m; i += W) {
@@ -26,7 +26,7 @@ TARGET static void NAME(add_by_columns)(int64_t m, const double *S, int64_t step
     }
 }
 
-/* x[n] -= `count` columns of n, each `step` after the one before, times by[count]. */
+/* x[n] -= `count` columns of length n, `step` apart, times by[count]. */
 HERE void NAME(less_columns)(const int count, int64_t n, const double *columns, int64_t step, const double *by,
                              double *x) {
     double less[4];
@@ -52,8 +52,7 @@ HERE void NAME(less_columns)(const int count, int64_t n, const double *columns, 
     }
 }
 
-/* m unknowns against the triangle below a diagonal of ones, or the one above with its diagonal, of their own columns.
- */
+/* Solves with the unit lower, or upper, triangle of m columns. */
 HERE void NAME(lower_corner)(const int m, int64_t n, const double *at, double *x) {
     SPARI_UNROLL
     for (int k = 0; k < m; k++) {
@@ -75,7 +74,7 @@ HERE void NAME(upper_corner)(const int m, int64_t n, const double *at, double *x
     }
 }
 
-/* y[8] := M y, M [8][8] column by column: two sums side by side, for it is their latency that solutions wait for. */
+/* y[8] := M y, M [8][8] column by column. Two interleaved sums hide the latency of additions. */
 HERE void NAME(times_corner)(const double *M, double *y) {
     enum { VECTORS = (SPARI_CORNER + W - 1) / W, HALF = SPARI_CORNER / 2 };
     L sum[VECTORS], more[VECTORS];
@@ -95,7 +94,7 @@ HERE void NAME(times_corner)(const double *M, double *y) {
     }
 }
 
-/* x[n], rounded up to whole vectors, -= eight columns, each `step` after the one before, times by[8]. */
+/* x[n], rounded up to whole vectors, -= eight columns, `step` apart, times by[8]. */
 HERE void NAME(less_eight)(int64_t n, const double *columns, int64_t step, const double *by, double *x) {
     enum { HALF = SPARI_CORNER / 2 };
     double less[SPARI_CORNER];
@@ -119,8 +118,8 @@ HERE void NAME(less_eight)(int64_t n, const double *columns, int64_t step, const
     }
 }
 
-/* The inverses of the triangles of m columns: Z L = 1 and Z U = 1, column by column, one of which is a vector. Eight of
-   them stay in registers, and each waits for the one before it alone. */
+/* Inverts the triangles of m columns: Z L = 1 and Z U = 1, column by column, each a vector. Eight of them stay in
+   registers, and each depends on the one before alone. */
 enum { NAME(VECTORS) = (SPARI_CORNER + W - 1) / W };
 
 HERE void NAME(begin_inverse)(L (*z)[NAME(VECTORS)]) {
@@ -184,7 +183,7 @@ HERE void NAME(invert_upper)(int64_t n, const int m, const double *at, double *Z
     NAME(put_inverse)(m, (const L(*)[NAME(VECTORS)])z, Z);
 }
 
-/* B := M times the block A [8][8] whose columns lie n apart. */
+/* B := M times the block A [8][8] whose columns are n apart. */
 HERE void NAME(times_block)(const double *M, int64_t n, const double *A, double *B) {
     for (int c = 0; c < SPARI_CORNER; c++) {
         memcpy(B + SPARI_CORNER * c, A + n * c, SPARI_CORNER * sizeof *B);
@@ -192,8 +191,8 @@ HERE void NAME(times_block)(const double *M, int64_t n, const double *A, double 
     }
 }
 
-/* What a solution takes beyond the triangles of the columns from j on of A [n][step], as solve_dense has it; of a whole
-   eight taking out has left the first, unless they are loaded. */
+/* Prepares what solve_dense needs beyond the triangles, for the columns from j on of A [n][step]. For whole blocks
+   of eight, factoring has computed the first part, unless the factors were loaded. */
 TARGET static void NAME(invert_corner)(int64_t n, int64_t j, int loaded, const double *A, int64_t step,
                                        double *corner) {
     enum { SIZE = SPARI_CORNER * SPARI_CORNER };
@@ -213,7 +212,7 @@ TARGET static void NAME(invert_corner)(int64_t n, int64_t j, int loaded, const d
     }
 }
 
-/* y := M y - B x, eight of each: four sums side by side. */
+/* y := M y - B x, eight of each, in four interleaved sums. */
 HERE void NAME(next_corner)(const double *M, const double *B, const double *x, double *y) {
     enum { HALF = SPARI_CORNER / 2 };
     L sum[4][NAME(VECTORS)];
@@ -241,7 +240,7 @@ HERE void NAME(next_corner)(const double *M, const double *B, const double *x, d
     }
 }
 
-/* 0 x is 0 of every finite x. */
+/* 0 x is 0 for every finite x. */
 HERE int NAME(is_finite)(int64_t n, const double *x) {
     L poison = {0};
     double lanes[W], rest = 0;
@@ -259,11 +258,12 @@ HERE int NAME(is_finite)(int64_t n, const double *x) {
     return rest == 0;
 }
 
-/* y := A^-1 y with the triangles of A [n][step] below a diagonal of ones and above, eight columns at a time. Of each
-   eight there are [4][8][8] beyond them: the inverses of its corners, the lower and the upper one's, with zeros beyond
-   the last column; and of a whole one the lower inverse times what is left of it, and the upper inverse of the eight
-   before times what is above. With these the next eight wait for one product alone, what comes from further off being
-   there by then. y has room for whole eights. */
+/* y := A^-1 y with the unit lower and the upper triangle of A [n][step], eight columns at a time. corners holds
+   [4][8][8] for each eight:
+   - the inverses of its lower and upper diagonal blocks, with zeros beyond the last column;
+   - for a whole block: the lower inverse times the block to its left, and the upper inverse of the block before
+     times the block above.
+   With these, each block of eight waits for one product alone. y has room for whole blocks of eight. */
 TARGET static int NAME(solve_dense)(int64_t n, const double *A, int64_t step, const double *corners, double *y) {
     enum { SIZE = SPARI_CORNER * SPARI_CORNER, NEXT = SPARI_CORNERS * SIZE, TWO = 2 * SPARI_CORNER };
     int64_t rest = n % SPARI_CORNER, whole = n - rest, j = 0;
@@ -297,8 +297,8 @@ TARGET static int NAME(solve_dense)(int64_t n, const double *A, int64_t step, co
     return !NAME(is_finite)(n, y);
 }
 
-/* Where the columns from `inner` on have not been taken out: x is left with what the others leave of them; and the
-   others from x, which has their solution. */
+/* Forward and back substitution when the columns from `inner` on are not factored: forth leaves their right-hand
+   side in x, back expects their solution there. */
 TARGET static void NAME(forth_dense)(int64_t n, int64_t inner, const double *A, double *x) {
     int64_t j = 0;
     for (; j + 4 <= inner; j += 4) {
@@ -331,9 +331,8 @@ TARGET static void NAME(back_dense)(int64_t n, int64_t inner, const double *A, d
     }
 }
 
-/* The same for a band with `band` entries on either side, and as many more above that exchanges of rows brought: row
-   swap[j] took the place of row j before column j was taken out. A(i, j) is at columns[step j + 2 band + i - j]. The
-   columns from `inner` on have not been: x is left with what the others leave of them, and has then their solution. */
+/* The same for a band with `band` entries on either side, and as many more above from row exchanges: row j was
+   exchanged with row swap[j] before column j was eliminated. A(i, j) is at columns[step j + 2 band + i - j]. */
 TARGET static void NAME(forth_band)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step,
                                     const unsigned *swap, double *x) {
     const double *at = columns + 2 * band;
@@ -361,14 +360,14 @@ TARGET static void NAME(back_band)(int64_t n, int64_t inner, int64_t band, const
     }
 }
 
-/* Whether none of x[4] is but 0 */
+/* Whether all of x[4] are 0 */
 HERE int NAME(are_zero)(const double *x) {
     uint64_t bits[4];
     memcpy(bits, x, sizeof bits);
     return (bits[0] | bits[1] | bits[2] | bits[3]) << 1 == 0;
 }
 
-/* Where the largest of x[n] is; the first, unless it has less than `least` of that. */
+/* Index of the largest of |x[n]|; 0 if |x[0]| is at least `least` times that. */
 HERE int64_t NAME(pivot_of)(int64_t n, double least, const double *x) {
     L lanes = {0};
     int64_t i = 0;
@@ -401,7 +400,7 @@ HERE void NAME(scale)(int64_t n, double by, double *x) {
     }
 }
 
-/* Four columns x, n rows of each, -= eight that lie n apart from `columns` on, times by[4][8]; V vectors of rows. */
+/* Four columns x of n rows -= eight columns, n apart, from `columns` on, times by[4][8]; V vectors of rows. */
 HERE void NAME(less_tile)(const int V, const double *columns, int64_t step, const double (*by)[SPARI_CORNER],
                           double *const *x, int64_t i) {
     L sum[4][2];
@@ -432,7 +431,7 @@ HERE void NAME(less_tile)(const int V, const double *columns, int64_t step, cons
     }
 }
 
-/* The rows below eight columns that have been taken out, n of them, of four columns whose eight rows are by. */
+/* Updates n rows below eight factored columns, of four columns whose eight rows are `by`. */
 HERE void NAME(less_block)(int64_t n, const double *columns, int64_t step, double (*by)[SPARI_CORNER],
                            double *const *x) {
     int64_t i = 0;
@@ -459,8 +458,8 @@ HERE void NAME(less_block)(int64_t n, const double *columns, int64_t step, doubl
     }
 }
 
-/* Takes eight columns from j on, whose triangles are there, out of those after them, four by four. Those
-   that they do not meet cost nothing. inverse [8][8]: of the lower triangle. */
+/* Updates the later columns with eight factored columns from j on, four at a time; columns without entries are
+   skipped. inverse [8][8]: of the lower triangle. */
 TARGET SPARI_APART static void NAME(take_out)(int64_t n, int64_t j, double *A, int64_t step, double *inverse) {
     double by[4][SPARI_CORNER], *x[4];
     int64_t below = n - j - SPARI_CORNER;
@@ -486,8 +485,8 @@ TARGET SPARI_APART static void NAME(take_out)(int64_t n, int64_t j, double *A, i
     }
 }
 
-/* One column against those from `first` to `end` before it, whose triangles are there. Those that it does not meet,
-   four by four, cost nothing. */
+/* Updates one column with the factored columns from `first` to `end`; four columns without entries at a time are
+   skipped. */
 HERE void NAME(take_from)(int64_t n, int64_t first, int64_t end, const double *A, int64_t step, double *x) {
     int64_t k = first;
     for (; k + 4 <= end; k += 4) {
@@ -504,12 +503,13 @@ HERE void NAME(take_from)(int64_t n, int64_t first, int64_t end, const double *A
     }
 }
 
-/* A [n][step] := its triangles, eight columns at a time: one against those before it, then all that follow against the
-   eight. Whole rows are exchanged among the first `inner`, which are taken out; the corner of the others is left with
-   what it has beyond them. Row j with row swap[j] - 1, unless the diagonal has as much as `least` of the largest entry.
-   Columns that others do not meet cost nothing: with unknowns in the order in which a tree of parts is taken apart
-   these are most, and the fewer rows are exchanged, the more. corners: as solve_dense wants them, gets the lower ones
-   of whole eights; or NULL. 0, or 1 where a pivot is 0 or none at all. */
+/* Factors A [n][step] in place, eight columns at a time.
+   inner: rows are exchanged among the first `inner`, which are eliminated; the rest is left as their Schur
+     complement
+   least: row j is exchanged with row swap[j] - 1 unless the diagonal is at least `least` times the largest entry
+   corners: receives the lower inverses of whole blocks of eight for solve_dense; may be NULL
+   Columns without entries are skipped. In the elimination order of a tree of parts these are most, the more so the
+     fewer rows are exchanged. Returns 0, or 1 if a pivot is 0 or not finite. */
 TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, double *A, int64_t step, int *swap,
                                      double *corners) {
     double inverse[SPARI_CORNER * SPARI_CORNER];
@@ -541,8 +541,8 @@ TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, dou
     return 0;
 }
 
-/* The same of a band as forth_band and back_band want it: rows are exchanged from column j on, among the first `inner`.
-   The corner of the others is left with what it has beyond the first. */
+/* The same for a band, as forth_band and back_band need it. Rows are exchanged from column j on, among the first
+   `inner`; the rest is left as their Schur complement. */
 TARGET static int NAME(factor_band)(int64_t n, int64_t inner, int64_t band, double least, double *columns, int64_t step,
                                     unsigned *swap) {
     for (int64_t j = 0; j < n; j++) {
@@ -573,7 +573,7 @@ TARGET static int NAME(factor_band)(int64_t n, int64_t inner, int64_t band, doub
     return 0;
 }
 
-/* x[n] -= `count` columns of n, one after the other, times by[count]. */
+/* x[n] -= `count` consecutive columns of length n times by[count]. */
 TARGET static void NAME(take_columns)(int64_t n, int64_t count, const double *columns, const double *by, double *x) {
     int64_t k = 0;
     for (; k + 4 <= count; k += 4) {
@@ -584,7 +584,7 @@ TARGET static void NAME(take_columns)(int64_t n, int64_t count, const double *co
     }
 }
 
-/* The sum of one row's products in lanes. */
+/* Sum of the lanes of one row's products. */
 HERE double NAME(total_of)(L sum) {
     double lanes[W], total = 0;
     NAME(put)(lanes, sum);
@@ -595,7 +595,7 @@ HERE double NAME(total_of)(L sum) {
     return total;
 }
 
-/* y[count] += by times `count` rows of n, one after the other, times x[n]. */
+/* y[count] += by times `count` consecutive rows of length n times x[n]. */
 HERE void NAME(more_rows)(const int count, int64_t n, const double *rows, double by, const double *x, double *y) {
     double first[4] = {0};
     L sum[4];

@@ -1,4 +1,4 @@
-/* The entries of the equations of small motions. */
+/* Entries of the equations of small motions: see pencil.h. */
 #include "pencil.h"
 
 #include "../base/status.h"
@@ -19,7 +19,7 @@ void spari_pencil_free(spari_pencil *p) {
     *p = (spari_pencil){0};
 }
 
-/* Room for one more of `size` bytes behind `count`; NULL: no memory. */
+/* Makes room for one more entry of `size` bytes; NULL: no memory. */
 static void *room_for_entry(void *array, int64_t count, int64_t *room, size_t size) {
     if (count < *room) {
         return array;

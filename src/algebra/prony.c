@@ -1,7 +1,7 @@
-/* Linear systems from how they come to rest: see prony.h. Y_(i + j) in block row i and column j is O X, of as many
-   independent rows as there are states, and Y_(i + j + 1) is O A X: with O X = U S V^T, A = S^-1/2 U^T (O A X) V
-   S^-1/2. Rows and columns need not follow each other: a few, near each other at first and far apart later, see fast
-   parts and slow ones. */
+/* Realisation of a linear system from its decaying response (eigensystem realisation): see prony.h. The block Hankel
+   matrix with Y_(i + j) in block row i and column j is O X, with as many independent rows as there are states. The
+   one with Y_(i + j + 1) is O A X. With O X = U S V^T, A = S^-1/2 U^T (O A X) V S^-1/2. Rows and columns need not be
+   consecutive: close ones at first and distant ones later resolve fast and slow modes. */
 #include "prony.h"
 
 #include "../base/blas.h"
@@ -15,16 +15,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Block rows times size at most; states at most; parts of the largest singular value that are nothing. */
+/* Maximum of block rows times size; maximum of states; relative thresholds of singular values. */
 enum { MOST_ROWS = 160, MOST_STATES = 60 };
 static const double nothing = 1e-10, fits = 1e-9, as_good = 3, nothing_fits = 0.3;
 
 typedef struct hankel {
-    int size, rows, m; /* of Y; blocks; size * rows */
+    int size, rows, m; /* size of Y; number of block rows; size * rows */
     int64_t *at;       /* [rows] */
     gsl_matrix *U, *V, *next, *G;
     gsl_vector *S;
-    double complex *A, *Q, *room; /* [MOST_STATES][MOST_STATES] twice; more */
+    double complex *A, *Q, *room; /* [MOST_STATES][MOST_STATES] twice; workspace */
 } hankel;
 
 void spari_decay_free(spari_decay *d) {
@@ -74,8 +74,8 @@ static void hankel_free(hankel *h) {
     gsl_vector_free(h->S);
 }
 
-/* Places of the block rows and columns: 0, 1, .. and then further and further apart, up to a third of what there is:
-   the last third of Y is to be foretold, which noise cannot be. */
+/* Indices of the block rows and columns: 0, 1, .. and then increasingly distant, up to a third of the samples. The
+   last third of Y is predicted, which noise cannot be. */
 static void place_rows(hankel *h, int64_t count) {
     int64_t last = count / 3 - 1;
     for (int i = 0; i < h->rows; i++) {
@@ -100,7 +100,7 @@ static int hankel_create(hankel *h, int size, int64_t count) {
     return h->at && h->A && h->U && h->V && h->next && h->G && h->S ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-/* U, S, V, and G = U^T (O A X) V. */
+/* Computes U, S, V, and G = U^T (O A X) V. */
 static int decompose(hankel *h, const double *y) {
     int n = h->size, status;
     for (int i = 0; i < h->m; i++) {
@@ -110,7 +110,7 @@ static int decompose(hankel *h, const double *y) {
             gsl_matrix_set(h->next, (size_t)i, (size_t)j, Y[n * n]);
         }
     }
-    SPARI_BLAS(status = gsl_linalg_SV_decomp_jacobi(h->U, h->V, h->S)); /* the others take memory, unasked */
+    SPARI_BLAS(status = gsl_linalg_SV_decomp_jacobi(h->U, h->V, h->S)); /* the other variants allocate memory */
     if (status != GSL_SUCCESS) {
         return SPAR_ERR_NUMERIC;
     }
@@ -124,7 +124,7 @@ static double root_of(const hankel *h, int i) {
     return sqrt(gsl_vector_get(h->S, (size_t)i));
 }
 
-/* The system of r states, by its eigenvectors. 0, or 1: it has none that can be told from each other. */
+/* System with r states, by its eigenvectors. Returns 1 if they are not independent. */
 static int find_system(hankel *h, int r, spari_decay *d) {
     int n = h->size;
     for (int i = 0; i < r * r; i++) {
@@ -157,7 +157,7 @@ static int find_system(hankel *h, int r, spari_decay *d) {
     return spari_decay_solve(r, W, n, d->right);
 }
 
-/* power [order], sum [size]: room */
+/* power [order], sum [size]: workspace */
 static double misfit_of(const spari_decay *d, int64_t count, const double *y, double most, double complex *power) {
     int n = d->size;
     double worst = 0;
@@ -180,7 +180,7 @@ static double misfit_of(const spari_decay *d, int64_t count, const double *y, do
     return isnan(worst) ? INFINITY : worst;
 }
 
-/* With r states; one that grows is no answer of a fluid that comes to rest, but where there is no other. */
+/* Fit with r states. A growing one is accepted only if may_grow: the response of a fluid decays. */
 static double try_order(hankel *h, int r, int64_t count, const double *y, double most, int may_grow, spari_decay *d) {
     if (find_system(h, r, d)) {
         return INFINITY;
@@ -193,7 +193,7 @@ static double try_order(hankel *h, int r, int64_t count, const double *y, double
     return misfit_of(d, count, y, most, h->room);
 }
 
-/* The fewest states that fit nearly as well as any. */
+/* Fewest states whose fit is nearly the best. */
 static void choose_order(hankel *h, int64_t count, const double *y, double most, spari_decay *d) {
     int top = 0, best = 0;
     double least = INFINITY, found = INFINITY;
@@ -209,7 +209,7 @@ static void choose_order(hankel *h, int64_t count, const double *y, double most,
             best = found <= as_good * least ? r : 0;
         }
     }
-    int noise = !best || found > nothing_fits; /* which is no system */
+    int noise = !best || found > nothing_fits; /* no linear system */
     d->order = noise ? 0 : best;
     d->misfit = noise ? 1 : found;
 }

@@ -1,11 +1,11 @@
-/* Householder's reduction to Hessenberg's form, then QR with Wilkinson's shifts by rotations of two rows: Golub and Van
-   Loan, Matrix Computations, chapter 7. */
+/* Complex Schur form: Householder reduction to Hessenberg form, then QR with Wilkinson shifts and Givens rotations
+   (Golub and Van Loan, Matrix Computations, chapter 7). */
 #include "schur.h"
 
 #include <float.h>
 #include <math.h>
 
-/* A rotation of two rows: (c, s; -conj(s), c) (a, b)^T = (r, 0)^T. */
+/* A Givens rotation: (c, s; -conj(s), c) (a, b)^T = (r, 0)^T. */
 typedef struct schur_turn {
     double c;
     double complex s;
@@ -42,7 +42,7 @@ static void schur_columns(int n, double complex *A, int i, int to, schur_turn g)
     }
 }
 
-/* A := (I - 2 v v^H) A (I - 2 v v^H), Q := Q (I - 2 v v^H), v of the rows from `first` on */
+/* A := (I - 2 v v^H) A (I - 2 v v^H), Q := Q (I - 2 v v^H); v has the rows from `first` on */
 static void reflect(int n, double complex *A, double complex *Q, const double complex *v, int first) {
     for (int j = 0; j < n; j++) {
         double complex sum = 0;
@@ -67,7 +67,7 @@ static void reflect(int n, double complex *A, double complex *Q, const double co
     }
 }
 
-/* To Hessenberg's form; v [n] room. */
+/* Reduces A to Hessenberg form; v [n] workspace. */
 static void to_hessenberg(int n, double complex *A, double complex *Q, double complex *v) {
     for (int i = 0; i < n * n; i++) {
         Q[i] = i % (n + 1) == 0;
@@ -95,7 +95,7 @@ static void to_hessenberg(int n, double complex *A, double complex *Q, double co
     }
 }
 
-/* The eigenvalue of the last 2 x 2 block [.., end] nearest to its last entry; now and then another shift. */
+/* Eigenvalue of the last 2 x 2 block [.., end] nearest to its last entry; occasionally an exceptional shift. */
 static double complex shift_of(int n, const double complex *A, int end, int pass) {
     const double complex *p = A + (long)n * (end - 1) + end - 1, *q = p + n;
     if (pass % 10 == 9) {
@@ -106,7 +106,7 @@ static double complex shift_of(int n, const double complex *A, int end, int pass
     return cabs(near) > 0 ? q[1] - p[1] * q[0] / near : q[1];
 }
 
-/* One sweep over the rows [begin, end]. */
+/* One QR sweep over the rows [begin, end]. */
 static void sweep(int n, double complex *A, double complex *Q, int begin, int end, double complex shift) {
     double complex a = A[(long)n * begin + begin] - shift, b = A[(long)n * (begin + 1) + begin];
     for (int i = begin; i < end; i++) {
@@ -126,7 +126,7 @@ static void sweep(int n, double complex *A, double complex *Q, int begin, int en
 
 int spari_schur(int n, double complex *S, double complex *Q, double complex *room) {
     enum { PASSES = 60 };
-    double sum = 0, largest = 0; /* every sweep leaves rounding of the largest behind */
+    double sum = 0, largest = 0; /* every sweep leaves rounding errors relative to the largest entry */
     for (int i = 0; i < n * n; i++) {
         sum += cabs(S[i]);
         largest = fmax(largest, cabs(S[i]));

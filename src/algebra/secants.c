@@ -1,4 +1,4 @@
-/* Least squares for the derivative of a map that scatters: see secants.h. */
+/* Least-squares fit of a derivative to noisy secants: see secants.h. */
 #include "secants.h"
 
 #include "../base/status.h"
@@ -17,11 +17,11 @@ typedef struct secant {
 struct spari_secants {
     int64_t n;
     int most, count, rank;
-    double filter, gain; /* largest |w| / |x| */
-    double rho;          /* of a change, comes again with the next answer */
+    double filter, gain; /* linear independence threshold; largest |w| / |x| */
+    double rho;          /* fraction of a change that recurs in the next response */
     secant column[MOST];
-    double at[MOST][MOST]; /* of column j, of unit size, in the basis: at[j][i] */
-    double *q, *p, *u;     /* [most][n]: the basis, orthonormal; its images; J of it */
+    double at[MOST][MOST]; /* coefficients of column j, of unit size, in the basis: at[j][i] */
+    double *q, *p, *u;     /* [most][n]: orthonormal basis; its images; J times the basis */
     double a[MOST][MOST], e[MOST][MOST];
 };
 
@@ -69,7 +69,8 @@ static void add_times(double f, const double *a, double *b, int64_t n) {
     }
 }
 
-/* q, p: x and its image over the size of x; then less what the basis has of them: parts[rank]. Returns what is left. */
+/* q, p: x and its image divided by the size of x, minus their projection onto the basis; parts[rank]: its
+   coefficients. Returns the norm of the remainder. */
 static double split(const spari_secants *s, const secant *c, double *q, double *p, double *parts) {
     int64_t n = s->n;
     for (int64_t i = 0; i < n; i++) {
@@ -87,7 +88,7 @@ static double split(const spari_secants *s, const secant *c, double *q, double *
     return sqrt(fmax(product(q, p, n), 0));
 }
 
-/* of x = w - v */
+/* size of x = w - v */
 static double secant_size(const spari_secant *c, int64_t n) {
     double sum = 0;
     for (int64_t i = 0; i < n; i++) {
@@ -121,7 +122,7 @@ int spari_secants_add(spari_secants *s, const spari_secant *column) {
     return 1;
 }
 
-/* a := a^-1, symmetric and positive definite, by Gauss and Jordan */
+/* a := a^-1 for symmetric positive definite a, by Gauss-Jordan elimination */
 static void invert(double a[MOST][MOST], int n) {
     for (int i = 0; i < n; i++) {
         double pivot = 1 / a[i][i];
@@ -138,7 +139,7 @@ static void invert(double a[MOST][MOST], int n) {
     }
 }
 
-/* x of c . S what of d, over the sizes of both x */
+/* x of c . S what, where `what` belongs to a column of this size, divided by both sizes */
 static double answered(const secant *c, const double *what, double size, int64_t n) {
     double sum = 0;
     for (int64_t i = 0; i < n; i++) {
@@ -169,9 +170,9 @@ void spari_secants_remember(spari_secants *s, double rho) {
     s->rho = rho;
 }
 
-/* A column's weight in the fit: the longer, the less of it is noise that does not grow with it. By the fourth root of
-   the length: tried against none, the square root and the length itself on the flows of the coupling benchmark. Where
-   the fluid remembers, little of one is known whose b is not. */
+/* Weights of the columns in the fit: a longer column has relatively less noise of constant size. The weight is the
+   fourth root of the length; no weight, the square root and the length itself were worse on the flows of the
+   coupling benchmark. If the fluid has memory, columns without b get little weight. */
 static void weigh_columns(const spari_secants *s, double weight[MOST]) {
     static const double UNKNOWN = 1e-2;
     double longest = 0;
@@ -237,7 +238,7 @@ double spari_secants_defect(spari_secants *s, const spari_secant *column) {
     return seen > 0 ? fmax(sqrt(off) - CARE * s->gain * left * c.size, 0) / sqrt(seen) : -1;
 }
 
-/* a becomes diagonal by Jacobi's rotations, e [m][m] its eigenvectors, by columns. */
+/* Diagonalises a by Jacobi rotations; e [m][m]: eigenvectors in columns. */
 static void diagonalise(double a[MOST][MOST], double e[MOST][MOST], int m) {
     enum { SWEEPS = 30 };
     for (int i = 0; i < m; i++) {
@@ -280,7 +281,7 @@ int spari_secants_step(spari_secants *s, const double *x, const double *r, doubl
         }
     }
     diagonalise(s->a, s->e, m);
-    for (int k = 0; k < m; k++) { /* an added mass makes I - J at least I */
+    for (int k = 0; k < m; k++) { /* for an added mass, I - J is at least I */
         double along = 0, value = fmax(fabs(s->a[k][k]), 1);
         for (int i = 0; i < m; i++) {
             along += s->e[i][k] * b[i];

@@ -1,8 +1,8 @@
-/* The derivative of a map from differences that scatter. Columns x are changes of the unknowns, w those of the map's
-   answers; an inner product <a, b> = a . S b comes with the image S b of each. The derivative J is fitted by least
-   squares on the span of the x, which are known exactly, so that differences which contradict each other are averaged
-   by their directions; and it is taken to be symmetric and not positive, as the derivative of an added mass is in the
-   norm of the structure's flexibility: what scatter says against that is turned about, towards the shorter step. */
+/* Derivative of a map from noisy secants, for IQN-ILS. Columns x are changes of the unknowns, columns w the changes
+   of the map's results. The inner product is <a, b> = a . S b; each column comes with its image S b.
+   The derivative J is fitted by least squares on the span of the x, which are exact. Contradicting differences are
+     thus averaged by direction. J is assumed symmetric and negative semidefinite, as the derivative of an added mass
+     is in the norm of the structure's flexibility. Noise that violates this is reflected, towards the shorter step. */
 #ifndef SPARI_SECANTS_H
 #define SPARI_SECANTS_H
 
@@ -12,38 +12,40 @@ enum { SPARI_SECANTS_MOST = 40 };
 
 typedef struct spari_secants spari_secants;
 
-/* A column: changes of the answer, w, and of the residual, v = w - x; that of the answer before, b, NULL where it is
-   not known; and their images. */
+/* A secant: changes of the result, w, and of the residual, v = w - x; of the previous result, b, NULL if unknown;
+   and their images. */
 typedef struct spari_secant {
     const double *v, *w, *b, *iv, *iw, *ib;
 } spari_secant;
 
-/* For at most `most` columns of length n; NULL: no memory. */
+/* For at most `most` columns of length n. NULL: no memory. */
 spari_secants *spari_secants_create(int64_t n, int most);
 void spari_secants_free(spari_secants *s);
 
-/* Forgets all columns. A column widens the basis where more than `filter` of it is new. */
+/* Removes all columns. A column extends the basis if more than `filter` of it is linearly independent. */
 void spari_secants_begin(spari_secants *s, double filter);
-/* Not copied: what it points to must live until the fit. The newest first. Returns 0 where there is no room left. */
+/* Adds a column, newest first. It is not copied and must stay valid until the fit. Returns 0 if there is no room. */
 int spari_secants_add(spari_secants *s, const spari_secant *column);
-/* Of a fluid whose changes come again in part with the next answer, w = J x + rho b, J symmetric: what is not symmetric
-   in the columns is memory. Over pairs of columns with b, each over the sizes of both x, the sums of w^2, w b, b^2 for
-   the antisymmetric parts x_k . S w_l - x_l . S w_k of w and of b, and of the squares of the symmetric parts of w. */
+/* Asymmetry of the columns, for a fluid with memory: w = J x + rho b with symmetric J, so asymmetry is due to
+   memory. Over pairs of columns with b, normalised by the sizes of both x: the sums of w^2, w b, b^2 for the
+   antisymmetric parts x_k . S w_l - x_l . S w_k of w and of b, and of the squares of the symmetric parts of w. */
 typedef struct spari_asymmetry {
     double pairs, ww, both, bb, symmetric;
 } spari_asymmetry;
 /* Adds the pairs of the `newest` columns with all others. */
 void spari_secants_tell(const spari_secants *s, int newest, spari_asymmetry *sum);
-/* From here on the fluid is one that remembers so much. */
+/* Sets the memory coefficient of the fluid. */
 void spari_secants_remember(spari_secants *s, double rho);
-/* Fits the derivative. `doubt`: squared, relative scatter of the columns, 0: none. Returns the size of the basis. */
+/* Fits the derivative. `doubt`: squared relative noise of the columns; 0: none. Returns the size of the basis. */
 int spari_secants_fit(spari_secants *s, double doubt);
 
-/* How far a further column is from what the fit says, relative to its w, both in the span: what is more than the
-   part of x out of the span can explain. Negative where x is too far from the span to tell. */
+/* Error of the fit for a further column, relative to its w, within the span. The part that the component of x
+   outside the span can explain is subtracted. Negative if x is too far from the span. */
 double spari_secants_defect(spari_secants *s, const spari_secant *column);
-/* next = x + (I - J)^-1 r, out of the span r, cut to the length `longest`; r is the residual, with what the fluid
-   remembers of its last change, and `length` its own. next may be neither. Returns 0 where that gives no numbers. */
+/* next = x + (I - J)^-1 r, and r itself outside the span, limited to length `longest`.
+   r: residual, including the memory of the fluid's last change; length: its norm
+   next: may be neither x nor r
+   Returns 0 if the result is not finite. */
 int spari_secants_step(spari_secants *s, const double *x, const double *r, double length, double longest, double *next);
 
 #endif

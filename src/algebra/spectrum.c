@@ -1,18 +1,17 @@
-/* Eigenvalues of the equations of small motions nearest to a shift sigma. With y = lambda x the quadratic problem is
-   lambda (x, y) = (y, -M^-1 (K x + C y)); its inverse about the shift, mu = 1 / (lambda - sigma),
-
+/* Eigenvalues of the small-motion equations nearest to a shift sigma, by shift-and-invert. With y = lambda x the
+   quadratic problem is lambda (x, y) = (y, -M^-1 (K x + C y)). Its inverse about the shift, mu = 1 / (lambda -
+   sigma),
      T (p, q) = (x, p + sigma x),  x = -P(sigma)^-1 (M (q + sigma p) + C p),  P = K + sigma C + sigma^2 M
-
-   asks for no inverse of M: what has no mass has eigenvalues beyond all numbers, mu = 0. Where motions are held,
-   P(sigma) is bordered by G and its transpose, and T takes of its argument only what G allows: what it does not comes
-   out as mu = 0 too. Small problems: Schur's form of T as a matrix; large ones: Arnoldi's subspaces, restarted with
-   Schur vectors (Stewart 2001). */
+   needs no inverse of M: massless unknowns have infinite eigenvalues, mu = 0. With constraints, P(sigma) is bordered
+     by G and its transpose, and T acts on the admissible part of its argument; the rest gives mu = 0 too.
+   Small problems: Schur form of T as a matrix. Large ones: Arnoldi's method with Krylov-Schur restarts (Stewart
+     2001). */
 #include "../base/blas.h"
 #include "../base/status.h"
-#include "band.h"
-#include "schur.h"
 #include "arnoldi.h"
+#include "band.h"
 #include "pencil.h"
+#include "schur.h"
 
 #include <float.h>
 #include <gsl/gsl_blas.h>
@@ -22,32 +21,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A row of G is dependent when so little of it is left: as in redundant.c. */
+/* A row of G is dependent if its remainder is smaller than this, as in redundant.c. */
 static const double dependent_hold = 1e-9;
-/* T z = mu z is kept to this; what is left is larger where rounding drowns an eigenvalue. */
+/* Tolerance of T z = mu z. A larger residual means that rounding dominates the eigenvalue. */
 static const double spectrum_residual = 1e-6;
-/* |mu| of what has no mass, relative to the largest. */
+/* |mu| of massless unknowns, relative to the largest. */
 static const double massless = 1e-9;
-/* P x is nothing but rounding below so much of its terms: a motion without stiffness. The shift goes so many times the
-   root of that rounding beside it, and what is found within so many of those is such a motion. */
+/* only_rounding: if P x is smaller than this relative to its terms, x is a motion without stiffness. The shift is
+   then moved by `beside` times the root of the rounding error. Eigenvalues within without_stiffness times that root
+   are such motions. */
 static const double only_rounding = 4e-15, beside = 1e4, without_stiffness = 30;
-/* So many unknowns and fewer are solved as a matrix. */
+/* Up to this many unknowns are solved as a dense matrix. */
 enum { MOST_DENSE = 90 };
 
 typedef struct spectrum {
     spari_pencil *p;
-    int n, all;            /* unknowns; with the multipliers */
-    double *d;             /* [n] what unknowns have been multiplied by */
-    double highest;        /* of K_ii / M_ii, its root, rad/s */
-    int rank;              /* holds that are independent: */
-    int *multiplier;       /* [holds] their number, or -1 */
-    double *Q;             /* [rank][n] orthonormal rows: the motions that they take away */
-    spari_pencil_hold *at; /* [entries + 2 ties]: where entries of the bordered matrix stand */
+    int n, all;            /* unknowns; unknowns with multipliers */
+    double *d;             /* [n] scale factors of the unknowns */
+    double highest;        /* largest K_ii / M_ii, its root, rad/s */
+    int rank;              /* independent constraints: */
+    int *multiplier;       /* [holds] their number, or -1 if dependent */
+    double *Q;             /* [rank][n] orthonormal rows: the constrained motions */
+    spari_pencil_hold *at; /* [entries + 2 ties]: positions of the entries of the bordered matrix */
     spari_band *band;
     double complex sigma;
-    double s;             /* x counts by it beside y = lambda x */
+    double s;             /* scale of x relative to y = lambda x */
     double complex *room; /* [all + 2 n] */
-    double rounding;      /* of lambda where the shift asked for met a singular matrix; else 0 */
+    double rounding;      /* rounding error of lambda if the matrix is singular at the requested shift; else 0 */
 } spectrum;
 
 static void spectrum_free(spectrum *a) {
@@ -59,10 +59,10 @@ static void spectrum_free(spectrum *a) {
     spari_band_free(a->band);
 }
 
-/* ---- scales ---- */
+/* ---- scaling ---- */
 
-/* Unknowns are multiplied by roots of their masses, so that sums of squares are energies whatever the units; of what
-   has no mass that of the highest frequency. */
+/* Scales the unknowns by the roots of their masses, so that sums of squares are energies in any units. Massless
+   unknowns get the mass that corresponds to the highest frequency. */
 static void scale_pencil(spectrum *a) {
     spari_pencil *p = a->p;
     double *k = a->d, *m = (double *)a->room;
@@ -91,9 +91,9 @@ static void scale_pencil(spectrum *a) {
     }
 }
 
-/* ---- holds ---- */
+/* ---- constraints ---- */
 
-/* G^T = Q R with pivoted columns: which rows of G are independent, and what they span. */
+/* G^T = Q R with column pivoting: independent rows of G, and their span. */
 static int find_holds(spectrum *a) {
     spari_pencil *p = a->p;
     size_t n = (size_t)a->n, h = (size_t)p->holds;
@@ -135,7 +135,7 @@ static int find_holds(spectrum *a) {
     return status;
 }
 
-/* x := what the holds allow of it, twice for rounding's sake. */
+/* Projects x onto the admissible motions, twice because of rounding. */
 static void allow(const spectrum *a, double complex *x) {
     for (int pass = 0; pass < 2; pass++) {
         for (int k = 0; k < a->rank; k++) {
@@ -174,7 +174,7 @@ static int make_band(spectrum *a) {
     return a->band ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-/* The bordered P(sigma), factored; 0 or 1. */
+/* Factors the bordered P(sigma); 0 or 1. */
 static int factor_at(spectrum *a, double complex sigma) {
     const spari_pencil *p = a->p;
     double size = 0;
@@ -196,13 +196,13 @@ static int factor_at(spectrum *a, double complex sigma) {
     return spari_band_factor(a->band);
 }
 
-/* x [all] := P^-1 of what the first n hold */
+/* x [all] := P^-1 x, with the right-hand side in the first n */
 static void solve_at(const spectrum *a, double complex *x) {
     memset(x + a->n, 0, (size_t)a->rank * sizeof *x);
     spari_band_solve(a->band, x);
 }
 
-/* out [2 n] := T in; x counts by s. */
+/* out [2 n] := T in; x is scaled by s. */
 static void apply_inverse(void *self, const double complex *in, double complex *out) {
     const spectrum *a = self;
     const spari_pencil *p = a->p;
@@ -234,7 +234,7 @@ static double size_of(int n, const double complex *x) {
     return sum;
 }
 
-/* How far the nearest eigenvalue is from the shift, about: by a few steps of x := P^-1 M x. */
+/* Estimated distance of the nearest eigenvalue from the shift, by a few steps of x := P^-1 M x. */
 static double near_shift(spectrum *a) {
     enum { STEPS = 4 };
     const spari_pencil *p = a->p;
@@ -263,8 +263,8 @@ static double near_shift(spectrum *a) {
     return sqrt(square);
 }
 
-/* Of the vector that near_shift leaves: what rounding in P(shift) makes of lambda; *only: whether P of it is nothing
-   else. */
+/* For the vector from near_shift: rounding error of lambda due to P(shift); *only: whether P x is rounding error
+   alone. */
 static double rounding_at(spectrum *a, double complex shift, int *only) {
     const spari_pencil *p = a->p;
     double complex *x = a->room, *y = x + a->all;
@@ -293,10 +293,10 @@ static int stand_at(spectrum *a, double complex sigma) {
     return !(near > 0) || !isfinite(a->s);
 }
 
-/* Factors at the shift, or beside it where the matrix is singular there: an eigenvalue has been met, and at zero there
-   are motions without stiffness. */
+/* Factors at the shift, or beside it if the matrix is singular there: at an eigenvalue, or at zero with motions
+   without stiffness. */
 static int begin_at(spectrum *a, double complex shift) {
-    const double least = sqrt(DBL_EPSILON) * a->highest; /* its square is rounding beside the stiffness */
+    const double least = sqrt(DBL_EPSILON) * a->highest; /* its square is the rounding error of the stiffness */
     double some = least;
     int only = 0, bad = stand_at(a, shift);
     if (!bad) {
@@ -320,15 +320,15 @@ static int begin_at(spectrum *a, double complex shift) {
     return stand_at(a, beside * a->rounding);
 }
 
-/* ---- as a matrix ---- */
+/* ---- dense solution ---- */
 
-/* What has been found of T: mu, and z [2 n] in rows. */
+/* Eigenpairs of T: mu, and z [2 n] in rows. */
 typedef struct inverse_pairs {
     int count;
     double complex *mu, *z;
 } inverse_pairs;
 
-/* GSL's unsymmetric solver does not converge where T has many zeros, as motions that are held give. */
+/* GSL's unsymmetric solver does not converge if T has many zero eigenvalues, as with constraints. */
 static int solve_dense(spectrum *a, inverse_pairs *found) {
     const int n = 2 * a->n;
     const int64_t size = (int64_t)n * n;
@@ -359,11 +359,11 @@ static int solve_dense(spectrum *a, inverse_pairs *found) {
     return status;
 }
 
-/* ---- what is handed out ---- */
+/* ---- results ---- */
 
 typedef struct spectrum_choice {
     double complex lambda;
-    double apart; /* from the shift */
+    double apart; /* distance from the shift */
     int from;
 } spectrum_choice;
 
@@ -375,7 +375,7 @@ static int by_distance(const void *a, const void *b) {
     return (cimag(x->lambda) < cimag(y->lambda)) - (cimag(x->lambda) > cimag(y->lambda));
 }
 
-/* T z = mu z, taken anew: an eigenvalue that rounding has made fails. */
+/* Verifies T z = mu z with a new product; eigenvalues made by rounding fail. */
 static int is_pair(spectrum *a, double complex mu, const double complex *z, double complex *image) {
     double left = 0, size = 0;
     apply_inverse(a, z, image);
@@ -386,8 +386,8 @@ static int is_pair(spectrum *a, double complex mu, const double complex *z, doub
     return left <= spectrum_residual * cabs(mu) * size && size > 0;
 }
 
-/* Half of the eigenvalues: of a conjugate pair the upper one. Motions without stiffness have zero twice, which rounding
-   tears apart: they count once. */
+/* Selects half of the eigenvalues: the upper one of each conjugate pair. Motions without stiffness have a double
+   zero, which rounding splits: they count once. */
 static int choose_pairs(spectrum *a, const inverse_pairs *found, double complex shift, spectrum_choice *choice,
                         double complex *image) {
     double most = 0;
@@ -414,8 +414,7 @@ static int choose_pairs(spectrum *a, const inverse_pairs *found, double complex 
     return count;
 }
 
-/* The vector x of a pair, in the units of the unknowns: of unit x^H M x, its largest entry (as it counts there) real.
- */
+/* Eigenvector x in the units of the unknowns, normalised to x^H M x = 1, its largest scaled entry real. */
 static void give_vector(const spectrum *a, const double complex *z, double complex *x) {
     const spari_pencil *p = a->p;
     double complex square = 0, phase = 1;
@@ -443,8 +442,8 @@ static int solve_about(spectrum *a, int n, int how, inverse_pairs *found) {
     return spari_arnoldi(&of, 2 * n + 2, &found->count, found->mu, found->z);
 }
 
-/* Beside motions without stiffness: near them these are so large in T that others lose digits, so that a second pass
-   goes from nearer to the others. */
+/* Near motions without stiffness the other eigenvalues of T lose digits. So a second pass uses a shift nearer to the
+   others. */
 static int solve_pairs(spectrum *a, int n, double complex shift, int how, inverse_pairs *found) {
     double nearest = INFINITY;
     if (begin_at(a, shift)) {

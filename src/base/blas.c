@@ -1,4 +1,4 @@
-/* One thread at a time in BLAS, and one thread within it. */
+/* The process-wide lock around BLAS calls: see blas.h. */
 #include "blas.h"
 
 #ifdef SPARI_HAVE_OPENBLAS

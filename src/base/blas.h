@@ -1,6 +1,7 @@
-/* One call of BLAS at a time in the process: OpenBLAS for one thread (Debian's 0.3.21) hands out its work
-   memory without a lock, so that two threads' products, factors or solutions at once get each other's numbers. Scalar
-   products, sums of vectors and dger have no such memory. Held around GSL's factorisations too, which call them. */
+/* Serialises all BLAS calls of the process. OpenBLAS built for one thread (Debian's 0.3.21) hands out its work
+   memory without a lock, so two threads that multiply, factor or solve at once corrupt each other's numbers. Scalar
+   products, vector sums and dger use no work memory and need no lock. GSL's factorisations call BLAS and need the
+   lock too. */
 #ifndef SPARI_BLAS_H
 #define SPARI_BLAS_H
 

@@ -1,4 +1,4 @@
-/* The host's floating-point traps, rounding, locale and GSL error handler, held while the library computes. */
+/* Saves, replaces and restores the host's floating-point traps, rounding mode, locale and GSL error handler. */
 #include "environment.h"
 
 #include "blas.h"
@@ -17,8 +17,8 @@ static void make_locale(void) {
     c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
 }
 
-/* GSL has one error handler for the whole process, and its default one (NULL) aborts: off while any thread is inside.
- */
+/* GSL has one error handler for the process. The default handler (NULL) aborts, so the handler is off while any
+   thread is inside the library. */
 static pthread_mutex_t handler_lock = PTHREAD_MUTEX_INITIALIZER;
 static gsl_error_handler_t *host_handler;
 static int threads_inside;
@@ -39,8 +39,8 @@ static void give_handler_back(void) {
     (void)pthread_mutex_unlock(&handler_lock);
 }
 
-/* fork: what other threads have locked the child would wait for, who has none of them. It is inside where the thread
-   that forked is. */
+/* fork: a child would wait for locks that other threads of the parent hold. So fork takes the locks itself. The
+   child is inside the library only if the forking thread is. */
 static void before_fork(void) {
     (void)pthread_mutex_lock(&handler_lock);
     spari_blas_begin();
@@ -99,7 +99,7 @@ static void hold_environment(spari_environment *e) {
 }
 
 static void give_environment_back(const spari_environment *e) {
-    if ((x87_status() ^ e->status) & FLAGS) { /* before a trap of the host's is on again: it would find them */
+    if ((x87_status() ^ e->status) & FLAGS) { /* before a host's trap is enabled again, which would see these flags */
         fenv_t all;
         (void)fegetenv(&all);
         all.__status_word = (uint16_t)((all.__status_word & ~FLAGS) | (e->status & FLAGS));
@@ -129,7 +129,7 @@ static void hold(void) {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     hold_environment(&host.environment);
     pthread_once(&once, make_ready);
-    host.locale = uselocale(c_locale); /* without one: it stays */
+    host.locale = uselocale(c_locale); /* if C's locale could not be made, the host's stays */
     hold_handler();
 }
 
@@ -160,7 +160,7 @@ void spari_host_begin(spari_host *inside) {
 }
 
 void spari_host_end(const spari_host *inside) {
-    if (inside->depth > 0) { /* what the host has changed stays changed */
+    if (inside->depth > 0) { /* changes made by the host are kept */
         hold();
     }
     host.depth = inside->depth;

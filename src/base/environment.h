@@ -1,10 +1,11 @@
-/* The surroundings that the library computes in, whatever those of the host are. Floating-point traps are held: a host
-   that traps invalid operations, divisions by zero and overflows (usual in Fortran) gets a status where a signal would
-   end it. Results are rounded to the nearest: rounded one way, what errors leave does not cancel, an iteration stalls
-   far above its tolerance, and a run's bits would be those of its host. Numbers are read and written with a point.
-   GSL's errors go to nobody: its handler may abort, is the host's outside, and being one for the process is off as long
-   as any thread is inside. The treatment of denormal numbers stays the host's; flags raised inside are not seen
-   outside. */
+/* The floating-point environment in which the library computes, whatever the host has set.
+   - Traps are off. A host that traps invalid operations, divisions by zero or overflows (usual in Fortran) gets a
+     status, not a signal.
+   - Rounding is to nearest. With directed rounding, errors do not cancel, iterations stall far above their
+     tolerance, and results depend on the host.
+   - The locale is "C", so numbers are read and written with a decimal point.
+   - GSL's error handler, which may abort, is off while any thread is inside the library.
+   The treatment of denormal numbers stays the host's. Exception flags raised inside are not visible outside. */
 #ifndef SPARI_QUIET_H
 #define SPARI_QUIET_H
 
@@ -12,26 +13,25 @@
 #include <locale.h>
 #include <stdint.h>
 
-/* How a thread computes: modes, traps and flags. <fenv.h> saves and loads the whole state of the old coprocessor, which
-   takes 100 ns a call; where the processor and its C library are known the few words that tell are looked at, and
-   loaded only where they differ. */
+/* Modes, traps and flags of a thread. <fenv.h> saves and loads the whole x87 state, which takes 100 ns a call. On
+   x86-64 with GCC and glibc only the relevant words are read, and loaded only if they differ. */
 #if defined(__x86_64__) && defined(__GNUC__) && defined(__GLIBC__)
 #define SPARI_X86 1
 typedef struct spari_environment {
     uint32_t sse;             /* MXCSR */
-    uint16_t control, status; /* of the coprocessor, which long double computes with */
+    uint16_t control, status; /* of the x87 unit, used by long double */
 } spari_environment;
 #else
 typedef fenv_t spari_environment;
 #endif
 
-/* Of this thread; one within the other costs nothing. */
+/* For this thread. Calls may be nested; inner calls cost nothing. */
 void spari_quiet_begin(void);
 void spari_quiet_end(void);
 
-/* The host's own surroundings, around a call of the host's from inside. */
+/* Restores the host's environment while the library calls the host. */
 typedef struct spari_host {
-    int depth; /* public functions on the way */
+    int depth; /* nesting depth of public functions */
     spari_environment environment;
     locale_t locale;
 } spari_host;
@@ -43,9 +43,9 @@ static inline void spari_quiet_leave(const int *scope) {
     spari_quiet_end();
 }
 
-/* First in a public function that computes, or looks at numbers of the host: until it returns. Other compilers than GCC
-   and Clang have no end of a scope to hang it on; their hosts must not trap, and switch GSL's handler off themselves.
- */
+/* First statement of every public function that computes or reads the host's numbers. Restores the host's
+   environment when the function returns. Compilers other than GCC and Clang have no scope cleanup: their hosts must
+   not trap, and must switch GSL's handler off themselves. */
 #if defined(__GNUC__)
 #define SPARI_QUIET                                                                                                    \
     const int spari_quiet_ __attribute__((unused, cleanup(spari_quiet_leave))) = 0;                                    \

@@ -1,4 +1,4 @@
-/* Files that appear whole or not at all: written beside their place and moved there. */
+/* Files that are replaced as a whole: written under a temporary name in the same folder, then renamed. */
 #include "file.h"
 
 #include <errno.h>
@@ -35,9 +35,9 @@ static int refuse_kind(char *why, size_t size, const char *path, unsigned mode) 
     return SPAR_ERR_IO;
 }
 
-/* ---- the place ---- */
+/* ---- target path ---- */
 
-/* Where a link leads; NULL, with errno, where it cannot be read. */
+/* Target of a symbolic link. NULL with errno set if the link cannot be read. */
 static char *follow_link(const char *link) {
     char to[LONGEST];
     ssize_t n = readlink(link, to, sizeof to);
@@ -56,7 +56,7 @@ static char *follow_link(const char *link) {
     return path;
 }
 
-/* The end of all links. old: what is there; no links (st_nlink 0): nothing. */
+/* Follows all symbolic links. old: the existing file; st_nlink is 0 if there is none. */
 static int find_place(const char *path, char **place, struct stat *old, char *why, size_t size) {
     char *at = strdup(path);
     int reason = ENOMEM;
@@ -94,21 +94,21 @@ static int find_place(const char *path, char **place, struct stat *old, char *wh
 
 /* ---- the temporary file ---- */
 
-/* Held until the file is closed: by it others tell a file that is being written from one that was left. 0: another
-   process holds it. Where a file system has no locks, nobody can tell. */
+/* The lock is held until the file is closed. It distinguishes a file in use from an abandoned one. Returns 0 if
+   another process holds it. On file systems without locks the call succeeds. */
 static int lock(int fd) {
     struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     return fcntl(fd, F_SETLK, &whole) == 0 || (errno != EACCES && errno != EAGAIN);
 }
 
-/* Whether the name still stands for the open file. */
+/* Whether the path still refers to the open file. */
 static int is_at(int fd, const char *path) {
     struct stat open_file, named;
     return fstat(fd, &open_file) == 0 && lstat(path, &named) == 0 && open_file.st_ino == named.st_ino &&
            open_file.st_dev == named.st_dev;
 }
 
-/* Something is in the way of the temporary file: it goes if nobody is at work on it. */
+/* Removes an abandoned temporary file. Fails if another process is writing it. */
 static int clear(const char *temporary, char *why, size_t size) {
     struct stat there;
     if (lstat(temporary, &there) != 0) {
@@ -132,7 +132,7 @@ static int clear(const char *temporary, char *why, size_t size) {
     return status;
 }
 
-/* A new file of this name, and nobody else's: nothing that was put there before is followed or written to. */
+/* Creates a new file. An existing file or link of this name is neither followed nor written to. */
 static int open_new(const char *temporary, int *made, char *why, size_t size) {
     for (int tries = 0; tries < TRIES; tries++) {
         int fd = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -140,7 +140,7 @@ static int open_new(const char *temporary, int *made, char *why, size_t size) {
             *made = fd;
             return SPAR_OK;
         }
-        if (fd >= 0) { /* another process took it for one that was left */
+        if (fd >= 0) { /* another process removed it as abandoned */
             (void)close(fd);
         } else if (errno != EEXIST) {
             return failure(why, size, temporary, errno);
@@ -167,7 +167,7 @@ static int open_stream(spari_file *file, const struct stat *old, char *why, size
     if (status != SPAR_OK) {
         return status;
     }
-    if (old->st_nlink > 0) { /* as it was; what the system does not allow stays ours */
+    if (old->st_nlink > 0) { /* mode and owner of the replaced file, as far as the system allows */
         (void)!fchown(fd, old->st_uid, old->st_gid);
         (void)fchmod(fd, old->st_mode & 0777);
     }
@@ -198,12 +198,11 @@ int spari_file_begin(spari_file *file, const char *path, const char *suffix, cha
     if (status != SPAR_OK) {
         forget(file);
     }
-    errno = 0; /* of what fails in writing, the end tells */
+    errno = 0; /* write errors are reported by spari_file_end */
     return status;
 }
 
-/* The name of a file is safe when its folder is on the disc. Where folders cannot be opened that is left to the system.
- */
+/* A rename is safe once its folder is on disc. On systems that cannot open folders this is left to the system. */
 static void sync_folder(const char *path) {
     char folder[LONGEST] = ".";
     const char *slash = strrchr(path, '/');
@@ -222,8 +221,8 @@ static int errno_or(int otherwise) {
     return errno ? errno : otherwise;
 }
 
-/* Returns errno, 0: done. Safe bytes are renamed while the lock is held, which closing gives up; with others, what the
-   system tells at closing only must be known first. */
+/* Returns 0 or errno. A synchronised file is renamed while the lock is held; closing releases the lock. Otherwise
+   the file is closed first, because some write errors only show when it is closed. */
 static int finish(spari_file *file, int safe) {
     int ok = !ferror(file->stream) && fflush(file->stream) == 0 && (!safe || fsync(fileno(file->stream)) == 0);
     int reason = ok ? 0 : errno_or(EIO), ours = is_at(fileno(file->stream), file->temporary);
@@ -259,7 +258,7 @@ static int put_all(int fd, int64_t offset, const char *data, size_t n) {
     return 0;
 }
 
-/* The lock is for file systems whose clients else write whole pages, with what they believe others have in them. */
+/* The lock protects against file systems whose clients write back whole cached pages. */
 int spari_file_put_part(const char *temporary, int64_t offset, const void *data, size_t n, char *why, size_t size) {
     struct flock part = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = (off_t)offset, .l_len = (off_t)n};
     int fd = open(temporary, O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC), reason = fd < 0 ? errno : 0;

@@ -1,8 +1,9 @@
-/* A file that is replaced whole: it is written under a temporary name beside its place, and renamed when all of it is
-   there, so that a reader finds the old one or the new one, whatever happens. Of a symbolic link the end is replaced,
-   and the link stays; of hard links one name gets the new file, the others keep the old one. What is no file (a folder,
-   a pipe, a socket, a device) and what this process may not write to is refused. Mode and owner stay those of the file
-   that was there, as far as the system allows. */
+/* Replaces a file atomically: the new file is written under a temporary name in the same folder and renamed when
+   complete. A reader finds either the old file or the new one.
+   - A symbolic link is followed: its target is replaced, the link stays.
+   - Of several hard links, one name gets the new file; the others keep the old one.
+   - Folders, pipes, sockets, devices and files without write permission are refused.
+   - Mode and owner of the old file are kept, as far as the system allows. */
 #ifndef SPARI_FILE_H
 #define SPARI_FILE_H
 
@@ -11,28 +12,31 @@
 #include <stdio.h>
 
 typedef struct spari_file {
-    FILE *stream;            /* to be written to */
-    char *place, *temporary; /* where it is going to be, and where it is */
+    FILE *stream;            /* open for writing */
+    char *place, *temporary; /* final path, and the path written to */
 } spari_file;
 
-/* suffix: of the temporary name. What a process that was killed has left there goes; where one is still at work it is
-   refused. Return SPAR_OK, SPAR_ERR_IO, SPAR_ERR_MEMORY with the reason and the cure in why[size]; nothing is open
-   then. */
+/* Creates the temporary file.
+   suffix: appended to the path to form the temporary name. An abandoned temporary file is removed; one that another
+     process is writing is refused.
+   Returns SPAR_OK, SPAR_ERR_IO or SPAR_ERR_MEMORY. After a failure nothing is open, and why[size] holds reason and
+     remedy. */
 int spari_file_begin(spari_file *file, const char *path, const char *suffix, char *why, size_t size);
-/* Closes and renames; or, after a failure of this or of what was written, removes. safe: on the disc before it answers.
-   Answers as above. */
+/* Closes and renames the file, or removes it if writing failed. safe: synchronise with the disc before returning.
+   Returns as spari_file_begin. */
 int spari_file_end(spari_file *file, int safe, char *why, size_t size);
-/* Bytes of a file that is being written into its temporary one, or from it, by another process than the one that began
-   it: where no other writes, and on the disc when it answers. Answer as above. */
+/* Write or read n bytes of the temporary file from another process than the one that created it. No other process
+   may write these bytes. They are on disc on return. Return as spari_file_begin. */
 int spari_file_put_part(const char *temporary, int64_t offset, const void *data, size_t n, char *why, size_t size);
 int spari_file_get_part(const char *temporary, int64_t offset, void *data, size_t n, char *why, size_t size);
-/* For a while others may lock it; hold: again nobody but this process, before the end. 0: another process has it. */
+/* Release the lock for other processes, and take it again before the end. hold returns 0 if another process has the
+   lock. */
 void spari_file_release(spari_file *file);
 int spari_file_hold(spari_file *file);
-/* Closes and removes instead. */
+/* Closes and removes the temporary file. */
 void spari_file_drop(spari_file *file);
 
-/* "a folder", "a pipe", ...; NULL: a file. */
+/* "a folder", "a pipe", ...; NULL for a regular file. */
 const char *spari_file_kind(unsigned mode);
 
 #endif

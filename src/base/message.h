@@ -1,22 +1,21 @@
-/* Messages: the one way a failure leaves the library. Knows a session by its handle alone. */
+/* Failure messages of a session. Every failure leaves the library through spari_fail. */
 #ifndef SPARI_MESSAGE_H
 #define SPARI_MESSAGE_H
 
 #include "status.h"
 
-/* Writes the message (what, where, the cure) of `session` and returns `status`. session NULL: the message of this
-   thread, which spar_session_message(NULL) gives back (a failed create has no session to ask). A call that only reads
-   the session writes its message all the same. */
+/* Writes the message (what, where, remedy) of `session` and returns `status`. With session NULL the message goes to
+   the calling thread; spar_session_message(NULL) returns it, because a failed create has no session. Calls that only
+   read the session may also write its message. */
 int spari_fail(const spar_session *session, int status, const char *format, ...) SPARI_PRINTF(3, 4);
-/* The room in a host's array, which its call has given. */
+/* Checks the capacity of an array that the host passed to `call`. */
 int spari_need_capacity(const spar_session *session, const char *call, int64_t capacity);
-/* Answers `status`; of a failure whose message, from below, does not name the public call, the message then begins with
-   it. At the public edge. */
+/* Returns `status`. If the message of a failure does not name the public call, prepends the name. Used at the public
+   interface. */
 int spari_named(const spar_session *session, const char *call, int status);
-/* A message that stood before comes back, text[SPARI_MESSAGE_SIZE]: what failed in between is no failure of the call.
- */
+/* Restores an earlier message, text[SPARI_MESSAGE_SIZE], after failures that do not concern the call. */
 void spari_put_message_back(const spar_session *session, const char *text);
-#ifdef __clang_analyzer__ /* reads one file at a time: what it must know is that a failure is never 0 */
+#ifdef __clang_analyzer__ /* tells the analyser, which reads one file at a time, that a failure is never 0 */
 #define spari_fail(session, status, ...) ((spari_fail)(session, status, __VA_ARGS__) ? (status) ? (status) : 1 : 1)
 #endif
 

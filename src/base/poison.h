@@ -1,5 +1,5 @@
-/* Where spar is built with SPAR_POISON (CMake option), work space is filled with NaN before each use, so that a number
-   of an earlier use that is read again shows in the results. Else nothing. */
+/* With the CMake option SPAR_POISON, fills workspace with NaN before each use, so that stale values show in the
+   results. Otherwise does nothing. */
 #ifndef SPARI_POISON_H
 #define SPARI_POISON_H
 

@@ -1,4 +1,4 @@
-/* Reads the text files of other codes line by line. */
+/* Reads input files of other codes line by line: see reader.h. */
 #include "reader.h"
 
 #include <ctype.h>

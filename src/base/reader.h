@@ -1,5 +1,5 @@
-/* Text files of other codes: lines of numbers and words, keys behind their values, and messages that name file, line
-   and field. */
+/* Reads input files of other codes: lines of numbers and words, and keys after their values. Messages name file,
+   line and field. */
 #ifndef SPARI_READER_H
 #define SPARI_READER_H
 
@@ -10,37 +10,38 @@
 enum { SPARI_READ_LINE = 4096, SPARI_READ_MOST = 1000000 };
 
 typedef struct spari_reader {
-    const spar_session *session; /* for messages; NULL: none */
-    const char *call, *subject;  /* the public call, and what it reads for */
+    const spar_session *session; /* for messages; may be NULL */
+    const char *call, *subject;  /* public call, and the object it reads for */
     const char *path;
     FILE *file;
-    int number;                                        /* of the line read last */
-    char line[SPARI_READ_LINE], word[SPARI_READ_LINE]; /* room for a word of it: much for a small stack */
+    int number; /* number of the line read last */
+    char line[SPARI_READ_LINE],
+        word[SPARI_READ_LINE]; /* a word of the line; here because it is large for a small stack */
 } spari_reader;
 
-/* A failure in the line read last. */
+/* Reports an error in the line read last. */
 #define SPARI_READ_FAIL(r, status, format, ...)                                                                        \
     spari_fail((r)->session, status, "%s: '%s': %s, line %d: " format, (r)->call, (r)->subject, (r)->path,             \
                (r)->number, __VA_ARGS__)
 int spari_read_no_memory(const spari_reader *r);
 
-/* To be closed with fclose(r->file) where it was opened. */
+/* Opens the file. The caller closes it with fclose(r->file). */
 int spari_read_open(spari_reader *r, const char *path);
-/* The next line; `what` is missed if there is none. */
+/* Reads the next line. If there is none, the message says that `what` is missing. */
 int spari_read_line(spari_reader *r, const char *what);
-/* The next one that has a word. */
+/* Reads the next line that is not blank. */
 int spari_read_filled(spari_reader *r, const char *what);
-/* On to the line whose second word is the key, in letters of either case. */
+/* Reads on to the line whose second word is `key`, ignoring case. */
 int spari_read_key(spari_reader *r, const char *key);
 
-/* The next word from *at on (quotes hold it together), into word; 0 at the end of the line. */
+/* Copies the next word from *at on; quotes enclose one word. Returns 0 at the end of the line. */
 int spari_read_word(const char **at, char word[SPARI_READ_LINE]);
-/* The first n numbers of the line; Fortran's d exponents too. `what` names the fields, the column says which. */
+/* Reads the first n numbers of the line; Fortran's d exponents are allowed. `what` names the fields in messages. */
 int spari_read_numbers(spari_reader *r, const char *what, int n, double *x);
-/* The number in a column, from 0, of the line: whole, from low to SPARI_READ_MOST. */
+/* Reads the integer in a column (from 0) of the line; it must lie between low and SPARI_READ_MOST. */
 int spari_read_whole(spari_reader *r, const char *what, int low, int column, int *out);
 
-/* A path that the file names: beside it, unless it is a whole one. malloc'd; NULL: no memory. */
+/* A path named in the file, relative to that file unless absolute. Free it with free(). NULL: no memory. */
 char *spari_read_beside(const spari_reader *r, const char *path);
 
 #endif

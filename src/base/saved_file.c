@@ -1,4 +1,4 @@
-/* The words of a saved session: in memory, and piece by piece to a file and from it, with a check sum. */
+/* Words of a saved session: in memory, and in a file with a check sum. See saved_file.h. */
 #include "saved_file.h"
 
 #include "status.h"
@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A file is the heading, the words, and their check sum, which is of all before it. */
+/* Layout: heading, words, check sum of everything before it. */
 enum { VERSION = 16, HEAD_WORDS = 3, HEAD_BYTES = 8 * HEAD_WORDS, CHECK_BYTES = 8 };
 
 static const char magic[8] = {'s', 'p', 'a', 'r', '-', 'r', 'u', 'n'};
@@ -131,7 +131,7 @@ uint64_t spari_check_bytes(uint64_t sum, const void *data, size_t n) {
     return ~crc;
 }
 
-/* Of polynomials, modulo that of the check sum. */
+/* Product of polynomials modulo the polynomial of the check sum. */
 static uint64_t multiply_polynomials(uint64_t a, uint64_t b) {
     uint64_t product = 0;
     for (uint64_t bit = UINT64_C(1) << 63; bit; bit >>= 1) {
@@ -141,8 +141,8 @@ static uint64_t multiply_polynomials(uint64_t a, uint64_t b) {
     return product;
 }
 
-/* A sum is the remainder of its bytes as a polynomial, but for ones before and behind, which cancel: n bytes behind it
-   multiply it by x^(8 n). */
+/* A check sum is the remainder of its bytes as a polynomial (the initial and final ones cancel). Appending n bytes
+   multiplies it by x^(8 n). */
 uint64_t spari_check_join(uint64_t first, uint64_t second, uint64_t n) {
     uint64_t power = UINT64_C(1) << 55; /* x^8, x^16, x^32, ... */
     for (; n > 0; n >>= 1) {
@@ -160,10 +160,10 @@ static int io_failure(char *why, size_t size, const char *what, const char *path
     return reason == ENOMEM ? SPAR_ERR_MEMORY : SPAR_ERR_IO;
 }
 
-/* ---- to a file ---- */
+/* ---- writing ---- */
 
 static void put_summed(spari_saving *saving, const void *bytes, size_t n) {
-    if (fwrite(bytes, 1, n, saving->file.stream) != n && saving->reason == 0) { /* told at the end */
+    if (fwrite(bytes, 1, n, saving->file.stream) != n && saving->reason == 0) { /* reported at the end */
         saving->reason = errno ? errno : EIO;
     }
     saving->sum = spari_check_bytes(saving->sum, bytes, n);
@@ -242,9 +242,9 @@ int spari_saving_end(spari_saving *saving, int64_t count, char *why, size_t size
     return status;
 }
 
-/* ---- from a file ---- */
+/* ---- reading ---- */
 
-/* got: of the head, so many bytes; n: of the file. */
+/* got: bytes of the heading that were read; n: bytes of the file. */
 static int check_head(const char *path, const unsigned char *head, size_t got, uint64_t n, char *why, size_t size) {
     uint64_t words = got == HEAD_BYTES ? get_word(head + 16) : 0;
     if (got < sizeof magic || memcmp(head, magic, sizeof magic) != 0) {
@@ -266,7 +266,7 @@ static int check_head(const char *path, const unsigned char *head, size_t got, u
     return SPAR_ERR_IO;
 }
 
-/* How many bytes the file has. What is none could go on for ever, or wait. */
+/* Size of a regular file in bytes. Other kinds are refused: they could be endless or block. */
 static int measure_file(FILE *f, const char *path, uint64_t *n, char *why, size_t size) {
     struct stat there;
     if (fstat(fileno(f), &there) != 0) {
@@ -286,7 +286,7 @@ static int no_memory_to_read(const char *path, char *why, size_t size) {
     return SPAR_ERR_MEMORY;
 }
 
-/* Its heading must be right and fit its size. */
+/* Checks the heading and the size of the file. */
 static int read_heading(spari_loading *source, char *why, size_t size) {
     unsigned char head[HEAD_BYTES];
     uint64_t there = 0;
@@ -305,7 +305,7 @@ int spari_loading_open(spari_loading *source, const char *path, char *why, size_
     if (!source->path) {
         return no_memory_to_read(path, why, size);
     }
-    int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a pipe would wait for somebody to write */
+    int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a pipe would block until somebody writes */
     source->stream = fd >= 0 ? fdopen(fd, "rb") : NULL;
     int status = SPAR_OK;
     if (!source->stream) {
@@ -328,11 +328,11 @@ void spari_loading_close(spari_loading *source) {
     *source = (spari_loading){.stream = NULL};
 }
 
-/* Bytes as they are. */
+/* Reads n bytes at an offset. */
 static int read_raw(spari_loading *source, int64_t offset, size_t n, void *bytes, char *why, size_t size) {
     errno = 0;
     if (fseeko(source->stream, (off_t)offset, SEEK_SET) != 0 || fread(bytes, 1, n, source->stream) != n) {
-        errno = errno ? errno : EIO; /* it has become shorter meanwhile */
+        errno = errno ? errno : EIO; /* the file has been truncated since */
         return io_failure(why, size, "cannot read", source->path);
     }
     return SPAR_OK;

@@ -1,4 +1,4 @@
-/* Messages: of a session, and of the thread where there is none. */
+/* Messages of a session, and of the thread if there is no session. */
 #include "session.h"
 
 #include "environment.h"
@@ -7,9 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A failed create has no session that could keep its message. */
+/* Message of a failed create, which has no session. */
 static _Thread_local char thread_message[SPARI_MESSAGE_SIZE];
-/* Where messages go instead; NULL: where they belong. */
+/* Redirects messages of this thread; NULL: no redirection. */
 static _Thread_local char *aside;
 
 char *spari_messages_aside(char *text) {
@@ -27,7 +27,8 @@ void spari_log(const spar_session *s, int level, const char *text) {
     }
 }
 
-/* One that does not fit, as a name in it is long, loses its middle: what it begins with and the cure stay. */
+/* Shortens a message that is too long, as with a long name in it: its middle goes, its beginning and the remedy
+   stay. */
 static void shorten(char *text) {
     static const char gap[] = " ... ";
     size_t n = strlen(text), head = SPARI_MESSAGE_SIZE / 2, tail = SPARI_MESSAGE_SIZE - head - sizeof gap;
@@ -37,7 +38,7 @@ static void shorten(char *text) {
     }
 }
 
-/* Its message is what a call writes that only reads it. No session is const itself: all are made on the heap. */
+/* Calls that only read a session may write its message. No session object is const: all are allocated on the heap. */
 static spar_session *teller(const spar_session *session) {
     return (spar_session *)(uintptr_t)session;
 }
@@ -50,8 +51,8 @@ static char *message_of(const spar_session *session) {
 }
 
 int(spari_fail)(const spar_session *session, int status, const char *format, ...) {
-    /* Formatted aside first: an argument may point into the message that is about to be replaced. */
-    static _Thread_local char text[7 * SPARI_MESSAGE_SIZE]; /* much for a small stack */
+    /* The text is formatted before it is copied: an argument may point into the old message. */
+    static _Thread_local char text[7 * SPARI_MESSAGE_SIZE]; /* large for a small stack */
     va_list arguments;
     va_start(arguments, format);
     if (vsnprintf(text, sizeof text, format, arguments) < 0) {

@@ -1,5 +1,4 @@
-/* The scene: what every room may ask of the session it works for: clock, settings, ranks, members and fluids, and where
-   messages go. */
+/* State of a session that every room may use: clock, settings, ranks, members, fluids and messages. */
 #ifndef SPARI_SCENE_H
 #define SPARI_SCENE_H
 
@@ -9,58 +8,54 @@
 #include <math.h>
 
 typedef struct spari_comm spari_comm; /* comm/comm.h */
-typedef struct spari_own spari_own;   /* session/own.h */
+typedef struct spari_own spari_own;   /* exchange/session_private.h */
 
-/* Where a step stands. */
+/* Progress of the current step. */
 typedef enum spari_phase { SPARI_IDLE, SPARI_BEGUN, SPARI_SOLVED, SPARI_CHECKED } spari_phase;
 
-/* A setting: a row of the one table of them (session/settings.c). */
+/* A setting: one row of the table in session/settings.c. */
 typedef struct spari_setting {
-    const char *name; /* in full: "rho_inf of spar_session_set_integrator" */
-    const char *key;  /* of an option, or the argument's; NULL: what a call has done, compared between ranks only */
-    size_t field;     /* of the session */
-    enum {
-        SPARI_IS_REAL,
-        SPARI_IS_WHOLE,
-        SPARI_IS_WORD
-    } kind; /* a double, an int, an int that has words for 0 and 1 */
-    int by; /* the call that sets it */
+    const char *name; /* full name: "rho_inf of spar_session_set_integrator" */
+    const char *key;  /* name of the option or argument; NULL: the effect of a call, compared between ranks only */
+    size_t field;     /* offset in spar_session */
+    enum { SPARI_IS_REAL, SPARI_IS_WHOLE, SPARI_IS_WORD } kind; /* double, int, or int with words for 0 and 1 */
+    int by;                                                     /* call that sets it */
     double least, most;
-    const char *range, *words[2]; /* what may be given, in words */
+    const char *range, *words[2]; /* allowed values, in words */
     double initial;
     int flags; /* SPARI_ALIKE, ... */
 } spari_setting;
 enum {
-    SPARI_ALIKE = 1,       /* all ranks have it the same: compared in collective calls */
-    SPARI_OF_COUPLING = 2, /* the memory of the coupling is made for it: made anew when it is set, and saved with it */
-    SPARI_VARIED = 4       /* trials run with others, and advice gives it */
+    SPARI_ALIKE = 1,       /* must agree across ranks: compared in collective calls */
+    SPARI_OF_COUPLING = 2, /* the coupling depends on it: it is created anew after a change, and saved with it */
+    SPARI_VARIED = 4       /* varied by trials and advice */
 };
 
 struct spar_session {
     spari_comm *comm;
     char message[SPARI_MESSAGE_SIZE];
-    int64_t failures; /* messages written so far: tells whether a callback has left one */
+    int64_t failures; /* messages written so far: shows whether a callback has left one */
     spar_log log;
     void *log_context;
-    spar_progress progress; /* of calls that make trials */
+    spar_progress progress; /* of calls that run trials */
     void *progress_context;
     spar_member *members;              /* list, in order of creation */
-    spar_fluid *fluids;                /* list, this rank's */
+    spar_fluid *fluids;                /* list of this rank's fluids */
     spar_joint *joints;                /* list, in order of creation */
-    struct spari_assembly *assemblies; /* list: members that are solved as one */
-    int joints_stale;                  /* joints were described since the assemblies were made */
+    struct spari_assembly *assemblies; /* list of assemblies: members solved as one system */
+    int joints_stale;                  /* joints have changed since the assemblies were made */
     int member_count, joint_count;
 
     double gravity[3];
-    double gravity_before[3]; /* that of the step accepted last; of the first one: none */
+    double gravity_before[3]; /* gravity of the last accepted step */
     double rho_inf;
     int substeps;
     double newton_atol, newton_rtol;
     int newton_max;
     int newton_strict;   /* option newton.stop = tied (default) | strict */
-    double newton_share; /* tied: of its acceleration, what Newton may leave in the solution under way for the
-                            coupling's sake; infinite: all */
-    int predictor;       /* its order; as many loads before those of t^n are kept */
+    double newton_share; /* with newton.stop = tied: relative acceleration error that Newton may leave, from the
+                            coupling tolerance; infinite: no limit */
+    int predictor;       /* order; the same number of loads before t^n is kept */
     int scheme;
     double coupling_atol, coupling_rtol;
     int coupling_max;
@@ -69,74 +64,73 @@ struct spar_session {
     int accept_unconverged;               /* option coupling.unconverged = accept */
     int coupling_columns, coupling_reuse; /* of IQN-ILS */
     double coupling_filter;
-    double tolerance_drift, tolerance_rtol; /* of a step, m/s and relative; 0: none */
-    double coupling_target;                 /* error the advised dt aims at */
+    double tolerance_drift, tolerance_rtol; /* tolerances per step, m/s and relative; 0: none */
+    double coupling_target;                 /* error that the advised dt aims at */
     int coupling_patience;                  /* option coupling.patience */
     int norm_of_loads;                      /* option coupling.norm = motion (default) | loads */
     int added_by_velocity;                  /* option fluid.added_mass = acceleration (default) | velocity */
     int coupling_estimate;                  /* option coupling.estimate = off (default) | on */
-    double motion_atol, motion_rtol;        /* stop test on the motion; both 0: none */
+    double motion_atol, motion_rtol;        /* stopping test on the motion; both 0: none */
     int theta_on_group;                     /* option fluid.theta = average (default) | group */
-    int far_refuse; /* option fluid.far = take (default) | refuse: what a map does with nodes beyond max_distance */
+    int far_refuse;                         /* option fluid.far = take (default) | refuse: nodes beyond max_distance */
     int keep_dt, keep_nodes, keep_fidelity, keep_coupling; /* options advise.* = keep */
-    int goals;                                             /* SPAR_GOAL_* that advice is for */
+    int goals;                                             /* SPAR_GOAL_* of the advice */
     double advise_limit;                                   /* option advise.limit */
     double fluid_cost;                                     /* option advise.fluid_cost */
     int audit_off;                                         /* option fluid.audit = on (default) | off */
     int touched;                                           /* option ranks.state = all (default) | touched */
-    struct spari_crew *crew; /* spar_session_set_threads (base/crew.h); NULL: the calling thread alone */
-    spari_room room;         /* work space of the calling thread, for one call; its content is nobody's */
-    int coupling_stale;      /* settings of the coupling have changed since it was made */
+    struct spari_crew *crew; /* spar_session_set_threads (base/thread_pool.h); NULL: the calling thread alone */
+    spari_room room;         /* workspace of the calling thread, valid for one call */
+    int coupling_stale;      /* settings of the coupling have changed since it was created */
 
-    double time, time_rest; /* rest: what rounding has left out of the clock, for the steps to come */
-    double dt, dt_last[2];  /* dt of the step under way, and of the two accepted before */
-    int uneven[2];       /* a step was of another length than those before it, or turned too far for generalised-alpha:
-                            one that was accepted; or the one under way */
-    int64_t step, begun; /* accepted; steps that were begun, ever */
+    double time, time_rest; /* time_rest: rounding error of the clock, carried to the next steps */
+    double dt, dt_last[2];  /* dt of the current step, and of the two accepted before */
+    int uneven[2]; /* whether an accepted step, and the current one, differ in length from the steps before or rotate
+                      too far for generalised-alpha */
+    int64_t step, begun; /* accepted steps; steps ever begun */
     int iteration;
     spari_phase phase;
-    int past;      /* loads before those of t^n that there are so far: the order of the next prediction; -1: nobody has
-                      given those of t^n either */
-    int order;     /* of the predictor in the step under way */
-    int iterating; /* the last check asked for another iteration */
-    int rough;     /* the loads of the iteration under way are far from the coupling's answer */
-    int started;   /* the clock has run */
-    int failed;    /* the last check of the step under way failed */
-    const char
-        *lent;    /* the call that the host's fluid solver runs inside, to which what is under way belongs; or NULL */
-    int standing; /* what is under way is a static solution: there is one state, whatever theta a fluid pulls at */
-    int trial;    /* a trial run is under way (trial.h) */
+    int past;  /* number of loads known before those of t^n, which limits the order of the next prediction; -1: those of
+                  t^n are unknown too */
+    int order; /* order of the predictor in the current step */
+    int iterating;    /* the last check asked for another iteration */
+    int rough;        /* the loads of this iteration are far from converged */
+    int started;      /* the clock has started */
+    int failed;       /* the last check of the current step failed */
+    const char *lent; /* callback in progress: the public call that runs the host's fluid solver; or NULL */
+    int standing;     /* a static solution is in progress: there is one state, whatever theta a fluid pulls at */
+    int trial;        /* a trial is in progress (trial/trial.h) */
 
     const spari_setting *settings;
     int setting_count;
-    int apart;  /* ranks.state = touched, and the clock runs: ranks know different parts of the state, */
-    int aside;  /* and this one solves nothing: of members it knows what `away` of each leaves */
-    int parted; /* the ranks were found to be at different things: nothing more is to be agreed on */
+    int apart;  /* ranks.state = touched and the clock runs: ranks know different parts of the state */
+    int aside;  /* this rank solves nothing and knows only part of each member's state */
+    int parted; /* the ranks were found in different calls: no further communication */
 
-    spari_own *own; /* what is the session's alone (session/own.h) */
+    spari_own *own; /* private data (exchange/session_private.h) */
 };
 
-/* What it is set to. */
+/* Present value of a setting. */
 double spari_setting_value(const spar_session *session, const spari_setting *of);
 
-/* While `text` [SPARI_MESSAGE_SIZE] is not NULL, what fails in this thread writes its message there, and no session and
-   no log hears of it. Returns where they went before. */
+/* Redirects messages of this thread to text [SPARI_MESSAGE_SIZE] until called with NULL; sessions and logs do not
+   see them. Returns the previous destination. */
 char *spari_messages_aside(char *text);
 
-/* Tells the host's log, if there is one. */
+/* Passes a text to the host's log callback, if there is one. */
 void spari_log(const spar_session *session, int level, const char *text);
 
-/* Steps of one length: hosts' steps differ in their last bits. */
+/* Whether two step sizes are equal apart from rounding by the host. */
 static inline int spari_steps_alike(double h, double last) {
     return fabs(h - last) <= 1e-3 * last;
 }
-/* The clock goes on by dt: a compensated sum (Kahan), right to its last digit after any number of steps. */
+/* Advances the clock by dt with compensated summation (Kahan): exact to the last digit after any number of steps. */
 static inline void spari_clock_tick(spar_session *s, double dt) {
     const double step = dt + s->time_rest, then = s->time + step;
     s->time_rest = s->time >= step ? (s->time - then) + step : (step - then) + s->time;
     s->time = then;
 }
-/* Whether a step dt of the session is taken by generalised-alpha (time/scheme.h). */
+/* Whether a step of size dt is integrated by generalised-alpha (time/scheme.h). */
 static inline int spari_steps_even(const spar_session *s, double dt) {
     return s->step == 0 ||
            (spari_steps_alike(dt, s->dt_last[0]) && (s->step == 1 || spari_steps_alike(s->dt_last[0], s->dt_last[1])));

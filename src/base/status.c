@@ -1,11 +1,11 @@
-/* Names and texts of statuses, messages, memory: what every file uses. */
+/* Status names and texts, checks of numbers, and memory. */
 #include "status.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* One table gives code, name and text; the order is that of the codes. */
+/* One table of code, name and text, in the order of the codes. */
 #define SPARI_STATUS_TABLE(ROW)                                                                                        \
     ROW(SPAR_OK, "no error")                                                                                           \
     ROW(SPAR_ERR_ARGUMENT, "an argument is not allowed")                                                               \
@@ -65,8 +65,8 @@ int spar_has(const char *feature) {
 }
 
 int64_t spari_first_nonfinite(const double *x, int64_t n) {
-    /* 0 * x is 0 for every finite x and NaN otherwise, so that one vector sum decides; several sums, because the order
-       of additions in one may not be changed. Looking for the culprit is the rare case. */
+    /* 0 * x is 0 for every finite x and NaN otherwise, so one vectorised sum decides. There are several sums because
+       the compiler may not reorder additions. The search for the index is the rare case. */
     double sum[8] = {0.0};
     int64_t i = 0;
     for (; i + 8 <= n; i += 8) {

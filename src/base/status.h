@@ -1,4 +1,4 @@
-/* Statuses, and what every file may need: checks of numbers, memory. Knows nobody. */
+/* Status handling, checks of numbers, memory and hashes, used by every file. Depends on no other file. */
 #ifndef SPARI_STATUS_H
 #define SPARI_STATUS_H
 
@@ -13,19 +13,19 @@
 
 enum { SPARI_MESSAGE_SIZE = 1024 };
 
-/* A function that keeps a frame of its own: put into its caller, both their arrays would lie on the stack for as long
-   as either runs, which is much for a small one. */
+/* Prevents inlining: inlined, the arrays of both functions would share one stack frame, which is too large for small
+   stacks. */
 #ifdef __GNUC__
 #define SPARI_APART __attribute__((noinline))
 #else
 #define SPARI_APART
 #endif
 
-/* More entries than any memory holds: a host's count beyond it is a mistake, and below it a count times what an entry
-   takes fits 64 bits. */
+/* Upper bound of a count. A larger count is an error of the host; a smaller one times the size of an entry fits 64
+   bits. */
 #define SPARI_MOST (INT64_C(1) << 40)
 
-/* Checks and returns, at the public edge and below it. */
+/* Check and return, at the public interface and below it. */
 #define SPARI_TRY(call)                                                                                                \
     do {                                                                                                               \
         int spari_status_ = (call);                                                                                    \
@@ -40,20 +40,19 @@ int64_t spari_first_nonfinite(const double *x, int64_t n);
 /* Whether x is a count that was saved as a double. */
 int spari_is_count(double x);
 
-/* Zeroed memory for n items, never NULL for n = 0; NULL when there is none left. Free with free(). */
+/* Zeroed memory for n items, to be freed with free(). Not NULL for n = 0. NULL: no memory. */
 void *spari_zalloc(int64_t n, size_t size);
 
-/* A copy of x[n], likewise; zeros where x is NULL. */
+/* Copy of x[n], or zeros if x is NULL. Free it with free(). NULL: no memory. */
 double *spari_copy(const double *x, int64_t n);
 
-/* What a host gets of values[known] whose entries have names: array[capacity] takes what it has room for, and 0 where
-   there is more room; NULL: nothing. */
+/* Copies values[known] to a host's array[capacity] (may be NULL). Excess entries of array are set to 0. */
 void spari_fill(int64_t capacity, double *array, int64_t known, const double *values);
-/* The same of a table [known_rows][known_columns] into [rows][columns]. */
+/* The same for a table [known_rows][known_columns], copied to [rows][columns]. */
 void spari_fill_table(int64_t rows, int64_t columns, double *to, int64_t known_rows, int64_t known_columns,
                       const double *values);
 
-/* Bytes into a hash (FNV-1a), which begins with SPARI_HASH_BEGIN. */
+/* Adds bytes to a hash (FNV-1a), which begins with SPARI_HASH_BEGIN. */
 #define SPARI_HASH_BEGIN UINT64_C(14695981039346656037)
 uint64_t spari_hash_bytes(uint64_t hash, const void *data, size_t size);
 

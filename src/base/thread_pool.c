@@ -1,10 +1,10 @@
-/* A small crew of POSIX threads: see thread_pool.h. */
+/* A pool of POSIX threads: see thread_pool.h. */
 #include "thread_pool.h"
 
-#include "poison.h"
 #include "environment.h"
-#include "workspace.h"
+#include "poison.h"
 #include "status.h"
+#include "workspace.h"
 
 #include <pthread.h>
 #include <signal.h>
@@ -12,12 +12,12 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* Looks this often before it sleeps: some ten microseconds, about what going to sleep and being woken takes. */
+/* Polls before a thread sleeps: about ten microseconds, the time that sleeping and waking take. */
 enum { SPIN = 4000 };
 
-/* Items that one worker begins with, those before `end`: the same in each round of so many, since what it wrote of an
-   item in the round before is near it (beside each other's, cores fetch them from one another). Who has done them goes
-   on with those that others have left. Counters that several write to lie on cache lines of their own. */
+/* Range of items that a worker takes first: [next, end). Each worker has the same range in each round of equal size,
+   so that its data are in its cache. A worker that has finished takes items of the others. Counters written by
+   several threads are on cache lines of their own. */
 typedef struct share {
     atomic_llong next;
     int64_t end;
@@ -33,21 +33,21 @@ typedef struct hand {
 
 struct spari_crew {
     int threads;
-    pid_t process; /* that the threads are of: a child of it has the memory, but no thread but the one that forked */
-    hand *hands;   /* [threads]; the first is the caller's and has no thread of its own */
+    pid_t process; /* process that created the threads: a forked child has the memory but not the threads */
+    hand *hands;   /* [threads]; the first is the calling thread */
     share *share;  /* [threads] */
-    int64_t kept;  /* doubles of work space that all hands have */
+    int64_t kept;  /* size of each worker's workspace, in doubles */
     pthread_mutex_t lock;
     pthread_cond_t begun, ended;
-    atomic_long round;  /* counts the runs */
-    atomic_int at_work; /* threads that have not ended the round */
-    atomic_int leave;   /* no more rounds */
+    atomic_long round;  /* number of rounds so far */
+    atomic_int at_work; /* threads that have not finished the round */
+    atomic_int leave;   /* tells the threads to end */
     spari_task task;
     void *context;
     fenv_t surroundings;
 };
 
-static _Thread_local int inside; /* this thread works on an item */
+static _Thread_local int inside; /* this thread is working on an item */
 
 static inline void rest(void) {
 #if defined(__GNUC__) && defined(__x86_64__)
@@ -55,7 +55,7 @@ static inline void rest(void) {
 #endif
 }
 
-/* Takes items until there are none left, its own first. */
+/* Takes items until none is left, beginning with its own. */
 static void work_on(spari_crew *c, int worker) {
     inside = 1;
     for (int k = 0; k < c->threads; k++) {
@@ -103,7 +103,7 @@ static void *serve(void *argument) {
             return NULL;
         }
         spari_quiet_begin();
-        (void)fesetenv(&c->surroundings); /* rounding and denormal numbers are as in the caller's thread */
+        (void)fesetenv(&c->surroundings); /* rounding mode and denormal handling of the calling thread */
         work_on(c, h->worker);
         spari_quiet_end();
         if (atomic_fetch_sub_explicit(&c->at_work, 1, memory_order_acq_rel) == 1) {
@@ -114,7 +114,7 @@ static void *serve(void *argument) {
     }
 }
 
-/* Tells all threads that there is a round, or that they may leave. */
+/* Wakes all threads for a round, or to end. */
 static void call_hands(spari_crew *c) {
     (void)pthread_mutex_lock(&c->lock);
     atomic_fetch_add_explicit(&c->round, 1, memory_order_release);
@@ -139,7 +139,7 @@ static int is_of_this_process(const spari_crew *c) {
     return c->process == getpid();
 }
 
-/* The threads of the first `threads` hands, which are waiting, end. */
+/* Ends the first `threads` threads, which are waiting. */
 static void end_hands(spari_crew *c) {
     atomic_store(&c->leave, 1);
     call_hands(c);
@@ -152,7 +152,7 @@ static void end_hands(spari_crew *c) {
 }
 
 static void dismiss(spari_crew *c) {
-    if (is_of_this_process(c)) { /* in a child there is nobody to wait for */
+    if (is_of_this_process(c)) { /* a forked child has no threads to wait for */
         end_hands(c);
     }
     for (int k = 1; k < c->threads; k++) {
@@ -163,7 +163,7 @@ static void dismiss(spari_crew *c) {
     free(c);
 }
 
-/* The host's signals go to the host's threads. */
+/* Signals of the process go to the host's threads. */
 static int start_hand(hand *h) {
     sigset_t all, before;
     (void)sigfillset(&all);
@@ -185,7 +185,7 @@ spari_crew *spari_crew_create(int threads) {
     }
     c->hands = hands, c->share = shares;
     c->process = getpid();
-    (void)pthread_mutex_init(&c->lock, NULL); /* with default attributes nothing can fail where there are threads */
+    (void)pthread_mutex_init(&c->lock, NULL); /* cannot fail with default attributes */
     (void)pthread_cond_init(&c->begun, NULL);
     (void)pthread_cond_init(&c->ended, NULL);
     for (c->threads = 1; c->threads < threads; c->threads++) {
@@ -221,7 +221,7 @@ void spari_crew_run(spari_crew *crew, int64_t items, spari_task task, void *cont
         return;
     }
 #ifdef SPAR_POISON
-    for (int k = 1; k < crew->threads; k++) { /* what a round leaves there may be read until the next */
+    for (int k = 1; k < crew->threads; k++) { /* results of a round may stay there until the next */
         spari_poison(spari_room_at(&crew->hands[k].room, crew->kept), crew->kept);
     }
 #endif

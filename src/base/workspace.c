@@ -1,11 +1,11 @@
-/* Work space that is kept: see workspace.h. */
+/* Workspace that is kept between calls: see workspace.h. */
 #include "workspace.h"
 
 #include "status.h"
 
 #include <stdlib.h>
 
-enum { LINE = 64 }; /* bytes of a cache line, and of the widest vector */
+enum { LINE = 64 }; /* bytes of a cache line and of the widest vector */
 
 int spari_room_keep(spari_room *room, int64_t doubles) {
     if (doubles <= room->doubles) {

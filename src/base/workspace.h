@@ -1,4 +1,4 @@
-/* Work space that is kept from call to call, because hosts call from threads whose stacks are small. */
+/* Workspace that is kept between calls, because hosts may call from threads with small stacks. */
 #ifndef SPARI_ROOM_H
 #define SPARI_ROOM_H
 
@@ -6,13 +6,13 @@
 
 typedef struct spari_room {
     double *block;
-    int64_t doubles; /* that there is room for */
+    int64_t doubles; /* allocated size */
 } spari_room;
 
-/* So many doubles at least; what is in them is lost when they become more. 0, or 1: no memory, and all is as it was. */
+/* Allocates at least this size; the contents are lost when it grows. 0, or 1: no memory, and nothing has changed. */
 int spari_room_keep(spari_room *room, int64_t doubles);
 void spari_room_free(spari_room *room);
-/* Where they begin, at a cache line's beginning. NULL: that much has not been kept. */
+/* Start of the workspace, aligned to a cache line. NULL: that much has not been allocated. */
 double *spari_room_at(const spari_room *room, int64_t doubles);
 
 #endif

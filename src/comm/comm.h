@@ -1,6 +1,6 @@
-/* The ranks of a session. Only this room knows MPI: serial.c serves builds and sessions without it, mpi.c the others.
-   Every call below is collective over the session's ranks and carries a status, so that a failure on one rank is known
-   on all before any of them can block (what the others get is SPAR_ERR_PEER and the failing rank's message). */
+/* Communication between the ranks of a session. Only this room knows MPI: mpi.c serves sessions with MPI, serial.c
+   the others. Every collective call carries a status, so that all ranks learn of a failure on one rank before any of
+   them can block. The others get SPAR_ERR_PEER and the failing rank's message. */
 #ifndef SPARI_COMM_H
 #define SPARI_COMM_H
 
@@ -10,35 +10,37 @@
 typedef struct spari_comm spari_comm;
 
 int spari_comm_create_self(spari_comm **comm);
-/* Duplicates the communicator; what can fail on one rank alone comes after that, so that there is a way to tell the
-   others. status: of what this rank has prepared for the session, agreed on as by spari_comm_agree. Without MPI:
+/* Duplicates the communicator. Steps that can fail on one rank alone come after the duplication, so that the failure
+   can be communicated. status: result of this rank's preparation, agreed on as by spari_comm_agree. Without MPI:
    SPAR_ERR_UNSUPPORTED. */
 int spari_comm_create_fortran(int handle, spari_comm **comm, int status, char *message, size_t size);
-/* Several ranks: tells the others, who may be in another call, and from then on waits for nobody. */
+/* With several ranks: notifies the others, which may be in another call, and waits for none of them. */
 void spari_comm_destroy(spari_comm **comm);
 
 int spari_comm_rank(const spari_comm *comm); /* local */
 int spari_comm_size(const spari_comm *comm); /* local */
 
-/* Agrees on a status: SPAR_OK if it is so on all ranks; else the rank's own failure, or SPAR_ERR_PEER where a peer
-   failed, with "rank R: " and the peer's text put into message (of `size` chars; in: own text, read only when status is
-   a failure). The lowest failing rank's text is the one that is told. */
+/* Agrees on a status: SPAR_OK if all ranks pass SPAR_OK. Otherwise returns the rank's own failure, or SPAR_ERR_PEER
+   if a peer failed.
+   message: on input the rank's own text, read only if status is a failure; on output "rank R: " and the text of the
+     lowest failing rank */
 int spari_comm_agree(spari_comm *comm, int status, char *message, size_t size);
-#ifdef __clang_analyzer__ /* reads one file at a time: a failure of this rank is a failure */
+#ifdef __clang_analyzer__ /* tells the analyser, which reads one file at a time, that a failure of this rank stays a   \
+                             failure */
 #define spari_comm_agree(comm, status, message, size) ((spari_comm_agree)(comm, status, message, size) ? 1 : (status))
 #endif
 
-/* What the ranks must say alike in a collective call: an argument of it, or a setting. */
+/* An argument or setting of a collective call that must agree across ranks. */
 typedef struct spari_alike {
-    const char *name; /* "dt"; it is read in a message only */
+    const char *name; /* "dt"; used in messages only */
     enum {
         SPARI_REAL,
         SPARI_WHOLE,
         SPARI_GIVEN,
         SPARI_HASH
-    } kind; /* GIVEN: whether a pointer is; HASH: no number to show */
+    } kind; /* GIVEN: whether a pointer is not NULL; HASH: a hash that is not shown */
     double real;
-    int64_t whole; /* of all kinds but the first */
+    int64_t whole; /* for all kinds but the first */
 } spari_alike;
 enum { SPARI_MOST_ALIKE = 64 };
 
@@ -58,49 +60,50 @@ static inline spari_alike spari_hash(const char *name, uint64_t hash) {
     return (spari_alike){name, SPARI_HASH, 0, (int64_t)hash};
 }
 
-/* As spari_comm_agree, at the entry of a collective call named `call`, the only place where calls are compared: ranks
-   in different calls would wait for each other for ever, and ranks that give it different things would part ways
-   later; either is SPAR_ERR_COMM on all of them. alike[count]: what must be the same, as many of them on all ranks.
-   One message, whatever the count; a difference takes another to be named. */
+/* spari_comm_agree at the entry of the collective call `call`. Only here are calls compared. Ranks in different
+   calls would wait for each other for ever; ranks with different arguments would diverge later. Both give
+   SPAR_ERR_COMM on all ranks. alike[count]: what must agree; count must be equal on all ranks. Takes one message;
+   finding the name of a difference takes another. */
 int spari_comm_enter(spari_comm *comm, const char *call, const spari_alike *alike, int count, int status, char *message,
                      size_t size);
 
-/* x[n] becomes its sum over the ranks, the same bits on all of them; a failing rank's x counts as zero. x must have
-   room for n + 1 doubles: the last one carries the status. One message up, one down. Returns as spari_comm_agree. */
+/* Replaces x[n] by its sum over the ranks, with the same bits on all of them. The x of a failing rank counts as
+   zero. x must have room for n + 1 doubles: the last carries the status. Returns as spari_comm_agree. */
 int spari_comm_sum(spari_comm *comm, double *x, int64_t n, int status, char *message, size_t size);
 
-/* The same for sums that are the same in any order of the ranks: x[n] becomes its sum over them, with room for n + 1 of
-   them. prepare: what it takes, before; local, again costs nothing. */
+/* The same for reproducible sums x[n], with room for n + 1 of them. prepare: sets up what this needs; local, free
+   when repeated. */
 int spari_comm_prepare_bins(spari_comm *comm, char *message, size_t size);
 int spari_comm_sum_bins(spari_comm *comm, spari_bins *x, int64_t n, int status, char *message, size_t size);
 
-/* Each rank owns x[first[rank] .. first[rank+1]-1] and gets all the others': the last double of each rank's own block
-   carries its status (so every block has at least one). Returns as spari_comm_agree. */
+/* Each rank owns x[first[rank] .. first[rank+1]-1] and receives the blocks of all others. The last double of each
+   block carries its rank's status, so every block has at least one. Returns as spari_comm_agree. */
 int spari_comm_share(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size);
 
-/* Some of the ranks, as a communicator of their own; `root`, which is among them, is rank 0 there, the others keep
-   their order. in: whether this rank is one of them; *part NULL: it is not, or is alone there. Destroyed without a word
-   to the others. Collective over comm, all ranks or none. */
+/* Creates a communicator of some ranks. Collective over all ranks of comm.
+   in: whether this rank belongs to it
+   root: becomes rank 0; the others keep their order
+   part: NULL if this rank does not belong to it, or is alone in it */
 int spari_comm_split(spari_comm *comm, int in, int root, spari_comm **part, char *message, size_t size);
 
-/* What goes on in parts at the same time: x[n] over the ranks of a part. All ranks of comm make the call, each with the
-   pieces of the parts it is in, in an order that is the same on all of them. */
+/* x[n] of one part, for operations on several parts at once. All ranks of comm call, each with the pieces of its own
+   parts, in the same order on all ranks. */
 typedef struct spari_piece {
     spari_comm *part;
-    void *x; /* doubles, or spari_bins */
+    void *x; /* double or spari_bins */
     int64_t n;
 } spari_piece;
 
-/* x becomes its sum over the part on its rank 0, and is lost on the others. bins: they are sums that are the same in
-   any order (spari_comm_prepare_bins of comm). */
+/* Sums x over each part on its rank 0; x is lost on the others. bins: reproducible sums (after
+   spari_comm_prepare_bins of comm). */
 int spari_comm_collect(spari_comm *comm, const spari_piece *pieces, int count, int bins, char *message, size_t size);
-/* The doubles of each part's rank 0 go to the others of it, while all ranks of comm agree on a status. Returns as
-   spari_comm_agree; after a failure x is whatever it was to become. */
+/* Sends x from rank 0 of each part to its other ranks, while all ranks of comm agree on a status. Returns as
+   spari_comm_agree; after a failure x is undefined. */
 int spari_comm_spread(spari_comm *comm, const spari_piece *pieces, int count, int status, char *message, size_t size);
 
-/* Rank 0's data[bytes] goes to all the others. */
+/* Sends rank 0's data[bytes] to all others. */
 int spari_comm_broadcast(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size);
-/* data[bytes] goes from one rank to another; these two make the call, and for others it is none. */
+/* Sends data[bytes] from one rank to another. Only these two make the call; for other ranks it does nothing. */
 int spari_comm_move(spari_comm *comm, int from, int to, void *data, int64_t bytes, char *message, size_t size);
 
 #endif

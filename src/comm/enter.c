@@ -1,4 +1,4 @@
-/* Where all collective calls of a session begin: see enter.h. */
+/* Entry of the collective calls of a session: see enter.h. */
 #include "enter.h"
 
 #include <assert.h>
@@ -7,7 +7,7 @@ static int enter(spar_session *s, const char *call, const spari_alike *alike, in
     int answer = spari_comm_enter(s->comm, call, alike, count, status, s->message, sizeof s->message);
     if (answer == SPAR_ERR_COMM) {
         s->parted = 1;
-        (void)spari_fail(s, answer, "%s", s->message); /* for the log */
+        (void)spari_fail(s, answer, "%s", s->message); /* passes the message to the log */
     }
     return answer;
 }

@@ -1,14 +1,14 @@
-/* The entry of a collective call of a session: what is compared there, and where it is remembered that the ranks have
-   parted. */
+/* Entry of the collective calls of a session. Compares calls and arguments across ranks, and records if the ranks
+   are in different calls. */
 #ifndef SPARI_ENTER_H
 #define SPARI_ENTER_H
 
 #include "../base/session.h"
 #include "comm.h"
 
-/* Agrees on a status and on what is called. */
+/* Agrees on a status and on the call. */
 int spari_enter(spar_session *session, const char *call, int status);
-/* The same where arguments have to be alike, alike[count], and all that is set for the session. */
+/* Also compares arguments alike[count] and all settings of the session. */
 int spari_enter_alike(spar_session *session, const char *call, const spari_alike *alike, int count, int status);
 
 #endif

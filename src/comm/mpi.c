@@ -1,4 +1,4 @@
-/* The ranks of an MPI communicator. */
+/* Communication over an MPI communicator. */
 #include "ranks.h"
 
 #ifdef SPARI_HAVE_MPI
@@ -13,11 +13,11 @@ typedef struct mpi_comm {
     spari_comm base;
     MPI_Comm handle; /* our own duplicate, with MPI_ERRORS_RETURN */
     int *counts, *offsets;
-    int has_bins; /* the next two are there */
+    int has_bins; /* the next two are set up */
     MPI_Datatype bins;
     MPI_Op merge;
-    int gone; /* another rank has destroyed its session: there is nobody to talk to any more */
-    int part; /* of another communicator, which has the say */
+    int gone; /* another rank has destroyed its session: no communication any more */
+    int part; /* part of another communicator, which handles failures */
 } mpi_comm;
 
 /* ---- failures of MPI itself ---- */
@@ -38,7 +38,7 @@ static int mpi_failure(int code, char *message, size_t size) {
         }                                                                                                              \
     } while (0)
 
-/* MPI is there to be called: not before MPI_Init, not after MPI_Finalize. These two may be asked at any time. */
+/* Whether MPI can be called: after MPI_Init and before MPI_Finalize. These two queries are allowed at any time. */
 static int mpi_is_up(void) {
     int up = 0, down = 0;
     return MPI_Initialized(&up) == MPI_SUCCESS && up && MPI_Finalized(&down) == MPI_SUCCESS && !down;
@@ -58,7 +58,7 @@ static int check_up(const mpi_comm *c, char *message, size_t size) {
 
 /* ---- the table ---- */
 
-/* The text of rank `from`, the lowest that failed, for those that did not fail themselves. */
+/* Sends the text of rank `from`, the lowest failing one, to those that did not fail. */
 static int tell_all(mpi_comm *c, int from, int status, char *message, size_t size) {
     char text[SPARI_MESSAGE_SIZE] = "";
     if (c->base.rank == from) {
@@ -72,12 +72,12 @@ static int tell_all(mpi_comm *c, int from, int status, char *message, size_t siz
     return SPAR_ERR_PEER;
 }
 
-/* What a collective call begins with, reduced to the least of all ranks. A hash stands twice, the second time
-   complemented, so that its greatest is known as well: all ranks gave the same if the two fit. */
+/* Words of the entry message, reduced to their minimum over the ranks. A hash is sent twice, once complemented, so
+   that its maximum is known too: all ranks agree if the two match. */
 enum {
-    FAILED,         /* the lowest rank that failed; NOBODY; LEAVING on a rank that destroys its session */
-    NAME,           /* of the call */
-    KEY = NAME + 2, /* of what must be alike */
+    FAILED,         /* lowest failing rank; NOBODY; LEAVING on a rank that destroys its session */
+    NAME,           /* hash of the call */
+    KEY = NAME + 2, /* hash of what must agree */
     WORDS = KEY + 2
 };
 enum { NOBODY = INT_MAX, LEAVING = -1 };
@@ -91,7 +91,7 @@ static int is_same(const int64_t *pair) {
     return pair[0] == ~pair[1];
 }
 
-/* FNV-1a, which may begin with a hash and go on. */
+/* FNV-1a, which may continue from an earlier hash. */
 static int64_t as_word(const spari_alike *a) {
     int64_t word = a->whole;
     if (a->kind == SPARI_REAL) {
@@ -126,7 +126,7 @@ static void tell_own(const spari_alike *a, char *text, size_t size) {
     }
 }
 
-/* The keys differ, on all ranks alike: looks for the first thing that does. */
+/* The keys differ, as all ranks know: finds the first difference. */
 static int tell_difference(mpi_comm *c, const char *call, const spari_alike *alike, int count, char *message,
                            size_t size) {
     int64_t mine[2 * SPARI_MOST_ALIKE], all[2 * SPARI_MOST_ALIKE];
@@ -145,7 +145,7 @@ static int tell_difference(mpi_comm *c, const char *call, const spari_alike *ali
     return SPAR_ERR_COMM;
 }
 
-/* call NULL: within a call that all ranks are known to be in. */
+/* call NULL: inside a call that all ranks are known to be in. */
 static int meet(mpi_comm *c, const char *call, const spari_alike *alike, int count, int status, char *message,
                 size_t size) {
     int64_t mine[WORDS], all[WORDS];
@@ -179,7 +179,7 @@ static int mpi_agree(spari_comm *comm, int status, char *message, size_t size) {
     return meet((mpi_comm *)comm, NULL, NULL, 0, status, message, size);
 }
 
-/* The others may wait in another call for this rank, which will not come any more. */
+/* The others may wait in another call for this rank. */
 static void mpi_destroy(spari_comm *comm) {
     mpi_comm *c = (mpi_comm *)comm;
     if (mpi_is_up()) {
@@ -208,7 +208,7 @@ static int mpi_sum(spari_comm *comm, double *x, int64_t n, int status, char *mes
         memset(x, 0, (size_t)n * sizeof *x);
     }
     x[n] = status != SPAR_OK;
-    /* reduced to one rank and sent out again: MPI_Allreduce need not give the same bits on all ranks */
+    /* reduced to one rank and broadcast: MPI_Allreduce may give different bits on different ranks */
     for (int64_t at = 0; at <= n; at += comm->most) {
         int part = upto_most(comm, n + 1 - at);
         double *p = x + at;
@@ -251,14 +251,14 @@ static int mpi_sum_bins(spari_comm *comm, spari_bins *x, int64_t n, int status, 
         memset(x, 0, (size_t)n * sizeof *x);
     }
     x[n] = (spari_bins){.part = {status != SPAR_OK}};
-    for (int64_t at = 0; at <= n; at += comm->most) { /* the same bits on all ranks, in whatever order they are added */
+    for (int64_t at = 0; at <= n; at += comm->most) { /* the same bits in any order of addition */
         int part = upto_most(comm, n + 1 - at);
         TRY_MPI(MPI_Allreduce(MPI_IN_PLACE, x + at, part, c->bins, c->merge, c->handle));
     }
     return x[n].part[0] == 0 ? SPAR_OK : mpi_agree(comm, status, message, size);
 }
 
-/* More than MPI moves in one call: each rank's block by itself, in messages that fit. */
+/* Too much for one MPI call: each rank's block is sent separately, in messages that fit. */
 static int share_in_turn(mpi_comm *c, double *x, const int64_t *first, char *message, size_t size) {
     for (int r = 0; r < c->base.size; r++) {
         for (int64_t at = first[r]; at < first[r + 1]; at += c->base.most) {
@@ -315,10 +315,10 @@ static int mpi_move(spari_comm *comm, int from, int to, void *data, int64_t byte
     return SPAR_OK;
 }
 
-/* ---- parts of the ranks ---- */
+/* ---- communicators of some ranks ---- */
 
-/* Calls under way. Ranks make them in one order, so that waiting for the first ones before the last ones are made keeps
-   nobody waiting for ever. */
+/* Pending requests. All ranks post them in one order, so waiting for the first ones before posting the last cannot
+   deadlock. */
 enum { POSTED = 64 };
 typedef struct posted {
     MPI_Request request[POSTED];
@@ -326,15 +326,14 @@ typedef struct posted {
 } posted;
 
 static int await(posted *p, char *message, size_t size) {
-    MPI_Status status[POSTED]; /* nobody asks; of MPI_STATUSES_IGNORE MPICH's header lets gcc 12 believe that it is
-                                  written to */
+    MPI_Status status[POSTED]; /* unused; with MPICH's MPI_STATUSES_IGNORE gcc 12 warns of a write */
     int n = p->n;
     p->n = 0;
     TRY_MPI(MPI_Waitall(n, p->request, status));
     return SPAR_OK;
 }
 
-/* Where the next one goes. */
+/* Slot of the next request. */
 static int next_posted(posted *p, MPI_Request **request, char *message, size_t size) {
     if (p->n == POSTED) {
         SPARI_TRY(await(p, message, size));
@@ -408,7 +407,8 @@ static int duplicate_quietly(MPI_Comm theirs, MPI_Comm *ours, const char **why) 
     return SPAR_OK;
 }
 
-/* A handle that is none is an error on MPI_COMM_WORLD, whose handler aborts as a rule: it returns while we ask. */
+/* An invalid handle is an error on MPI_COMM_WORLD, whose error handler usually aborts. It is set to return
+   meanwhile. */
 static int duplicate(MPI_Comm theirs, MPI_Comm *ours, const char **why) {
     MPI_Errhandler handler;
     if (MPI_Comm_get_errhandler(MPI_COMM_WORLD, &handler) != MPI_SUCCESS ||
@@ -422,7 +422,7 @@ static int duplicate(MPI_Comm theirs, MPI_Comm *ours, const char **why) {
     return status;
 }
 
-/* Where this rank stands in the duplicate, and memory: what may fail here alone. status: of this rank before. */
+/* Rank, size and memory of the duplicate: steps that may fail on this rank alone. status: of this rank so far. */
 static int set_up(mpi_comm *c, int status, mpi_comm **made, char *message, size_t size) {
     TRY_MPI(MPI_Comm_set_errhandler(c->handle, MPI_ERRORS_RETURN));
     TRY_MPI(MPI_Comm_rank(c->handle, &c->base.rank));
@@ -470,7 +470,7 @@ static void drop_part(mpi_comm *c, mpi_comm *made) {
     free(made);
 }
 
-/* What can fail on one rank alone is agreed on over the whole, after the part has been made. */
+/* Steps that may fail on one rank alone are agreed on over the whole communicator after the split. */
 static int mpi_split(spari_comm *comm, int in, int root, spari_comm **part, char *message, size_t size) {
     mpi_comm *whole = (mpi_comm *)comm, *made = NULL;
     mpi_comm c = {.base.ops = &mpi_ops, .part = 1, .handle = MPI_COMM_NULL};

@@ -1,4 +1,4 @@
-/* What the two sides of the room share: the serial one has no table and answers at once. */
+/* Declarations shared by serial.c and mpi.c. The serial communicator has no table of operations. */
 #ifndef SPARI_RANKS_H
 #define SPARI_RANKS_H
 
@@ -23,7 +23,7 @@ typedef struct spari_comm_ops {
 struct spari_comm {
     const spari_comm_ops *ops; /* NULL: this process alone */
     int rank, size;
-    int most; /* items, or bytes, that a message of MPI has at most; more go in several */
+    int most; /* maximum number of items or bytes per MPI message; more are sent in several */
 };
 
 #endif

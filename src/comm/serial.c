@@ -1,4 +1,4 @@
-/* One process alone, and the way to the ranks' table. */
+/* Communicator of one process, and dispatch to the table of operations. */
 #include "ranks.h"
 
 #include <stdio.h>

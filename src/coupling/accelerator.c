@@ -1,5 +1,4 @@
-/* Acceleration of the coupling's iteration: relaxation, Aitken's, and quasi-Newton from columns of earlier
-   iterations (quasi_newton.c). */
+/* Acceleration of the coupling iteration: constant relaxation, Aitken relaxation, and quasi-Newton (quasi_newton.c). */
 #include "quasi_newton.h"
 
 #include "../base/poison.h"
@@ -63,9 +62,9 @@ void spari_accelerator_free(spari_accelerator **accelerator) {
     *accelerator = NULL;
 }
 
-/* ---- weights ---- */
+/* ---- scaling of forces and moments ---- */
 
-/* Sizes of forces and moments, as the root of the sum of squares of loads used and loads that came back. */
+/* Sizes of forces and moments: root of the sum of squares of the loads used and of the loads that came back. */
 static void measure_kinds(const spari_accelerator *a, const double *x, const double *g, double size[2]) {
     double s[2] = {0, 0};
     for (int64_t i = 0; i < a->n; i += a->period) {
@@ -73,7 +72,7 @@ static void measure_kinds(const spari_accelerator *a, const double *x, const dou
             s[k >= a->split] += x[i + k] * x[i + k] + g[i + k] * g[i + k];
         }
     }
-    /* what is less than that of the other kind is not worth more: it may be the rounding of what should be zero */
+    /* a smaller fraction of the other kind gets no larger weight: it may be the rounding error of zero */
     double large = 1e-8 * sqrt(fmax(s[0], s[1]));
     for (int k = 0; k < 2; k++) {
         size[k] = fmax(sqrt(s[k]), large);
@@ -81,8 +80,8 @@ static void measure_kinds(const spari_accelerator *a, const double *x, const dou
     }
 }
 
-/* The step's first loads give the weights; loads that outgrow them tenfold give new ones. Returns whether they changed.
- */
+/* The step's first loads determine the weights; loads that exceed them tenfold determine new ones. Returns whether
+   they changed. */
 static int weigh(spari_accelerator *a, const double *x, const double *g) {
     double size[2];
     measure_kinds(a, x, g, size);
@@ -107,12 +106,12 @@ int spari_accelerator_settle(const spari_accelerator *a, const double *x, const 
 
 /* ---- Aitken ---- */
 
-/* Kuettler & Wall (2008): a step begins with the last factor, as far as the user's allows. */
+/* Kuettler & Wall (2008): a step begins with the last factor, limited by the user's factor. */
 static void aitken_begin(spari_accelerator *a) {
     a->omega = a->omega_accepted > 0 ? fmin(a->omega_accepted, a->set.omega) : a->set.omega;
 }
 
-/* omega <- -omega r'.(r - r') / |r - r'|^2, r' the residual before; where the residual stalls omega stays. */
+/* omega <- -omega r'.(r - r') / |r - r'|^2, r' the residual before; if the residual stalls, omega is unchanged. */
 static void aitken_learn(spari_accelerator *a) {
     double product[2] = {0, 0}, square[2] = {0, 0};
     for (int64_t i = 0; i < a->n; i += a->period) {
@@ -177,7 +176,7 @@ void spari_accelerator_begin(spari_accelerator *a, double dt) {
     }
 }
 
-/* a and b, their weights times p and q. */
+/* Sum of a and b with weights multiplied by p and q. */
 static spari_ratios join(const spari_ratios *a, double p, const spari_ratios *b, double q) {
     return (spari_ratios){p * a->weight + q * b->weight, p * p * a->square + q * q * b->square, p * a->sum + q * b->sum,
                           p * a->sum2 + q * b->sum2};
@@ -204,7 +203,7 @@ static void estimate_ratio(spari_accelerator *a) {
     }
 }
 
-/* Those of earlier steps with those of this one, if it has any. */
+/* Ratios of earlier steps, together with those of this step if there are any. */
 static spari_ratios all_ratios(const spari_accelerator *a, double fade) {
     double length = a->most_weight;
     return length > 0 ? join(&a->ratios_before, fade, &a->ratios, 1 / length) : a->ratios_before;
@@ -219,7 +218,7 @@ static void compute_next(spari_accelerator *a, const double *x, const double *g,
     }
 }
 
-/* Columns of one norm say nothing in another. */
+/* Columns of one norm are useless in another. */
 static void set_norm(spari_accelerator *a, int imaged) {
     if (imaged != a->imaged) {
         for (int s = 0; s < a->slots; s++) {
@@ -249,7 +248,7 @@ static void measure(spari_accelerator *a, const double *x, const double *g, cons
     a->residual_least = fmin(a->residual_least, a->residual);
 }
 
-/* What rises again, twice, after it had all but ended is driven by columns below the fluid's scatter. */
+/* A residual that rises twice after it was nearly converged is dominated by columns below the fluid's scatter. */
 static void suspect(spari_accelerator *a) {
     if (a->secants && a->imaged && a->memory.scatter <= SPARI_LOUD && a->rises >= 2 &&
         a->residual_least < 0.03 * a->residual_first) {
@@ -257,9 +256,8 @@ static void suspect(spari_accelerator *a) {
     }
 }
 
-/* What has changed since the iteration before. Its images are taken by the flexibility as it is now: that of the
-   iteration before may be another one, and the difference of two images then is one of flexibilities times whole loads,
-   which may be many times as large. */
+/* Differences since the iteration before. They are mapped with the current flexibility. Differencing two mapped
+   loads would difference flexibilities times the full loads, which may be much larger. */
 static int learn(spari_accelerator *a, const double *x, const double *g, const spari_images *images) {
     for (int64_t i = 0; i < a->n; i++) {
         a->change[a->n + i] = g[i] - a->g[i];
@@ -280,7 +278,7 @@ static int learn(spari_accelerator *a, const double *x, const double *g, const s
     return SPAR_OK;
 }
 
-/* What the step's first answer has changed since the last one of the step before. */
+/* Difference between the step's first result and the last one of the step before. */
 static int lead_in(spari_accelerator *a, const double *g, const spari_images *images) {
     a->led = images && a->ended && spari_accelerator_contradicted(a);
     for (int64_t i = 0; a->led && i < a->n; i++) {
@@ -349,7 +347,7 @@ void spari_accelerator_reject(spari_accelerator *a) {
     a->ratios = (spari_ratios){0};
     a->most_weight = 0;
     a->memory = a->memory_accepted;
-    if (a->before.open) { /* else the step was read from a file */
+    if (a->before.open) { /* otherwise the step was read from a file */
         a->imaged = a->begun.imaged;
         a->ratios_before = a->begun.ratios;
         spari_columns_restore(a);
@@ -384,7 +382,8 @@ double spari_accelerator_ratio(const spari_accelerator *a) {
 int spari_accelerator_added_mass(const spari_accelerator *a, double *mean, double *spread) {
     static const double ENOUGH = 2.5;
     spari_ratios all = all_ratios(a, 1);
-    double count = all.square > 0 ? all.weight * all.weight / all.square : 0; /* as many of equal weight */
+    double count =
+        all.square > 0 ? all.weight * all.weight / all.square : 0; /* equivalent number of ratios of equal weight */
     int enough = count >= ENOUGH;
     *mean = enough ? all.sum / all.weight : 0;
     *spread = enough ? sqrt(fmax(all.sum2 / all.weight - *mean * *mean, 0) * count / (count - 1)) : 0;

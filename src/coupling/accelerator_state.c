@@ -1,4 +1,4 @@
-/* An accelerator's whole state as doubles. */
+/* State of an accelerator as doubles, for save and load. */
 #include "quasi_newton.h"
 
 #include "../base/status.h"
@@ -9,12 +9,12 @@
 
 enum { OWN = 34, MEMORY = sizeof(spari_recollection) / sizeof(double), HEAD = OWN + 2 * MEMORY, COLUMN_HEAD = 6 };
 
-/* Vectors of length n that are kept of each column. */
+/* Vectors of length n per column. */
 static int64_t of_column(const spari_accelerator *a) {
     return a->set.imaged ? 6 : 2;
 }
 
-/* And of the iteration before: x and g, their images, what the fluid remembers. */
+/* Vectors of the iteration before: x and g, their images, the memory model. */
 static int64_t of_iteration(const spari_accelerator *a) {
     return 2 + (a->set.imaged ? 2 : 0) + (a->secants ? 3 : 0);
 }
@@ -31,14 +31,14 @@ int64_t spari_accelerator_state_size(const spari_accelerator *a) {
     return HEAD + of_iteration(a) * a->n + occupied(a) * (COLUMN_HEAD + of_column(a) * a->n) + a->used;
 }
 
-/* The vectors of a column; of one that is not imaged the first two. */
+/* The vectors of a column; without images the first two. */
 static void column_vectors(const spari_accelerator *a, int s, double *vectors[6]) {
     double *const all[] = {spari_slot_v(a, s),  spari_slot_w(a, s), spari_slot_iv(a, s),
                            spari_slot_iw(a, s), spari_slot_b(a, s), spari_slot_ib(a, s)};
     memcpy(vectors, all, sizeof all);
 }
 
-/* Returns what comes behind it. */
+/* Returns the position after it. */
 static double *save_column(const spari_accelerator *a, int s, double *state) {
     const spari_column *c = a->column + s;
     const double what[COLUMN_HEAD] = {s, c->state, (double)c->step, (double)c->serial, c->dt, c->led};
@@ -128,7 +128,7 @@ static int whole_below(double x, double end) {
     return x >= 0 && x < end && x == floor(x);
 }
 
-/* Columns in slots of their own, not more of this step nor of older ones than there can be. */
+/* Whether columns are in distinct slots, and not more of this step or of older ones than allowed. */
 static int are_columns(const spari_accelerator *a, const double *first, int64_t occupied, double step) {
     int64_t width = COLUMN_HEAD + of_column(a) * a->n, of_step = 0;
     for (int64_t k = 0; k < occupied; k++) {
@@ -149,7 +149,7 @@ static int are_columns(const spari_accelerator *a, const double *first, int64_t 
     return of_step <= a->set.columns && occupied - of_step <= a->set.columns;
 }
 
-/* What the fluid is seen to remember, as it is in a spari_recollection. */
+/* Whether this is a valid spari_recollection. */
 static int is_memory(const spari_accelerator *a, const double *state) {
     spari_recollection m;
     memcpy(&m, state, sizeof m);
@@ -224,7 +224,7 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
         state = load_column(a, state);
     }
     a->used = 0;
-    for (int j = 0; j < used; j++) { /* in the order of the first time: the same bits */
+    for (int j = 0; j < used; j++) { /* in the original order: the same bits */
         (void)spari_columns_append(a, (int)state[j], 0);
     }
     return 1;

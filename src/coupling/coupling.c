@@ -1,12 +1,12 @@
-/* The iteration of a step with the fluid: which loads come next, and whether it has ended. */
+/* The coupling iteration of a step: computes the next loads, and tests convergence. */
 #include "coupling.h"
 #include "../base/environment.h"
 
+#include "../exchange/session_private.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/body.h"
 #include "../member/structure.h"
-#include "../exchange/session_private.h"
 #include "motion_norm.h"
 
 #include <float.h>
@@ -63,7 +63,7 @@ static int make_vectors(const spar_session *s, int scheme, spari_coupling *c) {
            (!iterated || (c->accelerator = spari_accelerator_create(n, 6, 3, &set)));
 }
 
-/* Six unknowns for every node of every member. */
+/* Six unknowns per node of every member. */
 static int64_t count_unknowns(const spar_session *s) {
     int64_t n = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -143,8 +143,8 @@ static void unstack(const spar_session *s) {
     }
 }
 
-/* Root of the sum of squares of the change from `from` (stacked as the members are, or NULL: load_used) to the loads
-   that came back, and of these, [N]. */
+/* Root sum of squares of the change from `from` (stacked by member; NULL: load_used) to the loads that came back,
+   and of these loads, [N]. */
 static void load_norms(const spar_session *s, const double *from, double *change, double *size) {
     double r2 = 0, f2 = 0;
     int k = 0;
@@ -164,7 +164,7 @@ static void load_norms(const spar_session *s, const double *from, double *change
     *size = sqrt(f2);
 }
 
-/* Displacement and turn of a node between two motions. */
+/* Displacement and rotation of a node between two motions. */
 static void travel(const double *from, const double *to, double d[6]) {
     double p[4];
     for (int k = 0; k < 3; k++) {
@@ -174,7 +174,7 @@ static void travel(const double *from, const double *to, double d[6]) {
     spari_quat_log(p, d + 3);
 }
 
-/* How far the nodes are from where the iteration before had them, and from t^n, [m]; turns count times the length. */
+/* Displacement of the nodes since the iteration before, and since t^n, [m]; rotations are multiplied by the length. */
 static void motion_norms(const spar_session *s) {
     spari_coupling *c = s->own->coupling;
     double r2 = 0, d2 = 0, d[6], *last = c->motion;
@@ -202,12 +202,12 @@ static void report_added_mass(spari_coupling *c) {
                                        c->report + SPAR_REPORT_ADDED_MASS_SPREAD);
 }
 
-/* What Newton leaves comes back as loads, mu times as large by the motion that they are weighed by: mu is the added
-   mass over the mass as the loads have shown it. They are to be small beside the last changes of the iteration, which
-   are a hundredth of what it ends with, in the first solutions of a step too: columns are differences of these, and
-   serve in later steps. (With a tenth IQN-ILS takes up to 15 per cent more iterations in heavy fluids solved exactly,
-   with a thousandth 5, tests/support/flows.h; a solution of a fluid is dearer than Newton's iteration.) A small mu is
-   not taken at its word. */
+/* Newton's error returns as a load error, multiplied by mu in the motion norm; mu is the ratio of added mass to mass
+   estimated from the loads. This error must be small compared with the last changes of the iteration, a hundredth of
+   the final one. That applies to the first solutions of a step too, because columns are differences of these and
+   serve in later steps. (With a tenth IQN-ILS takes up to 15 per cent more iterations with heavy exact fluids, with
+   a thousandth 5, tests/support/flows.h; a fluid solution costs more than a Newton iteration.) A small mu is not
+   trusted. */
 double spari_coupling_share(const spar_session *s) {
     static const double part = 1e-3, least = 0.05;
     const spari_coupling *c = s->own->coupling;
@@ -237,7 +237,8 @@ void spari_coupling_begin(spar_session *s) {
 }
 
 static void record(spari_coupling *c, double residual, double size) {
-    int last = c->iterations < c->most ? c->iterations : c->most - 1; /* a host may check on after the end */
+    int last =
+        c->iterations < c->most ? c->iterations : c->most - 1; /* a host may call check again after convergence */
     c->residual[last] = residual;
     c->size[last] = size;
     c->iterations = last + 1;
@@ -263,7 +264,7 @@ int spari_coupling_is_rough(const spar_session *s) {
     return s->iteration > 0 && residual > 0.1 * size;
 }
 
-/* By how much the residual has grown from iteration to iteration lately; 0: it has not. */
+/* Growth factor of the residual in the last iterations; 0: it has not grown. */
 static double grown_lately(const spari_coupling *c) {
     enum { LATELY = 3 };
     int last = c->iterations - 1, first = last > LATELY ? last - LATELY : 0;
@@ -272,7 +273,7 @@ static double grown_lately(const spari_coupling *c) {
     return factor > 1.2 ? factor : 0;
 }
 
-/* What there is to do, beginning with what is not done already. diverges: the changes grow. */
+/* Remedies, beginning with those that are not in use. diverges: the changes grow. */
 static const char *cures_of(const spar_session *s, int diverges) {
     int newton = spari_coupling_scheme_of(s->scheme)->columns;
     if (s->standing) {
@@ -290,7 +291,7 @@ static const char *cures_of(const spar_session *s, int diverges) {
                  "often before it pushes, or reject the step";
 }
 
-/* What went wrong, without the call before and the cure behind it. */
+/* The cause in a message, without the call before it and the remedy after it. */
 static void cause_of(const char *message, const char *call, char *cause, size_t size) {
     size_t name = strlen(call);
     const char *from = strncmp(message, call, name) == 0 && message[name] == ':' ? message + name + 2 : message;
@@ -301,7 +302,7 @@ static void cause_of(const char *message, const char *call, char *cause, size_t 
     }
 }
 
-/* Of nodal loads, the largest force or moment. */
+/* Largest force or moment of nodal loads. */
 static double largest_load(const spar_member *m, const double *load) {
     double most = 0;
     for (int64_t i = 0; load && i < 6 * m->nodes; i++) {
@@ -310,10 +311,10 @@ static double largest_load(const spar_member *m, const double *load) {
     return most;
 }
 
-/* Loads that grow so much answer no motion of the structure. */
+/* A larger growth of the loads cannot be a response to the structure's motion. */
 static const double TOO_MUCH = 1e6;
 
-/* The member whose fluid loads have grown most since the steps before, and from what to what; NULL: none so much. */
+/* Member whose fluid loads have grown most since the steps before, and the two values; NULL: none beyond the limit. */
 static const spar_member *member_overwhelmed(const spar_session *s, double load[2]) {
     const spar_member *worst = NULL;
     double most = TOO_MUCH;
@@ -352,7 +353,7 @@ int spari_coupling_solve_failed(spar_session *s, const char *call, int status) {
     return status;
 }
 
-/* What the rounding of places, over dt^2, is of the accelerations that the fluids see, at most of any member. */
+/* Rounding error of positions divided by dt^2, in the accelerations for fluids: maximum over the members. */
 static double rounding_of_accelerations(const spar_session *s) {
     const double h = s->dt / s->substeps;
     double part = 0;
@@ -408,12 +409,12 @@ static spari_weighed weighed(const spari_coupling *c) {
 
 int spari_coupling_weighs(const spar_session *s) {
     const spari_coupling *c = s->own->coupling;
-    /* a step that has gone over to the loads' own norm stays with it */
+    /* a step that has changed to the load norm keeps it */
     return c->weighs && (s->iteration == 0 || spari_accelerator_imaged(c->accelerator));
 }
 
-/* motion := that of the residual against what the fluid will have settled to, where that is larger: an answer that goes
-   a part of the way may agree with the loads while the rest is still to come. */
+/* motion := the larger of the motion due to the residual, and due to the residual relative to the settled fluid. A
+   fluid that responds only partly may agree with the loads while the rest is still to come. */
 static int unsettled(spar_session *s, double *motion) {
     const spari_coupling *c = s->own->coupling;
     double *r = c->settled, *image = c->settled + c->n, square = 0;
@@ -429,12 +430,12 @@ static int unsettled(spar_session *s, double *motion) {
     return SPAR_OK;
 }
 
-/* The residual as the structure answers it: the part of the loads' size that it is of their motion. */
+/* The residual in the motion norm: the motion that it causes, relative to the motion caused by all loads. */
 static int weigh_residual(spar_session *s, double size, double *residual) {
     spari_coupling *c = s->own->coupling;
     double motion, whole;
     c->weighed = 0;
-    /* a step that has gone over to the loads' own norm stays with it */
+    /* a step that has changed to the load norm keeps it */
     if (c->weighs && (s->iteration == 1 || spari_accelerator_imaged(c->accelerator))) {
         stack(s);
         const spari_weighed w = weighed(c);
@@ -482,7 +483,8 @@ int spari_coupling_next(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     const spari_images images = {c->image, image_loads, s};
     const spari_weighed w = weighed(c);
-    /* Before: a column of loads that move next to nothing would be one of those that move nothing, of any size. */
+    /* Done first: otherwise a column of loads that move almost nothing would contain arbitrary amounts of loads that
+       move nothing. */
     int felt = c->weighed && spari_coupling_scheme_of(s->scheme)->columns;
     stack(s);
     SPARI_TRY(felt ? spari_weigh_felt(s, &w, c->settled, c->x) : SPAR_OK);
@@ -495,7 +497,7 @@ int spari_coupling_next(spar_session *s) {
     return SPAR_OK;
 }
 
-/* Told each time, and no more often than the option coupling.patience says on end. */
+/* Writes to the log each time, and fails after coupling.patience steps in turn. */
 static int accept_unconverged(spar_session *s, const char *call) {
     spari_coupling *c = s->own->coupling;
     int last = c->iterations - 1;
@@ -534,18 +536,18 @@ int spari_coupling_check(spar_session *s, const char *call, int *done) {
     return spari_coupling_next(s);
 }
 
-/* ---- what an accepted step shows ---- */
+/* ---- report of an accepted step ---- */
 
-/* The error over dt^(order + 1) comes and goes with the loads; what dt is to be chosen by is a bound that few steps
-   pass. It is found by its crossings: a step above it raises it by so much more than one below lowers it that in the
-   long run so few are above, whatever the errors are like (Robbins & Monro; Gibbs & Candes, NeurIPS 2021). */
+/* The error over dt^(order + 1) varies with the loads. dt is chosen by a bound that few steps exceed. The bound is
+   found by its crossings. A step above raises it much more than a step below lowers it, so that in the long run few
+   steps are above, for any errors (Robbins & Monro; Gibbs & Candes, NeurIPS 2021). */
 static void advise_dt(spar_session *s, double error) {
     static const double above = 0.04;
     spari_coupling *c = s->own->coupling;
     double rate = pow(s->dt, s->order + 1), scale = error / rate;
-    if (c->bound_order != s->order + 1 || c->bound == 0) { /* of no other order */
+    if (c->bound_order != s->order + 1 || c->bound == 0) { /* a bound of the same order */
         c->bound = scale;
-        c->bound_order = s->past < 0 ? 0 : s->order + 1; /* a step from loads that nobody has given says nothing */
+        c->bound_order = s->past < 0 ? 0 : s->order + 1; /* a step from unknown loads gives no information */
     } else {
         c->bound *= exp(scale > c->bound ? 1 - above : -above);
     }
@@ -553,7 +555,7 @@ static void advise_dt(spar_session *s, double error) {
     c->report[SPAR_REPORT_ADVISED_DT] = s->dt * fmin(fmax(factor, 0.1), 2);
 }
 
-/* The predicted loads against the final ones tell the error of the coupling; it goes with dt^(order + 1). */
+/* The difference between predicted and final loads is the error of the coupling, proportional to dt^(order + 1). */
 static void estimate_error(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     double change, size;
@@ -563,8 +565,7 @@ static void estimate_error(spar_session *s) {
     advise_dt(s, error);
 }
 
-/* Work over the step that the fluid holds it has given less what the structure has taken, [J]; *whole: of all loads,
-   each counted positive. */
+/* Work of the fluid over the step minus work on the structure, [J]; *whole: of all loads, each counted positive. */
 static double work_defect(const spar_session *s, double *whole) {
     double defect = 0, d[6];
     *whole = 0;
@@ -582,13 +583,13 @@ static double work_defect(const spar_session *s, double *whole) {
     return defect;
 }
 
-/* The added mass over the mass with which an explicit scheme of this order grows by z from step to step. */
+/* Ratio of added mass to mass with which an explicit scheme of this order grows by z per step. */
 static double ratio_of_growth(int order, double z) {
     return order == 0 ? z : order == 1 ? z * z / (2 * z + 1) : z * z * z / (3 * z * z + 3 * z + 1);
 }
 
-/* What the growth says of the fluid: mean, scatter, and the added mass that an explicit scheme of this order grows so
-   fast with, over what it bears: 1, 1/3, 1/7 of the mass. */
+/* Logs what the growth implies: mean, scatter, and the added mass with which an explicit scheme of this order grows
+   so fast, relative to its limit: 1, 1/3, 1/7 of the mass. */
 static void tell_alternation(const spar_session *s) {
     const spari_coupling *c = s->own->coupling;
     double mean = c->log_growth / c->turns, spread = sqrt(fmax(c->log_growth2 / c->turns - mean * mean, 0));
@@ -609,8 +610,8 @@ static void tell_alternation(const spar_session *s) {
     }
 }
 
-/* The defect of a sound run is a small part of the work, whatever its course. Of a run about to blow up it is of the
-   size of the work and grows from step to step. */
+/* In a sound run the defect is a small part of the work. In a run that is about to diverge it has the size of the
+   work and grows from step to step. */
 static void watch(spar_session *s) {
     enum { GROWING_STEPS = 4, LONG_CALM = 20 };
     spari_coupling *c = s->own->coupling;
@@ -637,9 +638,9 @@ static void watch(spar_session *s) {
     }
 }
 
-/* Predicted loads of a sound run are missed by little, and on one side for long. Of an explicit one with too much added
-   mass they are missed in turn on either side, each time by the same factor more: |z| of z^{n+1} + r E(z) = 0, E the
-   extrapolation and r the ratio of the masses. */
+/* In a sound run predicted loads have small errors, mostly of one sign. In an explicit run with too much added mass
+   the errors alternate in sign and grow by a constant factor: |z| of z^{n+1} + r E(z) = 0, E the extrapolation and r
+   the mass ratio. */
 static void watch_alternation(spar_session *s) {
     static const double OPPOSITE = -0.8, LARGE = 0.5, SMALL = 0.05;
     enum { AT_LEAST = 2, SURE = 4 };

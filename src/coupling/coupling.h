@@ -1,5 +1,5 @@
-/* The coupling iteration of a session: the loads of all members stacked into one vector, the stop test, the
-   accelerator, and what a run shows of its coupling. */
+/* The coupling iteration of a session: stacked loads of all members, convergence test, accelerator, and the report
+   of a run. */
 #ifndef SPARI_COUPLING_H
 #define SPARI_COUPLING_H
 
@@ -8,78 +8,78 @@
 #include <spar/spar.h>
 
 typedef struct spari_coupling {
-    int64_t n; /* six for every node of every member */
+    int64_t n; /* six per node of every member */
     int members;
-    int weighs;        /* iterated: loads are weighed by the motion they cause */
-    int estimates;     /* explicit: what another iteration would move is told (option coupling.estimate) */
-    int weighed;       /* and were in the last check: `image` holds */
-    double *length;    /* of each member: moments count as moment over length, turns as turn times length */
-    double *unit;      /* of each member: the power of two next to 1/length, which scales moments without rounding */
-    double *x, *g;     /* iterated: loads used and come back, stacked, moments times unit */
-    double *shift;     /* weighing motion, with an added mass: what x and g have beyond the loads, likewise; or NULL */
-    double *image;     /* weighing motion: [2 n + 1], what g - x and g move, stacked; with a shift [3 n + 1], the loads
-                          themselves behind; and room for the ranks' status */
-    double *room;      /* likewise: loads of one member */
-    double *settled;   /* weighing motion, with columns: [2 n + 1], the residual against the settled fluid, its image */
-    double *predicted; /* iterated: loads the step began with, as they are */
-    double *motion;    /* motion test: places and quaternions [7] of the iteration before */
+    int weighs;     /* iterated: loads are measured by the motion they cause */
+    int estimates;  /* explicit: the effect of another iteration is estimated (option coupling.estimate) */
+    int weighed;    /* the same in the last check: `image` is valid */
+    double *length; /* per member: moments are divided by it, rotations multiplied */
+    double *unit;   /* per member: power of two closest to 1/length, which scales moments without rounding */
+    double *x, *g;  /* iterated: loads used and returned, stacked, moments times unit */
+    double *shift;  /* motion norm, with an added mass: contribution of the added mass to x and g; or NULL */
+    double *image;  /* motion norm: [2 n + 1] motion due to g - x and to g, stacked; with a shift [3 n + 1], also due to
+                       the loads; and room for the ranks' status */
+    double *room;   /* motion norm: loads of one member */
+    double *settled;   /* motion norm, with columns: [2 n + 1] residual relative to the settled fluid, and its image */
+    double *predicted; /* iterated: predicted loads of the step, unscaled */
+    double *motion;    /* motion test: positions and quaternions [7] of the iteration before */
     spari_accelerator *accelerator; /* iterated */
 
-    int iterations, most;    /* of the step under way or the last one; room of the next two */
-    double *residual, *size; /* change of the loads and the loads, [N], by iteration */
+    int iterations, most;    /* of the current or the last step; capacity of the next two */
+    double *residual, *size; /* change of the loads, and the loads, [N], by iteration */
     double moved, travelled; /* motion test: change of the motion in the iteration, and since t^n, [m] */
     double report[SPAR_REPORT_COUNT];
-    double bound; /* of the error of the prediction over dt^bound_order, which few steps pass; 0: none has been */
+    double bound; /* bound of the prediction error over dt^bound_order that few steps exceed; 0: none yet */
     int bound_order;
     double defect;                  /* of the last accepted step */
-    int grown;                      /* steps in which it has grown without a break */
-    int warned, calm;               /* has been told; steps since there was anything to tell */
-    double *missed;                 /* explicit: loads pushed less predicted ones, in the last step */
-    int turns;                      /* steps on end in which that has grown and turned about */
+    int grown;                      /* consecutive steps in which it has grown */
+    int warned, calm;               /* a warning was given; steps since the last reason for one */
+    double *missed;                 /* explicit: pushed minus predicted loads of the last step */
+    int turns;                      /* consecutive steps in which it has grown and changed sign */
     double log_growth, log_growth2; /* sums of the logarithms of its growth, and of their squares */
-    int unconverged, in_row; /* the step under way is accepted though it has not converged; and those before it */
+    int unconverged, in_row;        /* the current step is accepted unconverged; number of such steps before it */
 } spari_coupling;
 
-/* Memory for the settings in force but for the scheme. standing: for a solution that is no step, whose loads are
-   weighed by themselves. Local. */
+/* Allocates for the present settings but this scheme. standing: for a solution that is not a step, in the load norm.
+   Local. */
 int spari_coupling_create(spar_session *session, int scheme, int standing, spari_coupling **coupling);
-/* The same into the session; what there was goes. */
+/* The same for the session, replacing the existing one. */
 int spari_coupling_prepare(spar_session *session);
-/* One for a solution that is no step takes the place of the session's, which waits. Collective; or all is as it was.
-   The solution was found: the state has been set anew, and the steps begin anew with their coupling. Or it was not:
-   they go on with what they had; what is told of the last iteration is that of this one. */
+/* Replace the session's coupling by a temporary one for a solution that is not a step, and end it. Collective; on
+   failure nothing has changed. If the solution was found, the steps begin anew. If not, they continue with their own
+   coupling, and the reported last iteration is that of the solution. */
 int spari_coupling_lay_aside(spar_session *session, int scheme);
 void spari_coupling_keep(spar_session *session);
 void spari_coupling_take_back(spar_session *session);
-/* Whether the next check weighs loads by motion, as far as it is known before. */
+/* Whether the next check uses the motion norm, as far as is known in advance. */
 int spari_coupling_weighs(const spar_session *session);
-/* Whether the session's is of the settings in force and of the members there are now. Local, the same on every rank. */
+/* Whether the session's coupling fits the present settings and members. Local, the same on every rank. */
 int spari_coupling_fits(const spar_session *session);
 void spari_coupling_free(spari_coupling **coupling);
 void spari_coupling_begin(spar_session *session);
-/* Of its acceleration, what Newton may leave in the next solution for the coupling's sake; infinite: all. */
+/* Relative acceleration error that Newton may leave in the next solution because of the coupling; infinite: no
+   limit. */
 double spari_coupling_share(const spar_session *session);
-/* After the loads have been exchanged: whether they agree with those used, as the tolerances have it; and the next
-   loads to use, of a scheme that iterates. SPAR_ERR_NUMERIC: they are beyond numbers. */
+/* After the loads have been exchanged: whether they agree with those used, to the tolerances; and the next loads, if
+   the scheme iterates. SPAR_ERR_NUMERIC: they are not finite. */
 int spari_coupling_compare(spar_session *session, int *agreed);
 int spari_coupling_next(spar_session *session);
-/* Both, as a step wants it: done where they agree, or where it goes on with what there is. */
+/* Both, as a step needs it: done if they agree, or if the step goes on with the present loads. */
 int spari_coupling_check(spar_session *session, const char *call, int *done);
-/* The structure could not be solved with the loads: says so where these have grown from iteration to iteration.
-   Returns status. */
+/* Explains a failed structural solution if the loads have grown from iteration to iteration. Returns status. */
 int spari_coupling_solve_failed(spar_session *session, const char *call, int status);
-/* Whether the last check has found loads that are far from those used: what they do in a step tells nothing. */
+/* Whether the last check found loads far from those used, so that their effects in a step give no information. */
 int spari_coupling_is_rough(const spar_session *session);
-/* Residual and size of the last iteration; and where another rank has found them. */
+/* Residual and size of the last iteration; and sets them as found by another rank. */
 void spari_coupling_last(const spar_session *session, double *residual, double *size);
 void spari_coupling_record(spar_session *session, double residual, double size);
-/* Before the histories shift. */
+/* Call before the histories shift. */
 void spari_coupling_accept(spar_session *session);
-/* What the equations of motion are has changed: differences of earlier steps say nothing of the next ones. */
+/* The equations of motion have changed: discards differences of earlier steps. */
 void spari_coupling_forget(spar_session *session);
 void spari_coupling_reject(spar_session *session);
 
-/* Whether the motion is looked at too, for which it is kept. */
+/* Whether the motion is tested too, which needs the motion of the iteration before. */
 int spari_coupling_wants_motion(const spar_session *session);
 
 #endif

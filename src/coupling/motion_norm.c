@@ -1,13 +1,14 @@
-/* The norm of the coupling. Loads x move the structure by S x over the step, S its flexibility: the matrix of the step
-   inverted. In the norm sqrt(x . S x), the root of the work that x does on its own answer, a load that moves nothing
-   counts nothing, forces and moments add up in one unit, and the derivative of an added mass, -M S, is symmetric. */
+/* The motion norm of the coupling. Loads x move the structure by S x over the step; S is the flexibility, the
+   inverse of the step's matrix. The norm is sqrt(x . S x), the root of the work of x on its own response. A load
+   that moves nothing has no weight, forces and moments have one unit, and the derivative of an added mass, -M S, is
+   symmetric. */
 #include "motion_norm.h"
 
-#include "../comm/comm.h"
-#include "../member/structure.h"
 #include "../assembly/assembly.h"
-#include "../time/fidelity.h"
+#include "../comm/comm.h"
 #include "../exchange/sparse.h"
+#include "../member/structure.h"
+#include "../time/fidelity.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,18 +16,19 @@
 
 int spari_weighs_motion(const spar_session *s) {
     for (const spar_member *m = s->members; m; m = m->next) {
-        if (!m->row->moves) { /* how it answers is the host's to know */
+        if (!m->row->moves) { /* only the host knows its response */
             return 0;
         }
-        if (m->assembly && !(m->effects & SPAR_EFFECT_INERTIA)) { /* nor is there a mass to compare with what is held */
+        if (m->assembly &&
+            !(m->effects & SPAR_EFFECT_INERTIA)) { /* without mass there is no reference for constrained loads */
             return 0;
         }
     }
     return !s->norm_of_loads;
 }
 
-/* What member m, whose stacked loads begin at `at`, answers to loads x - from (from NULL: x), stacked. Those that
-   joints tie answer together, later: their loads stand in its place. */
+/* Response of member m, whose stacked loads begin at `at`, to the loads x - from (from NULL: x), stacked. Members
+   connected by joints are solved together later; here their loads are stored instead. */
 static int answer_stacked(const spari_weighed *c, spar_member *m, double unit, int64_t at, const double *x,
                           const double *from, double *out) {
     double *load = m->assembly ? out + at : c->room;
@@ -46,10 +48,9 @@ static int answer_stacked(const spari_weighed *c, spar_member *m, double unit, i
     return 0;
 }
 
-/* The motions of a tied member become what is stacked. To the flexibility comes LEAST of what its assembly's mass alone
-   would have: what joints hold moves nothing that would show how far such loads have gone, and a norm that does not see
-   them lets them go anywhere. A hundredth of what moves counts for them; with less, columns that are averaged still
-   carry loads on rigid beams off. */
+/* Stacks the motions of a connected member. LEAST times the flexibility of its assembly's mass alone is added. Loads
+   carried by constraints move nothing, and a norm that ignores them would not control them. They count a hundredth
+   of loads that move the structure. With less, averaged columns still carry loads on rigid beams away. */
 static void stack_tied(const spar_member *m, double unit, int64_t at, const double *x, const double *from,
                        double *out) {
     static const double LEAST = 1e-4;
@@ -60,8 +61,8 @@ static void stack_tied(const spar_member *m, double unit, int64_t at, const doub
     }
 }
 
-/* And what those do whose loads x[j] - from[j] stand there, x `apart` numbers from each other; from NULL: nothing is
-   taken off. */
+/* And those of members whose loads x[j] - from[j] are stored, the x `apart` numbers from each other; from NULL:
+   nothing is subtracted. */
 static int answer_tied(spar_session *s, const spari_weighed *c, int64_t count, const double *x, int64_t apart,
                        const double *const *from, double *image) {
     int rank = spari_comm_rank(s->comm), singular = 0, k = 0;
@@ -77,7 +78,7 @@ static int answer_tied(spar_session *s, const spari_weighed *c, int64_t count, c
     return singular;
 }
 
-/* The sum of (a - minus) b, minus NULL: nothing; and of what rounding may leave of one, the products' sizes. */
+/* Sum of (a - minus) b, minus may be NULL; *sizes: sum of the products' sizes, the scale of rounding errors. */
 static double sum_products(const double *a, const double *b, const double *minus, int64_t n, double *sizes) {
     double s = 0, size = 0;
     for (int64_t i = 0; i < n; i++) {
@@ -89,14 +90,14 @@ static double sum_products(const double *a, const double *b, const double *minus
     return s;
 }
 
-/* Of sums of products and of the images in them, over the products' sizes. Loads that move nothing may be many times
-   as large as those that do: they are in the sizes alone. */
+/* Rounding error of such sums and of the images in them, relative to the products' sizes. Loads that move nothing
+   may be many times as large as those that do: they are in the sizes alone. */
 static const double ROUNDING = 1e-13;
 
-/* Whether x . S y is y . S x, here of g - x and g, but for rounding: without that it is no inner product, and columns
-   that are square to each other in it can be nearly the same. A step's matrix is unsymmetric where beams turn far under
-   large loads, and by gyroscopic terms. Symmetric ones have been seen to 1e-11. Joints turn, with their loads, in each
-   step: one that goes back and forth between two norms learns less than in either. */
+/* Whether x . S y equals y . S x, here for g - x and g, apart from rounding. Otherwise it is no inner product, and
+   orthogonal columns can be nearly equal. The step's matrix is unsymmetric if beams rotate far under large loads,
+   and by gyroscopic terms. Symmetric ones are symmetric to 1e-11. Joints rotate with their loads in each step; a
+   scheme that alternates between two norms learns less than in either. */
 static int is_symmetric(const spari_weighed *c, int tied, const double *answer, const double *whole, double work,
                         double all) {
     static const double LOPSIDED = 1e-5, TIED = 1e-4;
@@ -120,7 +121,7 @@ int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, doubl
     }
     const double *const from[3] = {c->x, NULL, c->shift};
     singular = singular || answer_tied(s, c, c->shift ? 3 : 2, c->g, 0, from, c->image);
-    if (singular) { /* its numbers would make the sums none, on every rank */
+    if (singular) { /* its numbers would make the sums NaN, on every rank */
         c->image[0] = NAN;
     }
     SPARI_TRY(spari_comm_sum(spari_spread_core(s), c->image, images, SPAR_OK, s->message, sizeof s->message));
@@ -150,7 +151,7 @@ int spari_weigh_images(spar_session *s, const spari_weighed *c, int64_t count, c
         for (int64_t j = 0; j < count && m->owner == rank && m->row->answer; j++) {
             const double *x = loads + j * c->n;
             if (!is_zero(x + at, 6 * m->nodes) && answer_stacked(c, m, c->unit[k], at, x, NULL, image + j * c->n)) {
-                image[0] = NAN; /* not after spari_weigh found all well */
+                image[0] = NAN; /* cannot happen after spari_weigh succeeded */
             }
         }
     }
@@ -160,7 +161,7 @@ int spari_weigh_images(spar_session *s, const spari_weighed *c, int64_t count, c
     return spari_comm_sum(spari_spread_core(s), image, count * c->n, SPAR_OK, s->message, sizeof s->message);
 }
 
-/* Into off what of loads x - g member m feels, stacked. */
+/* The part of the loads x - g that member m responds to, into off, stacked. */
 static int felt_of(const spari_weighed *c, spar_member *m, double unit, const double *x, const double *g, double *off) {
     int64_t n = 6 * m->nodes;
     for (int64_t i = 0; i < n; i++) {
@@ -195,7 +196,7 @@ int spari_weigh_felt(spar_session *s, const spari_weighed *c, double *off, doubl
     return SPAR_OK;
 }
 
-/* Into image [n], what this rank's members answer to the loads that the prediction has missed. 1: there is none. */
+/* Response of this rank's members to the loads that the prediction missed, image [n]. 1: none. */
 static int answer_miss(spar_session *s, double *image, double *room) {
     int rank = spari_comm_rank(s->comm), singular = 0;
     double *at = image;
@@ -203,7 +204,7 @@ static int answer_miss(spar_session *s, double *image, double *room) {
         if (m->owner != rank || !m->row->answer) {
             continue;
         }
-        double *miss = m->assembly ? at : room; /* the tied ones' answer comes in its place */
+        double *miss = m->assembly ? at : room; /* replaced later by the response of connected members */
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
             miss[i] = m->load_pushed[i] - m->load_used[i];
         }

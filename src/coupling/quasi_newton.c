@@ -1,4 +1,5 @@
-/* Quasi-Newton from columns of earlier iterations, and what they tell of a fluid that contradicts itself. */
+/* IQN-ILS (Degroote, Bathe & Vierendeels 2009) with columns of earlier iterations, and its extension to fluids whose
+   results contradict each other: see schemes.h. */
 #include "quasi_newton.h"
 
 #include "../base/status.h"
@@ -11,8 +12,7 @@ int spari_accelerator_contradicted(const spari_accelerator *a) {
     return a->imaged && a->slots > 0 && a->memory.contradiction > SPARI_QUIET;
 }
 
-/* change, image := what the fluid answers by itself of the one in slot s, as if it did not remember, from v or w and
-   its image */
+/* change, image := the change in slot s without the fluid's memory, from v or w and its image */
 static void forget_lead(const spari_accelerator *a, int s, double *change, double *image) {
     double rho = spari_rho_of(a);
     if (rho > 0) {
@@ -38,7 +38,7 @@ double spari_columns_residual(const spari_accelerator *a, const double *x, const
 
 /* ---- columns ---- */
 
-/* out = in, each entry over the size of its kind */
+/* out = in, each entry divided by the size of its kind */
 static void over_sizes(const spari_accelerator *a, const double *in, double *out) {
     for (int64_t i = 0; i < a->n; i += a->period) {
         for (int k = 0; k < a->period && i + k < a->n; k++) {
@@ -47,13 +47,13 @@ static void over_sizes(const spari_accelerator *a, const double *in, double *out
     }
 }
 
-/* Of no use in the factorisation as long as the fluid remembers. */
+/* Such columns are not used in the factorisation as long as the fluid has memory. */
 static int is_unled(const spari_accelerator *a, int slot) {
     return spari_rho_of(a) > 0 && !a->column[slot].led;
 }
 
-/* Adds a column to the factorisation, by Gram-Schmidt done twice (Giraud et al. 2005: orthogonal to rounding). Returns
-   0, and adds nothing, where too little of it is new: no more than `filter`. */
+/* Adds a column to the factorisation by twofold Gram-Schmidt (Giraud et al. 2005: orthogonal to rounding). Returns 0
+   and adds nothing if at most `filter` of it is linearly independent. */
 int spari_columns_append(spari_accelerator *a, int slot, double filter) {
     int k = a->used;
     if (k == a->set.columns || is_unled(a, slot)) {
@@ -95,7 +95,7 @@ int spari_columns_append(spari_accelerator *a, int slot, double filter) {
     return 1;
 }
 
-/* Of what is new in a column less than the fluid's scatter is that. */
+/* An independent part of a column smaller than the fluid's scatter is scatter. */
 static double least_new(const spari_accelerator *a) {
     return a->imaged ? fmax(a->set.filter, a->memory.scatter) : a->set.filter;
 }
@@ -123,7 +123,7 @@ void spari_columns_factor(spari_accelerator *a) {
         int full = a->used == a->set.columns;
         if (!spari_columns_append(a, s, least_new(a))) {
             a->dropped += !full;
-            /* those taken out below SPARI_QUIET have nothing to say; above, they are averaged with */
+            /* columns filtered out below SPARI_QUIET are dropped; above, they are averaged with the others */
             if (a->memory.scatter <= SPARI_QUIET && !is_unled(a, s)) {
                 spari_columns_drop(a, s);
             }
@@ -137,10 +137,10 @@ static int free_slot(const spari_accelerator *a) {
             return s;
         }
     }
-    return -1; /* does not happen: at most `columns` are of this step, at most `columns` are older */
+    return -1; /* cannot happen: at most `columns` are of this step, at most `columns` are older */
 }
 
-/* The columns of this step, at most all but one: the oldest goes. */
+/* Leaves at most all columns but one of this step: the oldest goes. */
 static void limit_columns(spari_accelerator *a) {
     int count = 0, oldest = -1;
     for (int s = 0; s < a->slots; s++) {
@@ -162,7 +162,7 @@ static spari_secant secant_of(const spari_accelerator *a, int slot) {
                           spari_slot_iv(a, slot), spari_slot_iw(a, slot), led ? spari_slot_ib(a, slot) : NULL};
 }
 
-/* The columns in use that are older than `serial`, the newest first; of this step alone, or of all. */
+/* Columns in use older than `serial`, newest first; of this step alone, or of all. */
 static void gather_secants(spari_accelerator *a, double filter, int64_t serial, int of_step) {
     spari_secants_begin(a->secants, filter);
     for (int s = newest_before(a, serial); s >= 0; s = newest_before(a, serial)) {
@@ -174,11 +174,11 @@ static void gather_secants(spari_accelerator *a, double filter, int64_t serial, 
     }
 }
 
-/* What is new in a column, so that its direction counts as one. */
+/* Linearly independent part above which a column adds a direction. */
 static const double INDEPENDENT = 1e-2;
 
-/* How far the newest column is from what the others of the step make of it, as of a fluid that remembers rho: negative
-   where they cannot tell. */
+/* Error of the newest column relative to its prediction by the other columns of the step, with memory rho: negative
+   if they cannot predict it. */
 static double defect_of(spari_accelerator *a, int newest, double rho) {
     const spari_secant c = secant_of(a, newest);
     gather_secants(a, INDEPENDENT, a->column[newest].serial, 1);
@@ -187,13 +187,14 @@ static double defect_of(spari_accelerator *a, int newest, double rho) {
     return spari_secants_defect(a->secants, &c);
 }
 
-/* A column that fits forgets a part of what was seen before. */
+/* Decays earlier contradiction by a column that fits. */
 static double faded(double seen, double defect) {
     static const double MEMORY = 0.8;
     return defect >= 0 ? fmax(fmin(defect, 1), MEMORY * seen) : seen;
 }
 
-/* (T31). Returns what rho leaves of the asymmetry, over what is symmetric. Where too few pairs tell, rho stays. */
+/* Estimates rho (T31). Returns the asymmetry with rho relative to the symmetric part. With too few pairs rho is
+   unchanged. */
 static double recall(spari_accelerator *a) {
     static const double FADE = 0.95, EXPLAINED = 0.5, MOST_OF_IT = 0.95;
     enum { PAIRS = 3 };
@@ -210,8 +211,8 @@ static double recall(spari_accelerator *a) {
     return sqrt(fmax(left, 0) / told->symmetric);
 }
 
-/* What the newest column shows: how far it contradicts the others of the step, whether memory explains that, and what
-   is left then. */
+/* Evaluates the newest column: its contradiction with the others of the step, whether memory explains it, and the
+   remaining scatter. */
 static void weigh_answers(spari_accelerator *a, int newest) {
     spari_recollection *m = &a->memory;
     double defect = defect_of(a, newest, 0), was = m->rho, left = 1;
@@ -243,7 +244,7 @@ void spari_columns_learn(spari_accelerator *a) {
     for (int64_t i = 0; i < a->n; i++) {
         moved |= a->change[i] != 0;
     }
-    if (!moved) { /* the residual stalls: the column says nothing */
+    if (!moved) { /* the residual stalls: the column gives no information */
         a->dropped++;
         return;
     }
@@ -261,10 +262,10 @@ void spari_columns_learn(spari_accelerator *a) {
     }
 }
 
-/* (I - J)^-1 of an added mass lengthens nothing in the norm of the images: the solution is no farther from the loads
-   that the step began with than the first residual is long. A step much longer than that, or than the residual, comes
-   of columns that are wrong; or of an eigenvalue of J near 1. There a step that was cut takes as much off the residual
-   as the columns say, and the next one may be ten times longer. */
+/* Maximum length of a step. For an added mass, (I - J)^-1 does not lengthen in the norm of the images, so the
+   solution is within the first residual's length of the step's first loads. A step much longer than that, or than
+   the residual, comes from wrong columns, or from an eigenvalue of J near 1. In the latter case a limited step
+   reduces the residual as predicted, and the next one may be ten times longer. */
 static double longest(spari_accelerator *a) {
     static const double LONG = 10;
     int held = a->cut > 0 && a->residual <= (1 - 0.5 * a->cut) * a->cut_residual;
@@ -273,7 +274,7 @@ static double longest(spari_accelerator *a) {
     return a->reach * fmin(a->residual, a->residual_first);
 }
 
-/* Cuts a step made with alpha to that. */
+/* Limits a step made with alpha. */
 static void trust(spari_accelerator *a, const double *x, double *next) {
     double step = 0, most = longest(a), rho = spari_rho_of(a);
     for (int64_t i = 0; i < a->n; i++) {
@@ -304,8 +305,8 @@ static void back_substitute(spari_accelerator *a) {
     }
 }
 
-/* The same in the norm of the images, as x + (W - V) alpha + what the columns leave of the residual: a residual many
-   times larger than the loads leaves no rounding. */
+/* The same in the norm of the images, as x + (W - V) alpha + the residual outside the columns: no rounding error if
+   the residual is much larger than the loads. */
 static int quasi_newton_imaged(spari_accelerator *a, const double *x, const double *g, double *next) {
     int64_t n = a->n;
     int m = a->used;
@@ -335,8 +336,8 @@ static int quasi_newton_imaged(spari_accelerator *a, const double *x, const doub
     return 1;
 }
 
-/* next = g + W alpha, alpha the least squares of V alpha = -(g - x): the loads whose residual is as small as the
-   columns know how. `next` may be x. Returns 0 where that gives no numbers. */
+/* next = g + W alpha, alpha the least squares of V alpha = -(g - x). `next` may be x. Returns 0 if the result is not
+   finite. */
 static int quasi_newton(spari_accelerator *a, const double *x, const double *g, double *next) {
     int m = a->used;
     if (a->imaged) {
@@ -363,7 +364,7 @@ static int quasi_newton(spari_accelerator *a, const double *x, const double *g, 
     return 1;
 }
 
-/* next by the derivative that fits all columns. Returns 0 where that gives no numbers. */
+/* Step with the derivative fitted to all columns. Returns 0 if the result is not finite. */
 static int step_by_average(spari_accelerator *a, const double *x, const double *g, double *next) {
     static const double PART = 0.5, FILTER = 0.3;
     double *r = a->change;
@@ -381,8 +382,8 @@ int spari_columns_next(spari_accelerator *a, const double *x, const double *g, d
 
 /* ---- from step to step ---- */
 
-/* Whether column and image in slot s belong to another flexibility S than g - x and g with theirs: v . S y is not
-   y . S v. */
+/* Whether column and image in slot s belong to another flexibility S than g - x and g with theirs: v . S y differs
+   from y . S v. */
 static int is_of_another(const spari_accelerator *a, int s, const double *x, const double *g, const double *image) {
     static const double OFF = 0.01;
     const double *v = spari_slot_v(a, s), *iv = spari_slot_iv(a, s);
@@ -396,7 +397,7 @@ static int is_of_another(const spari_accelerator *a, int s, const double *x, con
     return !(r * r <= OFF * OFF * square * residual) || !(whole * whole <= OFF * OFF * square * size);
 }
 
-/* Copies a column's images, and what leads it where there is that, to `at`, or back; what comes behind. */
+/* Copies a column's images, and those of its lead if any, to `at`, or back; returns the position after them. */
 static double *copy_images(const spari_accelerator *a, int s, int led, double *at, int back) {
     double *const own[] = {spari_slot_iv(a, s), spari_slot_iw(a, s), spari_slot_b(a, s), spari_slot_ib(a, s)};
     for (int k = 0; k < (led ? 4 : 2); k++, at += a->n) {
@@ -405,7 +406,8 @@ static double *copy_images(const spari_accelerator *a, int s, int led, double *a
     return at;
 }
 
-/* Before they are overwritten: of each slot whether its column is led (-1: there is none), then the images. */
+/* Saves the images before they are overwritten: per slot whether its column has a lead (-1: no column), then the
+   images. */
 static void keep_images(spari_accelerator *a) {
     int64_t count = a->slots;
     for (int s = 0; s < a->slots; s++) {
@@ -426,7 +428,7 @@ void spari_columns_restore(spari_accelerator *a) {
             at = copy_images(a, s, a->column[s].led, at, 1);
         }
     }
-    a->renewed = a->before.taken < 0; /* there was no memory for them */
+    a->renewed = a->before.taken < 0; /* no memory for them */
 }
 
 int spari_columns_renew(spari_accelerator *a, const double *x, const double *g, const spari_images *images) {
@@ -442,7 +444,7 @@ int spari_columns_renew(spari_accelerator *a, const double *x, const double *g, 
     keep_images(a);
     for (int s = 0; s < a->slots; s++) {
         spari_column *c = a->column + s;
-        c->led &= spari_accelerator_contradicted(a); /* else nobody asks for it */
+        c->led &= spari_accelerator_contradicted(a); /* otherwise unused */
         led |= c->led;
         if (c->state == SPARI_FREE) {
             memset(spari_slot_v(a, s), 0, bytes);

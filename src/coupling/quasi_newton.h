@@ -1,37 +1,38 @@
-/* What an accelerator is made of, for the three files that share it: accelerator.c (its life, the step, the schemes),
-   quasi_newton.c (quasi-Newton) and accelerator_state.c (save and load). */
+/* Data of an accelerator, shared by accelerator.c (create, step, schemes), quasi_newton.c (quasi-Newton) and
+   accelerator_state.c (save and load). */
 #ifndef SPARI_COLUMNS_H
 #define SPARI_COLUMNS_H
 
+#include "../algebra/secants.h"
 #include "../time/tangent_snapshot.h"
 #include "schemes.h"
-#include "../algebra/secants.h"
 
 #include <math.h>
 #include <stdint.h>
 
-/* What a column is: memory for one, in use, or out of use until the step ends (and then gone, or back after reject). */
+/* State of a column slot: free, in use, or out of use until the step ends (resting: returns; dropped: freed, or
+   returns after reject). */
 typedef enum spari_column_state { SPARI_FREE, SPARI_LIVE, SPARI_RESTING, SPARI_DROPPED } spari_column_state;
 
 typedef struct spari_column {
     spari_column_state state;
-    int64_t step;   /* of the accelerator's own count: in which it was made */
-    int64_t serial; /* the larger the newer */
+    int64_t step;   /* step in which it was made, by the accelerator's own count */
+    int64_t serial; /* increasing with age of creation: the largest is the newest */
     double dt;
     int led; /* imaged: the change of g before it is known */
 } spari_column;
 
-/* Ratios of differences, by weight: what they come to, and how far they agree. */
+/* Weighted ratios of differences: their mean and their spread. */
 typedef struct spari_ratios {
     double weight, square, sum, sum2; /* sums of w, w^2, w r, w r^2 */
 } spari_ratios;
 
-/* How far the fluid's answers are a function of the loads. */
+/* Deviation of the fluid's results from a function of the loads. */
 typedef struct spari_recollection {
-    double contradiction; /* of its answers, relative to their change */
-    double rho;           /* the part of a change that comes again with the next answer; 0: none, or not known */
-    double scatter;       /* the contradiction that rho leaves */
-    spari_asymmetry told; /* of the columns, older ones fading */
+    double contradiction; /* of its results, relative to their change */
+    double rho;           /* fraction of a change that recurs in the next result; 0: none, or unknown */
+    double scatter;       /* contradiction that rho does not explain */
+    spari_asymmetry told; /* of the columns; older ones decay */
 } spari_recollection;
 
 struct spari_accelerator {
@@ -43,36 +44,38 @@ struct spari_accelerator {
     int64_t step, serial;
     int iteration, dropped;
     double dt, ratio;
-    spari_ratios ratios;        /* of this step, weighed by the roots of the differences' lengths */
-    spari_ratios ratios_before; /* of those accepted, each over its largest weight, and fading */
+    spari_ratios ratios;        /* of this step, weighted by the roots of the differences' lengths */
+    spari_ratios ratios_before; /* of accepted steps, each relative to its largest weight, decaying */
     double most_weight;
-    double omega, omega_accepted; /* of Aitken: in use, and at the end of the last accepted step (0: none) */
+    double omega, omega_accepted; /* Aitken factor: in use, and at the end of the last accepted step (0: none) */
 
     double size[2], weight[2]; /* of forces and moments */
     double *x, *g;             /* of the iteration before */
-    double *image;             /* [2 n] imaged: of its g - x and g */
-    int imaged;                /* in the step: inner products are those of the images */
-    double *change, *answer;   /* [2][n + 1] of g - x and of g since the iteration before; their images */
-    int renewed;               /* images of columns, for the step under way */
-    spari_snapshot before;     /* as they were before that */
+    double *image;             /* [2 n] imaged: images of its g - x and g */
+    int imaged;                /* in this step: inner products use the images */
+    double *change, *answer;   /* [2][n + 1] changes of g - x and of g since the iteration before; their images */
+    int renewed;               /* images of columns were recomputed for this step */
+    spari_snapshot before;     /* images before that */
     struct {
         int imaged;
         spari_ratios ratios;
-    } begun; /* `imaged` and `ratios_before` as the step began */
+    } begun; /* `imaged` and `ratios_before` at the beginning of the step */
     spari_recollection memory, memory_accepted;
-    double *lead;                                    /* [2][n] imaged: the change of g that the next follows; image */
-    double *last;                                    /* [n] imaged: g at the end of the step before */
-    int led, ended;                                  /* whether there is a lead, and a last */
-    double residual, residual_first, residual_least; /* in the norm of the images: now, and of the step */
-    int rises;                                       /* iterations since it was far above the least */
-    double reach;                                    /* a step is no longer than so many residuals */
-    double cut, cut_residual; /* the last step was cut to so much of its length (0: it was not), from that residual */
+    double *lead;   /* [2][n] imaged: the change of g before the next one; its image */
+    double *last;   /* [n] imaged: g at the end of the step before */
+    int led, ended; /* whether there is a lead, and a last */
+    double residual, residual_first,
+        residual_least; /* in the norm of the images: current, first and smallest of the step */
+    int rises;          /* iterations since it was far above the smallest */
+    double reach;       /* maximum step in units of the residual */
+    double cut,
+        cut_residual; /* the last step was limited to this fraction of its length (0: not limited), at this residual */
 
-    int slots;              /* twice the columns: those at rest or dropped come back when the step is rejected */
+    int slots;              /* twice the columns: resting and dropped ones return after reject */
     spari_column *column;   /* [slots] */
     double *v, *w;          /* [slots][n] differences of the residual g - x, and of g */
     double *iv, *iw;        /* imaged: their images */
-    double *b, *ib;         /* imaged: the change of g before, and its image */
+    double *b, *ib;         /* imaged: the preceding change of g, and its image */
     double *q, *r;          /* [columns][n] and [columns][columns], r by columns: weighted v = q r */
     double *p;              /* imaged: images of q */
     spari_secants *secants; /* imaged */
@@ -81,10 +84,10 @@ struct spari_accelerator {
     int used;               /* columns of q */
 };
 
-/* The images are again as the step began. */
+/* Restores the images of the beginning of the step. */
 void spari_columns_restore(spari_accelerator *a);
 
-/* ---- vectors: plain sums in a fixed order, so that all ranks get the same bits whatever their processors ---- */
+/* ---- vectors: plain sums in a fixed order, for the same bits on ranks with different processors ---- */
 
 static inline double spari_dot(const double *a, const double *b, int64_t n) {
     double s[4] = {0, 0, 0, 0};
@@ -130,38 +133,37 @@ static inline double *spari_slot_ib(const spari_accelerator *a, int slot) {
     return a->ib + slot * a->n;
 }
 
-/* The root of a . image, 0 where rounding makes that negative. */
+/* sqrt(a . image), 0 if rounding makes it negative. */
 static inline double spari_size_in(const double *a, const double *image, int64_t n) {
     return sqrt(fmax(spari_dot(a, image, n), 0));
 }
 
 /* ---- quasi_newton.c ---- */
 
-/* Factors anew, the newest columns first, so that the filter and the limit on their number take out old ones. */
+/* Factors anew, newest columns first, so that the filter and the limit on their number remove old ones. */
 void spari_columns_factor(spari_accelerator *a);
-/* Adds the column in a slot to the factorisation. Returns 0, and adds nothing, where no more than `filter` of it is
-   new. */
+/* Adds the column in a slot to the factorisation. Returns 0 and adds nothing if at most `filter` of it is linearly
+   independent. */
 int spari_columns_append(spari_accelerator *a, int slot, double filter);
-/* Out of use: a column of this step for good, an older one until it is known whether the step is accepted. */
+/* Takes a column out of use: one of this step for good, an older one until the step is accepted or rejected. */
 void spari_columns_drop(spari_accelerator *a, int slot);
-/* The columns of earlier steps in the norm of this one, anew where the structure has turned, or stiffened, so far that
-   it tells. A status: that of images->of. */
+/* Converts the columns of earlier steps to the norm of this one; recomputes their images if the structure has
+   rotated or stiffened enough to matter. Returns the status of images->of. */
 int spari_columns_renew(spari_accelerator *a, const double *x, const double *g, const spari_images *images);
-/* The column of the last two iterations. */
+/* Adds the column of the last two iterations. */
 void spari_columns_learn(spari_accelerator *a);
-/* By the columns of this step and of earlier ones, which are averaged where they contradict each other. 0: no loads. */
+/* Next loads from the columns of this and earlier steps, averaged if they contradict each other. 0: not finite. */
 int spari_columns_next(spari_accelerator *a, const double *x, const double *g, double *next);
-/* The step is accepted: what was dropped goes, what rested comes back, no more stay than there may be. */
+/* Accepts the step: frees dropped columns, restores resting ones, and limits their number. */
 void spari_columns_accept(spari_accelerator *a);
-/* r := the residual with what comes again of the last change, (T31); returns its length. */
+/* r := the residual plus the recurring part of the last change, (T31); returns its length. */
 double spari_columns_residual(const spari_accelerator *a, const double *x, const double *g, const double *image,
                               double *r);
 
-/* Contradiction of answers (spari_recollection) above SPARI_QUIET is looked at; scatter above SPARI_LOUD is averaged.
- */
+/* Contradiction (spari_recollection) above SPARI_QUIET is evaluated; scatter above SPARI_LOUD is averaged. */
 static const double SPARI_QUIET = 1e-3, SPARI_LOUD = 0.05;
 
-/* How much of a change of the fluid's answer comes again with the next; 0: none, or not known. */
+/* Fraction of a change of the fluid's result that recurs in the next; 0: none, or unknown. */
 static inline double spari_rho_of(const spari_accelerator *a) {
     return a->imaged ? a->memory.rho : 0;
 }

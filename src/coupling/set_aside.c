@@ -1,5 +1,5 @@
-/* The coupling of a solution that is no step: columns and weights are of it alone, those of the steps know another map
-   and wait. */
+/* Temporary coupling for a solution that is not a step: it has its own columns and weights, because those of the
+   steps belong to another map. See coupling.h. */
 #include "coupling.h"
 
 #include "../comm/enter.h"

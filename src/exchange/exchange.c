@@ -1,10 +1,10 @@
-/* Between the ranks: loads up, motion down. */
+/* Exchange between ranks: sums loads, distributes motion. See exchange.h. */
 #include "exchange.h"
 
+#include "../assembly/assembly.h"
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../member/structure.h"
-#include "../assembly/assembly.h"
 #include "motion_block.h"
 #include "session_private.h"
 #include "sparse.h"
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a rank tells the others, with its status. */
+/* Numbers that a rank sends to the others, with its status. */
 static int64_t block_of_rank(const spar_session *s, int rank) {
     int64_t n = 1;
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -24,7 +24,7 @@ static int64_t block_of_rank(const spar_session *s, int rank) {
     return n;
 }
 
-/* Members, and what joints tie them to whom, may have come since the blocks were laid out. */
+/* Whether members or joints were added since the blocks were laid out. */
 static int fits_blocks(const spar_session *s) {
     const int64_t *first = s->own->first;
     int fits = 1;
@@ -40,7 +40,7 @@ static void free_bins(spar_session *s) {
     s->own->bins_room = 0;
 }
 
-/* Never less room than there was: a trial goes back to members with more nodes. */
+/* Never shrinks: a trial returns to members with more nodes. */
 static int make_bins(spar_session *s, int64_t count) {
     if (s->own->bins_room < count) {
         free_bins(s);
@@ -84,7 +84,7 @@ int spari_session_seal(spar_session *s, int status) {
         status = make_bins(s, count + 2);
     }
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
-    if (status != SPAR_OK) { /* on all ranks or on none: spari_session_is_sealed answers alike */
+    if (status != SPAR_OK) { /* on all ranks or none: spari_session_is_sealed must agree */
         free_bins(s);
     }
     return status;
@@ -103,7 +103,7 @@ int spari_session_pushes(spar_session *s, const char *call) {
     return SPAR_OK;
 }
 
-/* The sum of what the fluids have, whatever they and their nodes lie on. */
+/* Reproducible sum of the fluids' loads, in any distribution of fluids and nodes. */
 static int sum_bins(spar_session *s, int64_t count, double pushes) {
     spari_bins *bins = s->own->bins;
     memset(bins, 0, (size_t)(count + 2) * sizeof *bins);
@@ -121,7 +121,7 @@ static int sum_bins(spar_session *s, int64_t count, double pushes) {
     return SPAR_OK;
 }
 
-/* Where ranks know different parts: whether anything was pushed is asked of all of them. */
+/* If ranks know different parts: asks all of them whether anything was pushed. */
 static int exchange_apart(spar_session *s, int *pushed) {
     double pushes[2] = {0, 0};
     for (const spar_fluid *f = s->fluids; f && pushed; f = spari_fluid_next(f)) {
@@ -180,7 +180,7 @@ void spari_session_take_loads(const spar_session *s, const spar_member *m, doubl
     spari_joints_on_external(m, load);
 }
 
-/* What this rank has found, into its block. */
+/* Writes this rank's results into its block. */
 static void pack_own(spar_session *s, int rank, double *at) {
     for (spar_member *m = s->members; m; m = m->next) {
         at += m->owner == rank ? spari_block_pack(m, at) : 0;

@@ -1,9 +1,9 @@
-/* What goes between the ranks of a member that is solved: see motion_block.h. */
+/* Data of a solved member that are sent between ranks: see motion_block.h. */
 #include "motion_block.h"
 
 #include "../member/body.h"
 
-/* Of a damped member the energy dissipated in the step goes along. */
+/* For a damped member the dissipated energy of the step is included. */
 static int is_damped(const spar_member *m) {
     return (m->effects & SPAR_EFFECT_DAMPING) != 0;
 }
@@ -12,7 +12,7 @@ int64_t spari_block_size(const spar_member *m) {
     return m->body ? 19 * (int64_t)m->body->unique + is_damped(m) : 0;
 }
 
-/* One member's block: unknowns' q, v, a; dissipation. */
+/* Block of one member: q, v, a of the unknowns; dissipation. */
 int64_t spari_block_pack(const spar_member *m, double *to) {
     int64_t n = m->body ? m->body->unique : 0;
     if (n > 0) {

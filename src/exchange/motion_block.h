@@ -1,13 +1,13 @@
-/* What the rank that solves a member tells others of it: the motion after of its unknowns' nodes, and where it is
-   damped the energy dissipated in the step. */
+/* Data of a solved member that its owner sends to other ranks: the motion `after` of its unique nodes and, if
+   damped, the dissipated energy of the step. */
 #ifndef SPARI_BLOCK_H
 #define SPARI_BLOCK_H
 
 #include "../member/structure.h"
 
-/* How many doubles; 0 of a member that all ranks move alike. */
+/* Size in doubles; 0 for a member that all ranks know. */
 int64_t spari_block_size(const spar_member *member);
-/* From the motion after, and back into it. The same answer. */
+/* Pack the motion `after`, and unpack it. Return the size. */
 int64_t spari_block_pack(const spar_member *member, double *to);
 int64_t spari_block_unpack(spar_member *member, const double *from);
 

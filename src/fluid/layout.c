@@ -1,14 +1,14 @@
-/* Where hosts keep triples: packed, spaced out in structures, or component by component. */
+/* Layout of the host's triples: packed, inside structures, or component by component. */
 #include "state.h"
 
-/* Largest number that a layout may lead to. */
+/* Largest index, in bits, that a layout may reach. */
 enum { LAYOUT_BITS = 58 };
 
 const spari_layout *spari_fluid_layout(const spar_fluid *fluid, int which) {
     return fluid->layout[which].node > 0 ? &fluid->layout[which] : NULL;
 }
 
-/* Whether two components share a place: node j's and a later one's, one or two components apart. */
+/* Whether two components overlap: of node j and a later node, one or two components apart. */
 static int overlaps(int64_t n, int64_t node, int64_t component) {
     for (int apart = 1; apart <= 2; apart++) {
         if (apart * component % node == 0 && apart * component / node < n) {

@@ -1,4 +1,4 @@
-/* Nodal loads of a fluid from step to step, and as reproducible sums. */
+/* Nodal loads of a fluid from step to step, and their reproducible sums. */
 #include "state.h"
 
 #include "../base/status.h"
@@ -28,7 +28,7 @@ void spari_fluid_drop_bins(spar_fluid *fluid) {
     drop_some(fluid, 0, SPARI_OF_COUNT - 1);
 }
 
-/* Sums of these kinds, of the values that there are; value NULL: what is in them does not matter. */
+/* Allocates sums of kinds first to last for the existing values; value NULL: their content is irrelevant. */
 static int make_some(spar_fluid *fluid, int first, int last, const double *const *value) {
     int64_t n = (int64_t)count_loads(fluid);
     if (fluid->bins[first]) {

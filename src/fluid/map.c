@@ -1,7 +1,7 @@
-/* The map of a fluid's nodes: where their feet are, and what the host may ask of it. */
-#include "../base/thread_pool.h"
-#include "../base/poison.h"
+/* The map of a fluid's nodes: nearest points on the member, and queries about them. */
 #include "../base/environment.h"
+#include "../base/poison.h"
+#include "../base/thread_pool.h"
 #include "../math/rotation.h"
 #include "../transfer/projection.h"
 #include "state.h"
@@ -11,7 +11,7 @@
 
 static const char *const set_name[2] = {"motion", "force"};
 
-/* Memory and coefficients that depend on the member alone; kept from map to map. */
+/* Memory and coefficients that depend on the member alone; kept between maps. */
 static int prepare_member(spar_fluid *fluid) {
     const spar_member *m = fluid->member;
     int64_t nodes = m->nodes;
@@ -87,7 +87,7 @@ void spari_fluid_series(const double *c, int modes, int offset, int n, double xi
     }
 }
 
-/* Reference foot and its orientation (T2). */
+/* Reference position and orientation of a nearest point (T2). */
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]) {
     int modes = fluid->member->per_element;
     const double *c = fluid->reference + (ptrdiff_t)element * modes * SPARI_FIELDS;
@@ -104,7 +104,8 @@ void spari_fluid_frame(const spar_fluid *fluid, const spari_node_set *set, int64
     }
 }
 
-/* Element and local coordinate of a place along the whole line; a joint belongs to the lower element. */
+/* Element and local coordinate of a coordinate along the whole line; an element boundary belongs to the lower
+   element. */
 static int locate(const spar_member *m, double xi, double *local) {
     double eta = 0.5 * (xi + 1) * m->elements;
     int e = (int)ceil(eta) - 1;
@@ -113,7 +114,7 @@ static int locate(const spar_member *m, double xi, double *local) {
     return e;
 }
 
-/* Feet of a set, by node. */
+/* Nearest points of a set, by node. */
 typedef struct feet {
     int *element;
     double *xi, *con;
@@ -169,7 +170,7 @@ static int no_memory_to_map(const spar_fluid *fluid, const char *caller, int64_t
                               set_name[which]);
 }
 
-/* Ties one set to the line, into *made; nothing of the fluid changes. */
+/* Maps one set into *made; the fluid is not changed. */
 static int map_set(const spar_fluid *fluid, int which, const spari_line *line, spari_nodes **made, const char *caller) {
     const spar_member *m = fluid->member;
     const spari_node_set *set = &fluid->set[which];
@@ -210,7 +211,7 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
     return SPAR_OK;
 }
 
-/* A history for n nodes in place of the old one. */
+/* Replaces the history by one for n nodes. */
 int spari_fluid_renew_history(spar_fluid *fluid, int64_t n) {
     spari_history *h = spari_history_create(n, fluid->member->session->predictor);
     if (!h) {
@@ -221,15 +222,15 @@ int spari_fluid_renew_history(spar_fluid *fluid, int64_t n) {
     return SPAR_OK;
 }
 
-/* Sections imply it (a blade element host has one set of nodes, an actuator line asks for their forces), unless the
-   host has said which effects it wants. */
+/* Sections imply node forces (a blade-element host has one set of nodes, an actuator line needs their forces),
+   unless the host has chosen the effects. */
 static int keeps_forces(const spar_fluid *fluid) {
     const spar_member *m = fluid->member;
     return fluid->history || (m->effects & SPAR_EFFECT_FLUID_HISTORY) ||
            (spari_fluid_set(fluid, SPAR_NODES_FORCE)->sections && !m->effects_given);
 }
 
-/* What is kept by force node begins anew with zeros, all of it or nothing. */
+/* Resets all data per force node to zero, or nothing if it fails. */
 static int renew_by_node(spar_fluid *fluid, int64_t n) {
     spari_states *made = fluid->states ? spari_states_create(n, fluid->states->width) : NULL;
     int status = fluid->states && !made ? SPAR_ERR_MEMORY : SPAR_OK;
@@ -249,7 +250,7 @@ static void take_nodes(spari_node_set *set, spari_nodes *nodes) {
     spari_node_set was = *set;
     *set = (spari_node_set){
         .sections = was.sections, .n = nodes->n, .nodes = nodes, .weight = was.weight, .home = was.home};
-    was.weight = was.home = NULL; /* they are by node, whatever the line */
+    was.weight = was.home = NULL; /* they belong to nodes, whatever the line */
     spari_node_set_clear(&was);
 }
 
@@ -288,7 +289,7 @@ int spar_fluid_map(spar_fluid *fluid) {
     return status;
 }
 
-/* The mapped set, or a refusal: *nodes NULL means there is none and nothing to do. */
+/* The mapped set, or a refusal: *nodes NULL means an empty set. */
 int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, const spari_nodes **nodes) {
     const spari_node_set *set = spari_fluid_set(fluid, which);
     *nodes = set->nodes;

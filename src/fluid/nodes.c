@@ -1,4 +1,4 @@
-/* The nodes of a fluid: created, described by the host, destroyed. */
+/* Fluids and their nodes: create, describe, destroy. */
 #include "../base/environment.h"
 #include "fluid.h"
 
@@ -20,7 +20,7 @@ int spari_fluid_refuse(const spar_fluid *fluid, int status, const char *caller, 
     return spari_fail(fluid->member->session, status, "%s: fluid '%s' of member '%s': %s", caller, fluid->name,
                       fluid->member->name, text);
 }
-/* ---- life ---- */
+/* ---- create and destroy ---- */
 
 int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid) {
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
@@ -41,7 +41,7 @@ int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid)
     }
     strcpy(copy, name);
     made->member = member, made->name = copy;
-    spar_fluid **end = &session->fluids; /* at the end: loads are added in order of creation */
+    spar_fluid **end = &session->fluids; /* appended: loads are added in order of creation */
     while (*end) {
         end = &(*end)->next;
     }
@@ -190,7 +190,7 @@ static void take_out(spar_fluid *fluid) {
     spari_fluid_free(fluid);
 }
 
-/* In a trial run it has no loads and says nothing any more, and waits for the way back. */
+/* A fluid destroyed during a trial: it has no loads from now on, and is freed when the trial has ended. */
 static void fall_silent(spar_fluid *fluid) {
     double *load[] = {fluid->load, fluid->load_new, fluid->load_accepted};
     for (int k = 0; k < 3 && fluid->load; k++) {
@@ -241,7 +241,7 @@ const char *spar_fluid_get_name(const spar_fluid *fluid) {
     return fluid ? fluid->name : "";
 }
 
-/* ---- what the host gives ---- */
+/* ---- nodes from the host ---- */
 
 int spari_fluid_check_idle(const spar_fluid *fluid, const char *caller) {
     if (fluid->member->session->phase != SPARI_IDLE) {
@@ -266,7 +266,7 @@ int spari_fluid_check_values(const spar_fluid *fluid, const char *caller, const 
     return SPAR_OK;
 }
 
-/* The nodes of one set go, before others come. Sections that served both stay with the other set. */
+/* Clears one set before it is replaced. Sections that served as both sets stay with the other. */
 static void empty_set(spar_fluid *fluid, int which) {
     if (fluid->shared) {
         fluid->shared = 0;
@@ -279,7 +279,7 @@ static void empty_set(spar_fluid *fluid, int which) {
     fluid->layout[which] = (spari_layout){0, 0}; /* it was made for their number */
 }
 
-/* A copy of x [n], zeros for NULL. */
+/* A copy of x [n], or zeros if NULL. */
 static int set_places(spar_fluid *fluid, int which, int64_t n, const double *x, const char *caller) {
     SPARI_TRY(spari_fluid_check_idle(fluid, caller));
     if (n < 0 || n > SPARI_MOST || (n > 0 && !x)) {
@@ -309,7 +309,7 @@ int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x) {
     return set_places(fluid, SPAR_NODES_FORCE, n, x, __func__);
 }
 
-/* Copies of the host's sections, to be mapped; nothing of the fluid changes. */
+/* Copies the host's sections, to be mapped later; the fluid is not changed. */
 static int copy_sections(const spar_fluid *fluid, int64_t n, const double *xi, const double *offset,
                          spari_node_set *set, const char *caller) {
     SPARI_TRY(spari_fluid_check_idle(fluid, caller));

@@ -1,11 +1,10 @@
-/* Loads that come several times in a step, each over a part of it: see docs/theory.md, (T13).
-
-   A part's load is its mean over the part. What the structure asks for is the load at t^{n+1}, between which and that
-   at t^n it takes a straight line. The line of least squares through the parts has their mean m, so their impulse, and
-   tends to e at the step's end; the mean alone would lag by half a step. In use is f^{n+1} = m + (e - e^n) / 2: of
-   second order, and since sum (f^n + f^{n+1}) / 2 = sum m + (e^{N+1} + e^N) / 4 - m / 2, terms of the two ends that
-   cancel for steady loads, the impulse of all parts is kept. It is not 2 m - f^n, which keeps that of each step and
-   rings. */
+/* Loads pushed several times in a step, each over a part of it: see docs/theory.md, (T13).
+   The load of a part is its mean over the part. The structure needs the load at t^{n+1}; between t^n and t^{n+1} it
+     interpolates linearly. The least-squares line through the parts has their mean m, so it conserves their impulse,
+     and tends to e at the end of the step. The mean alone would lag by half a step.
+   The load in use is f^{n+1} = m + (e - e^n) / 2, which is of second order. Because sum (f^n + f^{n+1}) / 2 = sum m
+     + (e^{N+1} + e^N) / 4 - m / 2, where the end terms cancel for steady loads, it conserves the impulse of all
+     parts. The choice 2 m - f^n conserves the impulse of each step, but oscillates. */
 #include "state.h"
 
 #include <stdlib.h>
@@ -44,7 +43,7 @@ int spari_parts_prepare(spar_fluid *fluid) {
     return SPAR_OK;
 }
 
-/* Room for n forces or moments. */
+/* Allocates sums of n forces or moments. */
 static int make_sums(spari_parts *p, int kind, int64_t n) {
     if (p->sums[kind][0] && p->n[kind] == n) {
         return SPAR_OK;
@@ -69,7 +68,7 @@ static int make_room(spar_fluid *fluid, int64_t n, int with_moment) {
     SPARI_TRY(spari_parts_prepare(fluid));
     spari_parts *p = fluid->parts;
     if (p->n[FORCE] != n) {
-        p->theta = 0; /* other nodes than the parts were of */
+        p->theta = 0; /* the parts belonged to other nodes */
     }
     SPARI_TRY(make_sums(p, FORCE, n));
     return with_moment ? make_sums(p, MOMENT, n) : SPAR_OK;
@@ -77,8 +76,7 @@ static int make_room(spar_fluid *fluid, int64_t n, int with_moment) {
 
 /* ---- a part ---- */
 
-/* The sums with a part from `last` to `theta` in them, into the room for the next. before: there were parts; no load:
-   zeros. */
+/* Adds a part from `last` to `theta` to the sums, in the spare arrays. before: there were parts; no load: zeros. */
 static void sum_up(spari_parts *p, int kind, int before, double last, double theta, spari_source load) {
     int64_t n = 3 * p->n[kind];
     const double *old = p->sums[kind][0], length = theta - last, middle = 0.5 * (theta + last);
@@ -90,7 +88,7 @@ static void sum_up(spari_parts *p, int kind, int before, double last, double the
     }
 }
 
-/* Means over [0, theta] of the parts (at_end 0), or the ends there of the lines of least squares. */
+/* Means of the parts over [0, theta] (at_end 0), or the values at theta of the least-squares lines. */
 static void see(spari_parts *p, int kind, double theta, int at_end) {
     int64_t n = 3 * p->n[kind];
     const double *sum = p->sums[kind][1];
@@ -111,7 +109,7 @@ int spari_parts_add(spar_fluid *fluid, int64_t n, double theta, spari_source for
     const int has_moment = moment.d || moment.f;
     SPARI_TRY(make_room(fluid, n, has_moment));
     spari_parts *p = fluid->parts;
-    double last = theta > p->theta ? p->theta : 0; /* else the fluid goes through the step again */
+    double last = theta > p->theta ? p->theta : 0; /* otherwise the fluid repeats the step */
     int before = last > 0, had_moment = before && p->moment;
     sum_up(p, FORCE, before, last, theta, force);
     p->moment_next = had_moment || has_moment;
@@ -150,6 +148,6 @@ void spari_parts_accept(spar_fluid *fluid) {
         p->end[0] = p->end[1], p->end[1] = old;
         fluid->bins[SPARI_OF_BEGIN] = fluid->bins[SPARI_OF_END], fluid->bins[SPARI_OF_END] = sums;
     }
-    p->ended = p->theta > 0 || (p->ended && !p->plain); /* loads that nobody pushed stay as they were */
+    p->ended = p->theta > 0 || (p->ended && !p->plain); /* loads that were not pushed stay unchanged */
     spari_parts_begin(fluid);
 }

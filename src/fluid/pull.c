@@ -1,6 +1,6 @@
-/* Motion of members, out to the fluid's nodes. */
-#include "../base/thread_pool.h"
+/* Pulls the motion of members to the fluid's nodes. */
 #include "../base/environment.h"
+#include "../base/thread_pool.h"
 #include "../math/rotation.h"
 #include "../member/mean_acceleration.h"
 #include "state.h"
@@ -20,8 +20,8 @@ int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *c
     return SPAR_OK;
 }
 
-/* Node motion between the two times on the group R^3 x SO(3), of the nodes of one element: the chord of places, the
-   geodesic of rotations. */
+/* Node motion between two times on the group R^3 x SO(3), for the nodes of one element: chord of positions, geodesic
+   of rotations. */
 static void blend_motion(const spar_member *m, int64_t first, double theta, double (*q)[7], double (*v)[6],
                          double (*a)[6]) {
     const double *q0 = m->now.q + 7 * first, *q1 = m->after.q + 7 * first, *a0 = spari_means_seen(m, 0),
@@ -59,7 +59,7 @@ SPARI_APART static void fill_blended(const spar_fluid *fluid, double theta, int 
     }
 }
 
-/* At t^n (after: 0), or after. */
+/* At t^n (after: 0) or at t^{n+1}. */
 static void fill_one(const spar_fluid *fluid, int after, int upto, double *field) {
     const spar_member *m = fluid->member;
     const spari_motion *at = after ? &m->after : &m->now;
@@ -71,7 +71,7 @@ static int is_between(double theta) {
     return theta > 0 && theta < 1;
 }
 
-/* Coefficients of the one or two states that make up time theta, and their shares. Returns their number. */
+/* Coefficients of the one or two states that give time theta, and their weights. Returns their number. */
 static int fill_states(const spar_fluid *fluid, double theta, int upto, double share[2]) {
     const spar_member *m = fluid->member;
     share[0] = 1, share[1] = 0;
@@ -89,7 +89,7 @@ static int fill_states(const spar_fluid *fluid, double theta, int upto, double s
     return 2;
 }
 
-/* Memory for a second state, where there is none yet. */
+/* Allocates the second state if there is none. */
 static int need_second(spar_fluid *fluid, const char *caller) {
     const spar_member *m = fluid->member;
     if (fluid->field[1] || !fluid->field[0]) {
@@ -104,7 +104,7 @@ static int need_second(spar_fluid *fluid, const char *caller) {
     return SPAR_OK;
 }
 
-/* The first average of two states takes the memory for the second. */
+/* The first average of two states allocates the second. */
 static int need_states(spar_fluid *fluid, double theta, const char *caller) {
     return is_between(theta) && !fluid->member->session->theta_on_group ? need_second(fluid, caller) : SPAR_OK;
 }
@@ -119,13 +119,13 @@ int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char
     return SPAR_OK;
 }
 
-/* Where an answer goes: one of the two, or nowhere. */
+/* Destination of a result: one of the two, or none. */
 typedef struct sink {
     double *d;
     float *f;
 } sink;
 
-/* What a pull is asked for, all by node. */
+/* Requested results, by node. */
 typedef struct wanted {
     sink x, v, omega, accel, alpha; /* [n][3] */
     sink q;                         /* [n][4] */
@@ -142,7 +142,7 @@ static int wants_pose(const wanted *w) {
     return is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) || is_wanted(w->accel) || is_wanted(w->alpha);
 }
 
-/* As the kernels are asked. */
+/* Request flags for the kernels. */
 static int what_of(const wanted *w) {
     int poses = is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) ? SPARI_POSES : 0;
     if (is_wanted(w->accel) || is_wanted(w->alpha)) {
@@ -151,7 +151,7 @@ static int what_of(const wanted *w) {
     return poses | (is_wanted(w->v) || is_wanted(w->omega) ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE);
 }
 
-/* The tiles of the one or two states that make up a time, and of the reference for those who ask for poses. */
+/* Tiles of the one or two states that give a time, and of the reference if poses are requested. */
 typedef struct states {
     int n;
     double share[2];
@@ -159,8 +159,7 @@ typedef struct states {
     double (*reference)[SPARI_ROW];
 } states;
 
-/* Three rows of the tile to the host's triples; rows of two states become those of the time between them, in the
- * first's place. */
+/* Stores three rows of the tile in the host's triples. Rows of two states are first averaged in place. */
 static void emit(const spari_nodes *s, int64_t first, const states *t, int row, sink out, const spari_layout *layout) {
     if (!is_wanted(out)) {
         return;
@@ -196,8 +195,8 @@ static void unit_quat(double (*buf)[SPARI_ROW], int i, double q[4]) {
     spari_quat_normalise(q);
 }
 
-/* Orientation of a section now, scalar part >= 0: the states' rotations, averaged where there are two, times the
- * reference's, or that of a frame of its own. */
+/* Present orientation of a section, scalar part >= 0: rotations of the states, averaged if there are two, times the
+   reference orientation or a frame of its own. */
 static void orientation(const states *t, int i, const double *frame, double now[4]) {
     double q[4], reference[4];
     unit_quat(t->buf[0], i, q);
@@ -220,7 +219,7 @@ static void orientation(const states *t, int i, const double *frame, double now[
     }
 }
 
-/* The matrix of a convention, row by row: R(q) takes local components to global ones. */
+/* Matrix of a convention, row by row: R(q) maps local components to global ones. */
 static void matrix_of(const double q[4], int convention, double m[9]) {
     double r[9];
     spari_quat_matrix(q, r);
@@ -242,7 +241,7 @@ static void emit_orientations(const spar_fluid *fluid, const spari_node_set *set
     (void)spari_tile_motion(s, first, fluid->reference, 0, SPARI_UPTO_PLACE | SPARI_POSES, t->reference);
     for (int i = 0; i < count; i++) {
         int64_t node = spari_nodes_node(s, first + i);
-        if (i == 0 || s->per_element > 1) { /* else all turn with the one node */
+        if (i == 0 || s->per_element > 1) { /* otherwise all have the rotation of the one node */
             orientation(t, i, set->frame ? set->frame + 4 * node : NULL, q);
             if (is_wanted(w->matrix)) {
                 matrix_of(q, w->convention, m);
@@ -269,7 +268,7 @@ static void zero(sink *out, int64_t n, const spari_layout *layout) {
     *out = (sink){0};
 }
 
-/* Answers what a trial run leaves out, and takes it off the list. */
+/* Fills results that a trial switches off, and removes them from the request. */
 static void mute_parts(const spar_fluid *fluid, const spari_node_set *set, wanted *w) {
     const spari_nodes *s = set->nodes;
     if (fluid->mute & SPARI_MUTE_VELOCITY) {
@@ -291,7 +290,7 @@ static void mute_parts(const spar_fluid *fluid, const spari_node_set *set, wante
     zero(&w->alpha, s->n, w->layout);
 }
 
-/* In a thread's work space. No second where no average has been asked for yet. */
+/* Tiles in a thread's workspace. There is no second before the first average. */
 static states tiles_of(const spar_fluid *fluid, int worker, int n, const double share[2]) {
     double(*row)[SPARI_ROW] = (double(*)[SPARI_ROW])spari_fluid_work(fluid, worker);
     states t = {.n = n, .share = {share[0], share[1]}, .buf = {row}, .reference = row + SPARI_ROWS};
@@ -299,7 +298,7 @@ static states tiles_of(const spar_fluid *fluid, int worker, int n, const double 
     return t;
 }
 
-/* Of part of a turn there is no one rotation, so that weighted nodes have none. */
+/* A weighted node has no unique rotation. */
 static int check_turns(const spar_fluid *fluid, int which, const wanted *w, const char *caller) {
     int turns = is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) || is_wanted(w->alpha);
     if (turns && spari_fluid_set(fluid, which)->weight) {
@@ -310,14 +309,14 @@ static int check_turns(const spar_fluid *fluid, int which, const wanted *w, cons
     return SPAR_OK;
 }
 
-/* A pull of the nodes of one set. direct: without tiles. */
+/* Arguments of a pull of one set. direct: without tiles. */
 typedef struct pulling {
     const spar_fluid *fluid;
     const spari_node_set *set;
     const wanted *wanted;
     int what, states, direct;
     double share[2];
-    double least[SPARI_CREW_MOST]; /* |Q|^2 that each thread has met */
+    double least[SPARI_CREW_MOST]; /* smallest |Q|^2 of each thread */
 } pulling;
 
 static void pull_tile(pulling *p, int64_t first, const states *t, double *least) {
@@ -356,7 +355,7 @@ static void pull_slab(void *context, int64_t slab, int worker) {
     spari_tiles_end();
 }
 
-/* Whether nothing is done to the motion between the kernels and the host's triples. */
+/* Whether the kernels' motion goes to the host's triples unchanged. */
 static int is_direct(const pulling *p) {
     const wanted *w = p->wanted;
     const int single = w->x.f || w->v.f;
@@ -390,7 +389,7 @@ static int pull_set(const spar_fluid *fluid, int which, double theta, const want
     return spari_fluid_check_rotation(fluid, p.least[0], caller);
 }
 
-/* The host's pulls. */
+/* Public pulls. */
 static int pull_nodes(spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
     const spari_nodes *s;
     wanted left = *w;
@@ -429,7 +428,7 @@ int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float 
     return pull_motion(fluid, theta, &w, __func__);
 }
 
-/* How far the nodes of a tile have gone: squares into the largest. */
+/* Displacements of the nodes of a tile: largest square, and its node. */
 static void longest_way(const spari_nodes *s, int64_t first, const states *t, double *square, int64_t *node) {
     int count = spari_tile_count(s, first);
     for (int i = 0; i < count; i++) {
@@ -467,7 +466,7 @@ int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
         for (int i = 0; i < t.n && fluid->set[SPAR_NODES_MOTION].weight; i++) {
             spari_fluid_weigh(&fluid->set[SPAR_NODES_MOTION], first, SPARI_UPTO_PLACE, t.buf[i]);
         }
-        if (t.buf[1]) { /* need_second */
+        if (t.buf[1]) { /* see need_second */
             longest_way(s, first, &t, &square, &farthest);
         }
     }
@@ -530,7 +529,7 @@ int spar_fluid_pull_matrices(spar_fluid *fluid, double theta, int convention, do
     return pull_motion(fluid, theta, &w, __func__);
 }
 
-/* Largest entry of a - b, b transposed on demand. */
+/* Largest entry of a - b, with b transposed on request. */
 static double apart(const double a[9], const double b[9], int transposed) {
     double most = 0;
     for (int i = 0; i < 3; i++) {
@@ -545,9 +544,9 @@ static double determinant(const double m[9]) {
     return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
 }
 
-/* What is wrong with a host's matrix `m` that should be `right`; NULL: nothing. */
+/* Describes the error of a host's matrix `m` that should be `right`; NULL: none. */
 static const char *wrong_with(const double m[9], const double right[9]) {
-    const double tolerance = 1e-5; /* hosts may hold them in single precision */
+    const double tolerance = 1e-5; /* hosts may use single precision */
     double mirrored[9];
     for (int i = 0; i < 9; i++) {
         mirrored[i] = -m[i];
@@ -600,7 +599,7 @@ int spar_fluid_get_places(const spar_fluid *fluid, int which, double *x, double 
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     wanted w = {.x.d = x, .v.d = v, .q.d = q};
-    SPARI_TRY(pull_set(fluid, which, 1, &w, __func__)); /* and fills the coefficients of the motion */
+    SPARI_TRY(pull_set(fluid, which, 1, &w, __func__)); /* also fills the coefficients of the motion */
     const spari_nodes *s = spari_fluid_set(fluid, which)->nodes;
     for (int64_t p = 0; s && foot && p < s->n; p++) {
         const double *c = fluid->field[0] + (ptrdiff_t)spari_nodes_element(s, p) * s->per_element * SPARI_FIELDS;

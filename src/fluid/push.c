@@ -1,4 +1,4 @@
-/* Loads of the fluid's nodes, in to the members. */
+/* Pushes loads from the fluid's nodes to the members. */
 #include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../math/predictor.h"
@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- loads in ---- */
+/* ---- push ---- */
 
-/* Whether node forces can be given, of *n nodes. */
+/* Whether node forces can be pushed; *n: number of nodes. */
 static int check_forces(const spar_fluid *fluid, int has_place, int64_t *n, const char *caller) {
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
@@ -84,7 +84,7 @@ static void keep_forces(spar_fluid *fluid, spari_source force) {
     h->pushed = 1;
 }
 
-/* What came out of the map, against what went in (spar.h says what the numbers are). */
+/* Audit: loads after the map compared with the pushed ones (spar.h describes the numbers). */
 static void write_audit(spar_fluid *fluid, const spari_audit *in, int64_t n) {
     const spar_member *m = fluid->member;
     double force[3] = {0}, moment[3] = {0}, power = 0, t[3], d[3];
@@ -111,7 +111,7 @@ static void write_audit(spar_fluid *fluid, const spari_audit *in, int64_t n) {
     a[6] = in->x_max, a[7] = (double)n;
 }
 
-/* Names the first number of the host's that is none. */
+/* Reports the first number of the host that is not finite. */
 static int check_source(const spar_fluid *fluid, const char *caller, const char *what, spari_source x, int64_t n) {
     for (int64_t i = 0; i < 3 * n && (x.d || x.f); i++) {
         double value = spari_source_at(x, i / 3, (int)(i % 3));
@@ -129,7 +129,7 @@ static void swap_bins(spar_fluid *fluid, int a, int b) {
     fluid->bins[a] = fluid->bins[b], fluid->bins[b] = was;
 }
 
-/* The load of the nodes in load_new from sums that depend on no order. Returns the least |Q|^2. */
+/* Nodal load in load_new from reproducible sums. Returns the smallest |Q|^2. */
 static double bin_loads(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment) {
     int finite;
     double least = spari_bin_loads(s, fluid->modal, fluid->consistent, fluid->member->after.q, force, moment,
@@ -141,7 +141,7 @@ static double bin_loads(spar_fluid *fluid, const spari_nodes *s, spari_source fo
     return least;
 }
 
-/* The load of the nodes in load_new; SPAR_OK if it can be used. */
+/* Nodal load in load_new; SPAR_OK if it is usable. */
 static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment,
                         spari_audit *audit, const char *caller) {
     const spar_member *m = fluid->member;
@@ -168,7 +168,7 @@ static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source fo
     if (reproducible) {
         least = bin_loads(fluid, s, force, moment);
     }
-    if (spari_first_nonfinite(fluid->load_new, 6 * m->nodes) >= 0) { /* only now look where it came from */
+    if (spari_first_nonfinite(fluid->load_new, 6 * m->nodes) >= 0) { /* the cause is searched only after a failure */
         SPARI_TRY(check_source(fluid, caller, "force of node", force, s->n));
         SPARI_TRY(check_source(fluid, caller, "moment of node", moment, s->n));
         SPARI_TRY(spari_fluid_check_rotation(fluid, least, caller));
@@ -205,8 +205,7 @@ static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spa
     return SPAR_OK;
 }
 
-/* There are no loads, for this reason. Between steps nobody waits for any: there is nothing that could go on without
-   them. */
+/* Records that there are no loads, and why. Between steps no call depends on them. */
 static void note_refusal(spar_fluid *fluid, int status, const char *why) {
     const spar_session *session = fluid->member->session;
     size_t size = strlen(why) + 1;
@@ -285,7 +284,7 @@ int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const floa
     return push_forces(fluid, f, m, __func__);
 }
 
-/* The loads in use, of the mean of the parts and the line's end. slope: 1/2, or 0. */
+/* The loads in use, from the mean of the parts and the end of the line. slope: 1/2, or 0. */
 static void combine_parts(spar_fluid *fluid, double slope) { /* (T13) */
     const spari_parts *p = fluid->parts;
     const double *begin = p->ended ? p->end[0] : fluid->load_accepted;
@@ -294,7 +293,7 @@ static void combine_parts(spar_fluid *fluid, double slope) { /* (T13) */
     }
 }
 
-/* The same, of the sums. What was accepted of loads that were no parts' has even sums: the host has pushed it. */
+/* The same for reproducible sums. Accepted loads that are not of parts have even sums, because the host pushed them. */
 static void combine_bins(spar_fluid *fluid, int with_slope) {
     int begin = fluid->parts->ended ? SPARI_OF_BEGIN : SPARI_OF_ACCEPTED;
     for (int64_t i = 0; i < 6 * fluid->member->nodes; i++) {
@@ -308,7 +307,8 @@ static void combine_bins(spar_fluid *fluid, int with_slope) {
     }
 }
 
-/* The end of the parts at theta into end[1], the load in use into the fluid; or a refusal, and nothing has changed. */
+/* Stores the end of the parts at theta in end[1], and the load in use in the fluid. After a refusal nothing has
+   changed. */
 static int push_parts(spar_fluid *fluid, const spari_nodes *s, double theta, const char *caller) {
     spari_parts *p = fluid->parts;
     const spari_source force = {.d = p->value[0]}, moment = {.d = p->moment_next ? p->value[1] : NULL};
@@ -324,7 +324,7 @@ static int push_parts(spar_fluid *fluid, const spari_nodes *s, double theta, con
     swap_bins(fluid, SPARI_OF_MEAN, SPARI_OF_NEXT);
     SPARI_TRY(push_loads(fluid, force, moment, caller));
     memcpy(p->end[1], fluid->load, (size_t)n * sizeof *p->end[1]);
-    int moves = !fluid->member->session->standing; /* of time that stands there is no end */
+    int moves = !fluid->member->session->standing; /* a static solution has no end of a step */
     if (fluid->bins[SPARI_OF_PUSHED]) {
         memcpy(fluid->bins[SPARI_OF_END], fluid->bins[SPARI_OF_PUSHED], (size_t)n * sizeof(spari_bins));
         combine_bins(fluid, moves);
@@ -366,9 +366,9 @@ int spar_fluid_get_audit(const spar_fluid *fluid, int64_t capacity, double *audi
     return SPAR_OK;
 }
 
-/* ---- what the session asks ---- */
+/* ---- for the session ---- */
 
-/* A fluid from a file, or made anew, shows it by what it has. */
+/* A fluid from a file, or one that was rebuilt, has the arrays. */
 int spari_fluid_has_loads(const spar_fluid *fluid) {
     int has = fluid->asked & SPARI_ASKED_LOADS ? 1 : 0;
     for (int64_t i = 0; !has && fluid->load && i < 6 * fluid->member->nodes; i++) {
@@ -433,7 +433,7 @@ void spari_fluid_accept(spar_fluid *fluid) {
         return;
     }
     size_t size = sizeof *h->after * 3 * (size_t)h->n;
-    if (!h->pushed) { /* loads not given anew stay as they were */
+    if (!h->pushed) { /* loads that were not pushed stay unchanged */
         memcpy(h->after, h->past[0], size);
     }
     spari_history_shift(h->past, 3 * h->n, fluid->member->session->predictor, h->after);

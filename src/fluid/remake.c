@@ -1,5 +1,5 @@
-/* A fluid for a trial run: its member may have been made anew with other nodes. What the run changes is its own, what
-   it only reads (the map, where the line's nodes are the same) stays shared. */
+/* Rebuilds a fluid for a trial, in which its member may have other nodes. The rebuilt fluid owns what the trial
+   changes and shares what it only reads (the map, if the line's nodes are the same). */
 #include "../math/resample.h"
 #include "../math/rotation.h"
 #include "state.h"
@@ -11,7 +11,7 @@ static int no_memory_for_trial(const spar_fluid *fluid) {
     return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, "trial", "no memory for a trial run");
 }
 
-/* The host's description of a mapped set again: places, or coordinates and offsets in the section frame. */
+/* Restores the host's description of a mapped set: positions, or coordinates and offsets in the section frame. */
 static int unmap(const spar_fluid *old, int which, spari_node_set *set) {
     const spari_node_set *from = &old->set[which];
     const spari_nodes *s = from->nodes;
@@ -38,8 +38,8 @@ static int unmap(const spar_fluid *old, int which, spari_node_set *set) {
     return SPAR_OK;
 }
 
-/* Sections stay where they are and keep their frames, as what is fastened to a body does: the host knows them so. The
-   line through other nodes passes beside their feet, and is turned otherwise there. */
+/* Sections keep their positions and frames, as parts fixed to a body, because the host knows them so. The line
+   through other nodes passes beside their projection points with another orientation. */
 static int keep_frames(spar_fluid *f, const spar_fluid *old, int which) {
     const spari_node_set *from = &old->set[which];
     spari_node_set *to = &f->set[which];
@@ -68,7 +68,7 @@ static int keep_frames(spar_fluid *f, const spar_fluid *old, int which) {
     return SPAR_OK;
 }
 
-/* Weights and reference places are by node: they hold for the line through other nodes too. */
+/* Weights and reference positions belong to fluid nodes, so they are valid for the new line too. */
 static int keep_weights(spar_fluid *f, const spar_fluid *old) {
     const spari_node_set *from = &old->set[SPAR_NODES_MOTION];
     spari_node_set *to = &f->set[SPAR_NODES_MOTION];
@@ -100,7 +100,7 @@ static int copy_history(const spari_history *from, int order, spari_history **to
     return SPAR_OK;
 }
 
-/* The fluid without anything of its own, as it would be had the host just described it. */
+/* The fluid as if the host had just described it. */
 static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
     f->parts = NULL;
     f->load = f->load_new = f->load_accepted = NULL;
@@ -118,7 +118,8 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
         }
     } else {
         f->modal = f->reference = f->field[0] = f->field[1] = NULL;
-        f->set[0] = f->set[1] = (spari_node_set){0}; /* both, before anything can fail: what is shared is not freed */
+        f->set[0] = f->set[1] =
+            (spari_node_set){0}; /* both, before anything can fail, so that shared parts are not freed */
         for (int which = 0; which < 2; which++) {
             SPARI_TRY(unmap(old, which, &f->set[which]));
         }
@@ -127,7 +128,7 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
             SPARI_TRY(keep_frames(f, old, which));
         }
         SPARI_TRY(keep_weights(f, old));
-        spari_history_free(f->history); /* the map has begun it with zeros */
+        spari_history_free(f->history); /* the map has created it with zeros */
     }
     if (old->parts && spari_parts_prepare(f) != SPAR_OK) {
         return no_memory_for_trial(f);
@@ -140,8 +141,8 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
     return copy_history(old->history, order, &f->history) == SPAR_OK ? SPAR_OK : no_memory_for_trial(f);
 }
 
-/* The same nodes have the same sums. What is made of the values alone would be rounded once on each rank, and so depend
-   on who has which nodes. */
+/* With the same nodes, copies the sums. Sums made from the values alone would be rounded on each rank and depend on
+   the distribution of nodes. */
 static int copy_bins(spar_fluid *f, const spar_fluid *old) {
     static const int kinds[] = {SPARI_OF_PUSHED, SPARI_OF_ACCEPTED, SPARI_OF_BEGIN};
     if (!old->bins[SPARI_OF_PUSHED]) {
@@ -168,12 +169,12 @@ int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid 
     *copy = *fluid;
     fluid->asked = 0;
     fluid->why = NULL;   /* stays with the copy */
-    if (!fluid->modal) { /* never mapped: nothing there but what the host has said */
+    if (!fluid->modal) { /* never mapped: has only the host's description */
         return SPAR_OK;
     }
     was = *fluid;
     spar_member as_it_was = *before;
-    was.member = &as_it_was; /* its line is the one the map was made on */
+    was.member = &as_it_was; /* the map was made on this line */
     const spari_mesh from = spari_member_mesh(before), to = spari_member_mesh(fluid->member);
     SPARI_TRY(begin(fluid, &was, spari_mesh_alike(from, to)));
     spari_resample_loads(from, to, was.load, fluid->load);
@@ -235,7 +236,7 @@ static void drop_copy(double *made, const double *was) {
     }
 }
 
-/* Frees what f has and the other has not. */
+/* Frees what f owns and the other does not share. */
 static void drop_own(spar_fluid *f, const spar_fluid *old) {
     if (f->set[0].nodes != old->set[0].nodes || f->set[1].nodes != old->set[1].nodes) {
         for (int which = 0; which < 2; which++) {

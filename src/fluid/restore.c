@@ -1,5 +1,5 @@
-/* A fluid's part of save and load: its state as it is written, and one put together again from states, piece by piece,
-   that all ranks have before any takes it. */
+/* Save and load of a fluid: writes its state, and assembles a state from saved pieces, which all ranks must have
+   before any puts it in force. */
 #include "state.h"
 
 #include "../base/status.h"
@@ -9,11 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A state: these, then load and load_accepted [nodes][6] if mapped; then their reproducible sums, bit by bit, if it has
-   them; then, if loads came over parts of steps, their ends at t^n and t^{n+1} [nodes][6] and, if it has them, the sums
-   of these; then, if node forces are
-   kept, or numbers of the host's own, the nodes' places; their forces at t^{n+1}, t^n, t^{n-1}, t^{n-2} [n][3], zeros
-   where the predictor did not look so far back; the host's numbers at t^n and t^{n+1} [n][width]. */
+/* Layout of a state, in order:
+   - the words below;
+   - if mapped, load and load_accepted [nodes][6], and their reproducible sums, if kept;
+   - if loads came over parts of steps, their ends at t^n and t^{n+1} [nodes][6], and their sums, if kept;
+   - if node forces or the host's own numbers are kept, the positions of these nodes;
+   - if node forces are kept, forces at t^{n+1}, t^n, t^{n-1}, t^{n-2} [n][3], zeros beyond the predictor's order;
+   - if the host's numbers are kept, these at t^n and t^{n+1} [n][width]. */
 enum {
     S_NODES,
     S_KEPT,
@@ -27,11 +29,11 @@ enum {
     S_HEAD = SPARI_FLUID_HEAD
 };
 
-enum { PARTS_BEFORE = 1, PARTS_NOW = 2 }; /* S_PARTS: which of the ends are of parts */
+enum { PARTS_BEFORE = 1, PARTS_NOW = 2 }; /* S_PARTS: which of the ends come from parts */
 
 enum { IS_MAPPED = 1, HAS_BINS = 2, /* of S_MAPPED */ BIN_WORDS = sizeof(spari_bins) / sizeof(double) };
 
-/* Words of two nodal loads, with their sums. */
+/* Words of two nodal loads and their sums. */
 static int64_t state_pair(const spar_member *m, const double *head) {
     return 12 * m->nodes * (head[S_MAPPED] == HAS_BINS ? 1 + BIN_WORDS : 1);
 }
@@ -90,7 +92,7 @@ int64_t spari_fluid_state_size(const spar_fluid *fluid) {
     return state_size(fluid->member, head);
 }
 
-/* A pair of nodal loads and their sums, one behind the other; sums[0] NULL: there are none. Returns where it ends. */
+/* Writes a pair of nodal loads and their sums; sums[0] NULL: none. Returns the position after them. */
 static double *put_load_pair(double *at, int64_t n, const double *const value[2], const spari_bins *const sums[2]) {
     for (int k = 0; k < 2; k++, at += n) {
         memcpy(at, value[k], (size_t)n * sizeof *at);
@@ -151,7 +153,7 @@ int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
     return by.nodes > 0 ? put_by_node(fluid, call, &by, at) : SPAR_OK;
 }
 
-/* ---- what is being put together ---- */
+/* ---- assembling a state ---- */
 
 void spari_fluid_give_up(spar_fluid *fluid) {
     spari_taking_free(fluid->taking);
@@ -169,7 +171,7 @@ int spari_fluid_is_state(const spar_member *m, const double *head, int64_t count
     return 1;
 }
 
-/* What they come to, but for the loads. */
+/* Sum of the heads, without the loads. */
 static void sum_heads(spari_taking *t, int count, const double *const *heads) {
     for (int k = 0; k < count; k++) {
         const double *head = heads[k];
@@ -184,7 +186,7 @@ static void sum_heads(spari_taking *t, int count, const double *const *heads) {
     }
 }
 
-/* Room for nodal loads. */
+/* Allocates nodal loads. */
 static int take_load_room(spar_fluid *fluid, const char *call, spari_taking *t) {
     int64_t n = 12 * fluid->member->nodes;
     if (t->head[S_PARTS] != 0 && spari_parts_prepare(fluid) != SPAR_OK) {
@@ -204,7 +206,7 @@ static int take_load_room(spar_fluid *fluid, const char *call, spari_taking *t) 
     return SPAR_OK;
 }
 
-/* Nodes are sorted along a direction in which no two of a grid stand at one height. */
+/* Sort key of a node: its height along a direction in which no two nodes of a regular grid coincide. */
 static double height_of(const double *place) {
     return place[0] + 0.7548776662466927 * place[1] + 0.5698402909980532 * place[2];
 }
@@ -215,7 +217,7 @@ static int compare_heights(const void *a, const void *b) {
     return left < right ? -1 : left > right ? 1 : *x < *y ? -1 : *x > *y;
 }
 
-/* Room for what is kept by node, and what finds it. */
+/* Allocates data per node and the search arrays. */
 static int take_nodes_room(spar_fluid *fluid, const char *call, spari_taking *t, const spari_nodes *s) {
     int kept = t->head[S_KEPT] != 0, width = (int)t->head[S_WIDTH];
     t->n = s->n;
@@ -234,7 +236,7 @@ static int take_nodes_room(spar_fluid *fluid, const char *call, spari_taking *t,
     return SPAR_OK;
 }
 
-/* The saved run had as many numbers a node on all ranks, and as many as are kept here, if any are. */
+/* The saved run must have the same number of values per node on all ranks, equal to the number kept here, if any. */
 static int check_widths(const spar_fluid *fluid, const char *call, int count, const double *const *heads,
                         const spari_nodes *s) {
     double width = fluid->taking->head[S_WIDTH];
@@ -268,12 +270,12 @@ int spari_fluid_take(spar_fluid *fluid, const char *call, int count, const doubl
 
 /* ---- loads ---- */
 
-/* The sums of a pair of loads, copied: a state need not lie where a whole number may. */
+/* Copies the sums of a pair of loads: a state may be unaligned. */
 static void bins_of_pair(const spar_member *m, const double *pair, int64_t i, spari_bins *sum) {
     memcpy(sum, pair + 12 * m->nodes + i * BIN_WORDS, sizeof *sum);
 }
 
-/* Whether the sums have bins that numbers can have. */
+/* Whether the sums have valid bins. */
 static int are_bins(const spar_member *m, const double *pair) {
     spari_bins sum;
     for (int64_t i = 0; i < 12 * m->nodes; i++) {
@@ -285,14 +287,14 @@ static int are_bins(const spar_member *m, const double *pair) {
     return 1;
 }
 
-/* x[n] of a state more; of the first one as it is: 0 + -0 is not -0. */
+/* Adds x[n] of a state; the first state is copied, because 0 + -0 is not -0. */
 static void add_of_state(double *sum, const double *x, int64_t n, int first) {
     for (int64_t i = 0; i < n; i++) {
         sum[i] = first ? x[i] : sum[i] + x[i];
     }
 }
 
-/* One of a pair of loads, as it was summed then, if it was. */
+/* Adds one of a pair of loads as a reproducible sum: the saved sum, if there is one. */
 static void add_bins_of_pair(spari_bins *sum, const spar_member *m, const double *pair, int which, int has_bins) {
     int64_t first = which * 6 * m->nodes;
     for (int64_t i = 0; i < 6 * m->nodes; i++) {
@@ -324,7 +326,7 @@ int spari_fluid_take_loads(spar_fluid *fluid, const double *state, int takes_loa
         if (t->bins) {
             add_bins_of_pair(t->bins + which * n, m, loads, which, has_bins);
         }
-        if (t->end) { /* of a state without them, its loads */
+        if (t->end) { /* without sums, its loads */
             int has = (int)state[S_PARTS] & (which == 0 ? PARTS_BEFORE : PARTS_NOW), from = has ? which : 1 - which;
             const double *pair = has ? ends : loads;
             add_of_state(t->end + which * n, pair + from * n, n, t->added == 0);
@@ -337,10 +339,10 @@ int spari_fluid_take_loads(spar_fluid *fluid, const double *state, int takes_loa
     return 1;
 }
 
-/* ---- what is kept by node ---- */
+/* ---- data per node ---- */
 
-/* How far apart the same place may be found: places are put together from feet and arms, which are rounded otherwise on
-   another processor, or in other company. */
+/* Distance within which a saved node matches. Positions are computed from nearest points and lever arms, which round
+   differently on another processor or with other nodes. */
 static double place_reach(const spar_fluid *fluid, const double *place) {
     return 1e-9 * spari_member_length(fluid->member) +
            1e-12 * fmax(fabs(place[0]), fmax(fabs(place[1]), fabs(place[2])));
@@ -350,7 +352,7 @@ static double distance_between(const double *a, const double *b) {
     return fmax(fabs(a[0] - b[0]), fmax(fabs(a[1] - b[1]), fabs(a[2] - b[2])));
 }
 
-/* The nearest node to this place, within reach of it, that has its own or has none yet; -1: there is none. */
+/* Nearest node within this distance that has been found already, or not yet; -1: none. */
 static int64_t find_node(const spar_fluid *fluid, const double *place, int found) {
     const spari_taking *t = fluid->taking;
     double nearest = place_reach(fluid, place), height = height_of(place), most = 3 * nearest;
@@ -374,7 +376,7 @@ static int64_t find_node(const spar_fluid *fluid, const double *place, int found
     return best;
 }
 
-/* What one node has in the blocks behind the places: its forces, then the host's numbers. */
+/* Data of one node in the blocks after the positions: its forces, then the host's numbers. */
 typedef struct taken_node {
     const double *force[4], *state[2];
 } taken_node;
@@ -396,7 +398,7 @@ static void put_node(spari_taking *t, int64_t to, const taken_node *from) {
     t->found[to] = 1;
 }
 
-/* Node i of `count` whose blocks lie one behind the other. */
+/* Node i of `count` in consecutive blocks. */
 static taken_node node_of_blocks(const double *head, const double *rows, int64_t count, int64_t i) {
     const spari_by_node by = state_by_node(head);
     taken_node from = {{NULL}, {NULL}};
@@ -415,7 +417,7 @@ void spari_fluid_take_nodes(spar_fluid *fluid, const double *head, int64_t first
     int64_t here = t->places ? t->n : 0, n = (int64_t)head[S_NODES];
     for (int64_t i = 0; i < count && here > 0; i++) {
         const double *place = rows + 3 * i, *own = n == here ? t->places + 3 * (first + i) : NULL;
-        /* the same nodes in the same order, places that are there twice among them: no search */
+        /* same nodes in the same order, possibly repeated: no search */
         int alike = n == here && !t->found[first + i] && distance_between(place, own) <= place_reach(fluid, own);
         int64_t to = alike ? first + i : find_node(fluid, place, 0);
         if (to >= 0) {
@@ -425,7 +427,7 @@ void spari_fluid_take_nodes(spar_fluid *fluid, const double *head, int64_t first
     }
 }
 
-/* A node at a place that was there fewer times has what another one there has. */
+/* A node whose position occurred fewer times in the file gets the data of another node at this position. */
 static int share_node(spar_fluid *fluid, int64_t to) {
     spari_taking *t = fluid->taking;
     int64_t i = find_node(fluid, t->places + 3 * to, 1);
@@ -462,7 +464,7 @@ int spari_fluid_taken(spar_fluid *fluid, const char *call) {
     return SPAR_OK;
 }
 
-/* ---- in force ---- */
+/* ---- putting in force ---- */
 
 static void load_parts(spar_fluid *fluid) {
     const spari_taking *t = fluid->taking;

@@ -1,5 +1,5 @@
-/* What a fluid is made of, for the files of this room: nodes.c (life, what the host gives), map.c, pull.c (motion out),
- * push.c (loads in). */
+/* Data structures of a fluid, for the files of this room: nodes.c (create, describe), map.c, pull.c (motion), push.c
+   (loads). */
 #ifndef SPARI_FLUID_STATE_H
 #define SPARI_FLUID_STATE_H
 
@@ -7,32 +7,31 @@
 #include "../transfer/transfer.h"
 #include "fluid.h"
 
-/* Rows of work space of a pull: a tile's motion, what of the reference's poses are made of, and another motion where a
-   time lies between two states. */
+/* Rows of workspace of a pull: the motion of a tile, the reference poses, and a second motion for times between two
+   states. */
 enum { SPARI_PULL_ONE = SPARI_ROWS + SPARI_R_OMEGA, SPARI_PULL_BOTH = SPARI_PULL_ONE + SPARI_ROWS };
 
-/* A set of nodes as the host gave it, until the map ties it to the line, and as it is kept afterwards. */
+/* A set of nodes: as the host gave it until it is mapped, and as mapped. */
 typedef struct spari_node_set {
     int pending;  /* given, not mapped yet */
-    int sections; /* given by coordinate, not by place */
+    int sections; /* given by coordinate, not by position */
     int64_t n;
-    double *x;          /* [n][3]: places, or offsets in the section frame; while pending */
+    double *x;          /* [n][3]: positions, or offsets in the section frame; while pending */
     double *xi;         /* [n]: sections only; while pending */
-    spari_nodes *nodes; /* once mapped */
-    double *frame; /* [n][4]: sections that have kept their frames when the line got other nodes; NULL: the line's */
-    double *weight,
-        *home; /* [n], [n][3]: what part of the motion each takes, and where it is at rest; NULL: all of it */
+    spari_nodes *nodes; /* after the map */
+    double *frame;      /* [n][4]: frames that sections keep when the line gets other nodes; NULL: the line's frames */
+    double *weight, *home; /* [n], [n][3]: motion weight and reference position; NULL: full motion */
 } spari_node_set;
 
-/* Node forces over time, for hosts that want them back between the steps (SPAR_EFFECT_FLUID_HISTORY). */
+/* Node forces over time, for hosts that pull them back between steps (SPAR_EFFECT_FLUID_HISTORY). */
 typedef struct spari_history {
-    int pushed; /* a push came in the step under way */
+    int pushed; /* pushed in this step */
     int64_t n;
     double *after;   /* [n][3] at t^{n+1}: predicted, then pushed */
-    double *past[3]; /* at t^n, t^{n-1}, t^{n-2}, as far back as the predictor looks */
+    double *past[3]; /* at t^n, t^{n-1}, t^{n-2}, as far as the predictor's order needs */
 } spari_history;
 
-/* Numbers of the host's own at the force nodes (states.c): at t^n, and at t^{n+1} once they were pushed in the step. */
+/* The host's own numbers at the force nodes (states.c): at t^n, and at t^{n+1} once pushed in the step. */
 typedef struct spari_states {
     int pushed;
     int64_t n, width;
@@ -40,38 +39,37 @@ typedef struct spari_states {
 } spari_states;
 enum { SPARI_MOST_STATES = 1000 };
 
-/* Loads over the parts of a step (parts.c). s runs from 0 at t^n to 1 at t^{n+1}. */
+/* Loads over parts of a step (parts.c). s runs from 0 at t^n to 1 at t^{n+1}. */
 typedef struct spari_parts {
-    double theta;            /* where the last part ended; 0: none in this step */
-    int plain;               /* loads at t^{n+1} were pushed in this step instead */
-    int moment, moment_next; /* a part had moments; with the one that is being added */
-    int64_t n[2];            /* nodes that there is room for, of forces and of moments */
-    double *sums[2][2];      /* of both, now and room for the next: integrals of load ds and of load s ds, [2][n][3] */
-    double *value[2];        /* [n][3], for one call */
-    double *end[2];          /* [nodes][6]: nodal loads that the parts tend to at t^n, and at theta */
-    double *mean;            /* [nodes][6], for one call */
-    int ended;               /* end[0] is of parts; else the loads at t^n are those in use */
+    double theta;            /* end of the last part; 0: none in this step */
+    int plain;               /* loads at t^{n+1} were pushed instead in this step */
+    int moment, moment_next; /* a part had moments; including the part that is being added */
+    int64_t n[2];            /* allocated nodes, for forces and for moments */
+    double *sums[2][2];      /* for both, present and next: integrals of load ds and of load s ds, [2][n][3] */
+    double *value[2];        /* [n][3], valid for one call */
+    double *end[2];          /* [nodes][6]: extrapolated nodal loads of the parts at t^n, and at theta */
+    double *mean;            /* [nodes][6], valid for one call */
+    int ended;               /* end[0] comes from parts; otherwise the loads at t^n are those in use */
 } spari_parts;
 
-/* What a fluid is to become, put together from the states of a file (restore.c), with their heads' layout. */
+/* New state of a fluid, assembled from the states of a file (restore.c); layout as in their heads. */
 typedef struct spari_taking {
-    double head[SPARI_FLUID_HEAD]; /* of all states: sums, or what any of them has */
-    double *load;                  /* [2][nodes][6]: load and load_accepted, as a sum over the states */
-    spari_bins *bins;              /* of the same, where they are kept */
-    double *end;                   /* [2][nodes][6]: ends of parts, where there are any */
-    spari_bins *end_bins;          /* of the same, where they are kept */
-    int added;                     /* states with loads so far */
+    double head[SPARI_FLUID_HEAD]; /* over all states: sums, or whether any has it */
+    double *load;                  /* [2][nodes][6]: load and load_accepted, summed over the states */
+    spari_bins *bins;              /* of these, if kept */
+    double *end;                   /* [2][nodes][6]: ends of parts, if any */
+    spari_bins *end_bins;          /* of these, if kept */
+    int added;                     /* number of states with loads so far */
     int64_t n;
-    double *places;         /* [n][3] of the force nodes here; NULL: nothing is kept by node, or there are no nodes */
-    const double **sorted;  /* [n] of them, by height */
+    double *places;         /* [n][3] of the force nodes here; NULL: nothing is kept per node, or no nodes */
+    const double **sorted;  /* [n] positions, sorted by height */
     char *found;            /* [n] */
     spari_history *history; /* NULL: forces are not kept */
-    spari_states *states;   /* NULL: there are none */
+    spari_states *states;   /* NULL: none */
 } spari_taking;
 
 /* Reproducible sums of a fluid's loads: of load, load_new, load_accepted; of `mean`, end[0] and end[1] of its parts.
-   Each is of twice the loads, so that half a sum of what was pushed is made of whole numbers too: good for 2^28 nodes.
- */
+   Each is of twice the loads, so that half of a pushed sum is made of integers too. Valid for 2^28 nodes. */
 enum { SPARI_OF_PUSHED, SPARI_OF_NEXT, SPARI_OF_ACCEPTED, SPARI_OF_MEAN, SPARI_OF_BEGIN, SPARI_OF_END, SPARI_OF_COUNT };
 
 struct spar_fluid {
@@ -80,30 +78,30 @@ struct spar_fluid {
     char *name;
     int method, consistent;
     double max_distance;
-    int gone;   /* destroyed within a trial run: released when that has gone back */
-    int shared; /* sections: the motion set serves both */
+    int gone;   /* destroyed during a trial: freed when the trial has ended */
+    int shared; /* sections: the motion set serves as both */
     int asked;  /* SPARI_MUTE_*: what has been pulled so far */
-    int mute;   /* trial runs: SPARI_MUTE_* that are left out */
+    int mute;   /* trials: SPARI_MUTE_* that are switched off */
     spari_node_set set[2];
-    spari_layout layout[2]; /* of the host's triples at either set; node 0: packed */
+    spari_layout layout[2]; /* of the host's triples for each set; node 0: packed */
     int64_t pushes;
     int refused; /* status of the last push of this step */
-    char *why;   /* its message; NULL: not refused, or no memory for it */
+    char *why;   /* its message; NULL: accepted, or no memory for it */
 
     /* allocated by the map */
     double *modal;     /* [P][P] */
-    double *field[2];  /* coefficients [nodes][SPARI_FIELDS] of a state, and of a second from the first average on */
+    double *field[2];  /* coefficients [nodes][SPARI_FIELDS] of a state, and of a second one after the first average */
     double *reference; /* of the reference configuration */
     double *load, *load_new, *load_accepted; /* [nodes][6] */
     spari_bins *bins[SPARI_OF_COUNT];        /* [nodes][6] reproducible sums; NULL: not kept */
     double audit[SPAR_AUDIT_COUNT];
-    spari_parts *parts;     /* of loads that come several times in a step; NULL: none ever did */
+    spari_parts *parts;     /* loads over parts of a step; NULL: never pushed */
     spari_history *history; /* NULL: not kept */
-    spari_states *states;   /* NULL: there are none */
-    spari_taking *taking;   /* of a file being loaded (restore.c); else NULL, or what was given up */
+    spari_states *states;   /* NULL: none */
+    spari_taking *taking;   /* while a file is loaded (restore.c), or after giving up; otherwise NULL */
 };
 
-/* Message with the caller, the fluid and its member in front; gives back status. */
+/* Message that begins with caller, fluid and member; returns status. */
 int spari_fluid_refuse(const spar_fluid *fluid, int status, const char *caller, const char *format, ...)
     SPARI_PRINTF(4, 5);
 
@@ -122,68 +120,68 @@ static inline const spari_node_set *spari_fluid_set(const spar_fluid *fluid, int
     return &fluid->set[fluid->shared ? SPAR_NODES_MOTION : which];
 }
 
-/* Frees what a set of nodes has, and empties it. */
+/* Frees and empties a set of nodes. */
 void spari_node_set_clear(spari_node_set *set);
-/* Nodes and maps change between steps, and not in a trial. */
+/* Nodes and maps can only change between steps, and not in a trial. */
 int spari_fluid_check_idle(const spar_fluid *fluid, const char *caller);
-/* The mapped set, or a refusal; *nodes NULL: there is none and nothing to do. */
+/* The mapped set, or a refusal; *nodes NULL: an empty set. */
 int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, const spari_nodes **nodes);
-/* Of one state's tile: places and what of velocities and accelerations is there become the part the nodes take. The set
-   has weights. */
+/* Applies the motion weights to the positions, velocities and accelerations of one state's tile. The set must have
+   weights. */
 void spari_fluid_weigh(const spari_node_set *set, int64_t first, int upto, double (*buf)[SPARI_ROW]);
-/* Keeps the work space that the fluid's calls need, of all threads. 0, or 1: no memory. */
+/* Allocates the workspace of the fluid's calls for all threads. Returns 0, or 1: no memory. */
 int spari_fluid_keep_room(const spar_fluid *fluid);
-/* That of a thread, for one call: doubles of rows of tiles. */
+/* Workspace of a thread, valid for one call: rows of tiles. */
 double *spari_fluid_work(const spar_fluid *fluid, int worker);
 /* NULL: packed. */
 const spari_layout *spari_fluid_layout(const spar_fluid *fluid, int which);
 int spari_fluid_check_which(const spar_fluid *fluid, int which, const char *caller);
-/* Finite numbers x [n][width]. */
+/* Checks that x [n][width] is finite. */
 int spari_fluid_check_values(const spar_fluid *fluid, const char *caller, const char *what, const double *x, int64_t n,
                              int width);
-/* theta, or 1 in a static solution, where time stands. */
+/* theta, or 1 in a static solution. */
 double spari_fluid_time(const spar_fluid *fluid, double theta);
 int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *caller);
-/* least: least |Q|^2 the kernels met. */
+/* least: smallest |Q|^2 from the kernels. */
 int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller);
-/* Reference foot and its orientation (T2). */
+/* Reference position and orientation of a nearest point (T2). */
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]);
-/* sum_k T_k(xi) c[k][offset .. offset + n): n fields of an element at a place. */
+/* sum_k T_k(xi) c[k][offset .. offset + n): n fields of an element at xi. */
 void spari_fluid_series(const double *c, int modes, int offset, int n, double xi, double *out);
-/* The same with the frame of the section there: p in the order of storage. */
+/* Reference position and section frame; p: storage position. */
 void spari_fluid_frame(const spar_fluid *fluid, const spari_node_set *set, int64_t p, double x[3], double q[4]);
-/* Reference places of a mapped set, put together again from feet and arms: [n][3]; to free. NULL: no memory. */
+/* Reference positions [n][3] of a mapped set, from nearest points and lever arms; free with free(). NULL: no memory. */
 double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *nodes);
-/* Reproducible sums for the loads there are, and for those of parts; nothing if they are there. SPAR_ERR_MEMORY: as it
-   was, no message. */
+/* Creates reproducible sums for the existing loads and those of parts, unless they exist. SPAR_ERR_MEMORY: nothing
+   has changed, no message. */
 int spari_fluid_make_bins(spar_fluid *fluid);
 void spari_fluid_drop_bins(spar_fluid *fluid);
-/* Twice a number is added to a sum. */
+/* Adds twice a number to a sum. */
 void spari_fluid_add_twice(spari_bins *sum, double x);
-/* The loads of the last push hold at t^n; they are again those that held at t^n. */
+/* keep: the last pushed loads become those of t^n. revert: the loads of t^n become the last pushed. */
 void spari_fluid_keep_loads(spar_fluid *fluid);
 void spari_fluid_revert_loads(spar_fluid *fluid);
-/* Node forces for n nodes and a predictor of this order, zeros; NULL: no memory. */
+/* Zero node forces for n nodes and a predictor of this order; NULL: no memory. */
 spari_history *spari_history_create(int64_t n, int order);
 void spari_history_free(spari_history *history);
-/* Numbers for n nodes, zeros; NULL: no memory. begin, accept: of a step; states NULL: there are none. */
+/* Zero numbers for n nodes; NULL: no memory. begin, accept: step events; states may be NULL. */
 spari_states *spari_states_create(int64_t n, int64_t width);
 spari_states *spari_states_copy(const spari_states *from);
 void spari_states_free(spari_states *states);
 void spari_states_begin(spari_states *states);
 void spari_states_accept(spari_states *states);
 void spari_taking_free(spari_taking *taking);
-/* Room for the ends of parts. SPAR_OK, or SPAR_ERR_MEMORY without a message. */
+/* Allocates the ends of parts. SPAR_OK, or SPAR_ERR_MEMORY without a message. */
 int spari_parts_prepare(spar_fluid *fluid);
 void spari_parts_free(spari_parts *parts);
-/* A part that ends at theta, on n force nodes; no moment: none. In the sums to come only. SPAR_ERR_MEMORY without a
-   message. */
+/* Adds a part that ends at theta, on n force nodes, to the next sums; moment may be absent. SPAR_ERR_MEMORY without
+   a message. */
 int spari_parts_add(spar_fluid *fluid, int64_t n, double theta, spari_source force, spari_source moment);
-/* Of these sums the means over [0, theta] (at_end 0), or the ends there of the lines of least squares, into `value`. */
+/* Means of the next sums over [0, theta] (at_end 0), or values at theta of the least-squares lines, in `value`. */
 void spari_parts_see(spari_parts *parts, double theta, int at_end);
-/* The sums to come are those that hold. */
+/* Makes the next sums the present ones. */
 void spari_parts_keep(spari_parts *parts, double theta);
-/* No part has been pushed in the step. */
+/* Begins a step without parts. */
 void spari_parts_begin(spar_fluid *fluid);
 void spari_parts_accept(spar_fluid *fluid);
 

@@ -1,5 +1,4 @@
-/* Numbers of the host's own at a fluid's force nodes: the state of its model, which goes with the run as the fluid's
-   loads do. */
+/* The host's own numbers at a fluid's force nodes: state of its model, saved and restored with the fluid's loads. */
 #include "../base/environment.h"
 #include "state.h"
 
@@ -41,7 +40,7 @@ int spar_fluid_get_states(const spar_fluid *fluid, int64_t *width, double *dt) {
     return SPAR_OK;
 }
 
-/* Whether so many numbers can be given and taken now. *states NULL: there are none. */
+/* Whether numbers of this width can be pushed and pulled now. *states NULL: none. */
 static int check_states(const spar_fluid *fluid, int64_t width, int has_place, spari_states **states,
                         const char *caller) {
     const spari_nodes *s;

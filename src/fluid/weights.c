@@ -1,5 +1,5 @@
-/* Motion nodes that take part of the section's motion: weights, which the host gives or which fade with the distance.
- */
+/* Motion weights: motion nodes that follow a fraction of the section's motion, given by the host or decreasing with
+   the distance. */
 #include "../base/environment.h"
 #include "../base/status.h"
 #include "../math/rotation.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Weights are for nodes that are given by place: sections turn with the line as a whole. */
+/* Weights are for nodes given by position: sections follow the line fully. */
 static int check_weighable(const spar_fluid *fluid, int64_t n, const char *caller) {
     const spari_node_set *set = &fluid->set[SPAR_NODES_MOTION];
     SPARI_TRY(spari_fluid_check_idle(fluid, caller));
@@ -26,7 +26,8 @@ static int check_weighable(const spar_fluid *fluid, int64_t n, const char *calle
     return SPAR_OK;
 }
 
-/* The host's places as they were given, or after the map as feet and arms give them; to free. NULL: no memory. */
+/* The host's positions as given, or after the map from nearest points and lever arms; free with free(). NULL: no
+   memory. */
 static double *reference_places(const spar_fluid *fluid) {
     const spari_node_set *set = &fluid->set[SPAR_NODES_MOTION];
     return set->home    ? spari_copy(set->home, 3 * set->n)
@@ -40,7 +41,7 @@ static void take_weights(spari_node_set *set, double *weight, double *home) {
     set->weight = weight, set->home = home;
 }
 
-/* Takes the array, or frees it. */
+/* Takes ownership of the array. */
 static int use_weights(spar_fluid *fluid, double *weight, const char *caller) {
     double *home = reference_places(fluid);
     if (!weight || !home) {
@@ -83,7 +84,7 @@ int spar_fluid_get_motion_weights(const spar_fluid *fluid, double *w) {
     return SPAR_OK;
 }
 
-/* Distances of the motion nodes from the line, [n]; to free. */
+/* Distances of the motion nodes from the line, [n]; free with free(). */
 static int line_distances(const spar_fluid *fluid, double **distance, const char *caller) {
     const spar_member *m = fluid->member;
     int64_t n = fluid->set[SPAR_NODES_MOTION].n;
@@ -136,7 +137,7 @@ int spar_fluid_fade_motion(spar_fluid *fluid, double within, double beyond, int6
     if (!distance) {
         SPARI_TRY(line_distances(fluid, &own, __func__));
     }
-    double *weight = spari_zalloc(n, sizeof *weight), span = beyond / 2 - within / 2; /* half: both may be large */
+    double *weight = spari_zalloc(n, sizeof *weight), span = beyond / 2 - within / 2; /* halved: both may be large */
     for (int64_t j = 0; weight && j < n; j++) {
         double at = distance ? distance[j] : own[j];
         weight[j] = held && held[j] ? 0 : quintic_fade((at / 2 - within / 2) / span);
@@ -151,7 +152,7 @@ void spari_fluid_weigh(const spari_node_set *set, int64_t first, int upto, doubl
     for (int i = 0; i < count; i++) {
         int64_t node = spari_nodes_node(set->nodes, first + i);
         double w = set->weight[node];
-        if (w == 1) { /* as without weights, to the bit */
+        if (w == 1) { /* the same bits as without weights */
             continue;
         }
         for (int k = 0; k < 3; k++) {

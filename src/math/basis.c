@@ -1,4 +1,4 @@
-/* Quadrature points and weights, and Lagrange's polynomials. */
+/* Quadrature points and weights, and Lagrange polynomials: see basis.h. */
 #include "basis.h"
 
 #include <gsl/gsl_integration.h>
@@ -32,7 +32,7 @@ void spari_gll(int n, double *x, double *w, double *bary) {
     }
     int m = n - 1;
     for (int i = 0; i < n; i++) {
-        int mirror = i > m - i; /* nodes in exactly symmetric pairs */
+        int mirror = i > m - i; /* keeps the nodes exactly symmetric */
         int j = mirror ? m - i : i;
         double t = -cos(3.14159265358979323846 * j / m), before;
         if (2 * j == m) {
@@ -91,7 +91,7 @@ void spari_lagrange(int n, const double *x, const double *bary, double xi, doubl
     if (!dphi) {
         return;
     }
-    /* phi_j' is a polynomial: its nodal values D_mj, weighted with phi_m, are exact everywhere */
+    /* phi_j' is a polynomial: interpolating its nodal values D_mj by phi_m is exact */
     for (int j = 0; j < n; j++) {
         double d = 0, diagonal = 0;
         for (int m = 0; m < n; m++) {
@@ -104,8 +104,8 @@ void spari_lagrange(int n, const double *x, const double *bary, double xi, doubl
     }
 }
 
-/* A spread load p has the moments sum of P_k(x_j) f_j with Legendre's polynomials, since these are sums of the nodes'
-   own; and the integral of P_k beyond xi is (P_{k-1} - P_{k+1})(xi) / (2 k + 1). */
+/* A distributed load p has the moments sum of P_k(x_j) f_j with Legendre polynomials P_k, which are combinations of
+   the basis. The integral of P_k beyond xi is (P_{k-1} - P_{k+1})(xi) / (2 k + 1). */
 void spari_share_beyond(int n, const double *x, double xi, double *share) {
     for (int j = 0; j < n; j++) {
         double before, sum = 1 - xi;

@@ -1,4 +1,4 @@
-/* Sums that do not depend on the order of their numbers. */
+/* Sums that do not depend on the order of their terms: see bins.h. */
 #include "bins.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@ static int last_bit(int64_t bin) {
     return (int)bin * SPARI_BIN_WIDTH + SPARI_BIN_LAST;
 }
 
-/* The part of a number in a bin is at most half of 2^32 units, which the next bin above rounds to nothing: its last bit
+/* The part of a number in a bin is at most 2^31 units. The next bin above rounds this to zero, because its last bit
    is even. */
 int64_t spari_bins_top(double most) {
     int exponent;
@@ -25,7 +25,8 @@ void spari_bins_cut(int64_t top, spari_bin_cut *cut) {
     cut->scale = ldexp(1, by);
     for (int j = 0; j < SPARI_BINS; j++) {
         int unit = last_bit(top - j) + by;
-        cut->shift[j] = ldexp(1.5, unit + MANTISSA); /* its last bit is the bin's, also of the sum with either sign */
+        cut->shift[j] =
+            ldexp(1.5, unit + MANTISSA); /* its last bit is the last bit of the bin, for sums of either sign */
         cut->per_unit[j] = ldexp(1, -unit);
     }
 }
@@ -43,7 +44,7 @@ void spari_bins_add(spari_bins *sum, double x) {
     spari_bins_merge(sum, &one);
 }
 
-/* Too many numbers go round, and do no harm beyond a wrong sum. */
+/* Overflow wraps; its only consequence is a wrong sum. */
 static int64_t add_whole(int64_t a, int64_t b) {
     return (int64_t)((uint64_t)a + (uint64_t)b);
 }
@@ -72,8 +73,8 @@ void spari_bins_merge_half(spari_bins *into, const spari_bins *from, int sign) {
     spari_bins_merge(into, &half);
 }
 
-/* 64 bits of |high 2^64 + low|, and in the last of them whether there are more: they are rounded once, by the
-   conversion to a double. */
+/* The upper 64 bits of |high 2^64 + low|. The last of them is set if any lower bit is set. The conversion to double
+   rounds once. */
 static double round_whole(int64_t high, uint64_t low, int exponent) {
     int negative = high < 0;
     uint64_t h = (uint64_t)high, l = low;
@@ -96,7 +97,8 @@ static double round_whole(int64_t high, uint64_t low, int exponent) {
 double spari_bins_value(const spari_bins *sum) {
     const int64_t unit = INT64_C(1) << SPARI_BIN_WIDTH;
     int64_t part[SPARI_BINS] = {sum->part[0], sum->part[1], sum->part[2]};
-    for (int j = SPARI_BINS - 1; j > 0; j--) { /* what is above the bin's width goes up: 0 <= part < unit is left */
+    for (int j = SPARI_BINS - 1; j > 0;
+         j--) { /* carries what exceeds a bin to the next one: 0 <= part < unit remains */
         int64_t rest = part[j] % unit;
         rest += rest < 0 ? unit : 0;
         part[j - 1] = add_whole(part[j - 1], part[j] / unit - (part[j] % unit < 0));

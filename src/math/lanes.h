@@ -1,4 +1,4 @@
-/* What code needs that is compiled once for each width of vectors: see width.h and widths.h. */
+/* Helpers for kernels that are compiled once per vector width: see width.h and widths.h. */
 #ifndef SPARI_LANES_H
 #define SPARI_LANES_H
 
@@ -17,8 +17,8 @@
 #define SPARI_AHEAD(p) ((void)(p))
 #endif
 
-/* SPARI_PLAIN_LANES (1, 2, 4, 8) builds the portable kernels alone at a width of choice, so that every width can be
-   tried on any processor. */
+/* SPARI_PLAIN_LANES (1, 2, 4, 8) builds only the portable kernels at the given width, to test every width on any
+   processor. */
 #if defined(__GNUC__) && defined(__x86_64__)
 #include <immintrin.h>
 #if !defined(SPARI_PLAIN_LANES)
@@ -26,13 +26,13 @@
 #endif
 #endif
 
-/* Doubles from x on to where a cache line of eight begins: vectors that lie across two take twice as long. */
+/* Number of doubles from x to the next cache line of eight. Vectors that cross a cache line take twice as long. */
 static inline int64_t spari_to_line(const double *x) {
     uintptr_t off = (uintptr_t)x % 64;
     return off == 0 ? 0 : (int64_t)((64 - off) / sizeof *x);
 }
 
-/* How wide the vectors are that this processor has kernels for, `most` at most: 8, 4, or 0 for the portable ones. */
+/* Vector width of the kernels for this processor, at most `most`: 8, 4, or 0 for the portable kernels. */
 static inline int spari_lanes_here(int most) {
 #ifdef SPARI_X86
     if (most >= 8 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {

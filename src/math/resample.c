@@ -1,4 +1,4 @@
-/* Between two sets of nodes: see resample.h. */
+/* Transfer between two meshes of a line: see resample.h. */
 #include "resample.h"
 
 #include "basis.h"
@@ -16,7 +16,7 @@ void spari_resample_basis(int P, double xi, double *phi) {
     }
 }
 
-/* Where the n nodes of an element are. */
+/* Coordinates of the n nodes of an element. */
 static void places_of(int n, double *x) {
     x[0] = 0;
     if (n > 1) {
@@ -29,7 +29,7 @@ int spari_resample_place(int from, int e, double x, int to, double *xi) {
         *xi = x;
         return e;
     }
-    int last = x >= 1; /* (e + x) / from of the line, in elements of `to`: in whole numbers as far as it goes */
+    int last = x >= 1; /* (e + x) / from of the line, in elements of `to`, in integers as far as possible */
     int64_t along = (int64_t)(e + last) * to, on = along / from;
     double rest = (double)(along % from);
     if (last && rest == 0) {
@@ -49,7 +49,7 @@ int64_t spari_resample_end(int from, int e, int side, spari_mesh to) {
     return xi <= -1 ? (int64_t)at * to.per_element : xi >= 1 ? (int64_t)(at + 1) * to.per_element - 1 : -1;
 }
 
-/* Of the nodes [P] of one element, at a place of it. */
+/* Interpolates the nodes [P] of one element. */
 static void interpolate_nodes(int P, const double *phi, int width, int turn, const double *f, double *t) {
     memset(t, 0, (size_t)width * sizeof *t);
     for (int l = 0; l < P; l++) {

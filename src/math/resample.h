@@ -1,11 +1,11 @@
-/* The same line with other elements or other nodes in them: values go over by the elements' own interpolation, loads by
-   its transpose, so that their sum is kept. Elements are equally long in eta, which tells places. */
+/* Transfers nodal values between two meshes of the same line. Values are interpolated by the elements' basis; loads
+   use the transpose, so that their sum is conserved. Elements are equally long in eta. */
 #ifndef SPARI_RESAMPLE_H
 #define SPARI_RESAMPLE_H
 
 #include <stdint.h>
 
-/* What a line is divided into. Values stand [elements][per_element][width]. */
+/* Elements and nodes per element of a line. Values are stored as [elements][per_element][width]. */
 typedef struct spari_mesh {
     int elements, per_element;
 } spari_mesh;
@@ -13,18 +13,18 @@ typedef struct spari_mesh {
 static inline int spari_mesh_alike(spari_mesh a, spari_mesh b) {
     return a.elements == b.elements && a.per_element == b.per_element;
 }
-/* P basis values at xi of an element with P nodes; 1 for one node. */
+/* Basis values at xi of an element with per_element nodes; 1 for one node. */
 void spari_resample_basis(int per_element, double xi, double *phi);
-/* The element of `to` in which place x in [-1, 1] of element e of `from` is, both numbers of elements; *xi: where. Ends
-   are found to the bit, and between two elements the one on the same side. */
+/* Element of `to` that contains the point x in [-1, 1] of element e of `from` (both numbers of elements); *xi: its
+   coordinate. Element ends are found exactly; at a boundary the element on the same side is returned. */
 int spari_resample_place(int from, int e, double x, int to, double *xi);
-/* The end of an element of `to` that the end of an element of `from` is, as a node of the line: side 0 is the first
-   node of element e, 1 its last. -1: it lies within. */
+/* Node of `to` that coincides with an end of element e of `from`: side 0 is its first node, 1 its last. -1: the end
+   lies inside an element of `to`. */
 int64_t spari_resample_end(int from, int e, int side, spari_mesh to);
-/* Nodal values at the nodes of `to`; quaternions stand from column `turn` on (-1: there are none) and are brought into
-   one hemisphere and back to unit length. */
+/* Interpolates nodal values. Quaternions begin at column `turn` (-1: none); they are brought into one hemisphere and
+   normalised. */
 void spari_resample_values(spari_mesh from, spari_mesh to, int width, int turn, const double *values, double *out);
-/* Nodal loads of width 6 as those of the nodes of `to`. */
+/* Transfers nodal loads of width 6. */
 void spari_resample_loads(spari_mesh from, spari_mesh to, const double *loads, double *out);
 
 #endif

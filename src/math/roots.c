@@ -1,4 +1,4 @@
-/* All zeros of a polynomial, real and complex. */
+/* All zeros of a polynomial, by the three-stage algorithm of Jenkins and Traub: see roots.h. */
 #include "roots.h"
 
 #include "../base/status.h"
@@ -8,23 +8,23 @@
 #include <math.h>
 #include <string.h>
 
-/* The algorithm. For the polynomial p of degree n a sequence of polynomials K of degree n - 1 is made that converges to
-   p divided by the factor of the zeros sought, (x - s) or x^2 + u x + v:
-   1. five steps without shift make the zeros of small modulus stand out;
-   2. steps with a fixed shift, a pair of complex numbers of the modulus of the smallest zero, until the estimates of u
-   and v, or of s, settle;
-   3. steps whose shift is the estimate itself, which converge faster than quadratically.
-   What is found is divided out, the quotient is next. Coefficients below are in falling powers: p[0] x^n + ... + p[n].
- */
+/* The algorithm. For a polynomial p of degree n it computes polynomials K of degree n - 1 that converge to p divided
+   by the factor of the wanted zeros, (x - s) or x^2 + u x + v.
+   1. Five steps without shift separate the zeros of small modulus.
+   2. Steps with a fixed shift, a complex pair with the modulus of the smallest zero, until the estimates of u and v,
+     or of s, converge.
+   3. Steps with the estimate as shift, which converge faster than quadratically.
+   The factor found is divided out, and the quotient is next. Coefficients below are in falling powers: p[0] x^n +
+     ... + p[n]. */
 
 enum { SIZE = SPARI_MAX_DEGREE + 1, SHIFTS = 20 };
 
-/* How the scalars of the next K are formed (which divisor is the larger), or that K is divisible and they cannot be. */
+/* Normalisation of the scalars of the next K (by the larger of c and d), or UNSCALED: K is divisible by the factor. */
 typedef enum scaling { BY_C, BY_D, UNSCALED } scaling;
 
 typedef struct finder {
     int n;                         /* degree of p */
-    double p[SIZE], qp[SIZE];      /* polynomial, quotient by the shift's factor */
+    double p[SIZE], qp[SIZE];      /* polynomial, and its quotient by the shift's factor */
     double k[SIZE], qk[SIZE];      /* K and its quotient */
     double u, v;                   /* x^2 + u x + v */
     double a, b, c, d;             /* remainders: b (x + u) + a of p, d (x + u) + c of K */
@@ -109,7 +109,8 @@ static void next_k(finder *w, scaling by) {
         }
         return;
     }
-    if (fabs(w->a1) <= fabs(by == BY_C ? w->b : w->a) * DBL_EPSILON * 10) { /* a1 nearly zero: another multiple of K */
+    if (fabs(w->a1) <=
+        fabs(by == BY_C ? w->b : w->a) * DBL_EPSILON * 10) { /* a1 is nearly zero: use another multiple of K */
         w->k[0] = 0;
         w->k[1] = -w->a7 * w->qp[0];
         for (int i = 2; i < n; i++) {
@@ -126,7 +127,7 @@ static void next_k(finder *w, scaling by) {
     }
 }
 
-/* New estimate of the quadratic factor; zeros when there is none. */
+/* New estimate of the quadratic factor; zeros if there is none. */
 static void estimate(const finder *w, scaling by, double *u, double *v) {
     const double *p = w->p, *k = w->k;
     int n = w->n;
@@ -151,7 +152,7 @@ static void estimate(const finder *w, scaling by, double *u, double *v) {
     }
 }
 
-/* Bound of the rounding in p at the zero (re, im) of the quadratic, evaluated with its quotient. */
+/* Bound of the rounding error of p at the zero (re, im) of the quadratic, evaluated with its quotient. */
 static double quadratic_rounding(const finder *w, double re) {
     double size = sqrt(fabs(w->v)), sum = 2 * fabs(w->qp[0]), t = -re * w->b;
     for (int i = 1; i < w->n; i++) {
@@ -161,8 +162,7 @@ static double quadratic_rounding(const finder *w, double re) {
     return DBL_EPSILON * (9 * sum - 7 * (fabs(w->a + t) + fabs(w->b) * size) + 2 * fabs(t));
 }
 
-/* Stage 3 for a quadratic factor. Returns 2 when its zeros are found: complex, equal, or close to each other in
- * modulus. */
+/* Stage 3 for a quadratic factor. Returns 2 if its zeros are found. These are complex, equal, or close in modulus. */
 static int quadratic_iteration(finder *w, double u, double v) {
     int stirred = 0;
     double before = 0, step = 0;
@@ -170,7 +170,7 @@ static int quadratic_iteration(finder *w, double u, double v) {
     for (int j = 0; j <= 20;) {
         roots_of_quadratic(1, w->u, w->v, w->re, w->im);
         if (fabs(fabs(w->re[0]) - fabs(w->re[1])) > 0.01 * fabs(w->re[1])) {
-            return 0; /* two real zeros apart: found better one by one */
+            return 0; /* two separate real zeros: better found one by one */
         }
         divide(w->n, w->p, w->u, w->v, w->qp, &w->a, &w->b);
         double size = fabs(w->a - w->re[0] * w->b) + fabs(w->im[0] * w->b);
@@ -180,7 +180,8 @@ static int quadratic_iteration(finder *w, double u, double v) {
         if (++j > 20) {
             return 0;
         }
-        if (j >= 2 && step <= 0.01 && size >= before && !stirred) { /* stuck at a cluster: five steps from beside it */
+        if (j >= 2 && step <= 0.01 && size >= before &&
+            !stirred) { /* stalled at a cluster: perturb the shift, then five steps */
             step = sqrt(fmax(step, DBL_EPSILON));
             w->u -= w->u * step;
             w->v += w->v * step;
@@ -203,7 +204,8 @@ static int quadratic_iteration(finder *w, double u, double v) {
     return 0;
 }
 
-/* Stage 3 for a real zero from *s. Returns 1 when it is found. *cluster: it hangs at *s as if two zeros were there. */
+/* Stage 3 for a real zero from *s. Returns 1 if it is found. *cluster: the iteration stalls at *s as at a double
+   zero. */
 static int linear_iteration(finder *w, double *s, int *cluster) {
     int n = w->n;
     double x = *s, before = 0, t = 0;
@@ -257,9 +259,9 @@ static int linear_iteration(finder *w, double *s, int *cluster) {
     }
 }
 
-/* Stage 3 from estimates that passed: the more promising kind first, then the other, K as it was for each. When a real
-   iteration hangs at two zeros close together, the quadratic with both of them is tried. Returns how many zeros came
-   out. */
+/* Stage 3 from estimates that passed the tests: the more promising kind first, then the other with the original K.
+   If a real iteration stalls at two close zeros, the quadratic with both is tried. Returns the number of zeros
+   found. */
 SPARI_APART static int stage_three(finder *w, double u, double v, double s, int try_v, int try_s, int s_first,
                                    int *failed_v, int *failed_s) {
     double saved[SIZE];
@@ -285,9 +287,8 @@ SPARI_APART static int stage_three(finder *w, double u, double v, double s, int 
     return 0;
 }
 
-/* Stage 2: at most `steps` with the shift (u, v) of modulus `bound`. Two successive estimates that agree better and
-   better (product of their changes below 1/4, less after each vain attempt) lead to stage 3. Returns how many zeros
-   came out. */
+/* Stage 2: at most `steps` with a fixed shift (u, v). Two successive estimates with decreasing changes (product
+   below 1/4, less after each failed attempt) lead to stage 3. Returns the number of zeros found. */
 static int fixed_shift(finder *w, int steps, double real_part, double modulus) {
     double limit_v = 0.25, limit_s = 0.25, last_v = modulus * modulus, last_s = real_part, change_v = 1, change_s = 1;
     w->u = -2 * real_part, w->v = modulus * modulus;
@@ -321,7 +322,7 @@ static int fixed_shift(finder *w, int steps, double real_part, double modulus) {
     return 0;
 }
 
-/* Stage 1: K from the derivative by five steps without shift. */
+/* Stage 1: K from the derivative, by five steps without shift. */
 static void no_shift(finder *w) {
     int n = w->n;
     for (int i = 0; i < n; i++) {
@@ -338,7 +339,7 @@ static void no_shift(finder *w) {
     }
 }
 
-/* Coefficients of extreme size are brought nearer to 1 by a power of two, which rounds nothing. */
+/* Scales coefficients of extreme size towards 1 by a power of two, without rounding. */
 static void scale_coefficients(finder *w) {
     double most = 0, least = HUGE_VAL;
     for (int i = 0; i <= w->n; i++) {
@@ -351,13 +352,14 @@ static void scale_coefficients(finder *w) {
         return;
     }
     int power = (int)floor(log2(factor > 0 ? factor : DBL_MIN) + 0.5);
-    power = factor <= 1 ? (int)fmax(power, -ilogb(most)) : power; /* as far down as to 1, not beyond */
+    power = factor <= 1 ? (int)fmax(power, -ilogb(most)) : power; /* down to 1, not below */
     for (int i = 0; i <= w->n && power; i++) {
         w->p[i] = ldexp(w->p[i], power);
     }
 }
 
-/* Cauchy's lower bound of the zeros' moduli: the positive zero of |p0| x^n + ... + |p(n-1)| x - |pn|, to two digits. */
+/* Cauchy's lower bound of the moduli of the zeros: the positive zero of |p0| x^n + ... + |p(n-1)| x - |pn|, to two
+   digits. */
 static double lower_bound(const finder *w) {
     int n = w->n;
     double p[SIZE];
@@ -369,7 +371,7 @@ static double lower_bound(const finder *w) {
     if (p[n - 1] != 0) {
         x = fmin(x, -p[n] / p[n - 1]);
     }
-    for (double small = 0.1 * x;; small *= 0.1) { /* to where the sum turns negative */
+    for (double small = 0.1 * x;; small *= 0.1) { /* until the sum becomes negative */
         double f = p[0];
         for (int i = 1; i <= n; i++) {
             f = f * small + p[i];
@@ -391,8 +393,7 @@ static double lower_bound(const finder *w) {
     return x;
 }
 
-/* The next one or two zeros of p; 0: none came out of twenty shifts. Each shift is turned by 94 degrees from the last.
- */
+/* Finds the next one or two zeros of p; returns 0 after twenty failed shifts. Each shift is rotated by 94 degrees. */
 SPARI_APART static int search_roots(finder *w) {
     const double turn_c = -0.069756473744125, turn_s = 0.997564050259824; /* cos, sin of 94 degrees */
     double c = 0.707106781186547524, s = -c, first[SIZE];
@@ -413,8 +414,8 @@ SPARI_APART static int search_roots(finder *w) {
     return 0;
 }
 
-/* p(z) / p'(z) for c in rising powers, or 0 where |p(z)| is rounding. Outside the unit circle with the reversed
-   polynomial in 1/z, so that no power overflows. */
+/* p(z) / p'(z) for c in rising powers, or 0 if |p(z)| is below rounding. Outside the unit circle it uses the
+   reversed polynomial in 1/z, so that no power overflows. */
 static double complex newton_step(int n, const double *c, double complex z) {
     int inside = cabs(z) <= 1;
     double complex x = inside ? z : 1 / z, value = 0, slope = 0;
@@ -431,9 +432,9 @@ static double complex newton_step(int n, const double *c, double complex z) {
     return inside ? value / slope : value / ((n * value - slope * x) * x);
 }
 
-/* Each zero is found on a quotient, which carries the errors of those before it. All are set right on the polynomial
-   itself by the simultaneous Newton steps of Ehrlich and Aberth, which keep the zeros apart; pairs stay pairs, real
-   ones real. */
+/* Each zero was found on a quotient, which carries the errors of the zeros before it. All zeros are refined on the
+   original polynomial by the simultaneous Newton steps of Ehrlich and Aberth, which keep them apart. Conjugate pairs
+   stay pairs, real zeros stay real. */
 static void polish(int n, const double *c, double *re, double *im) {
     for (int sweep = 0, moving = 1; sweep < 30 && moving; sweep++) {
         moving = 0;
@@ -450,7 +451,7 @@ static void polish(int n, const double *c, double *re, double *im) {
                 re[k] -= creal(step);
                 im[k] -= pair ? cimag(step) : 0;
             }
-            if (pair) { /* the conjugate stands behind it */
+            if (pair) { /* followed by its conjugate */
                 re[k + 1] = re[k], im[k + 1] = -im[k];
                 k++;
             }

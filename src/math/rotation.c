@@ -11,7 +11,7 @@ void spari_quat_matrix(const double q[4], double r[9]) {
     r[6] = 2 * (x * z - w * y), r[7] = 2 * (y * z + w * x), r[8] = 1 - 2 * (x * x + y * y);
 }
 
-/* Shepperd's choice of the largest component, so that no small number is divided by. */
+/* Shepperd's method: the largest component is computed first, so that no small number is divided by. */
 void spari_matrix_quat(const double r[9], double q[4]) {
     double trace = r[0] + r[4] + r[8];
     double four[4] = {1 + trace, 1 + 2 * r[0] - trace, 1 + 2 * r[4] - trace, 1 + 2 * r[8] - trace};
@@ -38,7 +38,7 @@ void spari_matrix_quat(const double r[9], double q[4]) {
 
 void spari_quat_exp(const double psi[3], double q[4]) {
     double half = 0.5 * spari_norm(psi);
-    /* sin(h)/(2h): two terms are exact in double below 1e-4 */
+    /* sin(h)/(2h): two terms of the series are exact to double precision below 1e-4 */
     double s = half < 1e-4 ? 0.5 * (1 - half * half / 6) : 0.5 * sin(half) / half;
     q[0] = cos(half);
     q[1] = s * psi[0], q[2] = s * psi[1], q[3] = s * psi[2];
@@ -68,7 +68,7 @@ static void spin_polynomial(const double psi[3], double a, double b, double t[9]
 /* T = I + (1 - cos p)/p^2 psi~ + (p - sin p)/p^3 psi~^2, e.g. Geradin & Cardona, Flexible Multibody Dynamics, ch. 4 */
 void spari_tangent(const double psi[3], double t[9]) {
     double p2 = spari_dot(psi, psi), a, b;
-    if (p2 < 1e-2) { /* series: the closed forms cancel */
+    if (p2 < 1e-2) { /* the series avoids cancellation in the closed forms */
         a = 0.5 - p2 * (1.0 / 24 - p2 * (1.0 / 720 - p2 * (1.0 / 40320 - p2 / 3628800)));
         b = 1.0 / 6 - p2 * (1.0 / 120 - p2 * (1.0 / 5040 - p2 * (1.0 / 362880 - p2 / 39916800)));
     } else {

@@ -1,5 +1,5 @@
-/* Rotations: quaternions scalar first, [w,x,y,z]; 3-vectors; all arrays contiguous, outputs may not alias inputs unless
- * said. */
+/* Rotations by quaternions, scalar first: [w, x, y, z]. Arrays are contiguous. Outputs may not alias inputs unless
+   stated. */
 #ifndef SPARI_ROTATION_H
 #define SPARI_ROTATION_H
 
@@ -38,7 +38,7 @@ static inline void spari_quat_conj(const double q[4], double c[4]) {
     c[0] = q[0], c[1] = -q[1], c[2] = -q[2], c[3] = -q[3];
 }
 
-/* turn = b a*: what turns a into b, in global axes; turn may be one of them */
+/* turn = b a*: the rotation from a to b, in global axes; turn may be a or b */
 static inline void spari_quat_between(const double a[4], const double b[4], double turn[4]) {
     double back[4];
     spari_quat_conj(a, back);
@@ -72,14 +72,14 @@ static inline void spari_rotate_back(const double q[4], const double x[3], doubl
     spari_rotate(c, x, y);
 }
 
-/* Whether x has a part across an axis, of length 1, beyond rounding. */
+/* Whether x has a component perpendicular to the unit vector `axis`, beyond rounding. */
 static inline int spari_across(const double axis[3], const double x[3]) {
     double part[3];
     spari_cross(axis, x, part);
     return spari_norm(part) > 1e-9 * spari_norm(x);
 }
 
-/* y = R x; y may be x. Many vectors are turned for half of what spari_rotate takes. */
+/* y = R x; y may be x. For many vectors this takes half the time of spari_rotate. */
 static inline void spari_matrix_times(const double r[9], const double x[3], double y[3]) {
     double a = r[0] * x[0] + r[1] * x[1] + r[2] * x[2], b = r[3] * x[0] + r[4] * x[1] + r[5] * x[2];
     double c = r[6] * x[0] + r[7] * x[1] + r[8] * x[2];
@@ -99,15 +99,15 @@ void spari_quat_matrix(const double q[4], double r[9]);
 void spari_matrix_quat(const double r[9], double q[4]);
 /* exp of the rotation vector; accurate for small and for large angles */
 void spari_quat_exp(const double psi[3], double q[4]);
-/* rotation vector of the shorter turn, |psi| <= pi */
+/* rotation vector of the shorter rotation, |psi| <= pi */
 void spari_quat_log(const double q[4], double psi[3]);
-/* tangent operator of the exponential map, row-major: exp(psi + d psi) = exp(T d psi) exp(psi) to first order; and its
- * inverse */
+/* Tangent operator of the exponential map and its inverse, row-major: exp(psi + d psi) = exp(T d psi) exp(psi) to
+   first order. */
 void spari_tangent(const double psi[3], double t[9]);
 void spari_tangent_inverse(const double psi[3], double t[9]);
 
-/* Brings the P quaternions q [P][4] (stride in doubles) into one chain of hemispheres, into out [P][4]. The result does
-   not depend on the signs that came in: the first node's leading component is made positive, each other follows its
+/* Brings n quaternions q [n][4] (stride in doubles) into one chain of hemispheres, out [n][4]. The result does not
+   depend on the input signs: the leading component of the first is made positive, each other follows its
    predecessor. */
 void spari_chain(int n, const double *q, int stride, double *out);
 

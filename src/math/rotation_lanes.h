@@ -1,9 +1,8 @@
-/* Vectors and rotations of W points or nodes, one in each lane, and how they come from arrays of nodes and go there.
-   Included once per width with the macros of width.h. With W = 1 it is plain C. No include guard: this is a body, not
-   an interface.
-
-   Lanes do not see each other, and nothing is fused: what comes out has the same bits at every width. With SPARI_FUSED,
-   which quadrature points have, vectors and what is marked so take products and sums in one where the processor can. */
+/* Vectors and rotations of W points or nodes, one per lane, with loads and stores from arrays of nodes. Included
+   once per width with the macros of width.h; with W = 1 it is plain C. No include guard: this is a body, not an
+   interface.
+   Lanes are independent and nothing is fused, so the results have the same bits at every width. With SPARI_FUSED
+     (quadrature points) vectors and the functions marked "fused" use fused multiply-add if the processor has it. */
 
 /* a b + c */
 #undef FUSE
@@ -13,10 +12,10 @@
 #define FUSE(a, b, c) ((a) * (b) + (c))
 #endif
 
-/* ---- to and from nodes ---- */
+/* ---- loads and stores of nodes ---- */
 
-/* Component p of W nodes, whose arrays have `width` numbers a node: of those next to each other, or (not whole) of
-   those that `at` says. */
+/* Component p of W nodes, whose arrays have `width` numbers per node: of consecutive nodes, or (not whole) of the
+   nodes `at`. */
 #undef NODE_AT
 #define NODE_AT(l) ((p)[width * (whole ? (l) : at[l])])
 HERE L NAME(pick)(const int whole, const int64_t *at, const int width, const double *p) {
@@ -44,7 +43,7 @@ HERE void NAME(drop)(const int whole, const int64_t *at, const int width, double
 #endif
 }
 
-/* Two components next to each other: nodes come and go two numbers at a time, and are turned over two by two. */
+/* Two adjacent components: nodes are loaded and stored two numbers at a time and transposed in pairs. */
 #undef PAIRED
 #ifdef LOW
 #define PAIRED 1
@@ -77,7 +76,7 @@ HERE void NAME(drop_pair)(const int whole, const int64_t *at, const int width, d
 }
 #endif
 
-/* n components, one after the other; an odd number's last two overlap the two before. */
+/* n consecutive components; if n is odd, the last pair overlaps the one before. */
 HERE void NAME(pick_rows)(const int whole, const int64_t *at, const int width, const int n, const double *p, L *x) {
 #ifdef PAIRED
     SPARI_UNROLL
@@ -112,8 +111,8 @@ HERE void NAME(drop_rows)(const int whole, const int64_t *at, const int width, c
 #endif
 }
 
-/* The next W of `left` nodes: where there are fewer, the lanes beyond repeat the last. What they have is written first,
-   and the last node's own over it. Whether there are W. */
+/* The next W of `left` nodes. If there are fewer, the remaining lanes repeat the last node; they are stored first,
+   so that the last node's own result overwrites them. Returns whether there are W. */
 HERE int NAME(next_nodes)(int64_t left, int64_t *at) {
     for (int l = 0; l < W && left < W; l++) {
         at[l] = l < left ? l : left - 1;
@@ -121,7 +120,7 @@ HERE int NAME(next_nodes)(int64_t left, int64_t *at) {
     return left >= W;
 }
 
-/* ---- lane by lane ---- */
+/* ---- per lane ---- */
 
 HERE L NAME(root)(L x) {
 #ifdef ROOT
@@ -136,7 +135,7 @@ HERE L NAME(root)(L x) {
 #endif
 }
 
-/* The larger, b where there is none. */
+/* The larger of a and b; b if one is NaN. */
 HERE L NAME(larger)(L a, L b) {
 #ifdef MOST
     return MOST(a, b);
@@ -151,7 +150,7 @@ HERE L NAME(larger)(L a, L b) {
 #endif
 }
 
-/* Whether any lane of a is larger than that of b. */
+/* Whether any lane of a is larger than the lane of b. */
 HERE int NAME(any_above)(L a, L b) {
 #ifdef ABOVE
     return ABOVE(a, b) != 0;
@@ -167,7 +166,7 @@ HERE int NAME(any_above)(L a, L b) {
 #endif
 }
 
-/* The largest of the lanes, and of `so_far`. */
+/* The largest of the lanes and of `so_far`. */
 HERE double NAME(largest)(double so_far, L x) {
     double t[W];
     NAME(put)(t, x);
@@ -213,7 +212,7 @@ HERE void NAME(rotate_back)(const L *q, const L *x, L *y) {
     NAME(rotate)(c, x, y);
 }
 
-/* y = R x with the rows of R one after the other; y may be x */
+/* y = R x, R row-major; y may be x */
 HERE void NAME(matrix_times)(const double *R, const L *x, L *y) {
     L a = R[0] * x[0] + R[1] * x[1] + R[2] * x[2], b = R[3] * x[0] + R[4] * x[1] + R[5] * x[2];
     L c = R[6] * x[0] + R[7] * x[1] + R[8] * x[2];

@@ -1,19 +1,19 @@
-/* One width of vectors for the code included next: in place of the width before, which ends here, defines for
-   SPARI_WIDTH 1 (plain C), 2 (portable: two lanes are in every processor that has lanes at all), 4 (AVX2), 8 (AVX-512)
+/* Defines the macros of one vector width for the code that is included next, and undefines the width before.
+   SPARI_WIDTH is 1 (plain C), 2 (portable; every processor with lanes has two), 4 (AVX2), 8 (AVX-512) or 0 (no macros).
+   4 and 8 need SPARI_X86. "if available": defined only where the processor has an instruction for it.
      W           lanes of a vector
      NAME(x)     the name of x at this width
      TARGET      function attributes of the instruction set
-     MADD(a,b,c) a b + c, rounded once where the processor can; MSUB a b - c and NMADD c - a b likewise
+     MADD(a,b,c) a b + c, rounded once if the processor can; MSUB is a b - c, NMADD is c - a b
      SPLAT(p)    *p in every lane
-     ROOT(x)     square root, where there is an instruction for it
-     MOST(a,b)   the larger, b where one is no number, likewise; LEAST the smaller
-     ABOVE(a,b)  some bits where a lane of a is larger, likewise
-     LOW(a,b)    the first of each two lanes of a and b in turns, and HIGH the second, likewise
-     STREAM(p,v) v to p, a multiple of its size, past the caches, likewise
-     L           the vector; get and put take it from memory and bring it there
-     HERE        how a function begins that is inlined
-   and for SPARI_WIDTH 0 nothing. SPARI_WIDTH itself is gone afterwards. 4 and 8 are for SPARI_X86 alone. No include
-   guard: this is a body, not an interface. */
+     ROOT(x)     square root, if available
+     MOST(a,b)   the larger, b if one is NaN, if available; LEAST the smaller
+     ABOVE(a,b)  nonzero bits where a lane of a is larger, if available
+     LOW(a,b)    interleaves the first of each two lanes of a and b, HIGH the second, if available
+     STREAM(p,v) stores v at p, aligned to its size, bypassing the caches, if available
+     L           the vector type; get and put load and store it
+     HERE        attributes of an inlined function
+   SPARI_WIDTH is undefined afterwards. No include guard: this is a body, not an interface. */
 #include "lanes.h"
 
 #undef W
@@ -85,7 +85,7 @@
 #if W == 1
 #define SPLAT(p) (*(p))
 #else
-#define SPLAT(p) (*(p) - (L){0}) /* less nothing, for that keeps the sign of a zero */
+#define SPLAT(p) (*(p) - (L){0}) /* subtracts nothing, because adding zero loses the sign of a zero */
 #endif
 #if W == 2 && defined(__SSE2__)
 #define ROOT(x) _mm_sqrt_pd(x)

@@ -1,5 +1,6 @@
-/* A file of kernels, SPARI_KERNELS as it is named from here, once for each width of vectors that there is: portable,
-   AVX2, AVX-512 (width.h). SPARI_KERNELS is gone afterwards. No include guard: this is a body, not an interface. */
+/* Includes a file of kernels, SPARI_KERNELS (path relative to this folder), once per available vector width:
+   portable, AVX2, AVX-512 (width.h). SPARI_KERNELS is undefined afterwards. No include guard: this is a body, not an
+   interface. */
 #include "lanes.h"
 
 #define SPARI_WIDTH 2

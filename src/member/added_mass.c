@@ -1,4 +1,4 @@
-/* A guess of the fluid's added mass: described, and in a member's equations. See added_mass.h. */
+/* Known added mass: its description by the host, and its terms in a member's equations. See added_mass.h. */
 #include "added_mass.h"
 
 #include "../base/blas.h"
@@ -92,7 +92,7 @@ int spar_member_get_added_mass(const spar_member *member, int64_t *n, int64_t ca
     return SPAR_OK;
 }
 
-/* ---- points ---- */
+/* ---- strips ---- */
 
 static void free_strips(spari_strips *p) {
     free(p->eta), free(p->R), free(p->phi), free(p->arm);
@@ -109,7 +109,7 @@ static int allocate_strips(spari_strips *p, int elements, int per_element, int i
     return p->eta && p->R && p->phi && p->arm ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-/* One Gauss point an element more than it has nodes. */
+/* One Gauss point per element more than it has nodes. */
 static int make_strips_of_beam(const spar_member *m, spari_strips *p) {
     int P = m->per_element, points = P + 1;
     double xi[SPARI_MAX_NODES + 1], w[SPARI_MAX_NODES + 1];
@@ -145,7 +145,7 @@ static int make_strips(const spar_member *m, spari_strips *p) {
     return SPAR_OK;
 }
 
-/* whole [36] += T^T mass T of a point, T taking the root's acceleration to it: a + alpha x arm */
+/* whole [36] += T^T mass T of a point, where T maps the root's acceleration to the point: a + alpha x arm */
 static void gather_point(const double mass[36], const double arm[3], double whole[36]) {
     double T[36] = {0}, half[36] = {0}, skew[9];
     spari_skew(arm, skew);
@@ -188,7 +188,7 @@ void spari_added_fill(spar_member *m, int64_t n, const double *eta, const double
     }
 }
 
-/* The points of the mass are the strips, or one that all of these are gathered in. */
+/* The mass is kept at the strips, or at one point that combines them all. */
 static int allocate_points(const spar_member *m, spari_added *d) {
     const spari_strips *p = &d->strips;
     d->elements = d->whole ? 1 : m->elements;
@@ -248,7 +248,7 @@ void spari_added_free(spari_added *d) {
     }
 }
 
-/* ---- in the equations ---- */
+/* ---- tangent and forces ---- */
 
 void spari_added_turn(const spar_member *m, int64_t e, const double *phi, double turn[4]) {
     const spari_added *d = m->added;
@@ -274,7 +274,7 @@ void spari_added_turn(const spar_member *m, int64_t e, const double *phi, double
     spari_quat_normalise(turn);
 }
 
-/* The first node of an element. */
+/* First node of an element. */
 static int64_t first_node(const spari_added *d, spari_numbering of, int64_t e) {
     return e * (of == SPARI_UNKNOWNS ? d->per_element - 1 : d->per_element);
 }
@@ -331,7 +331,7 @@ static void turn_columns(const double X[36], const double *T, double out[36]) {
     }
 }
 
-/* to, 6x6 in rows of `row`, += f X */
+/* to, 6x6 with rows of `row`, += f X */
 static void add_section_block(double f, const double X[36], int64_t row, double *to) {
     for (int i = 0; i < 6; i++) {
         for (int j = 0; j < 6; j++) {
@@ -362,20 +362,20 @@ void spari_added_tangent(const spar_member *m, int e, double cm, const double *t
     }
 }
 
-/* ---- in the loads ---- */
+/* ---- predicted loads ---- */
 
 void spari_added_see(spar_member *m) {
     memset(m->added->shift, 0, (size_t)(6 * m->nodes) * sizeof(double));
     (void)spari_added_times(m, SPARI_NODES, SPARI_NODES, m->after.a, 1, m->added->shift);
 }
 
-/* (v^{n+1} - v^n) / dt by the true accelerations at both ends and the algorithmic one b^n, and that one after the step
-   (time/scheme.h). Of a step of TR-BDF2 the acceleration at its stage is taken for linear in between, and b^n stays
-   out. */
+/* Integration scheme: weights of (v^{n+1} - v^n) / dt by the true accelerations at both ends and the algorithmic one
+   b^n, and of b^{n+1} (time/scheme.h). For a step of TR-BDF2 the acceleration at its stage is interpolated linearly
+   and b^n does not enter. */
 typedef struct integration {
-    double a0, b0, a1;                /* of the change of the velocity */
-    double next_a0, next_b0, next_a1; /* of b^{n+1} */
-    double stretch;                   /* of b^n - a^n, from step to step */
+    double a0, b0, a1;                /* weights of the change of velocity */
+    double next_a0, next_b0, next_a1; /* weights of b^{n+1} */
+    double stretch;                   /* amplification of b^n - a^n per step */
 } integration;
 
 static integration integration_of(const spar_session *s, double dt) {
@@ -393,8 +393,9 @@ static integration integration_of(const spar_session *s, double dt) {
                          .stretch = s->step > 0 ? dt / s->dt_last[0] : 1};
 }
 
-/* The fluid's acceleration is the change of the velocity over dt. Of that one part follows the acceleration at t^{n+1},
-   which A stands for; all of it is extrapolated, and what of it is known at t^n is taken out again. */
+/* Fluid that takes accelerations from velocities: its acceleration is the change of velocity over dt. A multiplies
+   the part that depends on the acceleration at t^{n+1}. The total is extrapolated, and the part known at t^n is
+   subtracted. */
 static void predict_by_velocity(spar_member *m, const double w[3], double dt) {
     const spari_added *d = m->added;
     const integration g = integration_of(m->session, dt);

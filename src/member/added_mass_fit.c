@@ -1,4 +1,4 @@
-/* The added mass learned from iterations: least squares over their differences. See added_mass_fit.h. */
+/* Added mass identified from coupling iterations by least squares: see added_mass_fit.h. */
 #include "added_mass_fit.h"
 
 #include "../base/environment.h"
@@ -12,10 +12,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Differences by their part of the largest one of their step, fading; of those that were tested before they were used:
-   what the mass learned until then left of them, and all, squared; the same of those in directions seen before, less
-   what comes of the mass being known so far only; whether there is a mass; whether it stands in the equations. The same
-   of the step under way, with its squares and the largest of them. */
+/* Scalars of the state; the sums decay with time.
+   COUNT: differences, weighted relative to the largest of their step
+   LEFT, WHOLE: squared error of the mass in predicting new differences, and squares of all these differences
+   NOISE, SEEN: the same for directions observed before, without the error due to the limited data so far
+   KNOWN, USED: whether a mass has been fitted, and whether it is in the equations
+   STEP_*: the same for the current step, with its squares and the largest difference */
 enum {
     COUNT,
     LEFT,
@@ -34,22 +36,22 @@ enum {
 };
 
 struct spari_learned {
-    int64_t n, count; /* stations; doubles of the state */
+    int64_t n, count; /* stations; size of the state in doubles */
     double *eta;
-    double *head;         /* the state: [HEADS], and behind it: */
-    double *force, *mass; /* [n][36] in the equations where USED; and as it is known by now */
-    double *G, *B;        /* [n][n][36], [n][36] of the steps accepted, fading */
+    double *head;         /* state: [HEADS], followed by: */
+    double *force, *mass; /* [n][36] in the equations if USED; and the present fit */
+    double *G, *B;        /* [n][n][36], [n][36] normal equations of the accepted steps, decaying */
     double *step_G, *step_B;
-    double *one_G, *one_B;  /* of one difference: no part of the state */
+    double *one_G, *one_B;  /* of one difference; not part of the state */
     double *metric, *root;  /* [n][36] the member's own mass at the stations, and its Cholesky factor */
-    double *axes, *squares; /* [n][36], [n][6] of G: look_around */
-    double *plain;          /* [n][36] least squares without doubt */
+    double *axes, *squares; /* [n][36], [n][6] eigenvectors and eigenvalues of G: see look_around */
+    double *plain;          /* [n][36] fit without regularisation */
 };
 
-/* A load is not tested on fewer differences than that; what it leaves of a change has to be less than USE to stand in
-   the equations, and it does not stay there beyond DROP. */
+/* ENOUGH: differences needed before the mass is tested. USE: relative prediction error below which the mass enters
+   the equations; DROP: error above which it leaves them. FADE: decay factor per step. */
 static const double ENOUGH = 2.5, USE = 0.25, DROP = 0.5, FADE = 0.9;
-/* A direction that has less of the squares than that has not been seen. */
+/* A direction with a smaller fraction of the squares than this counts as not observed. */
 static const double UNSEEN = 1e-8;
 
 /* ---- description ---- */
@@ -137,9 +139,9 @@ uint64_t spari_learned_hash(const spar_member *m, uint64_t hash) {
     return l ? spari_hash_bytes(hash, l->eta, (size_t)l->n * sizeof *l->eta) : hash;
 }
 
-/* ---- what the differences are measured by ---- */
+/* ---- metric of the differences ---- */
 
-/* The lower factor of a symmetric matrix; pivots no less than a part of the diagonal. */
+/* Cholesky factor of a symmetric matrix; pivots are at least a fraction of the diagonal. */
 static void factor_metric(const double W[36], double S[36]) {
     memset(S, 0, 36 * sizeof *S);
     for (int j = 0; j < 6; j++) {
@@ -153,7 +155,8 @@ static void factor_metric(const double W[36], double S[36]) {
     }
 }
 
-/* The member's own mass, of which rotary inertia is no less than that of a body of a thousandth of its length. */
+/* The member's own mass at the stations. Its rotary inertia is at least that of a body of a thousandth of its
+   length. */
 static void measure_stations(const spar_member *m, spari_learned *l) {
     static const double PART = 1e-6;
     double length = spari_member_length(m);
@@ -183,7 +186,7 @@ static void reduce_rows(const double S[36], double X[36]) {
     }
 }
 
-/* out := A B, with `turned` A^T B or A B^T */
+/* out := A B, or A^T B or A B^T as given by `turned` */
 typedef enum turned_factor { NEITHER, FIRST, SECOND } turned_factor;
 static void multiply_six(const double A[36], const double B[36], turned_factor turned, double out[36]) {
     for (int i = 0; i < 6; i++) {
@@ -198,7 +201,7 @@ static void multiply_six(const double A[36], const double B[36], turned_factor t
     }
 }
 
-/* S^-1 M S^-T of a symmetric M */
+/* S^-1 M S^-T for symmetric M */
 static void to_metric(const double S[36], const double M[36], double out[36]) {
     double half[36];
     memcpy(half, M, sizeof half);
@@ -209,7 +212,7 @@ static void to_metric(const double S[36], const double M[36], double out[36]) {
     reduce_rows(S, out);
 }
 
-/* A symmetric A becomes diagonal by Jacobi's rotations, E its eigenvectors, by columns. */
+/* Diagonalises a symmetric A by Jacobi rotations; E: eigenvectors in columns. */
 static void diagonalise_six(double A[36], double E[36]) {
     enum { SWEEPS = 30 };
     for (int i = 0; i < 36; i++) {
@@ -245,8 +248,8 @@ static double product_six(const double A[36], const double B[36]) {
 
 /* ---- one difference ---- */
 
-/* Of the nodes: loads and accelerations of the iteration before; the differences of both in the sections' axes; where
-   the nodes are, and their axes. */
+/* Nodal data: loads and accelerations of the iteration before; their differences in section axes; positions and axes
+   of the nodes. */
 typedef struct nodal_view {
     double *load, *rate, *f, *a, *eta, *R;
 } nodal_view;
@@ -281,7 +284,7 @@ int spari_learned_create(spar_member *m) {
     return SPAR_OK;
 }
 
-/* own [6] := R^T x as the section is turned at t^n */
+/* own [6] := R^T x, with the section's rotation at t^n */
 static void to_section(const spar_member *m, int64_t e, const double *phi, const double R[9], const double x[6],
                        double own[6]) {
     double turn[4], back[6];
@@ -294,7 +297,7 @@ static void to_section(const spar_member *m, int64_t e, const double *phi, const
     }
 }
 
-/* Differences of the nodes from the iteration before, in the sections' axes. */
+/* Differences from the iteration before at the nodes, in section axes. */
 static void differ_at_nodes(const spar_member *m, const double *seen, const nodal_view *at) {
     int P = m->per_element;
     for (int64_t i = 0; i < m->nodes; i++) {
@@ -309,7 +312,7 @@ static void differ_at_nodes(const spar_member *m, const double *seen, const noda
     }
 }
 
-/* The two stations that a place on the line is between, and their shares. */
+/* The two stations around a position on the line, and their weights. */
 typedef struct shares {
     int64_t at[2];
     double part[2];
@@ -337,9 +340,10 @@ static void add_outer(double f, const double x[6], const double y[6], double *to
     }
 }
 
-/* With N_s the share of station s along the line and I what the nodes' interpolation makes of values there,
+/* Normal equations of one difference. With N_s the weight of station s along the line and I the nodes'
+   interpolation,
      G_st = integral of N_t a (I N_s a)^T,    B_s = - sum over nodes of N_s f a^T,
-   so that loads f of a mass with stations M_t have B_s = sum over t of M_t G_st to the last digit. */
+   so the loads f of a mass with stations M_t satisfy B_s = sum over t of M_t G_st exactly. */
 static void gather_difference(const spar_member *m, const double *seen, const nodal_view *at, spari_learned *l) {
     const spari_strips *p = &m->added->strips;
     int P = p->per_element;
@@ -370,7 +374,7 @@ static void gather_difference(const spar_member *m, const double *seen, const no
     }
 }
 
-/* da . M da of the difference, M a mass with its stations or the metric. */
+/* da . M da of the difference; M: a mass with its stations, or the metric. */
 static double square_in(const spari_learned *l, const double *M) {
     double sum = 0;
     for (int64_t s = 0; s < l->n; s++) {
@@ -390,7 +394,7 @@ static double square_that_came_back(const spari_learned *l) {
     return sum;
 }
 
-/* D [36] := the part of the squares G at station s, all its stations' accelerations together, in the metric. */
+/* D [36] := squares G at station s, with the accelerations of all stations, in the metric. */
 static void squares_at(const spari_learned *l, const double *squares, int64_t s, double D[36]) {
     double sum[36] = {0}, half[36];
     for (int64_t t = 0; t < l->n; t++) {
@@ -403,7 +407,7 @@ static void squares_at(const spari_learned *l, const double *squares, int64_t s,
     multiply_six(half, l->root + 36 * s, NEITHER, D);
 }
 
-/* The square of the accelerations themselves: a difference of their rounding says nothing. */
+/* Square of the accelerations themselves, to exclude differences that are rounding errors. */
 static double size_of_rates(const spar_member *m, const spari_learned *l, const double *rates) {
     double sum = 0, W = 0, whole = 0;
     for (int64_t k = 0; k < m->added->strips.count; k++) {
@@ -418,9 +422,9 @@ static double size_of_rates(const spar_member *m, const spari_learned *l, const 
     return W * whole * sum / (double)m->nodes;
 }
 
-/* Least squares know A along a difference of accelerations da to the noise's variance times h, with the difference's
-   weight: the mean over the stations, by their parts of da, of the sum over the axes of da^2 over the squares seen.
-   INFINITY: of directions that have not been seen. */
+/* Variance of A along a difference da, in units of the noise variance and including the difference's weight. It is
+   the mean over stations, weighted by their fractions of da, of the sum over axes of da^2 divided by the observed
+   squares. INFINITY for unobserved directions. */
 static double leverage_of(const spari_learned *l, double square, double weight) {
     double h = 0;
     for (int64_t s = 0; s < l->n; s++) {
@@ -442,9 +446,9 @@ static double leverage_of(const spari_learned *l, double square, double weight) 
     return h;
 }
 
-/* What the mass known so far leaves of a difference in its own direction, `left`, is what the coupling contracts by
-   with that mass. What plain least squares leave, `plain`, is noise where its direction has been seen: 1 + h times that
-   of one difference. */
+/* Tests the mass fitted so far on a new difference, before it is used. `left`: error in the direction of the
+   difference, which is the contraction factor of the coupling with this mass. `plain`: error of the fit without
+   regularisation, which in observed directions is noise: 1 + h times that of one difference. */
 static void test_mass(spari_learned *l, double square, double left, double plain) {
     double *head = l->head;
     head[STEP_SQUARES] += square;
@@ -479,7 +483,7 @@ void spari_learned_note(spar_member *m, int iteration) {
         return;
     }
     nodal_view at = view_of_nodes(m);
-    const double *seen = spari_means_seen(m, 1); /* what the loads answer to */
+    const double *seen = spari_means_seen(m, 1); /* accelerations to which the loads respond */
     if (iteration > 1) {
         take_difference(m, seen, &at);
     }
@@ -489,8 +493,8 @@ void spari_learned_note(spar_member *m, int iteration) {
 
 /* ---- the fit ---- */
 
-/* Eigenvectors of what the accelerations at each station were, in the metric of the mass, and eigenvalues; 0 of those
-   that were not seen. */
+/* Eigenvectors and eigenvalues of the observed accelerations at each station, in the metric of the mass; eigenvalues
+   of unobserved directions are 0. */
 static void look_around(spari_learned *l) {
     for (int64_t s = 0; s < l->n; s++) {
         double all[36], *lambda = l->squares + 6 * s, most = 0;
@@ -505,7 +509,7 @@ static void look_around(spari_learned *l) {
     }
 }
 
-/* What is missing at station s: B_s less what the masses make of G, in the metric and on the axes there. */
+/* Residual at station s: B_s minus the masses times G, in the metric and the axes there. */
 static void missing_at(const spari_learned *l, const double *mass, int64_t s, double doubt, double out[36]) {
     const double *S = l->root + 36 * s, *E = l->axes + 36 * s;
     double r[36], part[36], half[36];
@@ -526,8 +530,8 @@ static void missing_at(const spari_learned *l, const double *mass, int64_t s, do
     multiply_six(part, E, NEITHER, out);
 }
 
-/* One correction of station s: the symmetric mass whose answer is nearest (Higham, BIT 28, 1988), in the directions
-   that were seen, doubted by the scatter. */
+/* Corrects station s by the nearest symmetric mass (Higham, BIT 28, 1988) in the observed directions, regularised by
+   the noise. */
 static void correct_station(const spari_learned *l, double *mass, int64_t s, double doubt) {
     const double *lambda = l->squares + 6 * s;
     double r[36], X[36], half[36], T[36];
@@ -546,7 +550,7 @@ static void correct_station(const spari_learned *l, double *mass, int64_t s, dou
     }
 }
 
-/* The nearest mass that is none in any direction where it would be negative. */
+/* Nearest positive semidefinite mass: negative eigenvalues become 0. */
 static void keep_positive(spari_learned *l, int64_t s) {
     double A[36], E[36], U[36], *M = l->mass + 36 * s;
     to_metric(l->root + 36 * s, M, A);
@@ -558,7 +562,7 @@ static void keep_positive(spari_learned *l, int64_t s) {
     multiply_six(U, U, SECOND, M);
 }
 
-/* doubt: that of all stations together. */
+/* doubt: regularisation of all stations together. */
 static void fit_stations(const spari_learned *l, double doubt, double *mass) {
     enum { SWEEPS = 60 };
     double whole = 0;
@@ -577,20 +581,20 @@ static void fit_stations(const spari_learned *l, double doubt, double *mass) {
     }
 }
 
-/* The square of the noise in a difference of the weight 1: of those in directions seen before; while there are none
-   all that was wrong is noise. */
+/* Noise variance of a difference of weight 1, from differences in observed directions. As long as there are none,
+   all errors count as noise. */
 static double noise_of(const spari_learned *l) {
     const double *h = l->head;
     return fmin(h[SEEN] > 0 ? h[NOISE] * h[WHOLE] / h[SEEN] : h[LEFT], h[WHOLE]) / fmax(h[COUNT], 1);
 }
 
-/* Of the differences accepted: their axes and plain least squares, which are no part of the state. */
+/* Axes and unregularised fit of the accepted differences; not part of the state. */
 static void fit_plainly(spari_learned *l) {
     look_around(l);
     fit_stations(l, 0, l->plain);
 }
 
-/* And the mass. */
+/* The same, and the regularised mass. */
 static void fit_mass(spari_learned *l) {
     fit_plainly(l);
     fit_stations(l, noise_of(l), l->mass);
@@ -609,7 +613,7 @@ void spari_learned_begin(spar_member *m) {
     }
 }
 
-/* How far the mass is from the one in the equations, over the structure's and that. */
+/* Relative distance between the fitted mass and the mass in the equations, in units of structural plus added mass. */
 static double distance_from_force(const spari_learned *l) {
     double most = 0;
     for (int64_t s = 0; s < l->n; s++) {
@@ -624,7 +628,7 @@ static double distance_from_force(const spari_learned *l) {
     return most;
 }
 
-/* Whether another mass is to stand in the equations, which `force` then is. */
+/* Decides whether the mass in the equations changes; then `force` is the new one. */
 static int choose(spari_learned *l) {
     static const double NEAR = 0.02;
     double spread = spread_of(l);
@@ -647,7 +651,7 @@ int spari_learned_accept(spar_member *m) {
     for (int64_t i = 0; i < 36 * l->n * (l->n + 1); i++) {
         l->G[i] = FADE * l->G[i] + scale * l->step_G[i];
     }
-    if (h[KNOWN] > 0) { /* else nothing was there to be tested */
+    if (h[KNOWN] > 0) { /* otherwise there was no mass to test */
         h[LEFT] = FADE * h[LEFT] + scale * h[STEP_LEFT];
         h[WHOLE] = FADE * h[WHOLE] + scale * h[STEP_WHOLE];
         h[NOISE] = FADE * h[NOISE] + scale * h[STEP_NOISE];

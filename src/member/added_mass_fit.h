@@ -1,34 +1,34 @@
-/* The fluid's added mass as the iterations of the coupling show it, in the form of the guess that a host gives
-   (added_mass.h): of each difference of two iterations of a step, the loads that came back against the accelerations that
-   they answer to. See docs/theory.md, "Known added mass". Every rank that has the motion and the loads of a member
-   learns the same. */
+/* Identifies the fluid's added mass from coupling iterations, in the form that a host can give (added_mass.h). Each
+   difference of two iterations of a step compares the change of the loads with the change of the accelerations. See
+   docs/theory.md, "Known added mass". Every rank that has the motion and the loads of a member finds the same mass. */
 #ifndef SPARI_LEARNED_H
 #define SPARI_LEARNED_H
 
 #include "added_mass.h"
 
-enum { SPARI_LEARNED_STATIONS = 20 }; /* at most */
+enum { SPARI_LEARNED_STATIONS = 20 }; /* maximum number of stations */
 
-/* After spari_added_create: room for what is learned on the nodes that there are, and what has been learned into
-   m->added. A status without a message. */
+/* After spari_added_create: allocates for the present nodes, and puts the mass known so far into m->added. Returns a
+   status without a message. */
 int spari_learned_create(spar_member *m);
 void spari_learned_free(spari_learned *learned);
-/* What is learned is shared with what the member was made anew as, which measured it by its own nodes: again by those
-   of m. */
+/* After a trial: the fit is shared with the rebuilt member, which measured with its own nodes; restores the metric
+   of m's nodes. */
 void spari_learned_take_back(const spar_member *m);
 
-/* A step begins or is given up: its differences are forgotten. */
+/* Begins or rejects a step: discards its differences. */
 void spari_learned_begin(spar_member *m);
-/* load_pushed, as the fluids gave it, answers to the motion after: the check number `iteration` of the step, from 1. */
+/* Records load_pushed, from the fluids, as the response to the motion `after`. `iteration`: number of the check in
+   the step, from 1. */
 void spari_learned_note(spar_member *m, int iteration);
-/* The step is accepted. Returns whether another mass is to stand in the equations: spari_learned_put. */
+/* Accepts a step. Returns whether the mass in the equations must change (spari_learned_put). */
 int spari_learned_accept(spar_member *m);
 void spari_learned_put(spar_member *m);
 
-/* What is kept, as `count` doubles that are written and read in place; and of the step under way. */
+/* State as `count` doubles, to be read and written in place; and the data of the current step. */
 double *spari_learned_state(const spar_member *m, int64_t *count);
 double *spari_learned_last(const spar_member *m, int64_t *count);
-/* What of the description it is, into a hash. */
+/* Adds the description to a hash. */
 uint64_t spari_learned_hash(const spar_member *m, uint64_t hash);
 
 #endif

@@ -1,4 +1,4 @@
-/* Loads that a member carries beside the dead ones at its nodes: their forces, tangent and description. */
+/* Applied loads of a member beside dead nodal loads: description, forces and tangent. See applied.h. */
 #include "applied.h"
 #include "../base/environment.h"
 
@@ -12,16 +12,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a line has beside SPAR_LOAD_DEAD and SPAR_LOAD_FOLLOWER. */
+/* Kind of a line load beside SPAR_LOAD_DEAD and SPAR_LOAD_FOLLOWER. */
 enum { SPARI_LINE_SPRINGS = 2 };
 
-/* One load along the line, at its own quadrature points: it may jump where sections do not. */
+/* A distributed load, with its own quadrature points: it may jump where sections do not. */
 typedef struct line_load {
     int *first;         /* [elements + 1] */
     double *phi;        /* [points][P] */
-    double *load;       /* [points][6] times weight and Jacobian; global axes, at the reference where they follow */
-    double *room;       /* [7 P][4 P] for the tangent */
-    int64_t stations;   /* as it was set, for other nodes: so many, */
+    double *load;       /* [points][6] times weight and Jacobian; global axes, at the reference if it follows */
+    double *room;       /* [7 P][4 P] workspace of the tangent */
+    int64_t stations;   /* stations as given, for a rebuild with other nodes */
     double *eta, *said; /* [stations], [stations][6] */
 } line_load;
 
@@ -30,20 +30,19 @@ struct spari_applied {
     line_load line[2]; /* SPAR_LOAD_DEAD, SPAR_LOAD_FOLLOWER; first NULL: none */
 };
 
-/* What may be given anew. */
+/* Bits of loads that can be replaced. */
 enum { RAMP_LINE = 1 << SPAR_LOAD_DEAD | 1 << SPAR_LOAD_FOLLOWER, RAMP_FOLLOWER = 4, RAMP_DEAD = 8, RAMP_ALL = 15 };
 
-/* The loads at t^n of those kinds that the host has changed since. */
+/* Loads at t^n of the kinds that the host has replaced since. */
 struct spari_ramp {
     int changed;          /* RAMP_*, or 1 << kind of a line load */
-    double left;          /* part of the step that is still to come at the stage under way */
-    double *dead;         /* [nodes][6]; NULL: never changed */
-    spari_applied before; /* as far as it has changed; NULL there: there was none */
+    double left;          /* remaining fraction of the step at the current stage */
+    double *dead;         /* [nodes][6]; NULL: never replaced */
+    spari_applied before; /* of the kinds replaced; NULL there: none */
 };
 
-/* Springs to the ground along the line, of which the tangent is constant: of each element, for its pairs of nodes
-   i <= j, j running, the six entries (xx, xy, xz, yy, yz, zz) of what node i is pulled back by when j moves, global
-   axes. */
+/* Springs to the ground along the line. The tangent is constant. Per element, for node pairs i <= j with j running:
+   six entries (xx, xy, xz, yy, yz, zz) of the force on node i due to a displacement of node j, global axes. */
 struct spari_foundation {
     double *pair; /* [elements][P (P + 1) / 2][6] */
 };
@@ -85,12 +84,12 @@ void spari_ramp_free(spari_ramp *r) {
 
 /* ---- within a step ---- */
 
-/* Where the first step begins nothing was in force. */
+/* In the first step no earlier load exists. */
 static int changes(const spar_member *m, int what) {
     return m->ramp && m->session->step > 0 && (m->ramp->changed & what);
 }
 
-/* How much counts of what there was at t^n. */
+/* Weight of the loads at t^n. */
 static double left_of(const spar_member *m, int what) {
     return changes(m, what) ? m->ramp->left : 0;
 }
@@ -107,7 +106,7 @@ const double *spari_dead_before(const spar_member *m) {
 
 /* ---- forces ---- */
 
-/* Nodal quaternions of an element in one hemisphere; those of a member that is linear stay at the reference. */
+/* Nodal quaternions of an element in one hemisphere; those of a linear member stay at the reference. */
 static void element_field(const spar_member *m, const double *q, double z[][4]) {
     int linear = spari_member_is_linear_in_place(m);
     for (int l = 0; l < m->per_element; l++) {
@@ -134,7 +133,7 @@ static double point_turn(int P, const double *phi, double z[][4], double r[4]) {
     return N;
 }
 
-/* Force and moment now. */
+/* Present force and moment. */
 static void load_now(const double *load, int follows, const double r[4], double f[3], double m[3]) {
     memcpy(f, load, 3 * sizeof *f);
     memcpy(m, load + 3, 3 * sizeof *m);
@@ -176,12 +175,12 @@ static void symmetric_times(const double k[6], const double u[3], double f[3]) {
     f[2] = k[2] * u[0] + k[4] * u[1] + k[5] * u[2];
 }
 
-/* Doubles of an element's pairs. */
+/* Doubles per element for node pairs. */
 static int64_t pairs_of(const spar_member *m) {
     return 3 * (int64_t)m->per_element * (m->per_element + 1);
 }
 
-/* out [P][6] -= factor * forces of the springs, q [P][7]; returns the work they have taken. */
+/* out [P][6] -= factor * spring forces, q [P][7]; returns the work done on the springs. */
 static double element_springs(const spar_member *m, int e, const double *q, double factor, double *out) {
     const double *k = m->foundation->pair + pairs_of(m) * e;
     int P = m->per_element;
@@ -229,12 +228,12 @@ void spari_foundation_tangent(const spar_member *m, int e, double factor, double
     }
 }
 
-/* Springs that are forces of their own: a linear member has them in its matrix. */
+/* Whether springs are separate forces: a linear member has them in its matrix. */
 static int springs_apart(const spar_member *m) {
     return m->foundation && m->seen != SPARI_SEEN_LINEAR;
 }
 
-/* out [P][6] += factor * loads `follower` of element e, with its nodes turned as they are */
+/* out [P][6] += factor * loads `follower` of element e, rotated with its nodes */
 static void add_followers(const spar_member *m, int e, const double *follower, double factor, double z[][4],
                           double *out) {
     int P = m->per_element;
@@ -248,7 +247,7 @@ static void add_followers(const spar_member *m, int e, const double *follower, d
     }
 }
 
-/* out [P][6] += factor * loads of element e in the state q [P][7] of its nodes, without springs */
+/* out [P][6] += factor * loads of element e for the state q [P][7] of its nodes, without springs */
 static void element_loads(const spar_member *m, int e, const double *q, double factor, double *out) {
     const spari_applied *a = m->applied;
     int P = m->per_element;
@@ -373,7 +372,7 @@ static void point_tangent(const double *load, int follows, const double r[4], do
     }
 }
 
-/* How 1/2 Im(g q*) changes with q: -1/4 (s I + w~), (s, w) = g q*. */
+/* Change of 1/2 Im(g q*) with q: -1/4 (s I + w~), (s, w) = g q*. */
 SPARI_APART static void turned_forces_tangent(const spar_member *m, const line_load *line, int follows, int e,
                                               double z[][4], double factor, double *S) {
     int P = m->per_element, stride = 6 * P;
@@ -390,7 +389,7 @@ SPARI_APART static void turned_forces_tangent(const spar_member *m, const line_l
     }
 }
 
-/* B [P][7][4 P] -> S: rows and columns of nodal quaternions through dq = E dtheta */
+/* B [P][7][4 P] -> S: maps rows and columns of nodal quaternions by dq = E dtheta */
 static void project_nodes(int P, const double *B, double E[][4][3], double factor, double *S) {
     int stride = 6 * P;
     for (int i = 0; i < P; i++) {
@@ -513,9 +512,10 @@ static void put_applied(const spar_member *m, const spari_applied *a, spari_imag
     put_line(m, &a->line[1], image);
 }
 
-/* Words: how many follow; what has changed since t^n, of which dead loads, and the others, at t^n; whether there are
-   others now, and them. These: whether there are followers, and them; of each line load its points (-1: none), where
-   each element's begin, phi, load, and its stations, where they are and what they are given. */
+/* Words of the state, in order: whether follower loads exist; which kinds were replaced since t^n, with their dead
+   loads and other loads at t^n; whether new loads exist, and these. Loads are: whether there are followers, and
+   these; for each line load its points (-1: none), first points of the elements, phi, load, and its stations with
+   eta and values. */
 void spari_applied_save(const spar_member *m, spari_image *image) {
     int64_t at = image->count;
     int changed = changes(m, RAMP_ALL) ? m->ramp->changed : 0;
@@ -536,7 +536,7 @@ void spari_applied_save(const spar_member *m, spari_image *image) {
     }
 }
 
-/* n doubles of the image in memory of their own; NULL when there are none, or no memory */
+/* Copies n doubles of the image; NULL if there are none, or no memory */
 static double *take(spari_image *image, int64_t n) {
     const uint64_t *from = spari_image_get(image, n);
     double *x = from ? spari_zalloc(n, sizeof *x) : NULL;
@@ -627,7 +627,7 @@ void spari_applied_check(spar_member *m, spari_image *image) {
     if (m->applied_next) {
         take_applied(m, image, m->applied_next);
     }
-    /* what has changed has something to change to; and by the count it is passed over later */
+    /* replaced loads must exist; the count also allows skipping them */
     image->failed |=
         (m->ramp_next && (m->ramp_next->changed & ~RAMP_DEAD) && !m->applied_next) || image->at - begin != count;
 }
@@ -642,7 +642,7 @@ void spari_applied_load(spar_member *m, spari_image *image) {
     m->ramp_next = NULL;
 }
 
-/* ---- what the host says ---- */
+/* ---- set by the host ---- */
 
 static int need_applied(spar_member *member, const char *call) {
     SPARI_TRY(spari_need_committed(member, call));
@@ -660,7 +660,7 @@ static int need_kind(const spar_member *m, const char *call, int kind) {
     return SPAR_OK;
 }
 
-/* Nothing applied any more, at t^n neither: nothing computed any more. */
+/* Frees the loads if none is applied any more, now or at t^n. */
 static void drop_empty(spar_member *m) {
     spari_applied *a = m->applied;
     int any = a->line[0].first || a->line[1].first || changes(m, RAMP_LINE | RAMP_FOLLOWER);
@@ -673,7 +673,7 @@ static void drop_empty(spar_member *m) {
     }
 }
 
-/* Copies `from` [nodes][6] into *to, which is made where it is NULL; from NULL: zeros. */
+/* Copies `from` [nodes][6] to *to, which is allocated if NULL; from NULL: zeros. */
 static int keep_loads(const spar_member *m, const char *call, const double *from, double **to) {
     size_t size = (size_t)(6 * m->nodes) * sizeof **to;
     *to = *to ? *to : spari_zalloc(6 * m->nodes, sizeof **to);
@@ -686,8 +686,8 @@ static int keep_loads(const spar_member *m, const char *call, const double *from
     return SPAR_OK;
 }
 
-/* Loads of a kind are about to change: those at t^n stay, but before the first step. Where it fails nothing has
-   changed. */
+/* Keeps the loads of a kind at t^n before they are replaced, except before the first step. After a failure nothing
+   has changed. */
 static int keep_before(spar_member *m, const char *call, int what) {
     if (m->session->step == 0 || changes(m, what)) {
         return SPAR_OK;
@@ -753,8 +753,8 @@ int spar_member_set_load(spar_member *member, int64_t node, int kind, const doub
     return SPAR_OK;
 }
 
-/* Pieces of element e between load stations, and their Gauss points; NULL s: only counts. A point's eta and weight go
-   beside it. */
+/* Gauss points of element e, piecewise between load stations. s NULL: only counts. Eta and weight of a point are
+   stored beside it. */
 static int load_points(const spar_member *m, int e, int64_t n, const double *eta, spari_station *s, double *w,
                        double *at) {
     double gx[SPARI_MAX_NODES + 4], gw[SPARI_MAX_NODES + 4], E = m->elements;
@@ -766,7 +766,7 @@ static int load_points(const spar_member *m, int e, int64_t n, const double *eta
             continue;
         }
         double half = 0.5 * (to - from);
-        int points = 2 + (int)ceil(half * (m->per_element - 1) - 1e-9); /* the whole element: degree 2 P + 1 */
+        int points = 2 + (int)ceil(half * (m->per_element - 1) - 1e-9); /* a whole element: degree 2 P + 1 */
         if (s && spari_gauss(points, gx, gw)) {
             return -1;
         }
@@ -782,7 +782,7 @@ static int load_points(const spar_member *m, int e, int64_t n, const double *eta
     return count;
 }
 
-/* Stiffnesses along the section's axes, the columns of R, into the six entries of their matrix. */
+/* Converts stiffnesses along the section's axes, the columns of R, to the six entries of their matrix. */
 static void turn_springs(const double R[9], double k[6]) {
     const double own[3] = {k[0], k[1], k[2]};
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -837,7 +837,7 @@ static int line_build(const spar_member *m, int kind, int64_t n, const double *e
     return SPAR_OK;
 }
 
-/* The same, and what is said is kept. */
+/* The same, and keeps the stations as given. */
 static int line_set(const spar_member *m, int kind, int64_t n, const double *eta, const double *load, line_load *line) {
     SPARI_TRY(line_build(m, kind, n, eta, load, line));
     line->stations = n;
@@ -850,7 +850,7 @@ static int line_set(const spar_member *m, int kind, int64_t n, const double *eta
     return SPAR_OK;
 }
 
-/* ---- other nodes ---- */
+/* ---- rebuild with other nodes ---- */
 
 static int remake_loads(const spar_member *from, const spar_member *m, const double *was, double **is) {
     *is = was ? spari_zalloc(6 * m->nodes, sizeof **is) : NULL;
@@ -913,7 +913,7 @@ double spari_foundation_energy(const spar_member *m, const double *q) {
     return sum;
 }
 
-/* The stiffness of points into pairs of nodes. */
+/* Converts stiffness at points to node pairs. */
 static void gather_pairs(const spar_member *m, const line_load *line, double *pair) {
     int P = m->per_element;
     for (int e = 0; e < m->elements; e++) {
@@ -1026,13 +1026,13 @@ int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double
     line_load line = {0};
     int status = check_line_load(beam, __func__, kind, n, eta, load);
     status = status == SPAR_OK && n > 0 ? line_set(beam, kind, n, eta, load, &line) : status;
-    const int again = status == SPAR_OK && changes(beam, 1 << kind); /* a kind that there is */
+    const int again = status == SPAR_OK && changes(beam, 1 << kind); /* a kind that exists already */
     if (status == SPAR_OK && (status = keep_before(beam, __func__, 1 << kind)) != SPAR_OK) {
         line_free(&line);
     }
     if (status == SPAR_OK) {
         line_load *now = &beam->applied->line[kind];
-        if (changes(beam, 1 << kind) && !again) { /* what was there is that of t^n */
+        if (changes(beam, 1 << kind) && !again) { /* the present loads become those of t^n */
             beam->ramp->before.line[kind] = *now;
         } else {
             line_free(now);

@@ -1,4 +1,4 @@
-/* What a described beam becomes: nodes along its line, sections at its points, quadrature over its elements. */
+/* Discretises a described beam: nodes along its line, sections at quadrature points, quadrature over elements. */
 #include "beam.h"
 #include "../base/blas.h"
 
@@ -33,13 +33,13 @@ void spari_beam_free(spari_beam *beam) {
     free(beam);
 }
 
-/* ---- the line: nodes from axis points ---- */
+/* ---- nodes from axis points ---- */
 
 static int no_memory_for(const spar_member *member, const char *what) {
     return spari_fail(member->session, SPAR_ERR_MEMORY, "member '%s': no memory for %s", member->name, what);
 }
 
-/* Few points: the polynomial through all of them (Lagrange, barycentric), exact on every element. */
+/* With few points: the polynomial through all of them (Lagrange, barycentric), exact on every element. */
 static void interpolate_axis(const spari_beam *beam, double eta, double x[3]) {
     int n = (int)beam->axis_count;
     double sum = 0, total[3] = {0};
@@ -58,8 +58,8 @@ static void interpolate_axis(const spari_beam *beam, double eta, double x[3]) {
     }
 }
 
-/* What a fit works with: each row's weight and basis [rows][1 + P]; the matrix, later its factors; the right side and
-   what is left of it, the factors' scales and the solution. */
+/* Workspace of a fit: weight and basis of each row [rows][1 + P]; the matrix, later its factors; right-hand side and
+   residual, scales of the factors, solution. */
 typedef struct fit {
     size_t rows, inner;
     int P;
@@ -83,8 +83,8 @@ static void fit_free(fit *f) {
     gsl_vector_free(f->c);
 }
 
-/* Coordinate d of the inner nodes into x [P][3], from the values of all rows. Their QR needs no memory of its own, as
-   GSL's SVD does, without looking whether it got any. */
+/* Coordinate d of the inner nodes in x [P][3], from the values of all rows. This QR allocates no memory; GSL's SVD
+   does, without checking. */
 static int fit_solve(fit *f, int d, const gsl_vector *tau, double *x) {
     gsl_vector_view b = gsl_vector_subvector(f->b, 0, f->rows), left = gsl_vector_subvector(f->b, f->rows, f->rows),
                     c = gsl_vector_subvector(f->c, f->inner, f->inner);
@@ -101,8 +101,8 @@ static int fit_solve(fit *f, int d, const gsl_vector *tau, double *x) {
     return bad;
 }
 
-/* Least squares on one element: unknown inner nodes, ends given. Axis points count fully; a spline through all the
-   points counts so little (1e-7) that it decides only what the points leave open. */
+/* Least squares on one element: unknown inner nodes, given ends. Axis points have full weight. A spline through all
+   points has weight 1e-7, so it determines only what the points leave open. */
 static int fit_element(const spari_beam *beam, int elements, int e, int P, const double *gll, const double *bary,
                        const double *spline, double *x) {
     double e0 = (double)e / elements, e1 = (double)(e + 1) / elements;
@@ -143,7 +143,8 @@ static int fit_element(const spari_beam *beam, int elements, int e, int P, const
     return bad;
 }
 
-/* x [elements * P][3] from the axis points; ends exact, joints on the spline (or on the axis point that is there). */
+/* x [elements * P][3] from the axis points; the ends are exact, element boundaries lie on the spline (or on an axis
+   point there). */
 static int fit_axis(const spar_member *member, const double *gll, const double *bary, double *x) {
     const spari_beam *beam = member->beam;
     int E = member->elements, P = member->per_element;
@@ -156,7 +157,8 @@ static int fit_axis(const spar_member *member, const double *gll, const double *
         for (size_t i = 0; i < n; i++) {
             column[i] = beam->xyz[3 * i + (size_t)d];
         }
-        bad = gsl_spline_init(spline, beam->eta, column, n) != GSL_SUCCESS; /* it solves for the curvatures in memory */
+        bad = gsl_spline_init(spline, beam->eta, column, n) !=
+              GSL_SUCCESS; /* it allocates memory to solve for the curvatures */
         for (int64_t i = 0; i < member->nodes && !bad; i++) {
             double eta = 0.5 * (1 + spari_member_xi(member, (int)(i / P), gll[i % P]));
             spline_x[3 * i + d] = gsl_spline_eval(spline, fmin(fmax(eta, beam->eta[0]), beam->eta[n - 1]), NULL);
@@ -189,7 +191,7 @@ static double twist_at(const spari_beam *beam, double eta) {
     return (1 - s) * beam->twist[i] + s * beam->twist[i + 1];
 }
 
-/* A point of the line: place, unit tangent, Jacobian ds/dxi. */
+/* A point of the line: position, unit tangent, Jacobian ds/dxi. */
 typedef struct line_point {
     double x[3], t[3], jacobian;
 } line_point;
@@ -210,15 +212,15 @@ static void line_at(int P, const double *gll, const double *bary, const double *
     }
 }
 
-/* y axis of the untwisted section: unit(z x tangent), where the tangent keeps away from z */
+/* y axis of the untwisted section, unit(z x tangent), if the tangent is not close to z */
 static double level_y(const double t[3], double y[3]) {
     double n = hypot(t[0], t[1]);
     y[0] = n > 0 ? -t[1] / n : 0, y[1] = n > 0 ? t[0] / n : 1, y[2] = 0;
     return n;
 }
 
-/* Carries y from one point of the line to the next with the least turn: double reflection, Wang, Juttler, Zheng & Liu,
-   ACM Trans. Graph. 27 (2008). */
+/* Transports y from one point of the line to the next with the smallest rotation: double reflection, Wang, Juttler,
+   Zheng & Liu, ACM Trans. Graph. 27 (2008). */
 static void transport(const line_point *from, const line_point *to, double y[3]) {
     double v[3], t[3], w[3];
     for (int i = 0; i < 3; i++) {
@@ -247,7 +249,7 @@ static void transport(const line_point *from, const line_point *to, double y[3])
     }
 }
 
-/* R (columns: tangent, y, z) of a section whose untwisted y is given */
+/* R (columns: tangent, y, z) of a section with given untwisted y */
 static void frame(const double t[3], const double y0[3], double twist, double R[9]) {
     double z0[3], c = cos(twist), s = sin(twist), y[3], z[3];
     spari_cross(t, y0, z0);
@@ -260,18 +262,18 @@ static void frame(const double t[3], const double y0[3], double twist, double R[
     }
 }
 
-/* How sections stand along the line: level where the described line keeps away from z, else carried along from the
-   root. What the host has described decides, so that the axes do not depend on the nodes. */
+/* Orientation of sections along the line: level if the described line is nowhere close to z, otherwise transported
+   from the root. The host's description decides, so that the axes do not depend on the nodes. */
 typedef struct framing {
     int carried;
-    double *y; /* carried: untwisted y at the nodes, [nodes][3] */
+    double *y; /* transported: untwisted y at the nodes, [nodes][3] */
 } framing;
 
-/* Sines of the tangent's angle to z: 10 degrees, where level sections begin to turn fast along the line, and where a
-   root has none. */
+/* Sines of the tangent's angle to z: 10 degrees, below which level sections rotate fast along the line; and the
+   limit at which a root has no level section. */
 static const double steep = 0.17364817766693033, vertical = 1e-3;
 
-/* Tangent at axis point i: of the parabola through it and its neighbours, of two points their chord. */
+/* Tangent at axis point i: of the parabola through it and its neighbours; with two points, of their chord. */
 static void described_tangent(const spari_beam *b, int64_t i, double t[3]) {
     const int64_t n = b->axis_count < 3 ? b->axis_count : 3, last = b->axis_count - n,
                   from = i < 1          ? 0
@@ -281,7 +283,7 @@ static void described_tangent(const spari_beam *b, int64_t i, double t[3]) {
     memset(t, 0, 3 * sizeof *t);
     for (int64_t j = 0; j < n; j++) {
         double slope = 0, below = 1;
-        for (int64_t k = 0; k < n; k++) { /* of Lagrange's polynomial j */
+        for (int64_t k = 0; k < n; k++) { /* of Lagrange polynomial j */
             double others = 1;
             for (int64_t l = 0; l < n; l++) {
                 others *= l == j || l == k ? 1 : b->eta[i] - eta[l];
@@ -299,7 +301,7 @@ static void described_tangent(const spari_beam *b, int64_t i, double t[3]) {
     }
 }
 
-/* Smallest sine of the tangents' angle to z: of the axis points, or of nodes that are given instead; and the root's. */
+/* Smallest sine of the angle between tangents and z, at the axis points or the given nodes; and at the root. */
 static double steepest(const spar_member *member, const double *gll, const double *bary, const double *x,
                        double *root) {
     const int P = member->per_element, by_nodes = member->beam->node_x != NULL;
@@ -334,7 +336,7 @@ static int make_framing(const spar_member *member, const double *gll, const doub
     }
     line_at(P, gll, bary, x, -1, &p);
     (void)level_y(p.t, y);
-    if (root < vertical) { /* global y, across the tangent */
+    if (root < vertical) { /* global y, perpendicular to the tangent */
         y[0] = -p.t[1] * p.t[0], y[1] = 1 - p.t[1] * p.t[1], y[2] = -p.t[1] * p.t[2];
         double n = spari_norm(y);
         y[0] /= n, y[1] /= n, y[2] /= n;
@@ -370,7 +372,7 @@ static void frame_at(const spar_member *member, const framing *f, const double *
 
 /* ---- nodes ---- */
 
-/* Own-frame nodes, before placement: x and, when wanted, q. */
+/* Nodes in the beam's own frame, before placement: x and, if requested, q. */
 static int own_nodes(const spar_member *member, const double *gll, const double *bary, double *x, double *q) {
     const spari_beam *beam = member->beam;
     int P = member->per_element;
@@ -400,7 +402,7 @@ static int own_nodes(const spar_member *member, const double *gll, const double 
     return SPAR_OK;
 }
 
-/* Between its nodes the line must go on: not back, and not stand still. */
+/* Checks that the line advances between its nodes: it may neither reverse nor stop. */
 static int check_forward(const spar_member *member, const double *gll, const double *bary, const double *x,
                          double length) {
     enum { PARTS = 8 };
@@ -411,7 +413,7 @@ static int check_forward(const spar_member *member, const double *gll, const dou
         line_point before, p;
         int back = 0;
         if (i % P == 0) {
-            continue; /* the same place twice */
+            continue; /* coincident points */
         }
         line_at(P, gll, bary, xe, gll[i % P - 1], &before);
         for (int k = 1; k <= PARTS; k++, before = p) {
@@ -426,7 +428,7 @@ static int check_forward(const spar_member *member, const double *gll, const dou
     return SPAR_OK;
 }
 
-/* The line must run, and the sections must stand across it. */
+/* Checks that the line advances and that sections are perpendicular to it. */
 static int check_line(spar_member *member, const double *gll, const double *bary, const double *x, const double *q) {
     int P = member->per_element;
     double length = 0, far = 0;
@@ -434,7 +436,7 @@ static int check_line(spar_member *member, const double *gll, const double *bary
         double d[3] = {x[3 * i] - x[3 * i - 3], x[3 * i + 1] - x[3 * i - 2], x[3 * i + 2] - x[3 * i - 1]};
         length += spari_norm(d);
     }
-    for (int k = 0; k < 3; k++) { /* where it is seen from, places keep so many digits */
+    for (int k = 0; k < 3; k++) { /* positions lose digits with the distance from the origin */
         far = fmax(far, fmax(fabs(x[k]), fabs(member->place_x[k])));
     }
     SPARI_REQUIRE(member->session, length >= 1e-9 * far && length >= 1e-9, SPAR_ERR_ARGUMENT,
@@ -527,9 +529,9 @@ int spari_beam_rule(const spari_beam *beam) {
     return beam->section_count > 2 ? SPAR_QUADRATURE_SECTIONS : SPAR_QUADRATURE_GAUSS;
 }
 
-/* Points of element e: xi and weights, at most `room`; returns how many (also with xi NULL). By section intervals: a
-   piece of the element of relative length d gets `points` Gauss points, or, unasked, as many as integrate its share of
-   the element's polynomials. */
+/* Points of element e: xi and weights, at most `room`; returns their number (also with xi NULL). By section
+   intervals: a piece of relative length d gets `points` Gauss points, or by default as many as integrate its share
+   of the element's polynomials. */
 static int element_points(const spari_beam *beam, int elements, int e, int P, double *xi, double *w) {
     int rule = spari_beam_rule(beam);
     if (rule != SPAR_QUADRATURE_SECTIONS) {
@@ -578,8 +580,8 @@ int64_t spari_beam_points(const spar_member *m, int elements, int per_element, i
     return sum;
 }
 
-/* Reference orientation at a quadrature point: from the description of the axis where there is one, else the
- * interpolated nodes. */
+/* Reference orientation at a quadrature point: from the axis description if there is one, otherwise interpolated
+   from the nodes. */
 static void reference_frame(const spar_member *member, const framing *f, const double *gll, const double *bary,
                             const double *x, int e, double xi, double R[9]) {
     int P = member->per_element;
@@ -607,7 +609,7 @@ static void reference_frame(const spar_member *member, const framing *f, const d
     spari_quat_matrix(q, R);
 }
 
-/* Where point i of element e is; the line's Jacobian there. */
+/* Position of point i of element e; returns the line's Jacobian there. */
 static double fill_place(const spar_member *member, spari_body *b, int e, int i, double xi, const double *gll,
                          const double *bary) {
     int P = b->per_element, k = b->first[e] + i;
@@ -636,7 +638,7 @@ static void fill_point(const spar_member *member, spari_body *b, int e, int i, d
     for (int j = 0; j < 6; j++) {
         b->stiffest = fmax(b->stiffest, section[7 * j]);
     }
-    if (b->D) { /* sqrt(mu_i mu_j) C_ij: positive semidefinite whatever the coupling, mu_i C_ii on the diagonal */
+    if (b->D) { /* sqrt(mu_i mu_j) C_ij: positive semidefinite for any coupling, mu_i C_ii on the diagonal */
         for (int j = 0; j < 36; j++) {
             section[j] *= sqrt(mu[j / 6] * mu[j % 6]);
         }
@@ -660,12 +662,12 @@ static void fill_point(const spar_member *member, spari_body *b, int e, int i, d
     }
 }
 
-/* Whether the bodies that sit on a beam are points of it. */
+/* Whether attached masses are quadrature points of the body. */
 static int shows_lumps(const spar_member *member, int massive) {
     return massive && member->beam->lump_count > 0 && (member->effects & SPAR_EFFECT_MASSES);
 }
 
-/* What sits on element e, as points behind its `at` others: of weight 1, without stiffness. */
+/* Adds the attached masses of element e after its `at` other points: weight 1, no stiffness. */
 static void fill_lumps(const spar_member *member, const framing *f, const double *x, int e, int at, spari_body *b) {
     double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
     spari_gll(b->per_element, gll, NULL, bary);
@@ -683,7 +685,7 @@ static void fill_lumps(const spar_member *member, const framing *f, const double
     }
 }
 
-/* Quadrature points of each element, points[elements], and the most of one. */
+/* Number of quadrature points per element, points[elements], and its maximum. */
 static int count_points(const spar_member *member, int *points, int *most) {
     int E = member->elements, P = member->per_element;
     for (int e = 0; e < E; e++) {
@@ -697,7 +699,7 @@ static int count_points(const spar_member *member, int *points, int *most) {
     return SPAR_OK;
 }
 
-/* All points of a body, `most` in an element. */
+/* All points of a body, at most `most` per element. */
 static int fill_body(const spar_member *member, int most, const double mu[6], spari_body *b) {
     int E = member->elements, P = member->per_element, status = SPAR_OK;
     double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
@@ -787,7 +789,7 @@ int spari_beam_stations(const spar_member *member, int64_t n, spari_station *s) 
     }
     spari_gll(P, gll, NULL, bary);
     spari_quat_conj(member->place_q, back);
-    for (int64_t i = 0; i < member->nodes; i++) { /* the nodes in the beam's own frame */
+    for (int64_t i = 0; i < member->nodes; i++) { /* nodes in the beam's own frame */
         double d[3];
         for (int c = 0; c < 3; c++) {
             d[c] = member->xr[3 * i + c] - member->place_x[c];

@@ -1,4 +1,4 @@
-/* A body created and freed. */
+/* Allocates and frees bodies, and distributes elements over threads: see body.h. */
 #include "body.h"
 
 #include "../base/status.h"
@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-/* An element's points, and the slots they take. Returns the most points of an element. */
+/* Numbers an element's points and slots. Returns the maximum number of points of an element. */
 static int number_points(spari_body *body, const int *points) {
     int most = 0;
     for (int e = 0; e < body->elements; e++) {
@@ -18,14 +18,14 @@ static int number_points(spari_body *body, const int *points) {
     return most;
 }
 
-/* So many doubles, from the beginning of a cache line on; NULL: none. */
+/* Takes n doubles from the memory, aligned to a cache line; NULL: none. */
 static double *carve_aligned(double **room, int64_t n) {
     double *at = *room;
     *room += (n + SPARI_LANES - 1) / SPARI_LANES * SPARI_LANES;
     return n > 0 ? at : NULL;
 }
 
-/* What vectors are loaded from, in one piece. 0, or 1: no memory. */
+/* Allocates the block data in one piece. 0, or 1: no memory. */
 static int create_blocks(spari_body *body, int64_t slots, int elastic, int damped, int massive) {
     enum { PARTS = 8 };
     const int64_t P = body->per_element, nodes = 12 * (int64_t)body->unique;
@@ -67,7 +67,7 @@ spari_body *spari_body_create(int elements, int per_element, const int *points, 
     ok = ok && (body->slot = spari_zalloc(elements + 1, sizeof *body->slot));
     int most = ok ? number_points(body, points) : 0;
     int64_t n = ok ? body->first[elements] : 0, slots = ok ? body->slot[elements] : 0;
-    /* whole vectors are read from the last row of phi too */
+    /* vector loads read past the last row of phi */
     ok = ok && (body->phi = spari_zalloc(n * P + SPARI_LANES, sizeof *body->phi));
     ok = ok && (body->dphi = spari_zalloc(n * P + SPARI_LANES, sizeof *body->dphi));
     ok = ok && (body->place = spari_zalloc(n * 3, sizeof *body->place));
@@ -129,7 +129,7 @@ void spari_body_complete(spari_body *body) {
     }
 }
 
-/* ---- elements, tile by tile ---- */
+/* ---- elements in tiles ---- */
 
 typedef struct body_sweep {
     const spari_body *body;
@@ -143,7 +143,7 @@ static void sweep_tile(const spari_body *body, int tile, spari_body_work work, v
     work(body, tile, from, to < body->elements ? to : body->elements, context);
 }
 
-/* In a worker's own work space. */
+/* In the workspace of a worker. */
 static void sweep_item(void *context, int64_t item, int worker) {
     const body_sweep *s = context;
     spari_body mine = *s->body;
@@ -160,8 +160,7 @@ int64_t spari_body_room(const spari_body *body) {
 
 void spari_body_sweep(const spari_body *body, spari_body_work work, void *context) {
     int tiles = spari_body_tiles(body);
-    spari_crew *crew =
-        body->crew && tiles > 3 ? *body->crew : NULL; /* with two of a kind there is something to share */
+    spari_crew *crew = body->crew && tiles > 3 ? *body->crew : NULL; /* with at least two tiles of either parity */
     if (!spari_crew_is_free(crew) || !spari_crew_room(crew, 1, spari_body_room(body))) {
         for (int tile = 0; tile < tiles; tile++) {
             sweep_tile(body, tile, work, context);

@@ -1,4 +1,4 @@
-/* Checks at the public edge that the calls on members share. */
+/* Argument checks shared by the public calls on members: see checks.h. */
 #include "checks.h"
 
 #include "../comm/enter.h"

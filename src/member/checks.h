@@ -1,5 +1,5 @@
-/* Checks at the public edge that the calls on members share: 0, or a status with a message that begins with the name of
-   the call. */
+/* Argument checks shared by the public calls on members. They return 0, or a status with a message that begins with
+   the name of the call. */
 #ifndef SPARI_EDGE_H
 #define SPARI_EDGE_H
 
@@ -7,28 +7,28 @@
 #include "structure.h"
 
 int spari_need_member(const spar_member *member, const char *call);
-/* Not committed yet. */
+/* The member must not be committed. */
 int spari_need_open(spar_member *member, const char *call);
 int spari_need_committed(const spar_member *member, const char *call);
-/* Committed, and this rank knows enough of it: less than `away` (SPARI_*_AWAY) is missing. */
+/* The member must be committed, and this rank must know it well enough: less than `away` (SPARI_*_AWAY) is missing. */
 int spari_need_here(const spar_member *member, const char *call, int away);
-/* A beam, committed or not. */
+/* The member must be a beam, committed or not. */
 int spari_need_any_beam(const spar_member *member, const char *call);
-/* A beam, not committed yet. */
+/* The member must be an uncommitted beam. */
 int spari_need_beam(spar_member *member, const char *call);
-/* n stations, `width` numbers at each, copied in the place of what eta and value hold; `what` they are: for the
-   message. Where there is no memory all stays. */
+/* Copies n stations with `width` numbers each over eta and value; `what` names them in messages. Without memory
+   nothing changes. */
 int spari_keep_stations(const spar_member *beam, const char *call, const char *what, int64_t n, int width,
                         const double *eta, const double *value, int64_t *kept, double **kept_eta, double **kept_value);
-/* What is kept, for a getter: *count stations (NULL: not wanted), of eta and value as many as `capacity` takes. */
+/* Returns stored stations to a host: *count stations (may be NULL), and up to `capacity` of eta and value. */
 int spari_give_stations(const spar_member *beam, const char *call, int width, int64_t kept, const double *kept_eta,
                         const double *kept_value, int64_t capacity, int64_t *count, double *eta, double *value);
-/* Entry of a collective call on one member: as spari_enter_alike. */
+/* Entry of a collective call on one member, as spari_enter_alike. */
 int spari_member_enter(const spar_member *member, const char *call, const spari_alike *alike, int count, int status);
-/* x[n] must be there and finite; `what` names it. */
+/* x[n] must be finite and not NULL; `what` names it. */
 int spari_need_finite(spar_session *session, const char *call, const char *name, const char *what, int64_t n,
                       const double *x);
-/* The length of a step: a positive number whose square is one too. */
+/* dt must be positive, and its square must not underflow or overflow. */
 int spari_need_dt(spar_session *session, const char *call, double dt);
 /* n unit quaternions, `stride` doubles apart */
 int spari_need_unit(spar_session *session, const char *call, const char *name, const char *what, int64_t n,

@@ -1,4 +1,4 @@
-/* The description of a member before commit: creation, setters and what they refuse. */
+/* Description of a member before commit: create calls and setters. */
 #include "../base/blas.h"
 #include "../base/environment.h"
 #include "../comm/comm.h"
@@ -124,7 +124,7 @@ int spar_beam_create(spar_session *session, const char *name, int elements, int 
     return SPAR_OK;
 }
 
-/* ---- describe ---- */
+/* ---- description ---- */
 
 int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const double *xyz, const double *twist) {
     SPARI_QUIET;
@@ -194,8 +194,8 @@ int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const dou
     return SPAR_OK;
 }
 
-/* Symmetric to 1e-6 of the diagonal entries, and positive definite after scaling to a unit diagonal (so that units do
- * not matter). */
+/* Symmetric to 1e-6 of the diagonal entries, and positive definite after scaling to a unit diagonal, so that units
+   do not matter. */
 const char *spari_stiffness_fault(const double C[36]) {
     double d[6], scaled[36];
     for (int i = 0; i < 6; i++) {
@@ -340,7 +340,7 @@ int spar_member_set_owner(spar_member *member, int rank) {
     return SPAR_OK;
 }
 
-/* ---- what has been said ---- */
+/* ---- getters ---- */
 
 static void hand_int(int *to, int from) {
     if (to) {
@@ -434,7 +434,7 @@ int spar_member_get_owner(const spar_member *member, int *rank) {
     return SPAR_OK;
 }
 
-/* FNV-1a over what the ranks must agree on. */
+/* FNV-1a hash of everything the ranks must agree on. */
 uint64_t spari_member_make(const spar_member *m) {
     uint64_t h = SPARI_HASH_BEGIN;
     int numbers[] = {m->kind,     m->external,    m->root,     m->effects,   m->effects_given,

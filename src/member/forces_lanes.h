@@ -1,11 +1,11 @@
-/* Forces of an element's points for one vector width: fields of the nodes summed to the points, what the points give
-   back, and its sum onto the nodes. Included by element_lanes.h once per width with the macros of math/width.h. No
+/* Forces of an element for one vector width: interpolates nodal fields to quadrature points, computes the forces
+   there, and sums them to the nodes. Included by element_lanes.h once per width with the macros of math/width.h. No
    include guard: this is a body, not an interface. */
 #include "section_lanes.h"
 
 /* ---- from nodes to points: lanes are points ---- */
 
-/* n fields from `first` on of W points: f = sum_l shape_l z_l, with the shape functions or their slopes. */
+/* n fields from `first` on at W points: f = sum_l shape_l z_l, with the shape functions or their derivatives. */
 HERE void NAME(sum_nodes)(const int n, int P, const double *shape, int first, const double *z, double *f) {
     L sum[7], a = NAME(get)(shape);
     z += SPARI_MAX_NODES * first;
@@ -27,8 +27,7 @@ HERE void NAME(sum_nodes)(const int n, int P, const double *shape, int first, co
     }
 }
 
-/* The fields `wanted` of W points, from their place in the block of shape functions to theirs in the block of fields.
- */
+/* The fields `wanted` at W points, from the block of shape functions to the block of fields. */
 HERE void NAME(interpolate)(int wanted, int P, const double *shape, const double *z, double *f) {
     const double *slope = shape + SPARI_LANES;
     if (wanted & SPARI_PLACES) {
@@ -57,9 +56,9 @@ TARGET static void NAME(interpolate_block)(int wanted, int P, const double *shap
     }
 }
 
-/* ---- what points give back ---- */
+/* ---- forces at points ---- */
 
-/* Adds to a row of the tally: lanes of one place, so in the same order at every width. */
+/* Adds to a row of the tally. Each lane has its own place, so the order is the same at every width. */
 HERE void NAME(tally_sum)(double *row, L x) {
     NAME(put)(row, NAME(get)(row) + x);
 }
@@ -68,7 +67,7 @@ HERE void NAME(tally_most)(double *row, L x) {
     NAME(put)(row, NAME(larger)(x, NAME(get)(row)));
 }
 
-/* Value (u, Q) and slope (u', Q') of a point times its weight w, 14 rows. */
+/* Force terms of value (u, Q) and slope (u', Q') times the point's weight w, 14 rows. */
 HERE void NAME(give_back)(L w, const L *value, const L *slope, double *back) {
     SPARI_UNROLL
     for (int i = 0; i < 7; i++) {
@@ -77,8 +76,8 @@ HERE void NAME(give_back)(L w, const L *value, const L *slope, double *back) {
     }
 }
 
-/* What a point gives back, times its weight: value (u, Q), slope (u', Q'), 14 rows; the sizes of forces and the power
- * to the tally. */
+/* Force terms of a point times its weight: value (u, Q), slope (u', Q'), 14 rows. Adds sizes of forces and power to
+   the tally. */
 HERE void NAME(point_forces)(const int shown, const spari_body *body, int64_t slot, const spari_regime *how,
                              const double *f, double *back, spari_tally *tally, int at) {
     const double *mass = shown == SPARI_MASSLESS ? NULL : SPARI_BLOCK(body->mass, 10, slot);
@@ -116,7 +115,7 @@ HERE void NAME(point_forces)(const int shown, const spari_body *body, int64_t sl
     NAME(give_back)(w, value, slope, back);
 }
 
-/* The n points from `slot` on: fields by way of the block f, into the blocks back. */
+/* The n points from `slot` on: fields in the block f, results in the blocks back. */
 HERE void NAME(element_forces)(const int shown, const spari_body *body, int64_t slot, int n, const spari_regime *how,
                                const double *z, double *f, double *back, spari_tally *tally) {
     int P = body->per_element;
@@ -128,7 +127,7 @@ HERE void NAME(element_forces)(const int shown, const spari_body *body, int64_t 
     }
 }
 
-/* A section that shows no mass, its weight alone, or its inertia. */
+/* Variants of a section: without mass, with its weight alone, or with inertia. */
 TARGET static void NAME(massless_forces)(const spari_body *body, int64_t slot, int n, const spari_regime *how,
                                          const double *z, double *f, double *back, spari_tally *tally) {
     NAME(element_forces)(SPARI_MASSLESS, body, slot, n, how, z, f, back, tally);
@@ -146,8 +145,8 @@ TARGET static void NAME(accelerated_forces)(const spari_body *body, int64_t slot
 
 /* ---- from points to nodes: lanes are nodes ---- */
 
-/* g[7][SPARI_MAX_NODES] = sum over n points of phi times what they give back by value and phi' times that by slope.
-   The lanes beyond the last node take what comes: shape functions of the next point, never used. */
+/* g[7][SPARI_MAX_NODES] = sum over n points of phi times the value terms plus phi' times the slope terms. Lanes past
+   the last node hold shape functions of the next point and are not used. */
 HERE void NAME(sum_points)(const int sloped, int P, int n, const double *phi, const double *dphi, const double *back,
                            double *g) {
     for (int l = 0; l < P; l += W) {

@@ -1,4 +1,4 @@
-/* Joints: described by the host, placed when the members are there, and what their springs and drives say. */
+/* Joints: description by the host, placement at commit, springs, dampers and drives. */
 #include "joint.h"
 
 #include "../base/environment.h"
@@ -27,8 +27,8 @@ static int check_node(const spar_session *s, const char *call, const char *name,
     return SPAR_OK;
 }
 
-/* A linear member whose root nothing gives is seen from it as soon as a joint ties it, not when its solver is made for
-   that: what getters say does not depend on which call made it. */
+/* A linear member without a prescribed root gets a floating frame as soon as a joint connects it, not when its
+   solver is created. So getters do not depend on which call created the solver. */
 static void let_float(spar_member *m) {
     if (m && m->committed && m->seen == SPARI_SEEN_LINEAR && !spari_member_root_is_given(m)) {
         m->floats = 1;
@@ -118,9 +118,9 @@ void spari_joint_free(spar_joint *j) {
     }
 }
 
-/* ---- describe ---- */
+/* ---- description ---- */
 
-/* A joint that may still be described. */
+/* The joint must not be in use yet. */
 static int need_joint(const spar_joint *j, const char *call) {
     SPARI_REQUIRE(NULL, j, SPAR_ERR_ARGUMENT, "%s: the joint is NULL; create it first", call);
     return SPAR_OK;
@@ -154,7 +154,7 @@ int spar_joint_set_frame(spar_joint *joint, const double x[3], const double q[4]
     return SPAR_OK;
 }
 
-/* Symmetric, and nothing of it on motions that are held. */
+/* Checks that a spring matrix is symmetric, without entries on constrained motions. */
 static int check_spring(const spar_joint *j, const char *call, const char *what, const double *K) {
     double size = 0;
     if (!K) {
@@ -177,7 +177,7 @@ static int check_spring(const spar_joint *j, const char *call, const char *what,
     return SPAR_OK;
 }
 
-/* All of a spring that a joint may be given. */
+/* Checks all spring data of a joint. */
 static int check_springs(const spar_joint *j, const char *call, const double *stiffness, const double *damping,
                          const double *preload) {
     SPARI_TRY(check_spring(j, call, "stiffness", stiffness));
@@ -265,7 +265,7 @@ int spar_joint_set_driven(spar_joint *joint, int mask) {
     return SPAR_OK;
 }
 
-/* Three rotations are those of a rotation vector, which is of no use from half a turn on: the tie's own is below. */
+/* Three free rotations form a rotation vector, which is not unique from half a revolution on. */
 static int need_below_half_a_turn(const spar_joint *j, const double motion[6], const char *call) {
     double turn[3];
     for (int k = 0; k < 3; k++) {
@@ -315,7 +315,7 @@ int spar_joint_set_load(spar_joint *joint, const double load[6]) {
     return SPAR_OK;
 }
 
-/* ---- read ---- */
+/* ---- getters ---- */
 
 static void give_six(double *to, const double from[6]) {
     if (to) {
@@ -325,7 +325,7 @@ static void give_six(double *to, const double from[6]) {
 
 int spari_joint_need_here(const spar_joint *joint, const char *call, int away) {
     for (int side = 0; side < 2; side++) {
-        if (joint->member[side] && joint->member[side]->assembly) { /* others move as all ranks know */
+        if (joint->member[side] && joint->member[side]->assembly) { /* the motion of others is known on all ranks */
             SPARI_TRY(spari_need_here(joint->member[side], call, away));
         }
     }
@@ -350,7 +350,7 @@ int spar_joint_get_load(const spar_joint *joint, double load[6]) {
     return SPAR_OK;
 }
 
-/* ---- what the solution asks ---- */
+/* ---- for the solution ---- */
 
 double spari_joint_pull(const spar_joint *j, const double z[6], const double rate[6], double speed) {
     double stretch = z[0] - j->length, fastest = rate[0];
@@ -402,7 +402,7 @@ uint64_t spari_joint_hash(const spar_joint *j) {
     h = spari_hash_bytes(h, j->place, sizeof j->place);
     h = spari_hash_bytes(h, j->frame_given < 2 ? unit : j->axes, sizeof j->axes);
     h = spari_hash_bytes(h, j->point, sizeof j->point);
-    if (j->tie.line) { /* a joint's springs may be given anew at any time */
+    if (j->tie.line) { /* springs of a joint may be replaced at any time */
         const double spring[3] = {j->stiffness[0], j->damping[0], j->length};
         h = spari_hash_bytes(h, spring, sizeof spring);
     }
@@ -518,7 +518,7 @@ void spari_joint_drive_at(const spar_joint *j, double s, double dt, spari_driven
     for (int k = 0; k < 6; k++) {
         double way = b->z[k] - a->z[k] - 0.5 * dt * (a->rate[k] + b->rate[k]),
                most = fmax(fabs(a->z[k]), fabs(b->z[k]));
-        way = fabs(way) <= 8 * DBL_EPSILON * most ? 0 : way; /* rounding, by a short dt, is a rate of its own */
+        way = fabs(way) <= 8 * DBL_EPSILON * most ? 0 : way; /* divided by a short dt, rounding would become a rate */
         at->z[k] = h00 * a->z[k] + h01 * b->z[k] + dt * (h10 * a->rate[k] + h11 * b->rate[k]);
         at->rate[k] = (1 - s) * a->rate[k] + s * b->rate[k] + 6 * s * (1 - s) * way / dt;
         at->acceleration[k] = (1 - s) * a->acceleration[k] + s * b->acceleration[k];

@@ -1,4 +1,4 @@
-/* The geometry of a joint: see joint_kinematics.h. */
+/* Kinematics of a joint: see joint_kinematics.h. */
 #include "joint_kinematics.h"
 
 #include "../math/rotation.h"
@@ -21,7 +21,7 @@ int spari_tie_axis(int free) {
 
 enum { FREE_TURNS = SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ };
 
-/* The axis about which a tie with two free turns has none; else -1. */
+/* Constrained axis of a joint with two free rotations; otherwise -1. */
 static int axis_without_turn(int free) {
     switch (free & FREE_TURNS) {
     case SPAR_FREE_RY | SPAR_FREE_RZ:
@@ -39,9 +39,9 @@ int spari_tie_angles(int free) {
     return (free & FREE_TURNS) == FREE_TURNS ? 0 : (free & FREE_TURNS) / SPAR_FREE_RX;
 }
 
-/* Where a node has its end of the joint. */
+/* One end of a joint. */
 typedef struct tie_end {
-    double arm[3], axes[4]; /* from the node, now */
+    double arm[3], axes[4]; /* from the node, present configuration */
 } tie_end;
 
 static void carry_end(const spari_tie *t, int side, const spari_place *at, tie_end *e) {
@@ -49,7 +49,7 @@ static void carry_end(const spari_tie *t, int side, const spari_place *at, tie_e
     spari_quat_mul(at->q, t->axes[side], e->axes);
 }
 
-/* rows of B: z-dot[k] = sum over sides of (force axis) . u-dot + (turn axis) . omega */
+/* rows of B: z-dot[k] = sum over sides of (force axis) . u-dot + (rotation axis) . omega */
 static void set_row(double row[12], const double axis[3], const double turn_a[3], const double turn_b[3]) {
     for (int k = 0; k < 3; k++) {
         row[k] = axis[k];
@@ -59,8 +59,8 @@ static void set_row(double row[12], const double axis[3], const double turn_a[3]
     }
 }
 
-/* Along `axis` (global), of the point at arm_a from a and at arm_b from b: axis . (omega x arm) = (arm x axis) . omega
- */
+/* Along `axis` (global), for the point at arm_a from a and at arm_b from b: axis . (omega x arm) = (arm x axis) .
+   omega */
 static void set_way(double row[12], const double axis[3], const double arm_a[3], const double arm_b[3]) {
     double turn_a[3], turn_b[3];
     spari_cross(arm_a, axis, turn_a);
@@ -68,7 +68,7 @@ static void set_way(double row[12], const double axis[3], const double arm_a[3],
     set_row(row, axis, turn_a, turn_b);
 }
 
-/* The angle of (c[r], c[q]) and, in row[3], its change with a turn phi of c in the axes of b: dc = phi x c. */
+/* Angle of (c[r], c[q]) and, in row[3], its change with a rotation phi of c in the axes of b: dc = phi x c. */
 static double angle_of(const double c[3], int q, int r, double sign, double row[3]) {
     double size = c[q] * c[q] + c[r] * c[r];
     for (int m = 0; m < 3; m++) {
@@ -80,8 +80,8 @@ static double angle_of(const double c[3], int q, int r, double sign, double row[
     return atan2(sign * c[r], c[q]);
 }
 
-/* The cross of a universal joint has two arms at a right angle: axis p of b's, axis q of a's; r is the third. r[4]
-   turns b's p by the first angle, then a's q by the second. */
+/* The cross of a universal joint has two perpendicular arms: axis p of b and axis q of a; r is the third. r[4]
+   rotates b's p by the first angle, then a's q by the second. */
 static void universal(int without, const double turn[4], double z[3], double D[9]) {
     int r = without, p = r == 0 ? 1 : 0, q = 3 - p - r;
     double sign = r == 1 ? -1 : 1, e[3] = {0}, f[3] = {0}, c[3], d[3], row[3];
@@ -93,7 +93,7 @@ static void universal(int without, const double turn[4], double z[3], double D[9
     for (int m = 0; m < 3; m++) {
         D[3 * r + m] *= -sign;
     }
-    spari_rotate_back(turn, f, d); /* b's p in a's axes turns with -phi, seen there */
+    spari_rotate_back(turn, f, d); /* b's p, in a's axes, rotates with -phi */
     z[q] = angle_of(d, p, r, sign, row);
     spari_rotate(turn, row, D + 3 * q);
     for (int m = 0; m < 3; m++) {
@@ -101,7 +101,7 @@ static void universal(int without, const double turn[4], double z[3], double D[9
     }
 }
 
-/* D[3][3]: the change of the three rotations z with a small turn phi of a relative to b, in b's axes, and z. */
+/* The three rotations z, and D[3][3]: their change with a small rotation phi of a relative to b, in b's axes. */
 static void rotations(const spari_tie *t, const double r[4], double z[3], double D[9]) {
     int i = spari_tie_axis(t->free), rotations_free = t->free & FREE_TURNS, without = axis_without_turn(t->free);
     double sign = r[0] < 0 ? -1 : 1;
@@ -113,7 +113,8 @@ static void rotations(const spari_tie *t, const double r[4], double z[3], double
         for (int k = 0; k < 9; k++) {
             D[k] = -0.5 * D[k] + (k % 4 == 0 ? sign * r[0] : 0);
         }
-    } else if (i >= 0) { /* c = a's axis i in b's axes, dc = phi x c; about j and k it leaves b's by -c_k and c_j */
+    } else if (i >=
+               0) { /* c: a's axis i in b's axes, dc = phi x c; about j and k it deviates from b's by -c_k and c_j */
         int j = (i + 1) % 3, k = (i + 2) % 3;
         double e[3] = {0}, c[3], s2 = r[0] * r[0] + r[1 + i] * r[1 + i];
         e[i] = 1;
@@ -156,7 +157,7 @@ void spari_tie_motion(const spari_tie *t, const spari_place *a, const spari_plac
     carry_end(t, 0, a, &e[0]);
     carry_end(t, 1, b, &e[1]);
     for (int k = 0; k < 3; k++) {
-        reach[k] = a->x[k] + e[0].arm[k] - b->x[k]; /* a's point from node b */
+        reach[k] = a->x[k] + e[0].arm[k] - b->x[k]; /* a's point relative to node b */
         w[k] = reach[k] - e[1].arm[k];
     }
     if (t->line) {
@@ -172,7 +173,7 @@ void spari_tie_motion(const spari_tie *t, const spari_place *a, const spari_plac
         double axis[3] = {0}, turn[3];
         axis[m] = 1;
         spari_rotate(e[1].axes, axis, axis);
-        set_way(B[m], axis, e[0].arm, reach); /* seen from b's axes, which turn: a's point goes along with b */
+        set_way(B[m], axis, e[0].arm, reach); /* in b's axes, which rotate: a's point moves with b */
         spari_rotate(e[1].axes, D + 3 * m, turn);
         set_row(B[3 + m], none, turn, turn);
     }
@@ -187,7 +188,7 @@ void spari_tie_forces(double B[6][12], const double load[6], double f[12]) {
     }
 }
 
-/* (du, dtheta) of one of the two nodes, as the entries of K and B are counted */
+/* Displaces (du, dtheta) of one of the two nodes, counted as the entries of K and B */
 static void nudge(spari_place *a, spari_place *b, int j, double by) {
     spari_place *at = j < 6 ? a : b;
     if (j % 6 < 3) {
@@ -200,7 +201,7 @@ static void nudge(spari_place *a, spari_place *b, int j, double by) {
     }
 }
 
-/* How far a nudge goes: the geometry's own size, so that central differences are good to some 1e-10. */
+/* Step of the central differences: the size of the geometry, for an accuracy of about 1e-10. */
 static double size_of_tie(const spari_tie *t, const spari_place *a, const spari_place *b) {
     double w[3];
     for (int k = 0; k < 3; k++) {

@@ -1,4 +1,4 @@
-/* Joints in the motion after: what they put on the nodes of a member, and how their coordinates speed up. */
+/* Loads of joints on the nodes of a member, and accelerations of joint coordinates, in the motion `after`. */
 #include "joint.h"
 
 #include <string.h>
@@ -70,7 +70,7 @@ void spari_joint_acceleration(const spar_joint *j, double acceleration[6]) {
     spari_place place[2];
     double z[6], B[6][12], v[12] = {0}, a[12] = {0};
     memset(acceleration, 0, 6 * sizeof *acceleration);
-    if (j->after.found == 0) { /* placed or not: that is no matter of the run */
+    if (j->after.found == 0) { /* whether it is placed does not affect the run */
         return;
     }
     for (int side = 0; side < 2; side++) {

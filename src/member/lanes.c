@@ -1,5 +1,4 @@
-/* Forces and tangents of quadrature points side by side: the kernels for each width of vectors, and which of them
- * serves. */
+/* Selects the kernels of quadrature points for the vector width of this processor. */
 #include "../base/status.h"
 #include "../math/basis.h"
 #include "tangent.h"
@@ -7,7 +6,7 @@
 #define SPARI_KERNELS "../member/element_lanes.h"
 #include "../math/widths.h"
 
-/* The kernels of one instruction set; forces by what of its mass a section shows. */
+/* Kernels of one instruction set; forces by the mass variant of the sections. */
 typedef struct lane_kernels {
     int width;
     void (*interpolate)(int wanted, int P, const double *shape, const double *z, double *f);
@@ -34,7 +33,7 @@ static const lane_kernels plain = KERNELS(plain);
 static const lane_kernels avx2 = KERNELS(avx2), avx512 = KERNELS(avx512);
 #endif
 
-/* For so many points, or nodes, side by side: no wider than they are many. */
+/* Kernels for this many points or nodes: not wider than their number. */
 static const lane_kernels *kernels_for(const spari_body *body, int count) {
 #ifdef SPARI_X86
     int most = body->lanes ? body->lanes : SPARI_LANES, fit = count > 4 ? 8 : count > 2 ? 4 : 2;

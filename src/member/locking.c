@@ -1,6 +1,7 @@
-/* Elements with too few nodes for their stiffness: a bent element of few nodes cannot keep its length, or its sections
-   across its line, and is then as stiff as its axial and shear stiffness make it. Told once, at commit. Limits are
-   those at which a cantilever of one element deflects by 10 % too little (tests/test_beam.c). */
+/* Warns about elements with too few nodes for their stiffness (membrane and shear locking). A bent element with few
+   nodes cannot keep its length, or its sections perpendicular to its line, and becomes as stiff as its axial and
+   shear stiffness. Checked once, at commit. The limits are those at which a cantilever of one element deflects 10 %
+   too little (tests/test_beam.c). */
 #include "beam.h"
 
 #include "../base/session.h"
@@ -9,10 +10,10 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { ENOUGH = 5 }; /* nodes: what is left is below 1.3 % */
+enum { ENOUGH = 5 }; /* nodes: the remaining error is below 1.3 % */
 
-/* Largest (axial or shear stiffness) h^2 / (bending stiffness) that elements of P nodes bear; bent: in their reference,
-   or by the loads. */
+/* Largest (axial or shear stiffness) h^2 / (bending stiffness) for elements of P nodes; bent: in their reference, or
+   by loads. */
 static double bearable(int P, int bent) {
     switch (P) {
     case 2:
@@ -24,12 +25,12 @@ static double bearable(int P, int bent) {
     }
 }
 
-/* The same of a section, per length squared. */
+/* The same ratio for a section, per length squared. */
 static double stiffness_ratio(const double C[36]) {
     return fmax(C[0], fmax(C[7], C[14])) / fmin(C[28], C[35]);
 }
 
-/* Largest of the elements' ratios, and of the member's with its whole length; *element: where. */
+/* Largest ratio of the elements, and of the member with its whole length; *element: the element. */
 static double largest_ratio(const spar_member *m, double *whole, int *element) {
     double most = 0, length = 0, section = 0;
     for (int e = 0; e < m->elements; e++) {
@@ -52,7 +53,7 @@ static double largest_ratio(const spar_member *m, double *whole, int *element) {
     return most;
 }
 
-/* Whether an element is bent in its reference by more than 0.01 rad from node to node. */
+/* Whether an element is bent in its reference by more than 0.01 rad between nodes. */
 static int is_bent(const spar_member *m) {
     const double x[3] = {1, 0, 0};
     double before[3], after[3], turn[3];
@@ -68,7 +69,7 @@ static int is_bent(const spar_member *m) {
 }
 
 void spari_beam_tell_locking(const spar_member *m) {
-    static const double rounding = 1e15; /* bending is then less than the last digit of the rest */
+    static const double rounding = 1e15; /* beyond this, bending is below the rounding error of the other stiffnesses */
     char text[SPARI_MESSAGE_SIZE];
     double whole = 0;
     int element = 0, exact = m->seen != SPARI_SEEN_LINEAR;

@@ -1,4 +1,4 @@
-/* Mean accelerations, as fluids see them: see mean_acceleration.h. */
+/* Mean accelerations for fluids: see mean_acceleration.h. */
 #include "mean_acceleration.h"
 
 #include "../base/session.h"
@@ -48,7 +48,7 @@ void spari_means_find(spar_member *m) {
     spari_means *k = m->means;
     k->has[1] = (s->substeps > 1 || s->uneven[1]) && !(m->added && m->added->stands);
     double on = k->has[0] ? s->dt / (s->dt + k->dt) : s->step > 0 || m->begun ? 1 : 0;
-    const double *before = k->has[0] ? k->mean : m->now.a; /* that one at t^n, half as far back */
+    const double *before = k->has[0] ? k->mean : m->now.a; /* at t^n, half as far back */
     for (int64_t i = 0; i < 6 * m->nodes && k->has[1]; i++) {
         double mean = (m->after.v[i] - m->now.v[i]) / s->dt;
         k->seen[1][i] = mean + on * (mean - before[i]);

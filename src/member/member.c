@@ -1,4 +1,4 @@
-/* A member as it is described and where it is: counts, reference, motion, loads; and its two numberings. */
+/* Getters and setters of a member: counts, reference, motion, loads; and conversion between its two node numberings. */
 #include "../base/environment.h"
 #include "../math/rotation.h"
 #include "added_mass.h"
@@ -52,7 +52,7 @@ int spar_member_get_count(const spar_member *member, int64_t *nodes) {
     return SPAR_OK;
 }
 
-/* copies n doubles where they are wanted */
+/* copies n doubles if they are wanted */
 static void give(double *to, const double *from, int64_t n) {
     if (to) {
         memcpy(to, from, (size_t)n * sizeof *to);
@@ -98,8 +98,7 @@ int spar_member_get_loads(const spar_member *member, double *load) {
     return SPAR_OK;
 }
 
-/* The unknowns' view of the nodes: joints once. Node i of the public numbering is unique node i - i / P (e P + k -> e
- * (P-1) + k). */
+/* Unknowns count element boundaries once: host node i is unique node i - i / P (e P + k -> e (P-1) + k). */
 void spari_member_to_unique(const spar_member *m, int width, const double *nodes, double *unique) {
     int P = m->per_element;
     if (m->elements == 1) {
@@ -111,7 +110,7 @@ void spari_member_to_unique(const spar_member *m, int width, const double *nodes
     }
 }
 
-/* One view of nodes and the other. */
+/* Host nodes and unique nodes. */
 typedef struct two_views {
     const spar_member *m;
     int width;
@@ -141,7 +140,7 @@ void spari_member_publish(const spar_member *m, const double *q, const double *v
     spari_member_from_unique(m, 6, a, to->a);
 }
 
-/* A joint of elements stands at the end of one and at the beginning of the next. */
+/* An element boundary is the end of one element and the beginning of the next. */
 static void gather_nodes(void *context, int64_t from, int64_t to) {
     const two_views *t = context;
     int64_t steps = t->m->per_element - 1, last = t->m->elements * steps;

@@ -1,8 +1,8 @@
-/* An element's nodes, W of them at once: what its points are given, and what they give back. Included by
-   element_lanes.h once per width with the macros of math/width.h. No include guard: this is a body, not an interface.
-
-   Arrays of nodes go in and out with the numbers of a node side by side; the rows z [ROW][SPARI_MAX_NODES] and
-   g [BACK][SPARI_MAX_NODES] between have nodes side by side. Nothing is fused: the same bits at every width. */
+/* Nodes of an element, W at once: converts nodal motion to fields, and field forces to nodal forces. Included by
+   element_lanes.h once per width with the macros of math/width.h. No include guard: this is a body, not an
+   interface.
+   Nodal arrays store the numbers of a node contiguously; the rows z [ROW][SPARI_MAX_NODES] and g
+     [BACK][SPARI_MAX_NODES] store nodes contiguously. Nothing is fused: the same bits at every width. */
 
 HERE void NAME(put_row)(const int n, int row, const L *x, double *z) {
     SPARI_UNROLL
@@ -18,7 +18,7 @@ HERE void NAME(get_row)(const int n, int row, const double *z, L *x) {
     }
 }
 
-/* Places and quaternions, and their rates: q' = 1/2 w q, q'' = 1/2 alpha q + 1/2 w q'. */
+/* Positions and quaternions, and their rates: q' = 1/2 w q, q'' = 1/2 alpha q + 1/2 w q'. */
 HERE void NAME(put_fields)(const int whole, const int64_t *at, const double *q, const double *v, const double *a,
                            double *z) {
     L place[7], rate[6], half[3], turn[4], spin[4];
@@ -50,8 +50,8 @@ HERE void NAME(put_fields)(const int whole, const int64_t *at, const double *q, 
     NAME(put_row)(4, QDD, turn, z);
 }
 
-/* Whether one of W quaternions from the one `first` on lies in the other hemisphere than the one before it; what lies
-   beyond them has to be a number. */
+/* Whether one of W quaternions from `first` on is in the other hemisphere than the one before it. Entries beyond
+   them must be numbers. */
 HERE int NAME(are_opposed)(int first, const double *z) {
     L q[4], before[4], none = {0};
     int from = first > 0 ? first : 1;
@@ -60,13 +60,13 @@ HERE int NAME(are_opposed)(int first, const double *z) {
     return NAME(any_above)(none, NAME(quat_dot)(q, before));
 }
 
-/* The first W of `left` nodes from the one `first` on, of arrays that begin with the element's first. Whether one is in
-   another hemisphere than its neighbour. */
+/* The first W of `left` nodes from `first` on, of arrays that begin with the element's first node. Returns whether
+   one is in another hemisphere than its neighbour. */
 TARGET static int NAME(gather_nodes)(int first, int left, const double *q, const double *v, const double *a,
                                      double *z) {
     int64_t at[W];
     q += 7 * first, v = v ? v + 6 * first : NULL, a = a ? a + 6 * first : NULL;
-    if (first == 0) { /* the last of them is compared with what comes after it */
+    if (first == 0) { /* the last is compared with the entry after it */
         for (int i = 0; i < 4; i++) {
             z[SPARI_MAX_NODES * (Q + i) + W] = 0;
         }
@@ -79,8 +79,8 @@ TARGET static int NAME(gather_nodes)(int first, int left, const double *q, const
     return NAME(are_opposed)(first, z);
 }
 
-/* Forces of nodes, of the seven that they are given: delta q . g = delta theta . 1/2 Im(g q*). What lanes beyond the
-   last node have is of no node, and overwritten. */
+/* Nodal forces from the seven field forces: delta q . g = delta theta . 1/2 Im(g q*). Lanes past the last node are
+   overwritten. */
 HERE void NAME(add_block)(const int whole, const int64_t *at, const double *g, const double *z, double *r) {
     L q[4], back[BACK], turn[4], sum[6];
     NAME(get_row)(BACK, 0, g, back);

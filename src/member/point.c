@@ -1,8 +1,7 @@
-/* What quadrature points are given: the fields of an element's nodes, and what of its mass a section shows. */
+/* Gathers the nodal fields of an element for its quadrature points, and selects the mass variant of a section. */
 #include "point.h"
 
-/* Velocity of a node as the first one sees it, which carries all along with its own; or, where there are no places, as
-   it is. */
+/* Velocity of a node relative to the rigid motion of the first; without positions, its absolute velocity. */
 static void see_node(const spari_body *body, int64_t node, const double *q, const double *v, double out[6]) {
     double arm[3], carried[3];
     if (!body->node_place) {
@@ -25,7 +24,7 @@ void spari_body_see(const spari_body *body, const double *q, const double *v, do
     }
 }
 
-/* Damping by mass is inertia of an acceleration: drag times that velocity. */
+/* Mass-proportional damping is the inertia of an acceleration: drag times this velocity. */
 static void add_drag(const spari_body *body, int e, const double *q, const double *v, double *z) {
     int P = body->per_element;
     for (int l = 0; l < P; l++) {
@@ -43,7 +42,7 @@ static void add_drag(const spari_body *body, int e, const double *q, const doubl
     }
 }
 
-/* Each node follows its predecessor: with its negative, and so its rates. */
+/* Brings each quaternion, with its rates, into the hemisphere of the one before. */
 static void chain_nodes(int P, double *z) {
     for (int l = 1; l < P; l++) {
         double before[4], here[4];

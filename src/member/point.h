@@ -1,5 +1,5 @@
-/* What happens at quadrature points, for the forces, the tangent and the energy of a body: fields of the nodes summed
-   to the points, strains, section forces, inertia. docs/theory.md, "The beam". */
+/* Computations at quadrature points for forces, tangent and energy of a body: interpolated fields, strains, section
+   forces, inertia. docs/theory.md, "The beam". */
 #ifndef SPARI_POINT_H
 #define SPARI_POINT_H
 
@@ -18,13 +18,13 @@ static inline void quat_vec(const double q[4], const double s[3], double c[4]) {
 
 /* ---- fields ---- */
 
-/* Fields of a node as the elements sum them: u and its two rates, q and its two rates. */
+/* Interpolated fields: u and its two rates, q and its two rates. */
 enum { U = 0, Q = 3, UD = 7, QD = 10, UDD = 14, QDD = 17, ROW = 21 };
-/* Fields of points, in blocks of so many rows: values, then derivatives along the line of u, q and their rates. */
+/* Rows of a block of point fields: values, then derivatives along the line of u, q and their rates. */
 enum { DU = ROW, DQ = ROW + 3, DUD = ROW + 7, DQD = ROW + 10, POINT_ROWS = ROW + 14 };
-/* What points give back, in blocks: what multiplies phi (u, Q), then what multiplies phi' (u', Q'). */
+/* Rows of a block of force terms: multiplied by phi (u, Q), then by phi' (u', Q'). */
 enum { BACK = 7, BACK_ROWS = 2 * BACK };
-/* Which fields are wanted: Q; its rate; places and velocities with both; accelerations; slopes of u and Q; of their
+/* Requested fields: Q; its rate; positions and velocities with both; accelerations; slopes of u and Q; of their
    rates. */
 enum {
     SPARI_ROTATIONS = 0,
@@ -35,49 +35,49 @@ enum {
     SPARI_RATE_SLOPES = 16
 };
 
-/* What of its mass a section shows: nothing, its weight alone, or inertia (and weight, where there is any). */
+/* Mass variants of a section: none, weight alone, or inertia (and weight, if any). */
 enum { SPARI_MASSLESS, SPARI_WEIGHED, SPARI_ACCELERATED };
 
 typedef struct spari_regime {
     int moving;       /* rates are given */
     int damped;       /* damping acts */
-    int beyond;       /* section forces are more than stiffness times strain: damping acts, or pretension */
-    int heavy, shown; /* there is weight; what of its mass a section shows */
-    int wanted;       /* fields that the forces take */
+    int beyond;       /* section forces exceed stiffness times strain: by damping or pretension */
+    int heavy, shown; /* with weight; mass variant of the section */
+    int wanted;       /* fields that the forces need */
     double weight[3]; /* gravity times its factor */
 } spari_regime;
 
 spari_regime spari_point_regime(const spari_body *body, const double *v, const double *a, double factor);
 
 /* Nodal 4-vectors and their rates, z [ROW][SPARI_MAX_NODES]. Neighbours are brought into one hemisphere, so that an
-   element may turn by more than half a revolution from end to end. */
+   element may rotate by more than half a revolution between its ends. */
 void spari_point_gather(const spari_body *body, int e, const double *q, const double *v, const double *a, double *z);
 
-/* Sizes of forces and power of damping, gathered over points lane by lane. */
+/* Sizes of forces and damping power, summed over points per lane. */
 typedef struct spari_tally {
     double power[SPARI_LANES], most[SPARI_LANES];
 } spari_tally;
 
-/* The 4-vector of a node. */
+/* Quaternion of a node. */
 static inline void spari_point_turn(const double *z, int node, double q[4]) {
     for (int i = 0; i < 4; i++) {
         q[i] = z[SPARI_MAX_NODES * (Q + i) + node];
     }
 }
 
-/* The same of nodes as they are, of arrays that begin with the element's first, which is what there is of v and a, NULL
-   where there is none. Whether a node may lie in another hemisphere than its neighbour. */
+/* The same without changing hemispheres, for arrays that begin with the element's first node; v and a may be NULL.
+   Returns whether a node may be in another hemisphere than its neighbour. */
 int spari_lanes_gather(const spari_body *body, const double *q, const double *v, const double *a, double *z);
-/* Adds what an element's points give back, g [BACK][SPARI_MAX_NODES], to the forces r of its nodes. */
+/* Adds the field forces of an element, g [BACK][SPARI_MAX_NODES], to the nodal forces r. */
 void spari_lanes_add(const spari_body *body, const double *g, const double *z, double *r);
 
-/* Fields of the points of element e, blocks f [blocks][POINT_ROWS][lanes], from its nodes' rows; those not wanted are
-   left as they are. */
+/* Fields at the points of element e, blocks f [blocks][POINT_ROWS][lanes], from its nodes' rows; others are
+   unchanged. */
 void spari_lanes_interpolate(const spari_body *body, int e, int wanted, const double *z, double *f);
-/* What the points of element e give back, blocks back [blocks][BACK_ROWS][lanes]; f: room for one block of fields. */
+/* Force terms of the points of element e, blocks back [blocks][BACK_ROWS][lanes]; f: room for one block of fields. */
 void spari_lanes_forces(const spari_body *body, int e, const spari_regime *how, const double *z, double *f,
                         double *back, spari_tally *tally);
-/* That summed onto the nodes, g [BACK][SPARI_MAX_NODES]. */
+/* Sums the force terms to the nodes, g [BACK][SPARI_MAX_NODES]. */
 void spari_lanes_collect(const spari_body *body, int e, const double *back, double *g);
 
 /* ---- one point ---- */

@@ -1,5 +1,5 @@
-/* Bodies that sit on a beam: what the host says of them, and where on the elements they are. Each becomes a point of
-   the body without stiffness (beam.c), so that inertia, weight and whatever is made of them have it like any other. */
+/* Attached point masses of a beam: description by the host, and position on the elements. Each becomes a point of
+   the body without stiffness (beam.c), so inertia, weight and everything derived from them include it. */
 #include "../base/environment.h"
 #include "beam.h"
 #include "checks.h"
@@ -9,7 +9,7 @@
 
 int spari_lump_element(const spar_member *member, int64_t k, double *xi) {
     double along = member->beam->lump_eta[k] * member->elements;
-    int e = (int)ceil(along - 1e-9) - 1; /* a joint belongs to the element before it */
+    int e = (int)ceil(along - 1e-9) - 1; /* an element boundary belongs to the element before it */
     e = e < 0 ? 0 : e > member->elements - 1 ? member->elements - 1 : e;
     *xi = fmin(fmax(2 * (along - e) - 1, -1), 1);
     return e;

@@ -1,4 +1,4 @@
-/* The frame that a member is seen from, and its deformation seen from there. */
+/* Frame of reference of a member, and its deformation relative to it: see pose.h. */
 #include "pose.h"
 
 #include "../math/rotation.h"

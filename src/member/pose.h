@@ -1,14 +1,14 @@
-/* The frame that a member is seen from. */
+/* Frame of reference of a member, and its deformation relative to it. */
 #ifndef SPARI_POSE_H
 #define SPARI_POSE_H
 
 #include "structure.h"
 
-/* Place, orientation and velocity (the acceleration is zero) of the frame that a linear or modal member is seen from:
-   those of its root where they are given or joints tie it, else it stands at the reference. Members that are linear
-   about their reference otherwise: the same. */
+/* Position, orientation and velocity (the acceleration is zero) of the floating frame of a linear or modal member:
+   that of its root if the root is prescribed or connected by joints, otherwise the reference. The same for members
+   that are linear about their reference. */
 spari_pose spari_member_pose(const spar_member *member, const spari_motion *nodes);
-/* Deformation of a node seen from there, displacement and rotation vector in the axes of the pose, and its rates. */
+/* Deformation of a node relative to this frame: displacement and rotation vector in its axes, and their rates. */
 void spari_member_deformation(const spar_member *member, const spari_pose *pose, const spari_motion *nodes,
                               int64_t node, double x[6], double rate[6]);
 

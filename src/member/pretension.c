@@ -1,6 +1,6 @@
-/* Pretension of a beam: section forces that its reference configuration carries, as the host gives them. They are added
-   to those of the strains at the quadrature points (section_lanes.h), so that the tangent has their geometric stiffness,
-   and forces, energy, modes and linear members have what they do. */
+/* Pretension of a beam: section forces of its reference configuration, given by the host. They are added to the
+   section forces at quadrature points (section_lanes.h). So forces, energy, tangent (geometric stiffness), modes and
+   linear members include them. */
 #include "../base/environment.h"
 #include "beam.h"
 #include "checks.h"

@@ -1,10 +1,9 @@
-/* Blades from BeamDyn's input: the primary file (key points, twist, name of the blade file) and the blade file
+/* Reads blades from BeamDyn's input: the primary file (key points, twist, name of the blade file) and the blade file
    (stations, 6x6 matrices, damping). Formats: OpenFAST documentation, BeamDyn user's guide, sections 4.1 and 4.2.
-
-   BeamDyn's frame has z along the blade, ours x: (x, y, z) = (z, x, y) of BeamDyn, a cyclic permutation, so that no
-   sign changes; its matrices are ordered (shear x, shear y, axial, bending x, bending y, torsion). Its twist turns
-   about -z (the sign of wind-turbine blades), ours right-handed about the tangent. The key points of a member are
-   joined by cubic splines, natural at their ends, over z. */
+   BeamDyn's frame has z along the blade, spar's x: (x, y, z) = (z, x, y) of BeamDyn, a cyclic permutation, so no
+     sign changes. Its matrices are ordered (shear x, shear y, axial, bending x, bending y, torsion). Its twist is
+     about -z (the sign of wind-turbine blades), spar's is right-handed about the tangent. The key points of a member
+     are connected by cubic splines over z, natural at their ends. */
 #include "../base/environment.h"
 #include "../base/reader.h"
 #include "../base/session.h"
@@ -19,7 +18,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* What has been read, in BeamDyn's order and units. */
+/* File contents, in BeamDyn's order and units. */
 typedef struct blade {
     int members, points, stations, damped;
     int *count;        /* [members] key points of each */
@@ -29,7 +28,7 @@ typedef struct blade {
     double *mass;
     int *line; /* [stations] */
     double mu[6];
-    char *file; /* blade file as the primary file names it */
+    char *file; /* name of the blade file in the primary file */
 } blade;
 
 static void blade_free(blade *b) {
@@ -151,9 +150,9 @@ static int read_blade(spari_reader *r, blade *b) {
     return SPAR_OK;
 }
 
-/* ---- into our frame ---- */
+/* ---- conversion to spar's frame ---- */
 
-/* ours[i] = BeamDyn's [from[i]] */
+/* spar's [i] = BeamDyn's [from[i]] */
 static const int FROM[6] = {2, 0, 1, 5, 3, 4};
 
 static void permute_axes(double *M) {
@@ -186,8 +185,8 @@ static int check_sections(const spari_reader *r, const blade *b) {
     return SPAR_OK;
 }
 
-/* Points on the splines of all members, so many in each interval of key points that a fit follows the splines: place
-   (ours), twist in radians, eta by arc length. */
+/* Points on the splines of all members, enough in each key-point interval for a fit to follow the splines: position
+   (spar's axes), twist in radians, eta by arc length. */
 typedef struct axis {
     int64_t n;
     double *eta, *xyz, *twist;
@@ -269,7 +268,7 @@ static int make_axis(const blade *b, axis *a) {
     return 0;
 }
 
-/* Hands it to the beam; what the beam had before stays when something is refused. */
+/* Describes the beam with the data read; after a refusal the beam keeps its earlier description. */
 static int describe_blade(spar_member *m, const spari_reader *r, blade *b) {
     double mu[6];
     axis a = {0};

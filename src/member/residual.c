@@ -1,4 +1,4 @@
-/* Forces of a body, and its energy: sums over the quadrature points. docs/theory.md, "The beam". */
+/* Forces and energy of a body: sums over quadrature points. docs/theory.md, "The beam". */
 #include "../base/thread_pool.h"
 #include "../math/basis.h"
 #include "point.h"
@@ -30,7 +30,7 @@ static void add_forces(const spari_body *body, int tile, int from, int to, void 
     }
 }
 
-/* Twice drag times the kinetic energy of the motion that the first node sees. */
+/* Power of mass-proportional damping: twice drag times the kinetic energy of the motion relative to the first node. */
 static double drag_power(const spari_body *body, const double *q, const double *v) {
     double energy[4];
     spari_body_see(body, q, v, body->seen);

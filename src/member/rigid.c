@@ -1,4 +1,4 @@
-/* What a described rigid body becomes: one node, one point with its mass. */
+/* Discretises a rigid body: one node, one point with its mass. */
 #include "beam.h"
 
 #include "../base/session.h"
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A rigid section or body moves as m (v + w x c), J w + c x m v: M = [m I, -m c~; m c~, J]. */
+/* Momentum of a rigid section or body: m (v + w x c), J w + c x m v: M = [m I, -m c~; m c~, J]. */
 const char *spari_mass_split(const double M[36], double *m, double c[3], double J[6]) {
     double size = 0, inertia = 0;
     for (int i = 0; i < 3; i++) {
@@ -45,8 +45,8 @@ const char *spari_mass_split(const double M[36], double *m, double c[3], double 
         c[i] = *m > 0 ? mc[i] / *m : 0;
     }
     J[0] = M[21], J[1] = M[22], J[2] = M[23], J[3] = M[28], J[4] = M[29], J[5] = M[35];
-    /* about the centre of mass the inertia must not be negative: leading and trailing minors of J - m (c.c I - c c^T)
-     */
+    /* the inertia about the centre of mass must not be negative: leading and trailing minors of J - m (c.c I - c
+       c^T) */
     double cc = spari_dot(c, c), small = tol * inertia;
     double a = J[0] - *m * (cc - c[0] * c[0]), b = J[3] - *m * (cc - c[1] * c[1]), d = J[5] - *m * (cc - c[2] * c[2]);
     double f = J[1] + *m * c[0] * c[1], g = J[2] + *m * c[0] * c[2], h = J[4] + *m * c[1] * c[2];

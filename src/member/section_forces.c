@@ -1,7 +1,7 @@
-/* What acts on the part of a beam beyond a section: see section_forces.h. Loads are kept element by element, each
-   element's own share of the nodes it has in common with its neighbours. Spread loads (inertia, weight, along the line,
-   of the ground, of a fluid) are nodal sums that the shape functions have weighed: within an element so much of them
-   acts beyond as spari_share_beyond says. Loads at nodes, joints and point masses act where they are. */
+/* Resultant of all loads on the part of a beam beyond a section: see section_forces.h. Loads are kept per element,
+   with each element's own share at nodes in common with its neighbours. Distributed loads (inertia, weight, line
+   loads, foundation, fluid) are nodal sums weighted with shape functions; spari_share_beyond gives the fraction of
+   them that acts beyond a position in the element. Loads at nodes, joints and point masses act where they are. */
 #include "section_forces.h"
 
 #include "../base/session.h"
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A point mass: where it is, and what it gives the beam there. */
+/* A point mass: position, and its force on the beam. */
 typedef struct point_force {
     int element;
     double xi, x[3], force[6];
@@ -22,7 +22,7 @@ struct spari_beyond {
     const spar_member *member;
     int64_t masses;
     point_force *mass; /* [masses] */
-    double *x;         /* [nodes][3] places of the nodes, deformed where the equations know it */
+    double *x;         /* [nodes][3] positions of the nodes, deformed if the equations are geometrically exact */
     double *spread;    /* [nodes][6] */
     double *point;     /* [nodes][6] */
     double *sum;       /* [elements + 1][6] of all elements from e on, about the first node */
@@ -65,7 +65,7 @@ static void add_about(const double center[3], const double x[3], const double f[
 
 /* ---- inertia and weight ---- */
 
-/* The motion as the balance has it: of members that are linear where they stand, accelerations at the reference. */
+/* The motion as in the equilibrium equations; for linear members in a fixed frame, accelerations at the reference. */
 typedef struct inertial {
     double *q, *v, *a, *room; /* [unique] 7, 6, 6, 6 */
     int still;
@@ -82,7 +82,7 @@ static void fill_motion(const spar_member *m, inertial *w) {
     if (!is_standing(m)) {
         spari_member_to_unique(m, 7, m->after.q, w->q);
     }
-    if (body->drag > 0 && !w->still) { /* inertia of an acceleration: drag times the velocity it is of */
+    if (body->drag > 0 && !w->still) { /* the inertia of an acceleration: drag times its velocity */
         if (is_standing(m)) {
             memcpy(w->room, w->v, (size_t)(6 * n) * sizeof *w->room);
         } else {
@@ -97,7 +97,7 @@ static void fill_motion(const spar_member *m, inertial *w) {
     }
 }
 
-/* Nodal forces [P][6] of inertia less weight on element e, with the points' weights [slots]. */
+/* Nodal forces [P][6] of inertia minus weight on element e, with the points' weights [slots]. */
 static void element_inertia(const spari_body *body, const inertial *w, int e, double *weights, double *r) {
     const int64_t first = (int64_t)e * (body->per_element - 1);
     spari_body part = *body;
@@ -111,7 +111,7 @@ static void element_inertia(const spari_body *body, const inertial *w, int e, do
                               w->still ? NULL : w->a + 6 * first, 1, r, NULL);
 }
 
-/* What the point masses of element e give the beam, each by itself; their weights are then 0. */
+/* Force of each point mass of element e on the beam; their weights are then 0. */
 static void take_masses(spari_beyond *b, const inertial *w, int e, double *weights) {
     const spar_member *m = b->member;
     const spari_body *body = m->body;
@@ -124,7 +124,7 @@ static void take_masses(spari_beyond *b, const inertial *w, int e, double *weigh
             continue;
         }
         point_force *p = b->mass + b->masses++;
-        double *alone = weights + body->slot[body->elements]; /* all but this one: 0 */
+        double *alone = weights + body->slot[body->elements]; /* all others: 0 */
         memset(alone, 0, (size_t)body->slot[body->elements] * sizeof *alone);
         alone[body->slot[e] + next] = 1;
         element_inertia(body, w, e, alone, r);
@@ -204,7 +204,7 @@ static void gather_loads_at(spari_beyond *b) {
     }
 }
 
-/* ---- all of it ---- */
+/* ---- assembly ---- */
 
 static void sum_elements(spari_beyond *b) {
     const spar_member *m = b->member;
@@ -252,8 +252,8 @@ spari_beyond *spari_beyond_create(const spar_member *m) {
     return b;
 }
 
-/* The spread loads of the station's element beyond it: forces by their shares, their moment as the integral of the
-   slope of the line times the force beyond, which Gauss' rule gives exactly. 0, or 1: no memory. */
+/* Distributed loads on the station's element beyond it: forces by their shares. Their moment is the integral of the
+   line's slope times the force beyond, which Gauss quadrature integrates exactly. 0, or 1: no memory. */
 static int add_share(const spari_beyond *b, const spari_station *s, double force[6]) {
     const int P = b->member->per_element;
     const int64_t from = (int64_t)s->element * P;
@@ -304,7 +304,7 @@ int spari_beyond_at(const spari_beyond *b, const spari_station *s, double force[
         force[k] = sum[k];
         force[3 + k] = sum[3 + k] + moment[k];
     }
-    for (int l = 1; l < P; l++) { /* the first node is the root's, or counts in the element before */
+    for (int l = 1; l < P; l++) { /* the first node belongs to the root or to the element before */
         int64_t i = (int64_t)s->element * P + l;
         if (b->gll[l] >= s->xi - near) {
             add_about(x, b->x + 3 * i, b->point + 6 * i, force);

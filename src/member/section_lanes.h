@@ -1,9 +1,8 @@
-/* What happens at quadrature points, W of them at once: one in each lane of a vector. Included once per width with the
-   macros of math/width.h. With W = 1 it is plain C for one point. No include guard: this is a body, not an interface.
+/* Computations at W quadrature points at once, one per lane. Included once per width with the macros of
+   math/width.h; with W = 1 it is plain C for one point. No include guard: this is a body, not an interface.
    docs/theory.md, "The beam".
-
-   Lanes do not see each other. What is most of the work is fused where the processor can: a point's numbers are the
-   same to rounding at every width. */
+   Lanes are independent. Most of the work uses fused multiply-adds if the processor can: results agree to rounding
+     at every width. */
 #include "../math/rotation_lanes.h"
 
 /* Row i of a block: fields of points, or their properties. */
@@ -40,9 +39,9 @@ HERE void NAME(matrix6_times)(const double *C, const L *e, L *s) {
     }
 }
 
-/* ---- strains and what they work on ---- */
+/* ---- strains and section forces ---- */
 
-/* What the fields are at a point, quaternion parts divided by |Q|. */
+/* Fields at a point, quaternion parts divided by |Q|. */
 typedef struct NAME(point) {
     const double *f; /* its block of fields */
     L N, over;       /* |Q|, 1 / |Q| */
@@ -50,15 +49,15 @@ typedef struct NAME(point) {
     L omega[3];      /* body rate 2 Im(r* d) */
     L d[4];          /* Qd / N */
     L b;             /* r . d */
-    L p[4];          /* dQ/ds / N, from here on by the strains */
+    L p[4];          /* dQ/ds / N; from here on set by strain */
     L T[3];          /* R^T (x0' + u') */
     L e[6];          /* strains */
-    L s[6];          /* section force and moment, turned back to the reference */
-    L z[4];          /* dQd/ds / N, from here on where damping acts */
+    L s[6];          /* section force and moment, rotated back to the reference */
+    L z[4];          /* dQd/ds / N; from here on set if damping acts */
     L t_rate[3];     /* R^T u'-dot */
     L kd0[3];        /* 2 Im(d* p + r* z) */
     L ed[6];         /* strain rates */
-    L damped;        /* power that damping takes out, per length */
+    L damped;        /* power dissipated by damping, per length */
 } NAME(point);
 
 HERE void NAME(fields)(int moving, const double *f, NAME(point) * s) {
@@ -83,7 +82,7 @@ HERE void NAME(fields)(int moving, const double *f, NAME(point) * s) {
     }
 }
 
-/* Rates of the strains; what damping D adds to the section forces. */
+/* Strain rates, and the section forces of damping D. */
 HERE void NAME(strain_rate)(const double *D, NAME(point) * s) {
     L turn[3], a[3], b[3], sd[6];
     for (int i = 0; i < 4; i++) {
@@ -126,7 +125,7 @@ HERE void NAME(strain)(const double *tangent, const double *C, NAME(point) * s) 
     NAME(matrix6_times)(C, s->e, s->s);
 }
 
-/* What the section forces are beyond that: pretension, which turns with the section, and damping. */
+/* Section forces beyond stiffness: pretension, which rotates with the section, and damping. */
 HERE void NAME(beyond_strain)(int damped, const spari_body *body, int64_t slot, NAME(point) * s) {
     if (body->pre) {
         const double *pre = SPARI_BLOCK(body->pre, 6, slot);
@@ -139,7 +138,7 @@ HERE void NAME(beyond_strain)(int damped, const spari_body *body, int64_t slot, 
     }
 }
 
-/* Forces that the strains do work on: gradients of s . e by (u, Q) and (u', Q'). */
+/* Internal forces: gradients of s . e with respect to (u, Q) and (u', Q'). */
 HERE void NAME(elastic_forces)(const NAME(point) * s, L *value, L *slope) {
     L x[3], n4[4], k4[4], pk[4];
     NAME(rotate)(s->r, s->s, slope);
@@ -156,13 +155,13 @@ HERE void NAME(elastic_forces)(const NAME(point) * s, L *value, L *slope) {
 
 /* ---- inertia and weight ---- */
 
-/* Inertia and gravity of a section: forces and what is needed for their tangent. Body axes: A = angular acceleration,
-   h = R^T (udd - g), y = A x mc + W x (W x mc), mb = J A + W x J W + mc x h. */
+/* Inertia and gravity of a section: forces, and terms of their tangent. Body axes: A = angular acceleration, h = R^T
+   (udd - g), y = A x mc + W x (W x mc), mb = J A + W x J W + mc x h. */
 typedef struct NAME(point_inertia) {
     L A[3], A0[3], JW[3], h[3], y[3], mb[3], Wc[3];
 } NAME(point_inertia);
 
-/* The weight alone: h = -R^T g, mb = mc x h. mass: the points' ten rows. */
+/* Weight alone: h = -R^T g, mb = mc x h. mass: the ten rows of the points. */
 HERE void NAME(weight_forces)(const double *mass, const spari_regime *how, const NAME(point) * s,
                               NAME(point_inertia) * n) {
     const L none = {0};
@@ -214,7 +213,7 @@ HERE void NAME(inertia_forces)(const double *mass, int gyroscopic, const spari_r
     }
 }
 
-/* What inertia and weight add to the forces on (u, Q). Returns the force, in global axes. */
+/* Adds inertia and weight to the forces on (u, Q). Returns the force, in global axes. */
 HERE void NAME(mass_forces)(const double *mass, const NAME(point) * s, const NAME(point_inertia) * n, L *force,
                             L *value) {
     L m4[4];

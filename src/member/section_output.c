@@ -1,5 +1,5 @@
-/* What a section of a beam feels, anywhere along the line: strains from the element's own field, as the quadrature
-   points take them, and section forces from the balance of what is beyond. */
+/* Strains and section forces at any position along a beam: strains from the element's field, as at quadrature
+   points; section forces from equilibrium of the part beyond. */
 #include "../base/environment.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The field at a place: u' and its rate, Q/|Q| and the derivatives of Q over |Q| along the line (p), in time (d), both
-   (z). */
+/* The field at a position: u' and its rate, Q/|Q|, and derivatives of Q over |Q|: along the line (p), in time (d),
+   both (z). */
 typedef struct section_field {
     double u[3], du[3], dud[3], N, r[4], p[4], d[4], z[4];
 } section_field;
@@ -109,7 +109,7 @@ static void linear_strains(const spar_member *m, const spari_station *s, double 
     }
 }
 
-/* Into the section's axes: R^T of both triples. */
+/* Converts to the section's axes: R^T of both triples. */
 static void to_local(const double R[9], const double x[6], double y[6]) {
     for (int b = 0; b < 6; b += 3) {
         for (int i = 0; i < 3; i++) {
@@ -118,7 +118,7 @@ static void to_local(const double R[9], const double x[6], double y[6]) {
     }
 }
 
-/* Section forces by what is known of the section alone: its stiffness, damping and pretension. */
+/* Section forces from the section alone: stiffness, damping and pretension. */
 static void forces_of_strains(const spar_member *m, double eta, const double local[6], const double rate[6],
                               double force[6]) {
     const int damped = m->beam->damped && (m->effects & SPAR_EFFECT_DAMPING);
@@ -136,7 +136,7 @@ static void forces_of_strains(const spar_member *m, double eta, const double loc
     }
 }
 
-/* And by the balance of what is beyond. 0, or 1: no memory. */
+/* Section forces from equilibrium of the part beyond. 0, or 1: no memory. */
 static int forces_of_balance(const spari_beyond *beyond, const spar_member *m, const spari_station *s,
                              const section_field *f, double force[6]) {
     double global[6];
@@ -150,7 +150,7 @@ static int forces_of_balance(const spari_beyond *beyond, const spar_member *m, c
     return 0;
 }
 
-/* What is asked for at each place; NULL: not wanted. */
+/* Requested results at each position; may be NULL. */
 typedef struct section_wish {
     double *strain, *force, *x, *q;
 } section_wish;
@@ -211,7 +211,7 @@ int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta,
     SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST && (eta || n == 0), SPAR_ERR_ARGUMENT,
                   "%s: '%s': %lld places%s; give 0 to 2^40, and n etas", __func__, beam->name, (long long)n,
                   eta ? "" : " without eta");
-    if (force) { /* of its loads */
+    if (force) { /* forces need the loads */
         SPARI_TRY(spari_need_here(beam, __func__, SPARI_LOADS_AWAY));
     }
     SPARI_REQUIRE(session, !force || beam->beam->stiffness, SPAR_ERR_UNSUPPORTED,
@@ -223,7 +223,7 @@ int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta,
     spari_station *s = spari_zalloc(n, sizeof *s);
     SPARI_REQUIRE(session, s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, beam->name);
     int E = beam->elements;
-    for (int64_t i = 0; i < n; i++) { /* a joint belongs to the element before it */
+    for (int64_t i = 0; i < n; i++) { /* an element boundary belongs to the element before it */
         int e = (int)ceil(eta[i] * E - 1e-9) - 1;
         e = e < 0 ? 0 : e > E - 1 ? E - 1 : e;
         s[i].element = e;

@@ -20,15 +20,15 @@ const unsigned char spari_slope_row[2][7][7] = {{{0, 1, 2, 3, 4, 5, 6},
                                                  {32, 37, 41, 44, 46, 25, 26},
                                                  {33, 38, 42, 45, 47, 48, 27}}};
 
-/* ---- work space ---- */
+/* ---- workspace ---- */
 
-/* Doubles of a row of pairs: whole vectors, and one more. */
+/* Size of a row of node pairs: whole vectors plus one. */
 static int64_t row_of_pairs(int P) {
     int64_t pairs = (int64_t)P * (P + 1) / 2;
     return (pairs + SPARI_LANES - 1) / SPARI_LANES * SPARI_LANES + SPARI_LANES;
 }
 
-/* Of a residual and, after the same, of a tangent: see spari_tangent_work. */
+/* Of a residual, followed by that of a tangent: see spari_tangent_work. */
 int64_t spari_body_scratch(int P, int points, int damped) {
     int64_t slots = ((int64_t)points + SPARI_LANES - 1) / SPARI_LANES * SPARI_LANES;
     int64_t forces = ROW * SPARI_MAX_NODES + BACK * SPARI_MAX_NODES + SPARI_LANES * POINT_ROWS + slots * BACK_ROWS;
@@ -38,7 +38,7 @@ int64_t spari_body_scratch(int P, int points, int damped) {
     return forces + matrices + pairs * row_of_pairs(P) + 36 * (P + (int64_t)SPARI_LANES);
 }
 
-/* Takes n doubles from the work space. */
+/* Takes n doubles from the workspace. */
 static double *take_room(double **room, int64_t n) {
     double *at = *room;
     *room += n;
@@ -51,7 +51,7 @@ static spari_pair_sums take_sums(double **room, int64_t stride, int elastic, int
         s.from[0] = take_room(room, SLOPES * stride);
         s.from[1] = take_room(room, SLOPES * stride);
         s.slopes = take_room(room, (whole ? Q_BY_SLOPE - SLOPE_BY_SLOPE : HALF_ROWS - SLOPE_BY_SLOPE) * stride);
-        /* of a symmetric matrix the transpose of the other block's */
+        /* for a symmetric matrix, the transpose of the other block */
         s.across[0] = whole ? take_room(room, SLOPES * stride) : s.from[1];
         s.across[1] = whole ? take_room(room, SLOPES * stride) : s.from[0];
     }
@@ -82,9 +82,9 @@ static spari_tangent_work begin_tangent(const spari_body *body, int e, const spa
     return t;
 }
 
-/* ---- points and nodes ---- */
+/* ---- from points to nodes ---- */
 
-/* A point's stiffness or rates A, summed over the points. */
+/* Sums a stiffness or rate matrix A over the points. */
 static void sum_matrix(const spari_body *body, const spari_tangent_work *t, const double *A,
                        const spari_pair_sums *to) {
     spari_lanes_sum(body, t, SLOPE_BY_Q, A, VALUE_VALUE, to->by_q);
@@ -141,7 +141,7 @@ static void node_maps(const double *z, int node, const double *v, const double *
     add_maps(cv, by_rate, T, v ? v + 3 : NULL, F, H);
 }
 
-/* The maps of all nodes, and zeros after the last. */
+/* The maps of all nodes, followed by zeros. */
 static void put_maps(const spari_body *body, int e, const double *v, const double *a, const double *tinv,
                      const spari_tangent_work *t) {
     for (int i = 0; i < 36; i++) {
@@ -159,7 +159,7 @@ static void put_maps(const spari_body *body, int e, const double *v, const doubl
     }
 }
 
-/* The nodal moment 1/2 Im(g q*) of a constant g changes with q by -1/4 (s I + w~), (s, w) = g q*. */
+/* The nodal moment 1/2 Im(g q*) of constant g changes with q by -1/4 (s I + w~), (s, w) = g q*. */
 static void add_turned_force(const double *g, const double *q, double *S, int64_t stride) {
     double c[4], p[4], w[3][3];
     spari_quat_conj(q, c);
@@ -172,7 +172,7 @@ static void add_turned_force(const double *g, const double *q, double *S, int64_
     }
 }
 
-/* That of all nodes, by what the points give back. */
+/* The same for all nodes, with their field forces. */
 static void add_turned_forces(const spari_body *body, int e, const spari_tangent_work *t, double *S) {
     int64_t stride = 6 * (int64_t)t->P;
     spari_lanes_collect(body, e, t->back, t->g);
@@ -208,8 +208,8 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
     add_turned_forces(body, e, &t, S);
 }
 
-/* The tangent is linear in cm and cv. With a large one what is subtracted does not take digits: with 1 a stiff beam's
-   mass would keep few. */
+/* The tangent is linear in cm and cv. Large values avoid cancellation: with 1, the mass of a stiff beam would keep
+   few digits. */
 void spari_body_rates(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor,
                       const double *S, double *C, double *M) {
     const double large = 0x1p60;

@@ -1,10 +1,10 @@
-/* Tangents of an element for one vector width: the matrices of its points, their sums over the points, and the unknowns
-   of the nodes. Included by element_lanes.h once per width, after forces_lanes.h. No include guard: this is a body, not
+/* Tangents of an element for one vector width: matrices at points, their sums over points, and the map to nodal
+   unknowns. Included by element_lanes.h once per width, after forces_lanes.h. No include guard: this is a body, not
    an interface. docs/theory.md, "The tangent of a point". */
 
 /* ---- points: lanes are points ---- */
 
-/* Adds x to a row, at its place in it. */
+/* Adds x to its place in a row. */
 HERE void NAME(add_row)(double *row, L x) {
     NAME(put)(row, NAME(get)(row) + x);
 }
@@ -23,7 +23,8 @@ HERE void NAME(right_matrix)(const L *s, L (*m)[4]) {
     memcpy(m, r, sizeof r);
 }
 
-/* How rotations follow Q, column by column: the turn in the section's axes, 2/N L(r), and the body rate at fixed Qd. */
+/* Derivatives of rotations with respect to Q, by columns: rotation in section axes, 2/N L(r), and body rate at fixed
+   Qd. */
 typedef struct NAME(point_turns) {
     L turn[4][3], rate[4][3];
 } NAME(point_turns);
@@ -40,7 +41,7 @@ TARGET static void NAME(turns)(const NAME(point) * s, NAME(point_turns) * by) {
     }
 }
 
-/* How strains follow Q, u' (the first three strains alone) and Q' (the other three), column by column. */
+/* Derivatives of the strains with respect to Q, u' (first three strains) and Q' (other three), by columns. */
 typedef struct NAME(gradient) {
     L q[4][6], du[3][3], dq[4][3];
 } NAME(gradient);
@@ -65,7 +66,7 @@ TARGET SPARI_APART static void NAME(strain_gradient)(const NAME(point) * s, cons
     }
 }
 
-/* The same of their rates, at fixed rates of the fields. */
+/* The same for strain rates, at fixed rates of the fields. */
 TARGET SPARI_APART static void NAME(strain_rate_gradient)(const NAME(point) * s, const NAME(point_turns) * by,
                                                           const NAME(gradient) * J, NAME(gradient) * G) {
     L ld[4][3], lz[4][3], x[3];
@@ -91,7 +92,7 @@ TARGET SPARI_APART static void NAME(strain_rate_gradient)(const NAME(point) * s,
     }
 }
 
-/* s += the columns from `first` on of C, n of them, times x. */
+/* s += n columns of C from `first` on, times x. */
 HERE void NAME(add_stress)(const double *C, const int first, const int n, const L *x, L *s) {
     SPARI_UNROLL
     for (int i = 0; i < 6; i++) {
@@ -111,7 +112,7 @@ HERE L NAME(sum_of)(const int n, const L *a, const L *b) {
     return sum;
 }
 
-/* w J^T s for stresses s by Q: column j of what Q, and what u' and Q' answer to it. */
+/* w J^T s for stresses s due to Q: column j of the Q, u' and Q' forces. */
 HERE void NAME(put_by_q)(const NAME(gradient) * J, const L *s, L w, int j, int64_t ld, double *A) {
     double *down = A + ld * (SLOPE_BY_Q + 7 * j);
     for (int i = 0; i < 4; i++) {
@@ -123,7 +124,7 @@ HERE void NAME(put_by_q)(const NAME(gradient) * J, const L *s, L w, int j, int64
     }
 }
 
-/* The same for stresses by u' or Q': column j of those. */
+/* The same for stresses due to u' or Q': column j. */
 HERE void NAME(put_by_slope)(const NAME(gradient) * J, const L *s, L w, int whole, int j, int64_t ld, double *A) {
     const unsigned char(*row)[7] = spari_slope_row[whole];
     for (int i = 0; i < 4 && whole; i++) {
@@ -135,7 +136,7 @@ HERE void NAME(put_by_slope)(const NAME(gradient) * J, const L *s, L w, int whol
     }
 }
 
-/* A := w J^T (C J + D G), added to what Q answers to Q; G NULL: without the second. */
+/* A := w J^T (C J + D G), added to the derivatives of the Q forces with respect to Q; G NULL: without D G. */
 TARGET SPARI_APART static void NAME(congruence)(const NAME(gradient) * J, const double *C, const double *D,
                                                 const NAME(gradient) * G, const L *weight, int64_t ld, double *A) {
     const L w = *weight;
@@ -165,14 +166,14 @@ TARGET SPARI_APART static void NAME(congruence)(const NAME(gradient) * J, const 
     }
 }
 
-/* How 2/N r m, the force on Q of a moment m in the section's axes, follows Q: column j, for one that stays. */
+/* Derivative with respect to Q of 2/N r m, the Q force of a constant moment m in section axes: column j. */
 HERE void NAME(turned_moment)(const NAME(point) * s, const L (*right)[4], const L *rm, int j, L *x) {
     for (int i = 0; i < 4; i++) {
         x[i] = s->over * s->over * (2.0 * right[i][j] - 4.0 * rm[i] * s->r[j]);
     }
 }
 
-/* Second derivative of s . e(y) at fixed s, added to A. */
+/* Geometric stiffness: second derivative of s . e(y) at fixed s, added to A. */
 TARGET SPARI_APART static void NAME(add_geometric)(const NAME(point) * s, const NAME(point_turns) * by, const L *weight,
                                                    int whole, int64_t ld, double *A) {
     const L w = *weight;
@@ -211,8 +212,8 @@ TARGET SPARI_APART static void NAME(add_geometric)(const NAME(point) * s, const 
     }
 }
 
-/* How the force f and the moment m of inertia, both in the section's axes, follow an angular acceleration a, a body
-   rate w and a turn of the section (NULL: none). */
+/* Derivative of the inertia force f and moment m, in section axes, with respect to angular acceleration a, body rate
+   w and rotation of the section (NULL: none). */
 HERE void NAME(inertia_change)(const double *mass, int gyroscopic, const NAME(point) * s, const NAME(point_inertia) * n,
                                const L *a, const L *w, const L *turn, L *f, L *m) {
     const double *J = mass + SPARI_LANES * 4;
@@ -244,7 +245,7 @@ HERE void NAME(inertia_change)(const double *mass, int gyroscopic, const NAME(po
     }
 }
 
-/* Column j of what (u, Q) answers to Q by a force f and a moment m that follow it. */
+/* Column j of the derivative of the (u, Q) forces with respect to Q, through force f and moment m. */
 HERE void NAME(add_by_q)(const NAME(point) * s, const NAME(point_turns) * by, L w, const L *f, const L *m, int j,
                          int64_t ld, double *A) {
     L global[3];
@@ -257,7 +258,7 @@ HERE void NAME(add_by_q)(const NAME(point) * s, const NAME(point_turns) * by, L 
     }
 }
 
-/* The moment mb of inertia and weight is turned along with Q. */
+/* The moment mb of inertia and weight rotates with Q. */
 HERE void NAME(add_turned_moment)(const NAME(point) * s, const L *mb, L w, int64_t ld, double *K) {
     L right[4][4], rm[4], x[4];
     NAME(right_matrix)(mb, right);
@@ -270,7 +271,7 @@ HERE void NAME(add_turned_moment)(const NAME(point) * s, const L *mb, L w, int64
     }
 }
 
-/* Inertia against displacements, rates and accelerations. */
+/* Inertia: derivatives with respect to displacements, rates and accelerations. */
 TARGET SPARI_APART static void NAME(add_inertia)(const double *mass, int gyroscopic, const NAME(point) * s,
                                                  const NAME(point_turns) * by, const NAME(point_inertia) * n,
                                                  const L *weight, int64_t ld, double *K, double *B, double *M) {
@@ -300,7 +301,7 @@ TARGET SPARI_APART static void NAME(add_inertia)(const double *mass, int gyrosco
     NAME(add_turned_moment)(s, n->mb, w, ld, K);
 }
 
-/* The weight alone: its moment about the node turns with the section. */
+/* Weight alone: its moment about the node changes with the rotation of the section. */
 TARGET SPARI_APART static void NAME(add_weight)(const double *mass, const NAME(point) * s, const NAME(point_turns) * by,
                                                 const NAME(point_inertia) * n, const L *weight, int64_t ld, double *K) {
     const L w = *weight;
@@ -315,7 +316,7 @@ TARGET SPARI_APART static void NAME(add_weight)(const double *mass, const NAME(p
     NAME(add_turned_moment)(s, n->mb, w, ld, K);
 }
 
-/* Rows that others add to. */
+/* Clears rows to which others add. */
 HERE void NAME(clear_rows)(int rows, int64_t ld, double *A) {
     for (int i = 0; i < rows; i++) {
         NAME(put)(A + ld * i, (L){0});
@@ -340,7 +341,7 @@ TARGET SPARI_APART static void NAME(elastic_matrices)(const spari_body *body, in
     }
 }
 
-/* What strain_rate sets, and only where sections are damped. */
+/* Clears the results of strain_rate for undamped sections. */
 HERE void NAME(no_strain_rate)(NAME(point) * s) {
     const L none = {0};
     for (int i = 0; i < 4; i++) {
@@ -405,7 +406,7 @@ TARGET static void NAME(element_matrices)(const spari_body *body, int e, const s
 
 /* ---- sums over the points: lanes are pairs of nodes ---- */
 
-/* Pairs i <= j in one row, j running; what a row of j writes beyond its end the next overwrites. */
+/* Pairs i <= j in one row, j running. Entries written beyond the end for one j are overwritten for the next. */
 TARGET static void NAME(pair_products)(const spari_tangent_work *t, const double *phi, const double *dphi) {
     int P = t->P;
     for (int k = 0; k < t->points; k++, phi += P, dphi += P) {
@@ -423,7 +424,7 @@ TARGET static void NAME(pair_products)(const spari_tangent_work *t, const double
     }
 }
 
-/* So many rows and vectors as stay in registers. */
+/* Tile of rows and vectors that stay in registers. */
 enum { NAME(TILE_ROWS) = W > 4 ? 7 : 4, NAME(TILE_VECTORS) = W > 2 ? 3 : 2 };
 
 HERE void NAME(sum_tile)(const int rows, const int vectors, const spari_tangent_work *t, const double *points,
@@ -457,7 +458,7 @@ HERE void NAME(sum_tile)(const int rows, const int vectors, const spari_tangent_
     }
 }
 
-/* One strip of pairs, so many vectors wide. */
+/* One strip of pairs, `vectors` wide. */
 HERE void NAME(sum_strip)(const int vectors, const spari_tangent_work *t, int rows, const double *points,
                           const double *product, double *pairs) {
     int i = 0;
@@ -482,15 +483,15 @@ TARGET static void NAME(sum_pairs)(const spari_tangent_work *t, int rows, const 
         NAME(sum_strip)(1, t, rows, points, product + p, pairs + p);
         p += W;
     }
-    for (int i = 0; i < rows; i++) { /* whole vectors are read from the last pair on */
+    for (int i = 0; i < rows; i++) { /* vector loads read past the last pair */
         NAME(put)(pairs + t->stride * i + p, (L){0});
     }
 }
 
 /* ---- to the unknowns of the nodes: lanes are pairs ---- */
 
-/* The maps of the first and of the second node of each pair; what a row of j writes beyond its end the next overwrites.
- */
+/* Maps of the first and second node of each pair. Entries written beyond the end for one j are overwritten for the
+   next. */
 HERE void NAME(spread_maps)(const spari_tangent_work *t) {
     const double *from = t->maps;
     for (int row = 0; row < 36; row++, from += t->map_stride) {
@@ -504,7 +505,7 @@ HERE void NAME(spread_maps)(const spari_tangent_work *t) {
     }
 }
 
-/* One of the maps 4 x 3: of the first (0) or second nodes of the pairs from `at` on. */
+/* One 4 x 3 map of the first (0) or second nodes of the pairs from `at` on. */
 HERE void NAME(map_of)(const spari_tangent_work *t, int which, int end, int64_t at, L (*map)[3]) {
     const double *from = t->ends[end] + 12 * t->stride * which + at;
     SPARI_UNROLL
@@ -515,7 +516,7 @@ HERE void NAME(map_of)(const spari_tangent_work *t, int which, int end, int64_t 
     }
 }
 
-/* Row i of the 7 x 7 blocks of stiffness or rates of pairs from `at` on, (i, j) or with side 1 (j, i). */
+/* Row i of the 7 x 7 blocks of stiffness or rates of the pairs from `at` on, (i, j), or with side 1 (j, i). */
 HERE void NAME(block_row)(const spari_pair_sums *sums, int64_t stride, int64_t at, int side, const int i, L *x) {
     const double *by_q = sums->by_q + stride * 4 * i + at;
     const L none = {0};
@@ -570,7 +571,7 @@ HERE void NAME(add_columns)(const L *x, double c, const L (*map)[3], L *y) {
     }
 }
 
-/* The pairs (i, j) from `at` on, or with side 1 (j, i), against the unknowns of the second: 7 x 6. */
+/* Pairs (i, j) from `at` on, or with side 1 (j, i), mapped to the unknowns of the second node: 7 x 6. */
 TARGET SPARI_APART static void NAME(columns_of)(const spari_tangent_work *t, int64_t at, int side, L (*y)[6]) {
     L map[3][4][3];
     for (int k = 0; k < 3; k++) {
@@ -592,7 +593,7 @@ TARGET SPARI_APART static void NAME(columns_of)(const spari_tangent_work *t, int
     }
 }
 
-/* Their 6 x 6 blocks: rows of Q by the map of the first. where: of each block in S. */
+/* Their 6 x 6 blocks: rows of Q mapped to the first node. where: position of each block in S. */
 TARGET SPARI_APART static void NAME(put_blocks)(const spari_tangent_work *t, int64_t at, int side, const int64_t *where,
                                                 const L (*y)[6], double *S) {
     const int64_t row = 6 * (int64_t)t->P;
@@ -621,7 +622,7 @@ TARGET static void NAME(project)(const spari_tangent_work *t, double *S) {
     int i = 0, j = 0;
     NAME(spread_maps)(t);
     for (int64_t at = 0; at < t->pairs; at += W) {
-        for (int l = 0; l < W; l++) { /* lanes beyond the last pair go where it goes, before it */
+        for (int l = 0; l < W; l++) { /* lanes past the last pair are stored at its position first, and overwritten */
             where[0][l] = 6 * (row * i + j), where[1][l] = 6 * (row * j + i);
             if (at + l + 1 < t->pairs && ++j == t->P) {
                 j = ++i;

@@ -1,4 +1,4 @@
-/* A picture of a fluid's nodes on this rank: where they are, where their feet are, and what the map thinks of them. */
+/* Writes a fluid's nodes on this rank as a VTK file: nodes, nearest points, and data of the map. */
 #include "../base/environment.h"
 #include "../base/status.h"
 #include "../math/rotation.h"
@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Columns of the table of points, each field [points][components] at table + column * points. First come the nodes,
-   then their feet in the same order. */
+/* Columns of the table of points, each field [points][components] at table + column * points. Nodes come first, then
+   their nearest points in the same order. */
 enum { X, V = 3, AXES = 6, FORCE = 15, SET = 18, XI = 19, DISTANCE = 20, FLAGS = 21, COLUMNS = 22 };
 static const struct {
     const char *name;
@@ -20,7 +20,7 @@ static const struct {
 enum { FIELDS = sizeof field_of / sizeof field_of[0] };
 
 typedef struct sketch {
-    int64_t count[2], n; /* nodes of the sets, and of both; none of a second set that is the first */
+    int64_t count[2], n; /* nodes of each set and in total; 0 for a second set that equals the first */
     int kind[2];         /* SPAR_KIND_* */
     double *table;       /* 2 n points */
     double *q;
@@ -32,7 +32,7 @@ static double *at(const sketch *s, int column, int components, int64_t point) {
     return s->table + column * 2 * s->n + components * point;
 }
 
-/* Fills the nodes of one set, which stand at `first` of all. */
+/* Fills the nodes of one set, which begin at `first`. */
 static int fill_set(const spar_fluid *fluid, int which, int64_t first, const sketch *s) {
     static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     SPARI_TRY(spar_fluid_get_places(fluid, which, at(s, X, 3, first), at(s, V, 3, first), s->q + 4 * first,
@@ -51,7 +51,7 @@ static int fill_set(const spar_fluid *fluid, int which, int64_t first, const ske
     return SPAR_OK;
 }
 
-/* Feet bear what their nodes bear, but for the place and the set. */
+/* Nearest points get the data of their nodes, except position and set. */
 static void copy_to_feet(const sketch *s) {
     for (int f = 0; f < FIELDS; f++) {
         size_t size = (size_t)s->n * (size_t)field_of[f].components * sizeof(double);
@@ -62,7 +62,7 @@ static void copy_to_feet(const sketch *s) {
     }
 }
 
-/* Sections in a row, then a connector from every node to its foot. Returns how many lines. */
+/* Connects sections in a row, then every node with its nearest point. Returns the number of lines. */
 static int64_t draw_lines(const sketch *s) {
     int64_t lines = 0, end = 0, node = 0;
     for (int which = 0; which < 2; which++) {
@@ -101,7 +101,7 @@ static int write_nodes(const sketch *s, spar_session *session, const char *path,
     return spari_vtk_write(session, call, path, &picture);
 }
 
-/* What a call below has refused, as this one's refusal. */
+/* Reports a failure of a nested call as that of this call. */
 static int retell(spar_session *session, int status, const char *call) {
     char text[SPARI_MESSAGE_SIZE];
     if (status == SPAR_OK) {

@@ -1,5 +1,5 @@
-/* A picture of a member: its line, drawn finer than its nodes, with the fields along it; the nodes as points. What it
-   shows it asks by the calls of spar.h. */
+/* Writes a member as a VTK file: its line, sampled more finely than its nodes, with fields along it, and the nodes
+   as points. Uses public calls alone. */
 #include "../base/environment.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pieces that the line is drawn with between two nodes: a basis of high order bends there. */
+/* Samples between two nodes: a high-order basis is curved there. */
 enum { SPARI_PIECES = 4 };
 
-/* Columns of the table of samples, and the fields made of them. */
+/* Columns of the table of samples, and the fields made from them. */
 enum {
     X,
     U = 3,
@@ -47,19 +47,19 @@ static const struct {
                 {"deflection", BENT, 3},
                 {"rotation", TURN, 3},
                 {"section_force", INNER, 3},
-                {"section_moment", INNER + 3, 3}}; /* these two where spar knows the sections' forces */
+                {"section_moment", INNER + 3, 3}}; /* these two only if section forces are known */
 enum { FIELDS = sizeof field_of / sizeof field_of[0] };
 
 typedef struct sampled {
     int64_t n;     /* samples */
-    double *table; /* [COLUMNS][n], each field as VTK wants it: at table + column * n, [n][components] */
-    double
-        *eta; /* [n] along the whole beam; the first of an element a little within, for a joint is the one before's */
-    int64_t *node; /* [nodes] the sample at each node */
+    double *table; /* [COLUMNS][n], each field in VTK's layout: at table + column * n, [n][components] */
+    double *eta;   /* [n] along the whole beam; the first of an element is shifted inwards, because an element boundary
+                      belongs to the element before */
+    int64_t *node; /* [nodes] sample of each node */
     int64_t *end;  /* [elements] */
 } sampled;
 
-/* What is known at the nodes. */
+/* Data at the nodes. */
 typedef struct nodal {
     int elements, per_element;
     int64_t n;                /* nodes */
@@ -67,7 +67,7 @@ typedef struct nodal {
     double *q, *v, *a, *load; /* [nodes][7], [6], [6], [6] */
     double *chain, *frame;    /* [nodes][4]: q and the reference orientation, signs chained along each element */
     double reaction[6];
-    int inner; /* whether it has sections whose forces are known */
+    int inner; /* whether it has sections with known forces */
 } nodal;
 
 static void put_columns(const sampled *s, int column, int components, int64_t sample, const double *value) {
@@ -102,7 +102,7 @@ static void put_axes(const sampled *s, int64_t sample, int n, const double *phi,
     }
 }
 
-/* What is bent: the way from where the root, moving as one rigid body, would have carried the place. */
+/* Deflection: displacement from the position that a rigid motion of the root would give. */
 static void put_deflection(const sampled *s, const nodal *at, const double *x, const double *u, int64_t sample) {
     double arm[3], turned[3], bent[3];
     for (int i = 0; i < 3; i++) {
@@ -115,13 +115,13 @@ static void put_deflection(const sampled *s, const nodal *at, const double *x, c
     put_columns(s, BENT, 3, sample, bent);
 }
 
-/* One sample of the element whose nodes begin at `first`. node: its number where there is one, else -1. */
+/* One sample of the element whose nodes begin at `first`. node: its number, or -1 between nodes. */
 static void put_sample(const sampled *s, const nodal *at, int64_t first, const double *phi, int64_t node,
                        int64_t sample) {
     static const double zero[6] = {0};
     int n = at->per_element;
     double x[3], u[3], rate[6], number = (double)node;
-    const double *load = node < 0 ? zero : at->load + 6 * node; /* lumped: there is none between nodes */
+    const double *load = node < 0 ? zero : at->load + 6 * node; /* nodal loads: zero between nodes */
     blend(n, phi, 3, at->xr + 3 * first, 3, x);
     blend(n, phi, 7, at->q + 7 * first, 3, u);
     for (int i = 0; i < 3; i++) {
@@ -212,7 +212,7 @@ static int write_member(const sampled *s, const nodal *at, spar_session *session
     return spari_vtk_write(session, call, path, &picture);
 }
 
-/* Into at: how many nodes; and that the member can be asked for what they do. */
+/* Number of nodes in `at`; checks that the member has results. */
 static int size_up(const spar_member *member, nodal *at) {
     SPARI_TRY(spar_member_get_count(member, &at->n));
     at->elements = at->per_element = 1;

@@ -1,7 +1,7 @@
-/* The index of a series of VTK files (.pvd): what ParaView opens to show them in time. */
+/* Writes the index of a series of VTK files (.pvd), which ParaView opens as an animation. */
+#include "../base/environment.h"
 #include "../base/file.h"
 #include "../base/message.h"
-#include "../base/environment.h"
 #include <errno.h>
 #include <spar/spar_output.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 static const char head[] = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
 static const char foot[] = "</Collection>\n</VTKFile>\n";
 
-/* XML text of an attribute: the characters that have a meaning there are spelled out. */
+/* Escapes the XML special characters of an attribute. */
 static void put_text(FILE *file, const char *text) {
     for (; *text; text++) {
         switch (*text) {
@@ -29,7 +29,7 @@ static void put_text(FILE *file, const char *text) {
     }
 }
 
-/* What the index says so far goes into the new one, but for its foot. 0: it does not end as an index does. */
+/* Copies the index up to its closing tags. Returns 0 if it does not end as an index. */
 static int copy(FILE *from, FILE *to) {
     char block[1 << 10], end[sizeof foot] = "";
     long length = fseek(from, 0, SEEK_END) == 0 ? ftell(from) : -1, left = length - (long)(sizeof foot - 1);
@@ -52,7 +52,7 @@ static int copy(FILE *from, FILE *to) {
     return 1;
 }
 
-/* old: NULL: there is none yet. */
+/* old: the present index, NULL if there is none. */
 static int put_index(FILE *old, FILE *to, double time, int part, const char *file) {
     if (!old) {
         fputs(head, to);
@@ -76,7 +76,7 @@ int spar_vtk_series_add(const char *path, double time, int part, const char *fil
                   part);
     int status = spari_file_begin(&index, path, ".part", why, sizeof why);
     SPARI_REQUIRE(NULL, status == SPAR_OK, status, "%s: %s", __func__, why);
-    FILE *old = fopen(index.place, "rb"); /* a file, if it is there at all */
+    FILE *old = fopen(index.place, "rb"); /* opened if it exists */
     if (!old && errno != ENOENT) {
         int reason = errno;
         spari_file_drop(&index);

@@ -1,4 +1,4 @@
-/* Pictures of points, lines and fields as VTK files (XML, base64). */
+/* Writes points, lines and fields as VTK files (XML, base64). */
 #include "vtk.h"
 
 #include "../base/file.h"
@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- base64 (RFC 4648) of a stream of bytes ---- */
+/* ---- base64 (RFC 4648) ---- */
 
 typedef struct encoder {
     FILE *file;
@@ -14,7 +14,7 @@ typedef struct encoder {
     int held; /* bytes waiting in group */
 } encoder;
 
-/* Four digits of three bytes. */
+/* Encodes three bytes in four characters. */
 static void spell(const unsigned char g[3], char text[4]) {
     static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     text[0] = digit[g[0] >> 2];
@@ -23,7 +23,7 @@ static void spell(const unsigned char g[3], char text[4]) {
     text[3] = digit[g[2] & 63];
 }
 
-/* What waits, filled up to a group. */
+/* Writes an incomplete group, padded. */
 static void put_group(encoder *s) {
     char text[4];
     spell(s->group, text);
@@ -35,7 +35,7 @@ static void put_group(encoder *s) {
     s->held = 0;
 }
 
-/* Whole groups of three bytes, many at a time: a call for each is most of what a picture costs. */
+/* Many whole groups of three bytes at a time: one call each would dominate the cost. */
 static void put_groups(encoder *s, const unsigned char *byte, size_t groups) {
     enum { AT_ONCE = 256 };
     char text[4 * AT_ONCE];
@@ -93,7 +93,7 @@ static void put_field(encoder *s, const spari_vtk_field *f, int64_t tuples) {
     end_array(s);
 }
 
-/* What belongs to the whole picture: NumberOfTuples is required here, where no number of points implies it. */
+/* Field data of the whole file: NumberOfTuples is required here, because no number of points implies it. */
 static void put_fact(encoder *s, const spari_vtk_field *f) {
     fprintf(s->file,
             "<DataArray type=\"Float64\" Name=\"%s\" NumberOfComponents=\"%d\" NumberOfTuples=\"1\" format=\"binary\">",
@@ -162,7 +162,7 @@ static void put_poly_cells(encoder *s, const spari_vtk_picture *p) {
     fputs("</Lines>\n", s->file);
 }
 
-/* Lines of a grid are cut into their segments: readers beside VTK's own (meshio) know no polylines. */
+/* Polylines of a grid are split into segments, because some readers (meshio) have no polylines. */
 static int64_t count_segments(const spari_vtk_picture *p) {
     int64_t n = 0;
     for (int64_t k = 0, at = 0; k < p->lines; at = p->line_end[k++]) {
@@ -181,7 +181,7 @@ static void put_segments(encoder *s, const spari_vtk_picture *p) {
 }
 
 static void put_grid_cells(encoder *s, const spari_vtk_picture *p) {
-    enum { VERTEX = 1, LINE = 3 }; /* VTK's numbers of the cell types */
+    enum { VERTEX = 1, LINE = 3 }; /* VTK cell types */
     int64_t segments = count_segments(p);
     fputs("<Cells>\n", s->file);
     begin_array(s, "Int64", "connectivity", 1, p->verts + 2 * segments, 8);

@@ -1,21 +1,21 @@
-/* Load: a saved session (save.c says what is in its file) into one with the same members, in two passes: the first
-   checks and gets memory, and only when all ranks can load does the second change the session. Members and fluids may
-   live on other ranks than before. No rank has the file in memory: what is alike on all ranks goes to all; of what was
-   one rank's own rank 0 tells where it lies, and it then goes piece by piece to those who want it. */
-#include "../base/saved_file.h"
-#include "../base/environment.h"
-#include "../comm/enter.h"
-#include "../fluid/fluid.h"
+/* Loads a saved session (save.c describes the file) into a session with the same members. Two passes: the first
+   checks and allocates; only if all ranks can load, the second changes the session. Members and fluids may be on
+   other ranks than before. No rank holds the whole file. Data common to all ranks are sent to all. For data of
+   single ranks, rank 0 sends the positions, and the data then go piece by piece to the ranks that need them. */
 #include "../assembly/assembly.h"
-#include "../time/fidelity.h"
+#include "../base/environment.h"
+#include "../base/saved_file.h"
+#include "../comm/enter.h"
 #include "../exchange/exchange.h"
-#include "saved.h"
 #include "../exchange/sparse.h"
+#include "../fluid/fluid.h"
+#include "../time/fidelity.h"
+#include "saved.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* A state of a member's solver, or of an assembly, in the file. */
+/* Solver state of a member or assembly in the file. */
 typedef struct solver_record {
     int assembly, index;
     int64_t at, count;
@@ -24,31 +24,31 @@ typedef struct solver_record {
 /* A fluid of the saved run. */
 typedef struct fluid_record {
     int rank, member;
-    int64_t name; /* where its name begins in the index */
+    int64_t name; /* position of its name in the index */
     int64_t at, count;
-    int64_t loads; /* words before what is node by node */
+    int64_t loads; /* words before the data per node */
     spari_by_node by;
     const double *head; /* [SPARI_FLUID_HEAD] */
-    int key;            /* alike for those of one name and member */
+    int key;            /* equal for fluids with the same name and member */
 } fluid_record;
 
 typedef struct reading {
-    const char *call; /* that reads */
+    const char *call; /* rank that reads */
     spari_loading source;
-    int shared; /* all ranks have the file open; else rank 0 alone */
-    int status; /* what became of reading here, */
+    int shared; /* all ranks have the file open; otherwise rank 0 alone */
+    int status; /* status of reading here, */
     char why[SPARI_MESSAGE_SIZE / 2];
     spari_saved common;
-    spari_image index; /* of what comes behind it, rank by rank, without the states */
-    double **solution; /* [members] state of each that is solved for here; NULL: not here */
-    double **tied;     /* [joints] the same of the assemblies, as many as there are; NULL: nothing is kept */
+    spari_image index; /* index of the rest, rank by rank, without states */
+    double **solution; /* [members] state of each member solved here; NULL: not here */
+    double **tied;     /* [joints] the same for assemblies; NULL: none */
     solver_record *solvers;
     int64_t solver_count;
     fluid_record *fluids; /* of all ranks */
     int64_t fluid_count, keys;
-    int *taker;       /* [keys]: the rank whose fluid takes their loads, which are a sum */
-    int exact;        /* each fluid here takes of that of its rank in the saved run alone */
-    uint64_t *buffer; /* what is under way between the ranks */
+    int *taker;       /* [keys]: rank whose fluid receives their loads, which are a sum */
+    int exact;        /* each fluid here reads only that of its own rank in the saved run */
+    uint64_t *buffer; /* for transfers between ranks */
 } reading;
 
 enum { PIECE_NODES = 4096, NODE_WORDS = 15, PIECE = NODE_WORDS * PIECE_NODES };
@@ -78,7 +78,7 @@ static int agree_to_load(spar_session *s, int status) {
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }
 
-/* Whether all ranks have got the memory that they asked for; SPAR_OK only where this one has. */
+/* Whether all ranks have allocated; SPAR_OK only if this one has. */
 static int agree_on_memory(spar_session *s, int have) {
     int status = agree_to_load(s, have ? SPAR_OK : spari_saved_no_memory(s));
     return have ? status : SPAR_ERR_MEMORY;
@@ -94,7 +94,7 @@ static int tell_why(spar_session *s, const reading *l, int status) {
 
 /* ---- the file ---- */
 
-/* The path of rank 0's file, as all ranks may see it: empty where it has none. */
+/* Path of rank 0's file; empty if it has none. */
 typedef struct told_file {
     int64_t count;
     uint64_t sum;
@@ -130,7 +130,7 @@ static int share_file(spar_session *s, reading *l) {
     return status;
 }
 
-/* The check sum of the file: a part of it on each rank, or all of it on rank 0. */
+/* Check sum of the file: a part of it on each rank, or all of it on rank 0. */
 static int check_file_sum(spar_session *s, reading *l) {
     enum { SUM, COUNT, STATUS, WORDS };
     int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
@@ -176,7 +176,7 @@ static int open_file(spar_session *s, reading *l, const char *path) {
     return check_file_sum(s, l);
 }
 
-/* What cannot be read is zeros, and told when all ranks have what they wait for. */
+/* Words that cannot be read are zeros; the failure is reported after all ranks have received. */
 static void read_words(reading *l, int64_t at, int64_t n, uint64_t *words) {
     int status = l->status;
     if (status == SPAR_OK) {
@@ -187,8 +187,8 @@ static void read_words(reading *l, int64_t at, int64_t n, uint64_t *words) {
     }
 }
 
-/* Words of the file to the ranks that want them. to: the only one, EACH: few of them, EVERYBODY: many. Collective, but
-   for the only one. */
+/* Sends words of the file to the ranks that need them. to: a single rank, EACH: few ranks, EVERYBODY: many.
+   Collective, except for a single rank. */
 enum { EACH = -1, EVERYBODY = -2 };
 static int fetch_words(spar_session *s, reading *l, int to, int wanted, int64_t at, int64_t n, uint64_t *words) {
     int root = is_root(s);
@@ -210,9 +210,9 @@ static int fetch_words(spar_session *s, reading *l, int to, int wanted, int64_t 
     return SPAR_OK;
 }
 
-/* ---- what is alike on all ranks ---- */
+/* ---- data common to all ranks ---- */
 
-/* Rank 0 reads until it has all of it: where it ends, what is in it tells. */
+/* Rank 0 reads until it has all; the contents determine the end. */
 static int read_common(spar_session *s, reading *l) {
     spari_image *image = &l->common.image;
     int64_t n = 1 << 14;
@@ -231,12 +231,12 @@ static int read_common(spar_session *s, reading *l) {
         }
         if (status == SPAR_OK || status == SPAR_ERR_MEMORY || n == l->source.count ||
             (status != SPAR_ERR_IO && !image->failed)) {
-            return status == SPAR_ERR_MEMORY ? status : SPAR_OK; /* what else is wrong all ranks find */
+            return status == SPAR_ERR_MEMORY ? status : SPAR_OK; /* all ranks find other errors */
         }
     }
 }
 
-/* Words of rank 0 to all ranks. */
+/* Sends rank 0's words to all ranks. */
 static int send_image(spar_session *s, spari_image *image) {
     SPARI_TRY(spari_comm_broadcast(s->comm, &image->count, sizeof image->count, s->message, sizeof s->message));
     if (!is_root(s)) {
@@ -252,9 +252,9 @@ static int load_common(spar_session *s, reading *l) {
     return agree_to_load(s, spari_saved_check(s, &l->common));
 }
 
-/* ---- where the rest is: rank 0 reads it without the states ---- */
+/* ---- index of the rest: rank 0 reads it without the states ---- */
 
-/* Words of the file within a rank's block; running out of it is a failure. */
+/* Reads words within a rank's block; reading past its end is a failure. */
 typedef struct block_reader {
     reading *l;
     int64_t at, end;
@@ -278,7 +278,7 @@ static int64_t next_int(block_reader *b) {
     return b->failed ? 0 : value;
 }
 
-/* n words into the index as they are. */
+/* Copies n words to the index. */
 static void copy_words(block_reader *b, int64_t n) {
     b->failed |= n < 0 || n > b->end - b->at;
     uint64_t *to = b->failed ? NULL : spari_image_add(&b->l->index, n);
@@ -287,8 +287,8 @@ static void copy_words(block_reader *b, int64_t n) {
     }
 }
 
-/* A count of words and these words, which are passed over: where they begin and how many there are goes to the index.
-   The first `head` of them too, zeros where there are fewer. */
+/* Skips a counted block of words; its position and size go to the index, and its first `head` words (zeros if there
+   are fewer). */
 static void index_state(block_reader *b, int64_t head) {
     int64_t n = next_int(b);
     b->failed |= n < 0 || n > b->end - b->at;
@@ -302,7 +302,7 @@ static void index_state(block_reader *b, int64_t head) {
     b->at = b->failed ? b->end : at + n;
 }
 
-/* Text as in an image. */
+/* Copies a text. */
 static void index_text(block_reader *b) {
     int64_t length = next_int(b);
     b->failed |= length < 0 || length > INT64_MAX - 7;
@@ -310,7 +310,7 @@ static void index_text(block_reader *b) {
     copy_words(b, b->failed ? 0 : (length + 7) / 8);
 }
 
-/* Solvers of members, of assemblies; fluids: each with their number before them. */
+/* Solvers of members, of assemblies; fluids: each preceded by their number. */
 static void index_block(block_reader *b) {
     spari_image *index = &b->l->index;
     for (int kind = 0; kind < 3 && !b->failed; kind++) {
@@ -327,7 +327,7 @@ static void index_block(block_reader *b) {
     b->failed |= b->at != b->end;
 }
 
-/* The first word: whether the file can be read so. */
+/* First word: whether the file can be read in this way. */
 static int read_index(spar_session *s, reading *l) {
     block_reader all = {l, l->common.image.count, l->source.count, 0};
     spari_image_put_int(&l->index, 1);
@@ -347,7 +347,7 @@ static int read_index(spar_session *s, reading *l) {
     return SPAR_OK;
 }
 
-/* The records with room for one more, for as many as the next power of two; NULL: no memory, and they stay. */
+/* Grows the records to the next power of two with room for one more; NULL: no memory, records unchanged. */
 static void *grow_records(void *records, int64_t count, size_t size) {
     int full = count == 0 || (count >= 8 && (count & (count - 1)) == 0);
     int64_t room = count < 8 ? 8 : 2 * count;
@@ -427,7 +427,7 @@ static int load_index(spar_session *s, reading *l) {
     return agree_to_load(s, status);
 }
 
-/* ---- who takes what ---- */
+/* ---- distribution ---- */
 
 static int index_of(const spar_session *s, const spar_member *member) {
     int k = 0;
@@ -447,8 +447,7 @@ static int same_key(const reading *l, const fluid_record *a, const fluid_record 
     return a->member == b->member && x[0] == y[0] && memcmp(x + 1, y + 1, (size_t)((x[0] + 7) / 8) * sizeof *x) == 0;
 }
 
-/* Ranks have their fluids in much the same order: the search goes on from the last find. by[keys]: the first of each.
- */
+/* Ranks have fluids in similar order, so the search continues from the last match. by[keys]: the first of each. */
 static int find_keys(spar_session *s, reading *l) {
     int64_t *by = spari_zalloc(l->fluid_count, sizeof *by), at = 0;
     if (!by) {
@@ -472,7 +471,7 @@ static int find_keys(spar_session *s, reading *l) {
     return SPAR_OK;
 }
 
-/* Whether the fluids here are those of this rank in the file, one by one. */
+/* Whether the fluids here equal those of this rank in the file, one by one. */
 static int same_fluids(const spar_session *s, reading *l) {
     int rank = spari_comm_rank(s->comm);
     const spar_fluid *f = s->fluids;
@@ -487,7 +486,7 @@ static int same_fluids(const spar_session *s, reading *l) {
     return !f && l->common.ranks == spari_comm_size(s->comm);
 }
 
-/* Which rank's fluid takes the loads of those of a key: the first one's that has one like them. */
+/* Rank whose fluid receives the loads of a key: the first with such a fluid. */
 static int find_takers(spar_session *s, reading *l) {
     int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
     double *has = spari_zalloc(l->keys * ranks + 1, sizeof *has);
@@ -518,7 +517,7 @@ static int find_takers(spar_session *s, reading *l) {
     return status;
 }
 
-/* Whether a fluid here takes of a record. own: of this rank's records so many came before. */
+/* Whether a fluid here reads from a record. own: number of this rank's records before. */
 static int takes(const spar_session *s, reading *l, const fluid_record *r, const spar_fluid *f, int64_t own) {
     if (!l->exact) {
         return is_record_of(l, r, s, f);
@@ -545,7 +544,7 @@ static int take_fluid(spar_session *s, reading *l, spar_fluid *f, const double *
     return spari_fluid_take(f, l->call, count, heads);
 }
 
-/* Room for the solvers' states that are wanted here; each is in the file once. */
+/* Allocates the solver states needed here; each is in the file once. */
 static int make_solver_room(spar_session *s, reading *l) {
     l->solution = spari_zalloc(s->member_count, sizeof *l->solution);
     l->tied = spari_zalloc(s->joint_count, sizeof *l->tied);
@@ -575,7 +574,7 @@ static int prepare(spar_session *s, reading *l) {
 
 /* ---- the states ---- */
 
-/* Each to the ranks where there is room for it. */
+/* Sends each to the ranks that have allocated it. */
 static int fetch_solvers(spar_session *s, reading *l) {
     int broken = 0;
     for (int64_t i = 0; i < l->solver_count; i++) {
@@ -595,7 +594,7 @@ static int fetch_solvers(spar_session *s, reading *l) {
     return broken ? spari_saved_broken(s) : SPAR_OK;
 }
 
-/* The next words of a record, in the buffer, to the fluids that take of it. */
+/* Next words of a record, in the buffer, to the fluids that read from it. */
 static int fetch_piece(spar_session *s, reading *l, const fluid_record *r, int wanted, int64_t at, int64_t n,
                        int64_t put) {
     return fetch_words(s, l, l->exact ? r->rank : EVERYBODY, wanted, r->at + at, n, l->buffer + put);
@@ -663,7 +662,7 @@ static int fetch_fluids(spar_session *s, reading *l) {
     return agree_to_load(s, l->status != SPAR_OK ? tell_why(s, l, l->status) : found);
 }
 
-/* Whether on any rank fluids answer so. */
+/* Whether this is true on any rank. */
 static int is_any(spar_session *s, int here, int *any) {
     double count[2] = {here, 0};
     SPARI_TRY(spari_comm_sum(s->comm, count, 1, SPAR_OK, s->message, sizeof s->message));
@@ -671,8 +670,7 @@ static int is_any(spar_session *s, int here, int *any) {
     return SPAR_OK;
 }
 
-/* As many ranks with fluids of the same names may have dealt out the nodes otherwise: which ones those were only their
-   places tell. */
+/* With the same number of ranks and fluids, nodes may still be distributed otherwise; only their positions tell. */
 static int load_fluids(spar_session *s, reading *l) {
     int other = 0, lost = 0, status = SPAR_OK;
     SPARI_TRY(is_any(s, !same_fluids(s, l), &other));
@@ -696,7 +694,7 @@ static int load_fluids(spar_session *s, reading *l) {
     return agree_to_load(s, status);
 }
 
-/* ---- in force ---- */
+/* ---- putting in force ---- */
 
 static void put_in_force(spar_session *s, reading *l) {
     int64_t k = 0;
@@ -726,7 +724,7 @@ int spar_session_load(spar_session *session, const char *path) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", __func__);
     }
     SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, status));
-    status = open_file(s, &l, path); /* where there is none, nothing is made of the joints */
+    status = open_file(s, &l, path); /* without a file, nothing of the joints is created */
     status = status == SPAR_OK ? spari_solvers_place(s, __func__) : status;
     int (*const parts[])(spar_session *, reading *) = {load_common, load_index, prepare, load_solvers, load_fluids};
     for (size_t k = 0; k < sizeof parts / sizeof *parts && status == SPAR_OK; k++) {

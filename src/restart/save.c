@@ -1,14 +1,14 @@
-/* Save: the whole session in one file (image.h): what is alike on every rank (saved.h); then what is one rank's own,
-   rank by rank, the number of its words before it: the solvers of its members, of its assemblies, its fluids. No rank
-   has more in memory than what is its own: where all ranks see the file that rank 0 has begun, each writes its own part
-   of it, all at the same time; else the parts go through rank 0 piece by piece. The bytes are the same. */
-#include "../base/saved_file.h"
-#include "../base/environment.h"
-#include "../comm/enter.h"
-#include "../fluid/fluid.h"
+/* Saves the whole session in one file (base/saved_file.h): data common to all ranks (saved.h); then the data of each
+   rank, preceded by their number of words: solvers of its members and assemblies, its fluids. No rank holds more
+   than its own data. If all ranks see the file that rank 0 has begun, each writes its own part, all at the same
+   time. Otherwise the parts go through rank 0 piece by piece. The bytes are the same. */
 #include "../assembly/assembly.h"
-#include "../time/fidelity.h"
+#include "../base/environment.h"
+#include "../base/saved_file.h"
+#include "../comm/enter.h"
 #include "../exchange/exchange.h"
+#include "../fluid/fluid.h"
+#include "../time/fidelity.h"
 #include "saved.h"
 
 #include <stdlib.h>
@@ -16,7 +16,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* ---- what is one rank's own ---- */
+/* ---- data of one rank ---- */
 
 static int member_index(const spar_session *s, const spar_member *member) {
     int k = 0;
@@ -26,13 +26,13 @@ static int member_index(const spar_session *s, const spar_member *member) {
     return k;
 }
 
-/* Room for the n numbers of a state, with their count before them. */
+/* Makes room for the n numbers of a state, preceded by their count. */
 static double *put_room(spari_image *image, int64_t n) {
     spari_image_put_int(image, n);
     return (double *)(void *)spari_image_add(image, n);
 }
 
-/* What the assemblies that are solved here keep, each by its place in the list, which is alike on all ranks. */
+/* States of the assemblies solved here, with their positions in the list, which agrees across ranks. */
 static void put_assemblies(spari_image *image, const spar_session *s) {
     int64_t count = 0, k = 0;
     for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
@@ -54,7 +54,7 @@ static void put_assemblies(spari_image *image, const spar_session *s) {
 static int put_own(spari_image *image, const spar_session *s, const char *call) {
     int64_t solvers = 0, fluids = 0;
     int k = 0;
-    spari_image_put_int(image, 0); /* how many words follow */
+    spari_image_put_int(image, 0); /* number of words that follow */
     for (const spar_member *m = s->members; m; m = m->next) {
         solvers += spari_fidelity_state_size(m) > 0;
     }
@@ -94,18 +94,18 @@ static int agree_to_save(spar_session *s, int status) {
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }
 
-enum { PIECE = 1 << 13 }; /* words that go through rank 0 at once */
+enum { PIECE = 1 << 13 }; /* words sent through rank 0 at once */
 
-/* What all ranks know of the parts, and rank 0 of the file. */
+/* Layout of the parts, known on all ranks, and the file on rank 0. */
 typedef struct save_plan {
     spari_image common; /* on rank 0 */
     double *part;       /* [ranks][PART_WORDS] */
     int64_t count;      /* words of the file */
     spari_saving file;  /* on rank 0 */
     char why[SPARI_MESSAGE_SIZE / 2];
-    char temporary[SPARI_MESSAGE_SIZE]; /* where its bytes are now, for all ranks; empty: not to be told */
-    uint64_t mark;                      /* that they know it by */
-    uint64_t room[PIECE];               /* for what goes through rank 0: too large for a small stack */
+    char temporary[SPARI_MESSAGE_SIZE]; /* current path of its bytes, for all ranks; empty: not available */
+    uint64_t mark;                      /* by which they recognise it */
+    uint64_t room[PIECE];               /* for pieces sent through rank 0: too large for a small stack */
 } save_plan;
 enum { PART_COUNT, PART_SUM, PART_STATUS, PART_WORDS };
 
@@ -113,7 +113,7 @@ static int64_t part_count(const save_plan *p, int rank) {
     return (int64_t)p->part[rank * PART_WORDS + PART_COUNT];
 }
 
-/* The size and check sum of each rank's own words, which are in the disc's order of bytes from here on. */
+/* Size and check sum of each rank's words, which are in the byte order of the file from here on. */
 static int share_parts(spar_session *s, save_plan *p, spari_image *own) {
     int ranks = spari_comm_size(s->comm);
     int64_t *first = spari_zalloc(ranks + 1, sizeof *first);
@@ -134,7 +134,7 @@ static int share_parts(spar_session *s, save_plan *p, spari_image *own) {
     return status;
 }
 
-/* What is alike on all ranks is written, and rank 0's own; and where the others find the file, if it can be told. */
+/* Writes the common data and rank 0's own; and finds where the others can write. */
 static int begin_file(spar_session *s, save_plan *p, const spari_image *own, const char *path) {
     spari_saved_put(&p->common, s);
     if (p->common.failed) {
@@ -154,7 +154,7 @@ static int begin_file(spar_session *s, save_plan *p, const spari_image *own, con
     return SPAR_OK;
 }
 
-/* On rank 0: no other file has this mark, but by a chance of 2^-64. */
+/* On rank 0: the mark is unique up to a probability of 2^-64. */
 static void offer_file(save_plan *p) {
     struct timespec now = {0, 0};
     (void)clock_gettime(CLOCK_REALTIME, &now);
@@ -163,7 +163,7 @@ static void offer_file(save_plan *p) {
     p->mark = spari_hash_bytes(SPARI_HASH_BEGIN, own, sizeof own);
     if (where && strlen(where) < sizeof p->temporary && spari_saving_mark(&p->file, p->count, p->mark)) {
         memcpy(p->temporary, where, strlen(where) + 1);
-        spari_file_release(&p->file.file); /* a file system may want locks for ranks that write beside each other */
+        spari_file_release(&p->file.file); /* the file system may need locks for ranks that write side by side */
     }
     free(where);
 }
@@ -188,7 +188,7 @@ static uint64_t part_sum(const save_plan *p, int rank) {
     return sum;
 }
 
-/* Where a rank's part begins: parts end with the file. */
+/* Position of a rank's part: the parts are at the end of the file. */
 static int64_t part_at(const save_plan *p, int rank, int ranks) {
     int64_t at = p->count;
     for (int r = rank; r < ranks; r++) {
@@ -197,8 +197,8 @@ static int64_t part_at(const save_plan *p, int rank, int ranks) {
     return at;
 }
 
-/* Each rank but 0 writes its own part. Then each reads the next one's, since not all file systems keep what two
-   machines write beside each other. *whole: all of it is there. */
+/* Each rank but 0 writes its own part. Then each verifies the next one's, because not all file systems keep what two
+   machines write side by side. *whole: everything is there. */
 static int write_own_part(spar_session *s, save_plan *p, const spari_image *own, int *whole) {
     int rank = spari_comm_rank(s->comm), ranks = spari_comm_size(s->comm), next = (rank + 1) % ranks, status = SPAR_OK;
     if (rank > 0) {
@@ -217,7 +217,7 @@ static int write_own_part(spar_session *s, save_plan *p, const spari_image *own,
     return SPAR_OK;
 }
 
-/* Through rank 0; what it cannot write it takes all the same, and tells at the end. */
+/* Sends through rank 0. Rank 0 receives also what it cannot write, and reports the failure at the end. */
 static int send_own_part(spar_session *s, save_plan *p, const spari_image *own) {
     int rank = spari_comm_rank(s->comm);
     for (int r = 1; r < spari_comm_size(s->comm); r++) {
@@ -245,7 +245,7 @@ static int write_parts(spar_session *s, save_plan *p, const spari_image *own) {
     return whole ? SPAR_OK : send_own_part(s, p, own);
 }
 
-/* Rank 0 puts the file in its place, or takes it away. */
+/* Rank 0 moves the file to its final path, or removes it. */
 static int end_file(spar_session *s, save_plan *p, int status) {
     if (spari_comm_rank(s->comm) == 0 && p->file.file.stream) {
         if (status != SPAR_OK || !spari_file_hold(&p->file.file)) {
@@ -285,7 +285,7 @@ static int write_file(spar_session *s, spari_image *own, const char *path) {
 int spar_session_save(const spar_session *session, const char *path) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    spar_session *s = (spar_session *)(uintptr_t)session; /* its message is written; its state is not touched */
+    spar_session *s = (spar_session *)(uintptr_t)session; /* writes its message; the state is not changed */
     spari_image own = {0};
     int status = spari_saved_check_call(s, __func__, path);
     status = status == SPAR_OK ? spari_session_pushes(s, __func__) : status;

@@ -1,17 +1,17 @@
-/* What of a session is alike on every rank, in a file: see saved.h. */
+/* Reads and writes the data of a session that are common to all ranks: see saved.h. */
 #include "saved.h"
 
 #include "../comm/comm.h"
-#include "../fluid/fluid.h"
-#include "../member/added_mass.h"
-#include "../member/applied.h"
-#include "../member/joint.h"
-#include "../member/added_mass_fit.h"
-#include "../member/mean_acceleration.h"
-#include "../solve/life.h"
 #include "../coupling/coupling.h"
 #include "../exchange/session_private.h"
+#include "../fluid/fluid.h"
+#include "../member/added_mass.h"
+#include "../member/added_mass_fit.h"
+#include "../member/applied.h"
+#include "../member/joint.h"
+#include "../member/mean_acceleration.h"
 #include "../session/settings.h"
+#include "../solve/life.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -65,7 +65,7 @@ static void pass_int(passage *t, int *x) {
     }
 }
 
-/* Of steps, which go on being counted. */
+/* A count of steps that continues. */
 static void pass_count(passage *t, int *x) {
     enum { MOST = 1 << 30 };
     pass_int(t, x);
@@ -74,7 +74,7 @@ static void pass_count(passage *t, int *x) {
     }
 }
 
-/* Numbers, checked to be some. */
+/* Numbers, checked to be finite. */
 static void pass_numbers(passage *t, double *words, int64_t n) {
     const double *there = (const double *)(const void *)(t->image->word + t->image->at);
     pass(t, words, n);
@@ -83,7 +83,7 @@ static void pass_numbers(passage *t, double *words, int64_t n) {
     }
 }
 
-/* Of steps to a tolerance. */
+/* Data of step-size control. */
 static void pass_pace(passage *t, spari_pace *p) {
     pass_numbers(t, &p->ratio, 1);
     pass_numbers(t, &p->last, 1);
@@ -116,7 +116,7 @@ static void pass_clock(passage *t, spar_session *s) {
     }
 }
 
-/* What may not be kept here, or was not there: zeros in the file. */
+/* Numbers that may be absent here or in the saved run: zeros in the file. */
 static void pass_kept(passage *t, double *words, int64_t n) {
     double zero = 0;
     if (words) {
@@ -130,7 +130,7 @@ static void pass_kept(passage *t, double *words, int64_t n) {
     }
 }
 
-/* Of a motion that is only checked: numbers, and rotations where they are. */
+/* Checks a motion: finite numbers, and unit quaternions. */
 static void check_pose_words(passage *t, const double *words, int width, int64_t n) {
     int ok = words && spari_first_nonfinite(words, width * n) < 0;
     for (int64_t i = 0; i < n && ok && width == 7; i++) {
@@ -173,7 +173,7 @@ static void pass_added(passage *t, spar_member *m) {
     }
 }
 
-/* Where there are substeps or steps of several lengths: in the file if there were any, and taken if there are here. */
+/* Mean accelerations, with substeps or changes of dt: in the file if they existed, read if they exist here. */
 static void pass_means(passage *t, spar_member *m) {
     spari_means none = {0}, *k = m->means ? m->means : &none;
     double head[4] = {k->has[0], k->has[1], k->dt, m->means != NULL};
@@ -198,7 +198,7 @@ static void pass_means(passage *t, spar_member *m) {
     }
 }
 
-/* What the first step begins with after a balanced start: in the file if there is any. */
+/* Initial accelerations of the first step after consistent initial conditions: in the file if there are any. */
 static void pass_begun(passage *t, spar_member *m) {
     double has = m->begun != NULL;
     const double *in_file = (const double *)(const void *)(t->image->word + t->image->at);
@@ -221,7 +221,7 @@ static void pass_begun(passage *t, spar_member *m) {
     }
 }
 
-/* What of a step under way was halved: in the file if anything was. */
+/* Halved substeps of a step in progress: in the file if there are any. */
 static void pass_cuts(passage *t, spar_member *m) {
     enum { WORDS = sizeof m->cuts.given_up / sizeof(double) };
     const spar_session *s = m->session;
@@ -279,7 +279,7 @@ static void pass_member(passage *t, spar_member *m) {
     }
 }
 
-/* Springs are there where they may be given anew at any time; a line's are part of its description. */
+/* Springs of joints, if they may be replaced at any time; a link's are part of its description. */
 static void pass_joint(passage *t, spar_joint *j) {
     enum { SPRING = 3 };
     const struct {
@@ -300,7 +300,7 @@ static void pass_joint(passage *t, spar_joint *j) {
     pass_int(t, &j->balanced);
 }
 
-/* c: of the settings in the image; never only checked */
+/* c: created with the settings of the image; never only checked */
 static void pass_coupling(passage *t, spari_coupling *c) {
     pass_int(t, &c->iterations);
     c->iterations = c->iterations < 0 ? 0 : c->iterations > c->most ? c->most : c->iterations;
@@ -341,7 +341,7 @@ static int64_t motion_words(const spar_session *s, const spari_coupling *c) {
     return c->accelerator && spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0;
 }
 
-/* The length of the coupling comes first: it may have to be passed over. */
+/* The length of the coupling comes first, so that it can be skipped. */
 static void put_coupling(spari_image *image, spar_session *s) {
     double settings[SPARI_MOST_OF_COUPLING];
     int64_t at = image->count;
@@ -417,7 +417,7 @@ static int compare_scene(spar_session *s, spari_saved *l) {
     return l->image.failed || l->ranks < 1 ? spari_saved_broken(s) : SPAR_OK;
 }
 
-/* Where the next count words end, if there are as many. */
+/* End of the next count words, if there are as many. */
 static int find_end(const spari_image *image, int64_t count, int64_t *end) {
     int there = !image->failed && count >= 0 && count <= image->count - image->at;
     *end = there ? image->at + count : image->at;
@@ -428,7 +428,7 @@ static int is_within(int64_t x, int64_t least, int64_t most) {
     return x >= least && x <= most;
 }
 
-/* A clock that can go on, read into a copy of the session. */
+/* Reads a valid clock into a copy of the session. */
 static int check_clock(spar_session *s, spari_saved *l) {
     passage t = {&l->image, READ};
     spar_session then = *s;
@@ -439,7 +439,7 @@ static int check_clock(spar_session *s, spari_saved *l) {
              is_within(then.iteration, 0, 1 << 30) && is_within(phase, SPARI_IDLE, SPARI_CHECKED) &&
              is_within(then.order, 0, 2) && is_within(then.past, within && then.step == 0 ? -1 : 0, then.predictor) &&
              then.started == (within || then.step > 0) && spari_first_nonfinite(then.gravity_before, 3) < 0;
-    for (int k = 0; k < 2; k++) { /* what a prediction divides by */
+    for (int k = 0; k < 2; k++) { /* divisors of a prediction */
         int used = then.past > k || (within && then.order > k);
         ok = ok && isfinite(then.dt_last[k]) && then.dt_last[k] >= 0 && (!used || then.dt_last[k] > 0);
     }
@@ -447,7 +447,7 @@ static int check_clock(spar_session *s, spari_saved *l) {
     return ok ? SPAR_OK : spari_saved_broken(s);
 }
 
-/* What of the coupling fits the settings in force, in memory of its own. */
+/* Creates a coupling from the data that fit the present settings. */
 static int check_coupling(spar_session *s, spari_saved *l) {
     int64_t count = spari_image_get_int(&l->image), end;
     if (count == 0 && !l->image.failed) {

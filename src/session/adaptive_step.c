@@ -1,11 +1,11 @@
-/* A whole step to a tolerance. */
+/* Performs a whole step with step-size control: spar_step_within. */
 #include "../base/environment.h"
 #include "../comm/enter.h"
+#include "../exchange/session_private.h"
 #include "../member/checks.h"
 #include "callbacks.h"
-#include "../exchange/session_private.h"
-#include "step_control.h"
 #include "step.h"
+#include "step_control.h"
 
 #include <math.h>
 
@@ -20,13 +20,13 @@ static int check_within(spar_session *s, const char *call, const double *dt, dou
     return spari_pace_check(s, call);
 }
 
-/* How the error over the tolerance has fallen from one try to the next, as a power of dt: that of a smooth motion has 2
-   and more in steps that resolve it; an acceleration that jumps 1; a velocity that jumps 0; rounding of positions, over
-   dt^2 in the accelerations, -1. */
+/* Decrease of error/tolerance between two attempts as a power of dt: 2 or more for a smooth resolved motion, 1 for a
+   jump of acceleration, 0 for a jump of velocity, -1 for rounding of positions (divided by dt^2 in the
+   accelerations). */
 typedef struct tries {
     double dt, ratio;
     double power;
-    int stuck; /* so many tries in turn whose error has hardly fallen */
+    int stuck; /* consecutive attempts whose error hardly decreased */
 } tries;
 
 static void count_try(tries *t, double dt, double ratio) {
@@ -37,12 +37,12 @@ static void count_try(tries *t, double dt, double ratio) {
     t->dt = dt, t->ratio = ratio;
 }
 
-/* Of the time since the beginning: a smaller dt has its length from the rounding of the clock. */
+/* Relative to the time since the beginning: a smaller dt is dominated by rounding of the clock. */
 static const double clock_resolves = 1e-12;
 
 static int fail_within(const spar_session *s, const char *call, const tries *t) {
     const char *why = "the motion needs smaller steps than these; begin with a smaller dt, or give a larger drift";
-    int at_clock = 0.2 * t->dt <= clock_resolves * fabs(s->time); /* next_dt cuts to a fifth at most */
+    int at_clock = 0.2 * t->dt <= clock_resolves * fabs(s->time); /* next_dt reduces to a fifth at most */
     if (t->stuck && t->power < -0.5) {
         why = "the error grows as dt falls, from the rounding of positions; give a larger drift or rtol";
     } else if (t->stuck || at_clock) {

@@ -1,4 +1,4 @@
-/* The host's functions inside a call of the library's: see callbacks.h. */
+/* Calls the functions of the host from inside a public call: see callbacks.h. */
 #include "callbacks.h"
 
 #include "../base/environment.h"
@@ -24,13 +24,13 @@ int spari_lend(spar_session *s, const char *lender, spar_fluid_solver solve, dou
     int answer = solve(s, s->time, dt, s->iteration, context);
     s->lent = NULL;
     spari_host_end(&host);
-    if (s->parted) { /* this rank alone called the others from here: they met it, and know */
+    if (s->parted) { /* this rank alone called the others from the callback: they noticed */
         return SPAR_ERR_COMM;
     }
     if (answer == 0) {
         return SPAR_OK;
     }
-    int told = s->failures != failures; /* what went wrong there */
+    int told = s->failures != failures; /* the failure there */
     return spari_fail(s, SPAR_ERR_USER, "%s: the fluid solver returned %d in iteration %d%s%.800s", lender, answer,
                       s->iteration, told ? ": " : "", told ? s->message : "");
 }
@@ -45,7 +45,7 @@ int spari_lend_before(spar_session *s, spar_before_step before, double dt, void 
     spari_host_begin(&host);
     int answer = before(s, s->time, dt, context), status = SPAR_OK;
     spari_host_end(&host);
-    if (s->parted) { /* this rank alone called the others from here: they met it, and know */
+    if (s->parted) { /* this rank alone called the others from the callback: they noticed */
         return SPAR_ERR_COMM;
     }
     if (answer != 0 && s->failures == failures) {

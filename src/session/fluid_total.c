@@ -1,4 +1,4 @@
-/* What the loads of a fluid come to over all ranks. */
+/* Total loads of a fluid over all ranks, and their comparison with the host's values. */
 #include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../fluid/fluid.h"
@@ -9,11 +9,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Of the loads that a fluid has pushed, over the ranks: force, moment about a point, and the sums of the sizes of their
-   nodal parts. */
+/* Sums over the ranks of a fluid's pushed loads: force, moment about a point, and sums of the sizes of nodal forces
+   and moments. */
 enum { TOTAL_MOMENT = 3, TOTAL_FORCE_PARTS = 6, TOTAL_MOMENT_PARTS, TOTALS };
 
-/* What this rank has pushed, on the structure where it is now. */
+/* This rank's pushed loads at the present configuration. */
 static int add_loads(const spar_fluid *fluid, const double point[3], const char *call, double total[TOTALS]) {
     const spar_member *m = spari_fluid_member(fluid);
     for (int64_t i = 0; i < (m->committed ? m->nodes : 0); i++) {
@@ -38,7 +38,7 @@ static int add_loads(const spar_fluid *fluid, const double point[3], const char 
     return SPAR_OK;
 }
 
-/* Collective. point: NULL: the origin. claim[count]: what must be alike besides. */
+/* Collective. point NULL: the origin. claim[count]: further arguments that must agree. */
 static int sum_over_ranks(const spar_fluid *fluid, const char *call, const double *point, const spari_alike *claim,
                           int count, int status, double total[TOTALS + 1]) {
     static const double origin[3] = {0, 0, 0};
@@ -77,7 +77,7 @@ int spar_fluid_get_total(const spar_fluid *fluid, const double point[3], double 
     return SPAR_OK;
 }
 
-/* ---- against what the host knows ---- */
+/* ---- comparison with the host's values ---- */
 
 static int check_claim(const spar_fluid *fluid, const char *call, const double *force, const double *moment,
                        double rtol) {

@@ -1,4 +1,4 @@
-/* Sums over the ranks for what is built on a session: layers above need no MPI of their own. */
+/* Sums over the ranks for code on top of a session, which then needs no MPI. */
 #include "../base/environment.h"
 #include "../base/session.h"
 #include "../comm/enter.h"
@@ -19,7 +19,7 @@ int spar_session_sum(spar_session *session, int status, int64_t n, double *x) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    double *room = NULL; /* one more: comm.h */
+    double *room = NULL; /* one more: see comm.h */
     int own = check_sum(s, __func__, status, n, x);
     if (own == SPAR_OK) {
         room = spari_zalloc(n + 1, sizeof *room);

@@ -1,5 +1,5 @@
-/* The balanced start: accelerations and fluid loads at t^0 that belong together, M a + ... = F(q, v, a). It is iterated
-   as a step is, with the members' balance of forces at t^0 in place of their way to t^{n+1}; time stands meanwhile. */
+/* Consistent initial conditions: accelerations and fluid loads at t^0 that satisfy M a + ... = F(q, v, a). Iterated
+   like a step, with the members' equations at t^0 instead of their integration to t^{n+1}; time does not advance. */
 #include "initial_accelerations.h"
 
 #include "../assembly/assembly.h"
@@ -97,7 +97,7 @@ int spari_start_solve(spar_session *s, const char *call) {
     for (spar_member *m = s->members; m; m = m->next) {
         if (status == SPAR_OK) {
             spari_member_solved(m, m->load_used);
-        } else { /* the half-solved iterate */
+        } else { /* discards the failed iterate */
             spari_member_again(m);
         }
     }

@@ -1,10 +1,10 @@
-/* A step whose motion is given to the members: see prescribed_step.h. */
+/* A step with prescribed motion of all members: see prescribed_step.h. */
 #include "prescribed_step.h"
 
 #include "../comm/enter.h"
+#include "../exchange/exchange.h"
 #include "../fluid/fluid.h"
 #include "../member/structure.h"
-#include "../exchange/exchange.h"
 #include "callbacks.h"
 
 #include <string.h>

@@ -1,12 +1,12 @@
-/* Steps of a trial whose motion is known: the fluid alone answers. */
+/* Steps of a trial with prescribed motion: only the fluid responds. */
 #ifndef SPARI_FORCED_H
 #define SPARI_FORCED_H
 
 #include "../base/session.h"
 
-/* A step of dt from the motion now to the motion after, which the caller has put into all members: the host's solver is
-   called once, the loads are exchanged into load_pushed, and the step is accepted. What moves is the members' motion,
-   the fluids and the clock; nothing is solved, and what solves is left behind: for trials alone, which go back.
+/* Advances by dt from the motion `now` to the motion `after`, which the caller has set in all members. The host's
+   solver is called once, the loads are exchanged into load_pushed, and the step is accepted. Members' motion, fluids
+   and clock advance; nothing is solved, and solver data are left behind. For trials alone, which restore everything.
    Collective; after a failure the step stays where it was. */
 int spari_forced_step(spar_session *session, const char *call, double dt, spar_fluid_solver solve, void *context);
 

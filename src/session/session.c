@@ -1,16 +1,16 @@
-/* A session: created, asked for its time, released. */
+/* Creates and destroys a session, and returns its time. */
 #include "../coupling/coupling.h"
 #include "../exchange/session_private.h"
-#include "settings.h"
 #include "../exchange/sparse.h"
+#include "settings.h"
 #include "work_shares.h"
 
+#include "../assembly/assembly.h"
 #include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../member/joint.h"
 #include "../member/structure.h"
-#include "../assembly/assembly.h"
 #include "../solve/life.h"
 
 #include <stdio.h>
@@ -24,7 +24,7 @@ static spar_session *session_new(void) {
     if (!whole) {
         return NULL;
     }
-    spar_session *s = &whole->scene; /* comes first: freed as one */
+    spar_session *s = &whole->scene; /* first member: freed as one */
     s->own = &whole->own;
     spari_settings_default(s);
     return s;
@@ -42,7 +42,7 @@ int spar_session_create(spar_session **session) {
     return SPAR_OK;
 }
 
-/* All ranks get a session or none: what can fail on one of them is agreed on over the communicator. */
+/* All ranks get a session or none: steps that can fail on one rank are agreed on over the communicator. */
 int spar_session_create_fcomm(int comm, spar_session **session) {
     char why[SPARI_MESSAGE_SIZE / 2] = "no memory for the session";
     spari_comm *ranks = NULL;

@@ -1,5 +1,5 @@
-/* What is set for a session: one table, which the setters, the getters, the options, the comparison of ranks and the
-   files of saved runs read. A new setting is a field of the session and a row here, and what computes with it. */
+/* Settings of a session: one table, used by setters, getters, options, the comparison of ranks and saved files. A
+   new setting is a field of the session, a row here, and the code that uses it. */
 #include "settings.h"
 
 #include "../base/environment.h"
@@ -18,12 +18,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Calls that set, beside spar_session_set_option. */
+/* Setter calls beside spar_session_set_option. */
 enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REPRODUCIBLE, TOLERANCE, GOAL, OPTION };
 
-/* Rows: of an argument of a setter, in the order of its arguments; of an option that is a number, or one of two words,
-   for 0 and 1; and of what a setter has done though the setting may be as it was, which nobody sets. Each with field,
-   range, default and flags. */
+/* Rows with field, range, default and flags: for the arguments of a setter, in order; for an option that is a
+   number, or one of two words for 0 and 1; and for effects of a setter that is not an argument. */
 #define FIELD(field) offsetof(spar_session, field)
 #define REAL(by, setter, key, field, least, most, range, initial, flags)                                               \
     {                                                                                                                  \
@@ -54,9 +53,8 @@ enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REP
 
 static const char not_negative[] = "a finite number >= 0", one_or_more[] = "at least 1";
 
-/* The options fluid.far and fluid.audit concern a rank's own nodes and nothing else: ranks may differ in them. The
-   defaults of Newton's tolerances: what turning the axes or another number of ranks must not change (1e-11) stays
-   below. */
+/* The options fluid.far and fluid.audit concern a rank's own nodes only, so ranks may differ. The default tolerances
+   of Newton keep the influence of rotated axes or another number of ranks below 1e-11. */
 static const spari_setting settings[] = {
     ALONG("gravity (x)", 0),
     ALONG("gravity (y)", 1),
@@ -186,7 +184,7 @@ static int settable(spar_session *session, const char *call) {
     return SPAR_OK;
 }
 
-/* The arguments of a setter, in their order, within their ranges. */
+/* Checks the arguments of a setter, in order, against their ranges. */
 static int check_given(spar_session *session, const char *call, int by, const double *given) {
     SPARI_TRY(settable(session, call));
     for (int i = 0; i < SETTINGS; i++) {
@@ -214,7 +212,7 @@ static int set(spar_session *session, const char *call, int by, const double *gi
     return SPAR_OK;
 }
 
-/* into[n]: double or int as the row is, NULL: not wanted */
+/* into[n]: double or int as in the row; may be NULL */
 static int get(const spar_session *session, const char *call, int by, int n, void *const *into) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     for (int i = 0, k = 0; i < SETTINGS && k < n; i++) {

@@ -1,4 +1,4 @@
-/* Static equilibrium in a session: of one member, and of all members with the fluid's answer. */
+/* Static equilibrium of one member, and of all members with the fluid. */
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
 #include "../comm/enter.h"
@@ -22,7 +22,7 @@
 
 /* ---- one member ---- */
 
-/* Whether spar can find an equilibrium of a member that it solves for. */
+/* Whether the member has a unique equilibrium that spar can solve. */
 static int check_held(const spar_member *m, const char *call) {
     spar_session *s = m->session;
     SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first",
@@ -49,7 +49,7 @@ static int check_member_static(const spar_member *m, const char *call, int load_
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
-/* Whether m is one of those that are solved with a member: joints tie them, or it is that one; NULL: all are. */
+/* Whether m is solved together with a member (by joints, or the member itself); NULL: all are. */
 static int is_with(const spar_member *member, const spar_member *m) {
     return !member || m == member || (m->assembly && m->assembly == member->assembly);
 }
@@ -71,7 +71,7 @@ static int solve_tied_static(spari_assembly *a, const double *(*fluid)(const spa
     return SPAR_OK;
 }
 
-/* The motion after of a member that spar solves for, on the rank that does. */
+/* Solves the motion `after` of a member, on its owner. */
 static int solve_member_static(spar_member *m, const double *fluid, int load_steps, int onward) {
     if (m->assembly) {
         return solve_tied_static(m->assembly, pushed, load_steps, onward, m->session);
@@ -102,8 +102,8 @@ static int64_t size_aside(const spar_session *s, const spar_member *only) {
     return n;
 }
 
-/* What the owner's solvers keep of a member and of all that it is tied to (NULL: of all), to be put back where no
-   equilibrium is found: each with its length in front. */
+/* Copies the solver data of the owner's members (of one with all that joints connect to it, or of all), to be
+   restored without an equilibrium: each with its length in front. */
 static int put_aside(spar_session *s, const spar_member *only, double **aside) {
     double *at = *aside = spari_zalloc(size_aside(s, only), sizeof *at);
     SPARI_REQUIRE(s, at, SPAR_ERR_MEMORY, "no memory to put the state of the members aside");
@@ -151,7 +151,7 @@ static void put_back(spar_session *s, const spar_member *only, const double *asi
     }
 }
 
-/* The motion after holds at t^n, found under `fluid` loads. */
+/* Makes the motion `after`, under `fluid` loads, the state at t^n. */
 static void settle_member(spar_member *m, const double *fluid) {
     m->dissipated_step = 0;
     spari_member_solved(m, fluid);
@@ -172,7 +172,7 @@ static int find_rest(spar_member *m, int load_steps) {
     return spari_session_share_motion(s, solve_member_static(m, m->load_pushed, load_steps, 0));
 }
 
-/* The equilibrium found holds at t^n; or all is as it was. */
+/* Accepts the equilibrium as the state at t^n, or restores everything. */
 static void end_member_static(spar_member *member, int status, const double *aside) {
     for (spar_member *m = member->session->members; m; m = m->next) {
         if (!is_with(member, m)) {
@@ -232,14 +232,14 @@ static int check_session_static(spar_session *s, const char *call, int load_step
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
-/* Fluids may push and pull as in a step. */
+/* Allows fluids to push and pull as in a step. */
 static int begin_static(spar_session *s) {
     static const double last[2] = {1, 1};
     for (spar_member *m = s->members; m; m = m->next) {
         copy_loads(m, m->load_pushed, m->load_before);
         copy_loads(m, m->load_pushed, m->load_used);
     }
-    if (!s->started) { /* loads pushed before the clock runs are those at t^0 */
+    if (!s->started) { /* loads pushed before the first step are those at t^0 */
         SPARI_TRY(spari_session_exchange_loads(s, NULL));
         for (spar_member *m = s->members; m; m = m->next) {
             spari_session_take_loads(s, m, m->load_used);
@@ -274,7 +274,7 @@ static void settle_all(spar_session *s) {
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_settle(f);
     }
-    s->past = 0; /* what was before leads nowhere from here */
+    s->past = 0; /* the past is no basis for extrapolation */
 }
 
 static void leave_as_it_was(spar_session *s, const double *aside) {
@@ -291,7 +291,7 @@ static void leave_as_it_was(spar_session *s, const double *aside) {
     }
 }
 
-/* The shapes under the loads in use. */
+/* Solves the shapes under the loads in use. */
 static int solve_all(spar_session *s, int load_steps, int onward) {
     int status = SPAR_OK;
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
@@ -307,7 +307,7 @@ static int solve_all(spar_session *s, int load_steps, int onward) {
     return SPAR_OK;
 }
 
-/* The member whose loads changed most in the last iteration. */
+/* Member whose loads changed most in the last iteration. */
 static const spar_member *most_changed(const spar_session *s) {
     const spar_member *found = s->members;
     double most = -1;
@@ -318,7 +318,7 @@ static const spar_member *most_changed(const spar_session *s) {
             double r = (m->load_pushed[i] - m->load_used[i]) / (i % 6 < 3 ? 1 : s->own->coupling->length[k]);
             sum += r * r;
         }
-        if (!(sum <= most)) { /* or is no number */
+        if (!(sum <= most)) { /* or NaN */
             most = sum;
             found = m;
         }
@@ -334,7 +334,7 @@ static const char *cure_for(const spar_session *s) {
                  "faster with the shape than the stiffness (static divergence) there is no stable equilibrium";
 }
 
-/* why: what ended the iteration, this rank's or a peer's message; NULL: its limit. */
+/* why: message of the cause, of this rank or a peer; NULL: the iteration limit. */
 static int not_settled(spar_session *s, const char *call, int status, const char *why) {
     const spari_coupling *c = s->own->coupling;
     int n = c->iterations, last = n - 1, half = last / 2;
@@ -364,7 +364,7 @@ static int not_solved(spar_session *s, const char *call, int status) {
     return status == SPAR_ERR_COMM ? status : not_settled(s, call, status, why);
 }
 
-/* The fluid's loads on these shapes, from all ranks. */
+/* Fluid loads on these shapes, from all ranks. */
 static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve, void *context) {
     int status = spari_lend(s, call, solve, 0, context);
     if (status == SPAR_ERR_COMM) {
@@ -386,7 +386,7 @@ static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve,
     return SPAR_OK;
 }
 
-/* A change of the loads that comes back larger grows in time, though an iteration that learns from it ends. */
+/* A change of the loads that returns amplified grows in time, even if an accelerated iteration converges. */
 static void warn_of_divergence(const spar_session *s, const char *call) {
     char text[SPARI_MESSAGE_SIZE];
     int learns = spari_coupling_scheme_of(s->scheme)->learn != NULL;
@@ -401,7 +401,7 @@ static void warn_of_divergence(const spar_session *s, const char *call) {
     spari_log(s, SPAR_LOG_WARNING, text);
 }
 
-/* Whether the shapes are those under the loads that came back, to the bit; else they are in use from here. */
+/* Whether the shapes were solved with exactly the returned loads; otherwise puts these in use. */
 static int stands_under_answer(spar_session *s) {
     int same = 1;
     for (spar_member *m = s->members; m; m = m->next) {

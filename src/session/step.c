@@ -1,4 +1,4 @@
-/* One coupling step: predict, solve, check, accept or reject. */
+/* One coupling step: begin (predict), solve, check, accept or reject. */
 #include "step.h"
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
@@ -38,7 +38,7 @@ static int wrong_phase(spar_session *s, const char *call, const char *cure) {
 
 /* ---- begin ---- */
 
-/* Where fluids see mean accelerations they see others once a mass is known, and ranks that solve nothing learn none. */
+/* A learned added mass changes the accelerations for fluids, which ranks that solve nothing do not know. */
 static int check_learning(spar_session *s, const char *call) {
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, !m->learned || m->guess_count > 0, SPAR_ERR_UNSUPPORTED,
@@ -51,12 +51,12 @@ static int check_learning(spar_session *s, const char *call) {
     return SPAR_OK;
 }
 
-/* Whether fluids are to see mean accelerations from the step dt on (member/mean_acceleration.h). */
+/* Whether fluids need mean accelerations from the step dt on (member/mean_acceleration.h). */
 static int is_uneven(const spar_session *s, double dt) {
     return s->uneven[0] || !spari_steps_even(s, dt) || (!s->touched && spari_scheme_turns(s, dt));
 }
 
-/* uneven: of is_uneven. */
+/* uneven: result of is_uneven. */
 static int check_begin(spar_session *s, const char *call, double dt, int uneven) {
     if (s->phase != SPARI_IDLE) {
         return wrong_phase(s, call, "accept or reject it first");
@@ -103,7 +103,7 @@ static void predict_nodes_loads(void *context, int64_t from, int64_t to) {
     }
 }
 
-/* Extrapolates from the last loads by the polynomial of `order` through t^n, t^{n-1}, t^{n-2}. Order 1 is (T11) of
+/* Extrapolates the loads by the polynomial of `order` through t^n, t^{n-1}, t^{n-2}. Order 1 is (T11) of
    docs/theory.md. */
 static void predict_loads(spar_member *m, int order, double dt, const double last[2]) {
     load_extrapolation t = {.m = m, .order = order};
@@ -134,7 +134,7 @@ static void begin_member(spar_member *m, const void *context) {
     spari_member_begin(m);
 }
 
-/* Memory for what the ranks exchange in the steps to come. In trials each rank has all of the state. */
+/* Allocates the exchange between ranks for the next steps. In trials each rank has the whole state. */
 static int prepare_exchange(spar_session *s) {
     if (s->apart || (s->touched && !s->trial && spari_comm_size(s->comm) > 1)) {
         return s->apart ? spari_spread_prepare(s) : spari_spread_begin(s);
@@ -142,11 +142,11 @@ static int prepare_exchange(spar_session *s) {
     return s->started && spari_session_is_sealed(s) ? SPAR_OK : spari_session_seal(s, SPAR_OK);
 }
 
-/* Loads pushed before the clock runs are those at t^0. */
+/* Loads pushed before the first step are those at t^0. */
 static int begin_loads(spar_session *s) {
     int pushed = 0;
     SPARI_TRY(spari_session_exchange_loads(s, &pushed));
-    s->past = pushed ? s->past : -1; /* zeros that nobody has pushed are nothing to extrapolate from */
+    s->past = pushed ? s->past : -1; /* zeros that nobody pushed are no basis for extrapolation */
     for (spar_member *m = s->members; m && !s->aside; m = m->next) {
         spari_session_take_loads(s, m, m->load_history[0]);
         memcpy(m->load_before, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
@@ -169,7 +169,7 @@ int spar_step_begin(spar_session *session, double dt) {
     if (!s->started) {
         SPARI_TRY(spari_named(s, __func__, spari_solvers_place(s, __func__)));
     }
-    if (anew) { /* what the coupling reports is lost: after all that may be refused for what the host said */
+    if (anew) { /* discards the report of the coupling: done after all checks that may refuse */
         SPARI_TRY(spari_named(s, __func__, spari_enter(s, "coupling", spari_coupling_prepare(s))));
         s->coupling_stale = 0;
     }
@@ -245,7 +245,7 @@ int spar_step_solve(spar_session *session) {
     s->rough = spari_coupling_is_rough(s);
     status = spari_threads_solve(s);
     status = spari_session_share_motion(s, status);
-    if (status != SPAR_OK) { /* t^n is untouched; forget the half-solved iterate */
+    if (status != SPAR_OK) { /* t^n is unchanged; discards the failed iterate */
         for (spar_member *m = s->members; m; m = m->next) {
             if (m->row->moves) {
                 spari_member_reject(m);
@@ -265,7 +265,7 @@ int spar_step_solve(spar_session *session) {
 
 /* ---- check ---- */
 
-/* The ranks that know the loads compare them, all are told what they have found. */
+/* Ranks that know the loads compare them; the result is sent to all. */
 static int check_apart(spar_session *s, const char *call, int *ended) {
     spari_found found = {.ended = 1};
     int status = SPAR_OK;
@@ -281,7 +281,7 @@ static int check_apart(spar_session *s, const char *call, int *ended) {
     return status;
 }
 
-/* status: of what this rank's host has done since the solution */
+/* status: of the host's actions on this rank since the solution */
 static int check_iteration(spar_session *s, const char *call, int status, int *done) {
     int ended = 0, solved = s->phase == SPARI_SOLVED;
     if (s->phase != SPARI_SOLVED) {
@@ -293,10 +293,11 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     }
     status = spari_enter(s, call, status);
     if (status != SPAR_OK) {
-        s->failed = s->failed || (solved && status != SPAR_ERR_COMM); /* alike on all ranks: they were in this call */
+        s->failed = s->failed ||
+                    (solved && status != SPAR_ERR_COMM); /* the same on all ranks, because they were in this call */
         return status;
     }
-    s->failed = 1; /* until all below has gone well */
+    s->failed = 1; /* until everything below has succeeded */
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m && !s->aside; m = m->next) {
         spari_session_take_loads(s, m, m->load_pushed);
@@ -325,7 +326,7 @@ int spar_step_check(spar_session *session, int *done) {
 
 /* ---- accept and reject ---- */
 
-/* Whether it is an external member that joints load and no fluid does. */
+/* Whether it is an external member with loads from joints and none from fluids. */
 static int has_joints_alone(const spar_member *m) {
     int alone = m->external && m->session->joints;
     for (const spar_fluid *f = m->session->fluids; f && alone; f = spari_fluid_next(f)) {
@@ -336,7 +337,7 @@ static int has_joints_alone(const spar_member *m) {
 
 static void shift_history(spar_member *m, const void *session) {
     const spar_session *s = session;
-    /* a step that was never checked had no loads but those it was solved with, and the joints' */
+    /* a step that was never checked has the loads of its solution, and those of joints */
     if (s->phase != SPARI_CHECKED && has_joints_alone(m)) {
         memset(m->load_pushed, 0, (size_t)(6 * m->nodes) * sizeof(double));
         spari_joints_on_external(m, m->load_pushed);
@@ -355,7 +356,7 @@ static void accept_member(spar_member *m, const void *unused) {
     spari_member_accept(m);
 }
 
-/* Where the iterations have shown enough of the fluid's added mass it stands in the equations of the next step. */
+/* Puts a sufficiently known added mass into the equations of the next step. */
 static void learn_added(spar_session *s) {
     int fresh = 0;
     for (spar_member *m = s->members; m; m = m->next) {
@@ -422,7 +423,7 @@ int spar_step_accept(spar_session *session) {
     return SPAR_OK;
 }
 
-/* Local: what all ranks do where the step is to end on all of them. */
+/* Local: executed on all ranks when the step ends on all of them. */
 static void reject(spar_session *s) {
     if (s->standing) {
         spari_start_reject(s);
@@ -446,7 +447,7 @@ static void reject(spar_session *s) {
     s->phase = SPARI_IDLE;
     s->started = s->step > 0;
     s->past = s->past > 0 ? s->past : 0;
-    if (!s->started) { /* as all ranks know it */
+    if (!s->started) { /* as known on all ranks */
         spari_spread_end(s);
     }
 }
@@ -494,15 +495,15 @@ static int iterate(spar_session *s, const char *call, spar_fluid_solver solve, v
 int spari_step_run(spar_session *s, const char *call, spar_fluid_solver solve, void *context) {
     int status = iterate(s, call, solve, context);
     if (status != SPAR_OK && status != SPAR_ERR_COMM && spar_step_reject(s) != SPAR_OK) {
-        status = SPAR_ERR_COMM; /* a step under way can be rejected wherever the ranks are together */
+        status = SPAR_ERR_COMM; /* a step in progress can be rejected whenever all ranks are together */
     }
-    if (status == SPAR_ERR_COMM) { /* the ranks have parted, and must not wait for each other once more */
+    if (status == SPAR_ERR_COMM) { /* the ranks are in different calls and must not wait for each other again */
         reject(s);
     }
     return status;
 }
 
-/* What has been begun, to its end. */
+/* Performs a begun step to its end. */
 static int run_begun(spar_session *s, const char *call, spar_fluid_solver solve, void *context, int *iterations) {
     int status = spari_step_run(s, call, solve, context);
     if (iterations) {

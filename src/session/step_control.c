@@ -1,16 +1,16 @@
-/* Steps to a tolerance: see step_control.h. */
+/* Step-size control: see step_control.h. */
 #include "step_control.h"
 
 #include "../base/environment.h"
 #include "../comm/comm.h"
-#include "../time/step_error.h"
 #include "../exchange/session_private.h"
+#include "../time/step_error.h"
 
 #include <math.h>
 
 /* ---- the error of a step ---- */
 
-/* The error, and the member's speed. (E1) */
+/* Step error, and speed of the member. (E1) */
 static double find_error(const spar_member *m, double *speed) {
     const spar_session *s = m->session;
     *speed = 0;
@@ -28,9 +28,9 @@ double spari_pace_error(const spar_member *m) {
     return find_error(m, &speed);
 }
 
-/* ---- what it says of dt ---- */
+/* ---- next dt ---- */
 
-/* The error of a member is of order 2 in dt where it counts by the time that it took to come. */
+/* Error of a member; it is of order 2 in dt if it is significant relative to its duration. */
 static double judge_member(const spar_member *m, double *error, double *speed) {
     const spar_session *s = m->session;
     *error = find_error(m, speed);
@@ -38,13 +38,13 @@ static double judge_member(const spar_member *m, double *error, double *speed) {
     return *error / s->dt / (s->tolerance_drift + s->tolerance_rtol * *speed);
 }
 
-/* Where a motion turns round its acceleration stands still, and its velocity has the error: what has been found fades
-   from step to step. */
+/* Decays the last ratio: at a turning point the acceleration is stationary and the error is in the velocity, so the
+   present error is too small. */
 static double fade(const spari_pace *p, double ratio) {
     return fmax(fmax(ratio, 0.85 * p->ratio), 1e-6);
 }
 
-/* PI control (Gustafsson, ACM TOMS 17, 1991), (E2). Small changes are not worth a new tangent. */
+/* PI control (Gustafsson, ACM TOMS 17, 1991), (E2). Small changes of dt are not worth a new tangent. */
 static double next_dt(const spar_session *s, double ratio) {
     static const double safety = 0.9, integral = 0.35, proportional = 0.2, most = 2, least = 0.2, up = 1.2;
     const spari_pace *p = &s->own->pace;

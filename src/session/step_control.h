@@ -1,5 +1,5 @@
-/* The pace of the steps: what a step's error was, by the accelerations at its ends, and the dt that a tolerance leaves
-   for the next ((E1), (E2) of docs/theory.md). Off: nothing is kept or computed. */
+/* Step-size control: error of a step, estimated from the accelerations at its ends, and the dt that a tolerance
+   permits for the next step ((E1), (E2) of docs/theory.md). If it is off, nothing is stored or computed. */
 #ifndef SPARI_PACE_H
 #define SPARI_PACE_H
 
@@ -8,14 +8,14 @@
 static inline int spari_pace_is_set(const spar_session *session) {
     return session->tolerance_drift > 0;
 }
-/* Steps to a tolerance need all of the state on every rank. Local. */
+/* Checks that every rank has the whole state, which step-size control needs. Local. */
 int spari_pace_check(const spar_session *session, const char *call);
-/* The step under way, whose motion has been found, becomes the last one; or it is given up. Local. */
+/* Accepts the current step as the last one; or rejects it. Local. */
 void spari_pace_accept(spar_session *session);
 void spari_pace_reject(spar_session *session);
-/* The error of the step under way over the tolerance. Local. */
+/* Error of the current step relative to the tolerance. Local. */
 double spari_pace_judge(const spar_session *session);
-/* Root of the mean square over the nodes of the error that the step under way adds, m. */
+/* Root mean square over the nodes of the error added by the current step, m. */
 double spari_pace_error(const spar_member *member);
 
 #endif

@@ -1,4 +1,4 @@
-/* Threads: asked for, and what they solve. */
+/* Distributes the solution of members and assemblies over threads: see work_shares.h. */
 #include "work_shares.h"
 
 #include "../assembly/assembly.h"
@@ -14,7 +14,7 @@
 
 #include <stdlib.h>
 
-/* A member that no joint ties to another, or an assembly. */
+/* A member without joints to others, or an assembly. */
 typedef struct spari_unit {
     spar_member *member;
     spari_assembly *assembly;
@@ -22,7 +22,7 @@ typedef struct spari_unit {
     char message[SPARI_MESSAGE_SIZE]; /* of a failure */
 } spari_unit;
 
-/* Numbers that are none are no motion, whatever the equations say: loads or a root's motion near the largest double. */
+/* Refuses motions that are not finite: loads or a root's motion near the largest double. */
 static int check_motion(const spar_member *m) {
     const spari_motion *x = &m->after;
     const struct {
@@ -52,14 +52,14 @@ static int is_unit(const spar_member *m) {
     return !m->assembly && m->row->advance && spari_fidelity_is_here(m);
 }
 
-/* Its motion is given, and assemblies read it where joints tie it: it comes first. */
+/* Members with prescribed motion come first, because assemblies read it. */
 static int is_told(const spar_member *m) {
     return !m->row->limb;
 }
 
-/* ---- one after the other ---- */
+/* ---- sequential ---- */
 
-/* After a failure, whose message stays, the others go on all the same. */
+/* After a failure, whose message stays, the others are still solved. */
 static int solve_next(spar_session *s, spar_member *m, spari_assembly *a, int status) {
     char unheard[SPARI_MESSAGE_SIZE];
     if (status == SPAR_OK) {
@@ -81,7 +81,7 @@ static int solve_in_turn(spar_session *s, int status) {
     return status;
 }
 
-/* ---- several at once ---- */
+/* ---- parallel ---- */
 
 static void solve_item(void *context, int64_t item, int worker) {
     spar_session *s = context;
@@ -105,7 +105,7 @@ static int64_t list_units(const spar_session *s, spari_unit *unit) {
     return n;
 }
 
-/* With fewer of them than threads the elements of each are shared out instead (spari_body_sweep). */
+/* With fewer units than threads the elements of each unit are distributed instead (spari_body_sweep). */
 static int solve_units(spar_session *s) {
     int ready = s->crew && s->own->listed == s->member_count; /* not in a step that came from a file */
     int64_t n = ready ? list_units(s, s->own->unit) : 0;
@@ -146,7 +146,7 @@ static int make_unit_room(spar_session *s, int64_t most) {
 }
 
 int spari_threads_prepare(spar_session *s) {
-    int64_t most = (int64_t)s->member_count + s->joint_count; /* a joint between nodes that all are driven is one */
+    int64_t most = (int64_t)s->member_count + s->joint_count; /* a joint between driven nodes is a unit of its own */
     s->own->listed = 0;
     if (!s->crew) {
         return SPAR_OK;
@@ -158,9 +158,9 @@ int spari_threads_prepare(spar_session *s) {
     return SPAR_OK;
 }
 
-/* ---- each member by itself ---- */
+/* ---- per member ---- */
 
-/* So many members are worth waking a thread for. */
+/* Members per thread item. */
 enum { BATCH = 16 };
 
 typedef struct members_alike {
@@ -194,9 +194,9 @@ void spari_threads_free(spar_session *s) {
     s->own->unit = NULL, s->own->member = NULL, s->own->unit_room = s->own->listed = 0;
 }
 
-/* ---- the host's calls ---- */
+/* ---- public calls ---- */
 
-/* Work space of each of them for the largest element, and for the fluids' tiles. */
+/* Allocates the threads' workspace for the largest element and for the fluids' tiles. */
 static int keep_room(const spar_session *s, spari_crew *crew) {
     int failed = 0;
     for (const spar_member *m = s->members; m && !failed; m = m->next) {

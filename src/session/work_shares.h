@@ -1,15 +1,15 @@
-/* The members and assemblies of this rank, solved by one thread or by several at once. */
+/* Solves the members and assemblies of this rank with one or several threads. */
 #ifndef SPARI_THREADS_H
 #define SPARI_THREADS_H
 
 #include "../base/session.h"
 
-/* Room for what the threads are given, if there are threads: before the first solution of a step. */
+/* Allocates for the threads, if there are any; call before the first solution of a step. */
 int spari_threads_prepare(spar_session *session);
-/* All that this rank solves from t^n to t^{n+1}. One that fails stops none of the others, and the message is that of
-   the first in the order of creation: the same with any number of threads. */
+/* Solves everything on this rank from t^n to t^{n+1}. A failure does not stop the others. The message is that of the
+   first in the order of creation, with any number of threads. */
 int spari_threads_solve(spar_session *session);
-/* What is done of each member, and reads and writes nothing of the others: between a step's beginning and its end. */
+/* Processes one member; must not read or write others. Between the beginning and the end of a step. */
 typedef void (*spari_member_task)(spar_member *member, const void *context);
 void spari_threads_each(spar_session *session, spari_member_task task, const void *context);
 void spari_threads_free(spar_session *session);

@@ -1,13 +1,13 @@
-/* Eigenvalues of structure and fluid together: a flutter speed without marching in time. The structure is what
-   spar_member_solve_eigenvalues takes, in some of its modes; the fluid's answer to motion in these comes from trials.
- */
+/* Eigenvalues of structure and fluid together, for example a flutter speed without time integration. The structure
+   is that of spar_member_solve_eigenvalues, reduced to some of its modes. The fluid's response to motion in these
+   modes comes from trials. */
 #include "reduced_model.h"
 #include "shapes.h"
 
+#include "../assembly/assembly.h"
 #include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../exchange/exchange.h"
-#include "../assembly/assembly.h"
 #include "../time/fidelity.h"
 
 #include <math.h>
@@ -16,14 +16,14 @@
 
 static const double common_amplitude = 1e-5, most_amplitude = 0.1;
 static const int64_t most_memory = 1000000;
-/* Of the largest load, what a fluid's way to rest may differ from that of a linear system. */
+/* Maximum deviation of the fluid's decay from that of a linear system, relative to the largest load. */
 static const double most_misfit = 1e-3;
 
 typedef struct coupled_ask {
     spari_answer_ask fluid;
     int64_t n;
     double complex shift;
-    double *eigenvalue, *shapes; /* the host's */
+    double *eigenvalue, *shapes; /* of the host */
 } coupled_ask;
 
 /* M, C, K of the shapes. room [size] */
@@ -56,7 +56,7 @@ static void coupled_free(coupled *c) {
     free(c->value);
 }
 
-/* The structure's part, on every rank by itself. */
+/* The structure's part, computed on every rank. */
 static int find_structure(spar_session *s, const coupled_ask *ask, coupled *c) {
     int64_t modes = ask->fluid.modes, n = ask->n;
     SPARI_TRY(spari_joints_place(s));
@@ -148,7 +148,7 @@ static int solve_coupled(spar_session *s, const char *call, coupled_ask *ask, do
     return status;
 }
 
-/* What a fluid keeps from step to step no trial of one step shows. */
+/* A fluid with a state kept between steps does not show it in trials of one step. */
 static int check_memory(spar_session *s, const char *call) {
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         int64_t width = 0;

@@ -1,15 +1,14 @@
-/* The call for modes, and those of an assembly: the parts' problems side by side, springs and the turning of the
-   joints' loads between them, and what joints hold taken out. Of the constraints G x = 0, G^T = Q R with pivoted
-   columns: the last columns of Q are an orthonormal basis of the motions that they allow, on which stiffness and mass
-   are projected, so that no multiplier or penalty is left in the eigenproblem, and holds that say a thing twice do no
-   harm. */
+/* Public call for modes, and modes of an assembly: the members' problems side by side, springs and geometric
+   stiffness of the joints, and constraints eliminated. Of the constraints G x = 0, G^T = Q R with column pivoting,
+   the last columns of Q are an orthonormal basis of the admissible motions. Stiffness and mass are projected onto
+   it. So the eigenproblem has no multipliers or penalties, and redundant constraints do no harm. */
+#include "../assembly/assembly.h"
 #include "../base/blas.h"
 #include "../base/environment.h"
 #include "../base/session.h"
 #include "../member/body.h"
 #include "../member/checks.h"
 #include "../member/joint.h"
-#include "../assembly/assembly.h"
 #include "../time/fidelity.h"
 #include "modes.h"
 
@@ -19,12 +18,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A row of G is dependent when so little of it is left: as in redundant.c. */
+/* A row of G is dependent if its remainder is smaller than this, as in redundant.c. */
 static const double dependent_row = 1e-9;
 
 typedef struct modal_part {
     const spar_member *member;
-    int64_t at, size; /* its unknowns among all */
+    int64_t at, size; /* position and number of its unknowns */
 } modal_part;
 
 typedef struct tied_modes {
@@ -35,7 +34,7 @@ typedef struct tied_modes {
     gsl_matrix *G;       /* G^T, then its factors */
     gsl_vector *tau;
     size_t rank;
-    double *room; /* of a shape, twice */
+    double *room; /* two vectors of a shape */
 } tied_modes;
 
 static void tied_modes_free(tied_modes *t) {
@@ -47,7 +46,7 @@ static void tied_modes_free(tied_modes *t) {
     gsl_vector_free(t->tau);
 }
 
-/* ---- what belongs together ---- */
+/* ---- members of the assembly ---- */
 
 static const modal_part *modal_part_of(const tied_modes *t, const spar_member *m) {
     for (int i = 0; i < t->parts; i++) {
@@ -64,7 +63,8 @@ static int add_modal_part(tied_modes *t, const spar_member *m) {
     return SPAR_OK;
 }
 
-/* The unknowns stand in the order of creation, so that whichever member is asked, the modes are the same to the bit. */
+/* The unknowns are in the order of creation, so that the modes have the same bits for whichever member they are
+   requested. */
 static void order_parts(tied_modes *t, const spar_session *s) {
     int placed = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -80,7 +80,7 @@ static void order_parts(tied_modes *t, const spar_session *s) {
     }
 }
 
-/* The members that joints lead to and spar solves for, and how many holds there are. */
+/* Members connected by joints that spar solves, and the number of constraints. */
 static int gather_parts(tied_modes *t, const spar_member *first) {
     spar_session *s = first->session;
     t->part = spari_zalloc(s->member_count, sizeof *t->part);
@@ -108,7 +108,7 @@ static int gather_parts(tied_modes *t, const spar_member *first) {
 
 /* ---- joints ---- */
 
-/* How a node moves with the unknowns of its part: S [6][size], column by column from the shapes of unit unknowns. */
+/* Motion of a node by the unknowns of its part: S [6][size], column by column from shapes of unit unknowns. */
 static void motion_of_node(const modal_part *p, int64_t node, double *room, double *S) {
     const spar_member *m = p->member;
     double *unit = room, *work = unit + p->size, *nodes = work + 6 * (int64_t)m->body->unique;
@@ -123,7 +123,7 @@ static void motion_of_node(const modal_part *p, int64_t node, double *room, doub
     }
 }
 
-/* What a joint's springs and the turning of its load add to the stiffness of its two nodes. */
+/* Stiffness of a joint's springs and geometric stiffness of its load, for its two nodes. */
 static void stiffness_of_joint(const spar_joint *j, double K[12][12], double B[6][12]) {
     spari_place place[2];
     spari_relative at = j->after;
@@ -207,7 +207,7 @@ static int add_joint_to_modes(tied_modes *t, const spar_joint *j, int64_t *holds
     return SPAR_OK;
 }
 
-/* ---- the problem of all unknowns ---- */
+/* ---- assembly of the matrices ---- */
 
 static int alloc_tied_modes(tied_modes *t) {
     size_t n = (size_t)t->size, h = (size_t)t->holds;
@@ -246,9 +246,9 @@ static int fill_tied_modes(tied_modes *t, const spar_session *s) {
     return SPAR_OK;
 }
 
-/* ---- what the holds allow ---- */
+/* ---- constraints ---- */
 
-/* Rows of G to the size of 1, then Q and R in its place. */
+/* Scales rows of G to 1, then replaces G^T by Q and R. */
 static int factor_holds(tied_modes *t) {
     if (!t->G) {
         return SPAR_OK;
@@ -282,7 +282,7 @@ static void onto_allowed(const tied_modes *t, gsl_matrix *A) {
     }
 }
 
-/* The part of A that the holds leave, into B. */
+/* The admissible part of A, into B. */
 static void take_allowed(const tied_modes *t, const gsl_matrix *A, gsl_matrix *B) {
     for (size_t i = 0; i < B->size1; i++) {
         for (size_t k = 0; k < B->size2; k++) {

@@ -1,15 +1,15 @@
-/* The equations of small motions about the present state, and the call for their eigenvalues. A state that rests, or
-   turns steadily as one, is seen from a frame that turns with it, where the equations have constant coefficients. Parts
-   that turn otherwise than the others (a rotor on its tower) may do so where they are alike all around their axis: then
-   nothing changes with their angle. */
+/* Small-motion equations about the present state, and the public call for their eigenvalues. A state at rest, or in
+   steady rotation as one body, is described in a frame that rotates with it, where the coefficients are constant.
+   Parts that rotate otherwise than the rest (a rotor on its tower) are allowed if they are isotropic about their
+   axis: then nothing depends on their angle. */
 #include "small_motions.h"
 
+#include "../assembly/assembly.h"
 #include "../base/environment.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
 #include "../member/checks.h"
-#include "../assembly/assembly.h"
 #include "../time/fidelity.h"
 #include "modes.h"
 
@@ -17,10 +17,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Angular velocities that differ by less, relative to the larger, are one. */
+/* Angular velocities with a smaller relative difference are equal. */
 static const double one_turn = 1e-4;
-/* Of the largest forces there are, how much may be left over in a state that counts as one of equilibrium; and of the
-   largest stiffness: what rounding in the places makes, and more. */
+/* equilibrium: maximum force residual of an equilibrium state, relative to the largest forces. equilibrium_noise:
+   the same relative to the largest stiffness, above the rounding of positions. */
 static const double equilibrium = 1e-3, equilibrium_noise = 1e-9;
 
 void spari_swing_free(spari_swing *w) {
@@ -29,9 +29,9 @@ void spari_swing_free(spari_swing *w) {
     spari_pencil_free(&w->pencil);
 }
 
-/* ---- what belongs together ---- */
+/* ---- connected members ---- */
 
-/* Whether joints lead from a part to m. */
+/* Whether joints connect a part with m. */
 static int is_reached(const spari_swing *w, const spar_member *m) {
     for (const spar_joint *j = w->session->joints; j && m->row && m->row->limb; j = j->next) {
         for (int side = 0; side < 2; side++) {
@@ -92,22 +92,22 @@ static int gather_swing(spari_swing *w, const spar_member *first) {
     return SPAR_OK;
 }
 
-/* ---- the frame ---- */
+/* ---- frame of reference ---- */
 
 static double apart_by(const double a[3], const double b[3]) {
     double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
     return spari_norm(d);
 }
 
-/* x := what a turn of vectors with s makes of it */
+/* x := derivative of vectors that rotate with s */
 static void turn_vectors(int n, const double s[3], const double *x, double *y) {
     for (int i = 0; i < n; i += 3) {
         spari_cross(s, x + i, y + i);
     }
 }
 
-/* A part that turns with s against the frame must be alike all around: its matrices X have X T = T X, T the turning of
-   all vectors with s. Asked of one vector without any symmetry. */
+/* A part that rotates with s relative to the frame must be isotropic about this axis: its matrices X satisfy X T = T
+   X, T the rotation of all vectors with s. Tested with one vector without symmetry. */
 static int check_alike(const spari_swing *w, const swing_part *p, int64_t first) {
     double s[3] = {p->own[0] - w->w[0], p->own[1] - w->w[1], p->own[2] - w->w[2]};
     if (spari_norm(s) <= one_turn * fmax(spari_norm(p->own), spari_norm(w->w))) {
@@ -167,8 +167,8 @@ static int fill_swing(spari_swing *w) {
     return SPAR_OK;
 }
 
-/* The frame of all where they turn as one; else, or where the ground is not alike all around that, the one that rests.
- */
+/* The rotating frame if all rotate as one; otherwise, or if the ground is not isotropic about this axis, the
+   inertial frame. */
 static int find_frame(spari_swing *w) {
     int alike = 1;
     for (int i = 1; i < w->parts; i++) {
@@ -178,7 +178,7 @@ static int find_frame(spari_swing *w) {
     if (alike && w->parts > 0 && spari_norm(w->part[0].own) > 0) {
         char message[SPARI_MESSAGE_SIZE];
         memcpy(w->w, w->part[0].own, sizeof w->w);
-        (void)spari_messages_aside(message); /* that this frame does not serve is no failure */
+        (void)spari_messages_aside(message); /* a frame that does not fit is no failure */
         int status = fill_swing(w);
         (void)spari_messages_aside(NULL);
         if (status != SPAR_ERR_UNSUPPORTED) {
@@ -226,7 +226,7 @@ int spari_swing_create_loose(spari_swing *w, spar_session *s) {
     return w->parts > 0 ? fill_swing(w) : SPAR_OK;
 }
 
-/* ---- answers ---- */
+/* ---- results ---- */
 
 int spari_swing_solve(spari_swing *w, int n, double complex shift, double complex *value, double complex *x) {
     int found = 0, status = spari_spectrum(&w->pencil, n, shift, SPARI_SPECTRUM_CHOICE, &found, value, x);

@@ -1,17 +1,17 @@
-/* Stability of a state that is periodic in time: the map of small motions over one period, found by trials of the
-   host's own steps, and its eigenvalues (Floquet's multipliers). Beyond the periodic state every member is moved along
-   a shape, or given its velocity, to and fro, and runs through the period; half the difference of both ends is a
+/* Stability of a periodic state: the map of small motions over one period, found by trials of the host's own steps,
+   and its eigenvalues (Floquet multipliers). Each trial displaces every member along a shape, or gives it a velocity
+   along it, in either direction, and runs through the period. Half the difference of the two final states is a
    column. */
-#include "shapes.h"
 #include "../trial/trial.h"
+#include "shapes.h"
 
+#include "../assembly/assembly.h"
 #include "../base/blas.h"
 #include "../base/environment.h"
 #include "../comm/enter.h"
-#include "../math/rotation.h"
 #include "../exchange/exchange.h"
+#include "../math/rotation.h"
 #include "../session/callbacks.h"
-#include "../assembly/assembly.h"
 #include "../solve/life.h"
 
 #include <complex.h>
@@ -25,26 +25,26 @@
 
 static const double usual_amplitude = 1e-4, largest_amplitude = 0.1;
 enum { NODE = 13 };
-/* How far the state may be from itself after a period: displacement by the member's length, turn, and both by the
-   velocities times a radian of the period. */
+/* Maximum difference of the state after a period: displacement relative to the member's length, rotation, and both
+   for velocities times a radian of the period. */
 static const double periodic = 1e-3;
 
 typedef struct floquet {
     const char *call;
     spari_run run; /* dt, before, solve, context, progress */
-    int64_t steps; /* of the period */
+    int64_t steps; /* per period */
     int64_t nodes; /* of all members */
     int modes;
     double amplitude;
-    spari_swing swing;   /* whose parts have shapes */
+    spari_swing swing;   /* its parts have shapes */
     double *shape;       /* [modes][nodes][6] */
-    double *rate, *unit; /* [modes]: 1/s; of a shape that moves its nodes by one length of their member or one radian */
-    double *base;        /* [nodes][13]: motion at the beginning of the period, one step from here */
+    double *rate, *unit; /* [modes]: 1/s; amplitude that moves its nodes by one member length or one radian */
+    double *base;        /* [nodes][13]: motion at the beginning of the period, one step from now */
     gsl_matrix *gram;    /* products of shapes, factored */
-    gsl_matrix *Y[2];    /* [2 modes][2 modes] the state at both ends of the period, columns by what was moved */
+    gsl_matrix *Y[2];    /* [2 modes][2 modes] states at the two ends of the period, one column per disturbance */
     gsl_matrix *change;  /* [2][2 modes] of a run, at both ends */
-    int mode, kind;      /* of the run under way; mode -1: nothing is moved */
-    double size, drift;  /* with its sign; out: how far from the beginning it ends */
+    int mode, kind;      /* of the current run; mode -1: no disturbance */
+    double size, drift;  /* signed; out: distance of the final from the initial state */
 } floquet;
 
 static void floquet_free(floquet *f) {
@@ -67,7 +67,7 @@ static void keep_motion(const spar_session *s, double *base) {
     }
 }
 
-/* All parts by so much of the shape away, and faster by so much of it, as seen from axes that turn with each. */
+/* Displaces all parts along the shape, and changes their velocities along it, in axes that rotate with each part. */
 static void displace(spar_session *s, const floquet *f, double way, double speed) {
     const double *shape = f->shape + 6 * f->nodes * f->mode, *base = f->base;
     for (spar_member *m = s->members; m; m = m->next) {
@@ -93,7 +93,7 @@ static void displace(spar_session *s, const floquet *f, double way, double speed
     }
 }
 
-/* How a node has moved against where it was at the beginning: way, turn, and both of the velocities, seen as above. */
+/* Change of a node since the beginning: displacement, rotation, and their velocities, in these axes. */
 static void look_at_change(const double *base, const double own[3], const double *q, const double *v, double x[12]) {
     double turn[4], carried[3];
     spari_quat_between(base + 3, q + 3, turn);
@@ -107,12 +107,12 @@ static void look_at_change(const double *base, const double own[3], const double
     }
 }
 
-/* Turns count by the member's length. */
+/* Rotations are multiplied by the member's length. */
 static double product_at(double length, const double *a, const double *b) {
     return spari_dot(a, b) + length * length * spari_dot(a + 3, b + 3);
 }
 
-/* The state against the beginning, in shapes, into a row; and how far it is away. */
+/* The state relative to the beginning, in shapes, into a row; and its size. */
 static void look_at_state(const spar_session *s, floquet *f, gsl_vector *row) {
     int n = f->modes;
     double radian = f->run.dt * (double)f->steps / (2 * acos(-1));
@@ -142,8 +142,8 @@ static void look_at_state(const spar_session *s, floquet *f, gsl_vector *row) {
     }
 }
 
-/* The trial: one step from a start at which accelerations and loads belong to what was moved, which brings velocities
-   onto what joints hold, and a period from there. */
+/* The trial: one step from consistent initial conditions of the disturbed state, which makes velocities compatible
+   with joints, and a period from there. */
 static int run_period(spar_session *s, void *self) {
     floquet *f = self;
     const spari_run *run = &f->run;
@@ -206,7 +206,7 @@ static int find_columns_of_map(spar_session *s, floquet *f, const spari_wish *wi
     return SPAR_OK;
 }
 
-/* A = Y_1 Y_0^-1, transposed into Y[1]: its eigenvalues are those. A status, without a message. */
+/* A = Y_1 Y_0^-1, transposed into Y[1]: its eigenvalues are the multipliers. Returns a status, without a message. */
 static int form_map(floquet *f) {
     size_t n = 2 * (size_t)f->modes;
     int sign, wrong;
@@ -230,7 +230,8 @@ static int by_size(const void *a, const void *b) {
     return x < y ? 1 : x > y ? -1 : 0;
 }
 
-/* Multipliers z [2 modes], the largest first, one of each conjugate pair, and how many. A status, without a message. */
+/* Multipliers z [2 modes], largest first, one of each conjugate pair, and their number. Returns a status, without a
+   message. */
 static int solve_map(floquet *f, double complex *z, int *count) {
     size_t n = 2 * (size_t)f->modes;
     gsl_vector_complex *value = gsl_vector_complex_alloc(n);
@@ -258,7 +259,7 @@ static int solve_map(floquet *f, double complex *z, int *count) {
 
 /* ---- the call ---- */
 
-/* Shapes on every rank by itself. */
+/* Shapes, computed on every rank. */
 static int find_shapes_of_period(spar_session *s, floquet *f) {
     int n = f->modes;
     SPARI_TRY(spari_joints_place(s));
@@ -279,7 +280,7 @@ static int find_shapes_of_period(spar_session *s, floquet *f) {
     return SPAR_OK;
 }
 
-/* Products of shapes, and how much of each is a motion of the size of one. */
+/* Products of shapes, and the unit amplitude of each. */
 static int weigh_shapes(spar_session *s, floquet *f) {
     int singular;
     for (int i = 0; i < f->modes; i++) {

@@ -1,19 +1,19 @@
-/* Loads by motion along shapes, in trials that solve nothing: see fluid_response.h. */
+/* Loads due to motion along shapes, in trials that solve nothing: see fluid_response.h. */
 #include "fluid_response.h"
 
 #include "../math/rotation.h"
-#include "../session/prescribed_step.h"
 #include "../session/callbacks.h"
+#include "../session/prescribed_step.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The bell's width, steps. */
+/* Width of the bell, in steps. */
 static const double bell_width = 1.25;
-/* How far the loads that the trials find about the present state may be from those in use. */
+/* Maximum difference between the loads of the trials at the present state and those in use. */
 static const double same_loads = 1e-3;
-/* Of the structure's forces in a trial, what counts as no load. */
+/* Loads below this, relative to the structure's forces in a trial, count as zero. */
 static const double no_load = 1e-6;
 
 void spari_answer_free(spari_answer *answer) {
@@ -21,7 +21,7 @@ void spari_answer_free(spari_answer *answer) {
     answer->load = NULL;
 }
 
-/* How far a shape is gone, and how fast. */
+/* Amplitude, velocity and acceleration along a shape. */
 typedef struct answer_law {
     double x, v, a;
 } answer_law;
@@ -32,17 +32,17 @@ typedef struct answer_trial {
     const char *call;
     const double *base; /* [nodes][13]: displacement, quaternion, velocity, angular velocity at the beginning */
     const spari_answer *answer;
-    int mode, kind; /* kind: memory 0: of displacement, velocity, acceleration */
-    double size;    /* of the motion, with its sign */
+    int mode, kind; /* kind: without memory 0: displacement, 1: velocity, 2: acceleration */
+    double size;    /* amplitude of the motion, signed */
     double *load;   /* [count][modes], out */
-    double *scale;  /* [modes] sums of the sizes of the loads' parts: the largest of all trials so far, */
-    double *left;   /* and how far the loads were from those in use where nothing moves */
-    int done, all;  /* trials */
+    double *scale;  /* [modes] sums of the sizes of the loads' parts: maximum of all trials so far, */
+    double *left;   /* and the difference between the loads without motion and those in use */
+    int done, all;  /* trials made, and in total */
 } answer_trial;
 
 /* ---- motion ---- */
 
-/* R = exp(w t), as a quaternion; and of a velocity that turns with it the way in t. */
+/* R = exp(w t), as a quaternion; and the displacement in t due to a velocity that rotates with it. */
 static void turn_on(const double w[3], double t, const double v[3], double q[4], double way[3]) {
     double angle = spari_norm(w) * t, s[3] = {w[0] * t, w[1] * t, w[2] * t}, once[3], twice[3];
     double b = fabs(angle) > 1e-3 ? (1 - cos(angle)) / (angle * angle) : 0.5 - angle * angle / 24;
@@ -55,7 +55,7 @@ static void turn_on(const double w[3], double t, const double v[3], double q[4],
     }
 }
 
-/* Where steady motion takes a node in t. own: angular velocity of its member. */
+/* Position of a node after steady motion for t. own: angular velocity of its member. */
 static void move_steadily(const double *base, const double own[3], double t, double q[7], double v[6], double a[6]) {
     double turn[4], way[3];
     turn_on(own, t, base + 7, turn, way);
@@ -78,8 +78,8 @@ static void add_cross(double f, const double a[3], const double b[3], double c[3
     }
 }
 
-/* What motion along a shape adds, (W1) and (W2) of docs/theory.md, in the axes of the frame at t: frame its turn, w its
-   angular velocity, s that of the member against it. */
+/* Adds motion along a shape, (W1) and (W2) of docs/theory.md, in the axes of the frame at t. frame: its rotation; w:
+   its angular velocity; s: that of the member relative to it. */
 static void add_motion(const double shape[6], answer_law at, const double frame[4], const double w[3],
                        const double s[3], double q[7], double v[6], double a[6]) {
     double d[3][6] = {{0}}, once[3], turned[4], old[4], ws[3] = {w[0] - s[0], w[1] - s[1], w[2] - s[2]};
@@ -110,7 +110,7 @@ static void add_motion(const double shape[6], answer_law at, const double frame[
     }
 }
 
-/* All members where they are at t, if their mode is at `law`. */
+/* Places all members at time t, with their mode at `law`. */
 static void place_members(spar_session *s, const answer_trial *of, double t, answer_law law, int after) {
     const spari_swing *w = of->ask->swing;
     const double zero[3] = {0, 0, 0}, *base = of->base, *shape = of->ask->shape + 6 * of->ask->nodes * of->mode;
@@ -136,7 +136,7 @@ static void place_members(spar_session *s, const answer_trial *of, double t, ans
 
 /* ---- loads ---- */
 
-/* Loads on all shapes at t, and the sizes of their parts. */
+/* Generalised loads on all shapes at t, and the sizes of their parts. */
 static void see_loads(const spar_session *s, const spari_answer_ask *ask, double t, double *load, double *scale) {
     const spari_swing *w = ask->swing;
     const double zero[3] = {0, 0, 0};
@@ -164,7 +164,7 @@ static answer_law bell(int64_t sample) {
                        : (answer_law){0, 0, 0};
 }
 
-/* The law at the end of a step; of the beginning before = 1. */
+/* Motion at the end of a step, or at its beginning (before = 1). */
 static answer_law law_of(const answer_trial *of, int64_t sample, int before) {
     double dt = of->ask->run.dt, rate = of->ask->rate[of->mode], size = of->size;
     if (of->ask->memory > 0) {
@@ -194,7 +194,7 @@ static int move_there(spar_session *s, void *self) {
 
 /* ---- all trials ---- */
 
-/* Half the difference of two trials, by the unit of their motion, into column `mode`; their mean is what is there
+/* Half the difference of two trials, divided by the unit of their motion, into column `mode`. Their mean is the load
    without motion. */
 static void take_trials(const spari_answer_ask *ask, const answer_trial *of, const double *in_use, const double *plus,
                         const double *minus, double unit, double *to) {
@@ -209,7 +209,7 @@ static void take_trials(const spari_answer_ask *ask, const answer_trial *of, con
     }
 }
 
-/* How much of the shape moves its nodes by one length of their member, or one radian. */
+/* Amplitude of the shape that moves its nodes by one member length, or one radian. */
 static double unit_of(const spar_session *s, const spari_answer_ask *ask, int mode) {
     const double *shape = ask->shape + 6 * ask->nodes * mode;
     double most = 0;

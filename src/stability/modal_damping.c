@@ -1,7 +1,7 @@
-/* Stiffness-proportional damping from the damping ratios of two modes. With D_ij = sqrt(mu_i mu_j) C_ij a mode of unit
-   modal mass has the ratio x^T B x / (2 omega), B the beam's own damping matrix. The strain components form three
-   groups: bending about y with shear z, bending about z with shear y, torsion with stretch; each of the two modes sets
-   the mu of the group that holds most of its strain energy, the third group gets their geometric mean. */
+/* Stiffness-proportional damping from the damping ratios of two modes. With D_ij = sqrt(mu_i mu_j) C_ij, a mode of
+   unit modal mass has the ratio x^T B x / (2 omega), B the beam's damping matrix. The strain components form three
+   groups: bending about y with shear z, bending about z with shear y, torsion with stretch. Each of the two modes
+   sets the mu of the group with most of its strain energy; the third group gets their geometric mean. */
 #include "../base/environment.h"
 #include "../math/rotation.h"
 #include "../member/beam.h"
@@ -14,7 +14,7 @@
 
 enum { GROUPS = 3 };
 
-static const int GROUP[6] = {2, 1, 0, 2, 0, 1}; /* of axial, shear y, shear z, torsion, bending y, bending z */
+static const int GROUP[6] = {2, 1, 0, 2, 0, 1}; /* group of axial, shear y, shear z, torsion, bending y, bending z */
 static const char *const GROUP_NAME[GROUPS] = {"bending about y", "bending about z", "torsion and stretch"};
 
 /* x^T B x of both shapes [2][unique][6] at the state q */
@@ -35,7 +35,7 @@ static void modal_damping(const spari_body *b, const double *q, const double *x,
     }
 }
 
-/* share[k][g][h]: ratio of mode k is sum sqrt(mu_g mu_h) share */
+/* share[k][g][h]: the ratio of mode k is sum sqrt(mu_g mu_h) share */
 static int find_shares(spar_member *m, const double omega[2], const double *q, const double *x, double *work,
                        double share[2][GROUPS][GROUPS]) {
     int64_t size = 36 * (int64_t)m->per_element * m->per_element;
@@ -77,7 +77,7 @@ static void groups_of(const int own[2], const double y[2], double mu[GROUPS]) {
     mu[own[1]] = exp(y[1]);
 }
 
-/* Newton for the logarithms; 0 when the ratios are met to 1e-12. */
+/* Newton iteration for the logarithms; 0 if the ratios are met to 1e-12. */
 static int solve_ratios(const double share[2][GROUPS][GROUPS], const int own[2], const double ratio[2],
                         double mu[GROUPS]) {
     double y[2];
@@ -117,7 +117,7 @@ static int solve_ratios(const double share[2][GROUPS][GROUPS], const int own[2],
     return 1;
 }
 
-/* The lowest modes of a free or pinned beam, which move it without strain; what frequency they have is rounding. */
+/* Number of rigid-body modes of a free or pinned beam, whose frequencies are rounding errors. */
 static int rigid_modes(const spar_member *m) {
     return m->root == SPAR_ROOT_FREE ? 6 : m->root == SPAR_ROOT_PINNED ? 3 : 0;
 }

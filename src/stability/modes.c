@@ -1,14 +1,14 @@
-/* Modes about the present state, seen from the frame that turns with the root: K x = omega^2 M x over the unknowns that
-   the root leaves free. K is the tangent in that frame (turn.h); Coriolis' forces are left out, so that the problem
-   stays symmetric. Solved as M x = mu (K + sigma M) x, mu = 1 / (omega^2 + sigma): the low modes are the large mu and
-   keep their digits beside stiffnesses and rotary inertias that differ by many powers of ten; M may be singular. sigma
-   is 0 where K is positive definite beyond its rounding, else the smallest tried that makes it so. */
+/* Modes about the present state, in the frame that rotates with the root: K x = omega^2 M x over the unknowns that
+   the root leaves free. K is the tangent in this frame (time/steady_rotation.h). Coriolis forces are left out, so
+   the problem is symmetric. It is solved as M x = mu (K + sigma M) x, mu = 1 / (omega^2 + sigma). Low modes are
+   large mu and keep their digits although stiffnesses and rotary inertias differ by many powers of ten; M may be
+   singular. sigma is 0 if K is positive definite beyond rounding, otherwise the smallest tried that makes it so. */
 #include "modes.h"
 
+#include "../algebra/eigen.h"
 #include "../base/blas.h"
 #include "../base/session.h"
 #include "../member/body.h"
-#include "../algebra/eigen.h"
 #include "../time/fidelity.h"
 
 #include <gsl/gsl_blas.h>
@@ -40,7 +40,7 @@ int spari_modal_alloc(spari_modal *p, size_t n) {
     return p->K && p->M && p->A && p->B && p->x && p->lambda && p->work;
 }
 
-/* K + sigma M into B, with its Cholesky factor tried in A. */
+/* K + sigma M into B; tries its Cholesky factor in A. */
 static int shifted(const spari_modal *p, double sigma) {
     for (size_t i = 0; i < p->size; i++) {
         for (size_t j = 0; j < p->size; j++) {
@@ -53,9 +53,9 @@ static int shifted(const spari_modal *p, double sigma) {
     return status == GSL_SUCCESS;
 }
 
-/* Whether K x is nothing but rounding for the motion of least stiffness, by steps of x := K^-1 M x with the factor in
-   A. The factorisation of a singular matrix may succeed: rounding decides. Rows count by the roots of their stiffness,
-   whatever their units. */
+/* Whether K x is rounding error alone for the motion of least stiffness, by steps of x := K^-1 M x with the factor
+   in A. (The factorisation of a singular matrix may succeed by rounding.) Rows are scaled by the roots of their
+   stiffness. */
 static int has_loose_motion(const spari_modal *p) {
     enum { STEPS = 4 };
     const double only_rounding = 1e-12;
@@ -83,9 +83,9 @@ static int has_loose_motion(const spari_modal *p) {
     return !(left > only_rounding * size);
 }
 
-/* Smallest shift that makes K + sigma M positive definite, in steps of 10 from 1e-6 of the largest K_ii / M_ii; -1 when
-   none does. A smaller one would make 1 / (omega^2 + sigma) of a rigid motion so large that rounding in it drowns the
-   others, a larger one drowns the low modes: an omega^2 keeps what is between sigma and rounding on either side. */
+/* Smallest shift that makes K + sigma M positive definite, in steps of 10 from 1e-6 of the largest K_ii / M_ii; -1
+   if none does. A smaller shift makes 1 / (omega^2 + sigma) of rigid motions so large that its rounding hides the
+   other modes. A larger shift hides the low modes: omega^2 keeps the digits between sigma and rounding. */
 static double find_shift(const spari_modal *p) {
     double largest = 0;
     if (shifted(p, 0) && !has_loose_motion(p)) {
@@ -100,7 +100,7 @@ static double find_shift(const spari_modal *p) {
             return f * largest;
         }
     }
-    return largest == 0 && shifted(p, 1) ? 1 : -1; /* a rigid body that nothing holds */
+    return largest == 0 && shifted(p, 1) ? 1 : -1; /* an unconstrained rigid body */
 }
 
 const double *spari_modal_mode(spari_modal *p, size_t k) {
@@ -113,7 +113,7 @@ const double *spari_modal_mode(spari_modal *p, size_t k) {
     return p->work->data;
 }
 
-static int is_finite(const gsl_matrix *A) { /* fresh matrices have no gaps */
+static int is_finite(const gsl_matrix *A) { /* new matrices are contiguous */
     return spari_first_nonfinite(A->data, (int64_t)(A->size1 * A->size2)) < 0;
 }
 
@@ -158,7 +158,7 @@ static int check_count(const spar_member *m, int64_t n, int64_t free_unknowns) {
 static int find_modes(const spar_member *m, int64_t n, spari_modal *p, double *frequency, double *shapes) {
     double *room = spari_zalloc(6 * (int64_t)m->body->unique, sizeof *room);
     int status = room && spari_modal_alloc(p, (size_t)m->row->unknowns(m))
-                     ? m->row->problem(m, p->K->data, p->M->data) /* without gaps */
+                     ? m->row->problem(m, p->K->data, p->M->data) /* contiguous */
                      : SPAR_ERR_MEMORY;
     if (status != SPAR_OK) {
         free(room);

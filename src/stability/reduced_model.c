@@ -1,7 +1,7 @@
-/* Eigenvalues of structure and fluid in a few shapes: see reduced_model.h. Of a fluid with a memory A(s) is the transform of
-   the loads over that of the pulse, z = e^(s dt): a sum over the pulse, and of what follows the closed form of how it
-   comes to rest, so that it is there also where the sum would not end. A rational form near to it has eigenvalues all
-   of which are found; each is then brought to A(s) itself. */
+/* Eigenvalues of structure and fluid in a few shapes: see reduced_model.h. For a fluid with memory, A(s) is the
+   transform of the loads divided by that of the pulse, z = e^(s dt). It is a sum over the pulse plus the closed form
+   of the decay after it, so it exists also where the infinite sum diverges. All eigenvalues of a rational
+   approximation are computed, and each is then refined with A(s) itself. */
 #include "reduced_model.h"
 
 #include "../algebra/schur.h"
@@ -10,9 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Faster than this, in turns of phase a step, no sample shows a motion as it is; and of the fluid's own rates. */
+/* shown: maximum phase change per step, in radians, of a motion that samples resolve; modelled: of the fluid's own
+   rates. */
 static const double shown = 1, modelled = 1.5;
-/* Slower than so much of the fastest shape is no motion. */
+/* Rates below this fraction of the fastest shape count as zero. */
 static const double still = 1e-6;
 enum { NEAREST = 9, POLISH = 30, MORE = 6 };
 
@@ -36,9 +37,9 @@ void spari_reduced_free(spari_reduced *r) {
     spari_decay_free(&r->tail);
 }
 
-/* ---- the answer ---- */
+/* ---- response of the fluid ---- */
 
-/* Of the pulse. */
+/* Transform of the pulse. */
 static double complex transform(const spari_reduced *r, double complex s) {
     double complex sum = 0, back = cexp(-s * r->dt), factor = cexp(s * r->dt * SPARI_PULSE_MIDDLE);
     for (int k = 0; k < SPARI_PULSE; k++, factor *= back) {
@@ -73,7 +74,7 @@ static void find_answer(const spari_reduced *r, double complex s, double complex
     }
 }
 
-/* The fluid's own rates that the samples show, and what of A(s) is as 1 / (s - rate) of them. */
+/* The fluid's own resolved rates, and the coefficients of 1 / (s - rate) in A(s). */
 typedef struct reduced_pole {
     int of;
     double complex rate, factor;
@@ -92,7 +93,7 @@ static int find_poles(const spari_reduced *r, reduced_pole *pole) {
     return count;
 }
 
-/* What is left of A(i w) beside the poles, as a0 - w^2 a2 + i w a1, by least squares. */
+/* Approximates A(i w) beside the poles by a0 - w^2 a2 + i w a1, by least squares. */
 static void fit_answer(spari_reduced *r, int poles, const reduced_pole *pole, double complex *A) {
     double top = fmin(fmax(1.5 * r->fastest, 0.1 / r->dt), shown / r->dt), s0 = 0, s2 = 0, s4 = 0;
     int n = r->n, size = n * n;
@@ -156,7 +157,7 @@ typedef struct reduced_root {
     int wanted;
 } reduced_root;
 
-/* Memory of a solution: of the rational form, of size N = 2 n + poles, and of what each root takes. */
+/* Workspace of a solution: of the rational approximation, of size N = 2 n + poles, and of each root. */
 typedef struct reduced_work {
     int n, N, roots;
     reduced_pole *pole;
@@ -190,8 +191,8 @@ static int work_create(reduced_work *w, const spari_reduced *r) {
     return SPAR_OK;
 }
 
-/* The rational form as one matrix of (x, s x, w), in the unit of time that `fastest` gives. 1: what is accelerated has
-   no mass. */
+/* The rational approximation as one matrix of (x, s x, w), in the unit of time given by `fastest`. 1: the mass of
+   the accelerated unknowns is singular. */
 static int form_matrix(const spari_reduced *r, reduced_work *w, double unit) {
     int n = r->n, N = w->N, columns = N;
     double complex *rows = w->S + (int64_t)n * N;
@@ -221,7 +222,7 @@ static int form_matrix(const spari_reduced *r, reduced_work *w, double unit) {
     return spari_decay_solve(n, w->T, columns, rows);
 }
 
-/* Its eigenvalues and vectors: where the roots are searched from. */
+/* Its eigenvalues and vectors: start values of the roots. */
 static int find_starts(const spari_reduced *r, reduced_work *w) {
     double unit = r->fastest;
     int n = r->n, N = w->N;
@@ -260,8 +261,8 @@ static void find_matrix(const spari_reduced *r, const reduced_work *w, double co
     }
 }
 
-/* From one matrix to the next by the nearest eigenvalue of T x = m T' x (Ruhe, SIAM J. Numer. Anal. 10, 1973), of
-   copies the next. 1: it leads nowhere, or elsewhere. */
+/* Refines a root by successive linear problems: nearest eigenvalue of T x = m T' x (Ruhe, SIAM J. Numer. Anal. 10,
+   1973); for copies the next one. 1: no convergence, or to another root. */
 static int bring_nearer(const spari_reduced *r, const reduced_work *w, reduced_root *root, int copy, double slack) {
     int n = r->n;
     double last = INFINITY;
@@ -293,15 +294,15 @@ static int bring_nearer(const spari_reduced *r, const reduced_work *w, reduced_r
             return 1;
         }
         if (cabs(step) <= 1e-11 * cabs(root->s) || (cabs(step) <= 1e-6 * cabs(root->s) && cabs(step) > 0.1 * last)) {
-            return 0; /* or no nearer, for noise */
+            return 0; /* or no closer, because of noise */
         }
         last = cabs(step);
     }
     return 1;
 }
 
-/* Whether the root is the structure's: next to a rate of the fluid's own the loads change with s by more than all
-   forces there are, over a change of s by itself. What grows counts always. */
+/* Whether the root belongs to the structure. Close to a rate of the fluid itself, a relative change of s changes the
+   loads by more than the sum of all forces. Growing roots always count. */
 static int is_of_structure(const spari_reduced *r, const reduced_work *w, const reduced_root *root) {
     int n = r->n;
     double fluid = 0, structure = 0;
@@ -325,7 +326,7 @@ static int is_of_structure(const spari_reduced *r, const reduced_work *w, const 
     return cabs(root->s) * fluid <= structure;
 }
 
-/* In the order of their distance from the shift, until there are so many that no other can be among the n nearest. */
+/* Refines in the order of distance from the shift, until no other can be among the n nearest. */
 static void bring_all_nearer(const spari_reduced *r, reduced_work *w, int n) {
     double slack = 1 / (r->dt * (double)(r->answer.count + 1));
     for (int k = 0, enough = 0; k < w->roots; k++) {
@@ -359,7 +360,7 @@ static int by_nearness(const void *a, const void *b) {
     return (x->distance > y->distance) - (x->distance < y->distance);
 }
 
-/* Real ones are real; motions without stiffness have zero twice, and count once. */
+/* Makes real roots real; motions without stiffness have a double zero and count once. */
 static void sort_roots(const spari_reduced *r, reduced_work *w, double complex shift) {
     int stand = 0;
     for (int k = 0; k < w->roots; k++) {

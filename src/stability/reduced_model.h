@@ -1,4 +1,4 @@
-/* The eigenvalues of structure and fluid in a few shapes: (s^2 M + s C + K - A(s)) x = 0, A the fluid's answer. */
+/* Eigenvalues of structure and fluid in a few shapes: (s^2 M + s C + K - A(s)) x = 0, A the response of the fluid. */
 #ifndef SPARI_REDUCED_H
 #define SPARI_REDUCED_H
 
@@ -10,20 +10,21 @@ typedef struct spari_reduced {
     double dt;
     int64_t memory;
     double *M, *C, *K; /* [n][n] */
-    double *A[3];      /* [n][n] the answer to displacement, velocity and acceleration: all of it, or what is nearest */
-    double fastest;    /* rate, 1/s, that the shapes go up to */
+    double *A[3];      /* [n][n] response to displacement, velocity and acceleration: exact, or the closest fit */
+    double fastest;    /* largest rate of the shapes, 1/s */
     spari_answer answer;
-    spari_decay tail; /* memory > 0: how the loads come to rest once the motion has ended, */
-    double misfit;    /* and what that is off the loads, relative to the largest of all */
+    spari_decay tail; /* memory > 0: decay of the loads after the motion has ended, */
+    double misfit;    /* and its deviation from the loads, relative to the largest */
 } spari_reduced;
 
-/* n, dt and memory are in it: memory for M, C, K and A. 0 or SPAR_ERR_MEMORY. Free it whatever that is. */
+/* Allocates M, C, K and A; n, dt and memory must be set. Returns 0 or SPAR_ERR_MEMORY. Free it in any case. */
 int spari_reduced_create(spari_reduced *reduced);
 void spari_reduced_free(spari_reduced *reduced);
-/* M, C, K and the answer are there: what is nearest to it of the second degree, and how it comes to rest. 0 or a
-   status: SPAR_ERR_NUMERIC: it has no numbers. */
+/* After M, C, K and the response are set: computes the closest second-degree fit, and the decay. Returns 0 or a
+   status; SPAR_ERR_NUMERIC: the response is not finite. */
 int spari_reduced_prepare(spari_reduced *reduced);
-/* Those nearest to the shift, at most n; x [n][reduced->n], of unit x^H M x. *found: how many. 0 or a status. */
+/* Eigenvalues nearest to the shift, at most n; x [n][reduced->n], with unit x^H M x. *found: their number. Returns 0
+   or a status. */
 int spari_reduced_solve(const spari_reduced *reduced, int n, double complex shift, int *found, double complex *value,
                         double complex *x);
 

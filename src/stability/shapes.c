@@ -1,4 +1,4 @@
-/* The shapes that structure and fluid are seen in: see shapes.h. */
+/* Shapes for the reduced description of structure and fluid: see shapes.h. */
 #include "shapes.h"
 
 #include "../base/session.h"
@@ -29,8 +29,8 @@ double spari_shapes_product(int n, const double *a, const double *b) {
     return sum;
 }
 
-/* The undamped, symmetric part, whose eigenvectors are the shapes; with so much of M in K, which changes none of them.
- */
+/* The undamped, symmetric part, whose eigenvectors are the shapes. `more` times M is added to K, which does not
+   change them. */
 static int symmetric_part(const spari_pencil *p, double more, spari_pencil *to) {
     if (spari_pencil_create(to, p->n) != SPAR_OK) {
         return SPAR_ERR_MEMORY;
@@ -48,8 +48,8 @@ static int symmetric_part(const spari_pencil *p, double more, spari_pencil *to) 
     return to->full ? SPAR_ERR_MEMORY : SPAR_OK;
 }
 
-/* x, or its imaginary part, without what is along the `count` shapes there are; kept behind them if anything of it is
-   left. room [2 n] */
+/* Orthogonalises x, or its imaginary part, against the `count` existing shapes; appends the rest if it is not zero.
+   room [2 n] */
 static int add_shape(const spari_pencil *p, const double complex *x, int imaginary, int count, double *shape,
                      double *room) {
     int n = p->n;
@@ -78,7 +78,7 @@ static int add_shape(const spari_pencil *p, const double complex *x, int imagina
     return 1;
 }
 
-/* A little stiffness, by mass, for where there are motions without any; more than rounding makes of it. */
+/* A small stiffness, proportional to mass, for motions without stiffness; larger than its rounding error. */
 static double some_stiffness(const spari_pencil *p, double *diagonal) {
     double most = 0;
     memset(diagonal, 0, 2 * (size_t)p->n * sizeof *diagonal);
@@ -93,9 +93,9 @@ static double some_stiffness(const spari_pencil *p, double *diagonal) {
     return most > 0 ? 1e-12 * most : 1;
 }
 
-/* `modes` shapes of unit mass [modes][size] and their rates; *count: how many there are. A shape whose omega^2 is
-   negative, as turning beyond the frequency of a support gives, has two eigenvalues that count: so many more are asked.
-   value: room for 2 modes, and as many vectors. */
+/* `modes` shapes of unit mass [modes][size] and their rates; *count: their number. A shape with negative omega^2, as
+   in rotation beyond the frequency of a support, has two eigenvalues that count, so more are requested. value: room
+   for 2 modes, and as many vectors. */
 static int search_shapes(const spari_swing *w, int modes, double more, double complex *value, double *shape,
                          double *rate, double *room, int *count) {
     spari_pencil part = {0};

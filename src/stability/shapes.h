@@ -1,20 +1,21 @@
-/* Undamped shapes of all that a session solves for, of the symmetric part of its equations of small motions. */
+/* Undamped shapes of everything that a session solves, from the symmetric part of its small-motion equations. */
 #ifndef SPARI_SHAPES_H
 #define SPARI_SHAPES_H
 
 #include "small_motions.h"
 
-/* As many as are asked for at most. */
+/* Maximum number of shapes. */
 enum { SPARI_SHAPES_MOST = 200 };
 
-/* Nodes of the members that have been committed: as many as shapes are shown at. */
+/* Nodes of the committed members, at which shapes are given. */
 int64_t spari_shapes_nodes(const spar_session *session);
 /* K, C or M (kind 0, 1, 2) times x. */
 void spari_shapes_times(const spari_pencil *pencil, int kind, const double *x, double *y);
 double spari_shapes_product(int n, const double *a, const double *b);
 /* The lowest shapes [modes][size], of unit mass, and their rates [modes], > 0; a status and a message. */
 int spari_shapes_find(spari_swing *swing, int modes, double *shape, double *rate);
-/* As motion of the nodes of all members [modes][nodes][6]; what spar does not solve for stands still. */
+/* Converts shapes to motion of the nodes of all members [modes][nodes][6]; members that spar does not solve are at
+   rest. */
 void spari_shapes_show(const spari_swing *swing, int modes, const double *shape, double *nodes);
 
 #endif

@@ -1,23 +1,23 @@
-/* Joints in the equations of small motions: springs, dampers, the turning of their loads, and what they hold. */
+/* Joints in the small-motion equations: springs, dampers, geometric stiffness of their loads, and constraints. */
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
-#include "../time/fidelity.h"
 #include "../time/component.h"
+#include "../time/fidelity.h"
 #include "small_motions.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A joint's node as its part's unknowns move it: columns that are not zero. */
+/* Motion of a joint's node by the unknowns of its part: the nonzero columns. */
 typedef struct swing_side {
-    const swing_part *part; /* NULL: it moves as it is told */
-    int count, *column;     /* of all unknowns */
+    const swing_part *part; /* NULL: prescribed motion */
+    int count, *column;     /* numbers among all unknowns */
     double (*S)[6];
 } swing_side;
 
-/* One side's columns; room for the part's unknowns. */
+/* Columns of one side, and room for the part's unknowns. */
 static void find_columns(const spari_swing *w, const spar_joint *j, int side, swing_side *of) {
     const spar_member *m = of->part->member;
     int held = spari_member_held(m), own = m->row->limb == &spari_limb_nodes && !m->row->whole;
@@ -45,8 +45,8 @@ static void find_columns(const spari_swing *w, const spar_joint *j, int side, sw
     }
 }
 
-/* How the rates of the nodes [12] change with their motion: V = d v / d x, seen from the frame (steady_rotation.h), v those of
- * now. */
+/* Derivative of the nodes' rates [12] with respect to their motion: V = d v / d x, in the frame (steady_rotation.h),
+   v the present rates. */
 static void rates_of_nodes(const spari_swing *w, const spar_joint *j, const swing_side of[2], double v[12],
                            double V[12][12]) {
     memset(V, 0, 144 * sizeof V[0][0]);
@@ -71,11 +71,12 @@ static void rates_of_nodes(const spari_swing *w, const spar_joint *j, const swin
 
 typedef struct swing_joint {
     double K[12][12], C[12][12], B[6][12], f[12];
-    double bound[12][12]; /* of K, what goes with the axes of the joint: not the turning of loads that turn with all */
+    double bound[12][12]; /* the part of K that depends on the joint's axes, without the rotation of loads that rotate
+                             with all */
     int given;
 } swing_joint;
 
-/* K, C += B^T (k B + d R), B^T d B over the motions that are free; K in `bound` too */
+/* K, C += B^T (k B + d R), B^T d B over the free motions; K into `bound` too */
 static void add_spring(const spar_joint *j, double R[6][12], swing_joint *of) {
     for (int pq = 0; pq < 36; pq++) {
         int p = pq / 6, q = pq % 6, off = (of->given >> p & 1) || (of->given >> q & 1);
@@ -104,7 +105,7 @@ SPARI_APART static void linearise_joint(const spari_swing *w, const spar_joint *
     spari_tie_tangent(&j->tie, &place[0], &place[1], at.load, of->K);
     spari_tie_forces(of->B, at.load, of->f);
     for (int k = 0; k < 6;
-         k++) { /* what holds and springs give is steady as the motion is; what the host gives stands */
+         k++) { /* constraint and spring forces are steady like the motion; the host's loads are fixed in space */
         stands[k] = of->given >> k & 1 ? 0 : j->given[k] + j->preload[k];
     }
     spari_tie_tangent(&j->tie, &place[0], &place[1], stands, of->bound);
@@ -123,7 +124,7 @@ SPARI_APART static void linearise_joint(const spari_swing *w, const spar_joint *
     }
 }
 
-/* |A T - T A| of a 12 x 12 matrix, T the turning of vectors with s; what that is small against. */
+/* |A T - T A| of a 12 x 12 matrix, T the rotation of vectors with s; *size: its scale. */
 static double change_by_turning(double A[12][12], const double s[3], double *size) {
     double W[3][3], change = 0;
     spari_skew(s, *W);
@@ -140,7 +141,7 @@ static double change_by_turning(double A[12][12], const double s[3], double *siz
     return change;
 }
 
-/* The projection onto what is held, B^T (B B^T)^-1 B of the rows that are given: by Gram and Schmidt. */
+/* Projection onto the constrained motions, B^T (B B^T)^-1 B of the given rows, by Gram-Schmidt. */
 static void held_directions(const swing_joint *of, double P[12][12]) {
     double row[6][12] = {{0}};
     int count = 0;
@@ -174,7 +175,7 @@ static void held_directions(const swing_joint *of, double P[12][12]) {
     }
 }
 
-/* A joint's axes go with b: where that turns otherwise than the frame, the joint must be alike all around. */
+/* The joint's axes rotate with b. If b rotates otherwise than the frame, the joint must be isotropic about the axis. */
 SPARI_APART static int check_around(const spari_swing *w, const spar_joint *j, const swing_side side[2],
                                     swing_joint *of) {
     double s[3], P[12][12], size[3] = {0}, most = spari_norm(w->w);
@@ -201,7 +202,7 @@ SPARI_APART static int check_around(const spari_swing *w, const spar_joint *j, c
     return SPAR_OK;
 }
 
-/* S_a^T X S_b of two sides, and what is held */
+/* S_a^T X S_b of two sides, and the constraints */
 static void put_joint(spari_swing *w, const swing_side side[2], const swing_joint *of, int *holds) {
     for (int ab = 0; ab < 4; ab++) {
         const swing_side *a = side + ab / 2, *b = side + ab % 2;
@@ -219,7 +220,8 @@ static void put_joint(spari_swing *w, const swing_side side[2], const swing_join
     for (int n = 0; n < 2; n++) {
         for (int c = 0; c < side[n].count; c++) {
             double *left = w->pencil.left + side[n].column[c], row[6] = {0};
-            int told = side[n].part->member->seen != SPARI_SEEN_LINEAR; /* those do not say their own forces */
+            int told =
+                side[n].part->member->seen != SPARI_SEEN_LINEAR; /* linear members do not report their own forces */
             for (int i = 0; i < 6; i++) {
                 w->pencil.scale = fmax(w->pencil.scale, fabs(of->f[6 * n + i]));
                 *left -= told ? side[n].S[c][i] * of->f[6 * n + i] : 0;
@@ -249,7 +251,7 @@ int spari_swing_add_joint(spari_swing *w, const spar_joint *j, int *holds) {
     for (int n = 0; n < 2 && status == SPAR_OK; n++) {
         int size = side[n].part ? side[n].part->size : 0;
         side[n].column = spari_zalloc(size, sizeof *side[n].column);
-        side[n].S = spari_zalloc(size + 1, sizeof *side[n].S); /* one is tried behind the last */
+        side[n].S = spari_zalloc(size + 1, sizeof *side[n].S); /* one is tried past the last */
         status = side[n].column && side[n].S ? SPAR_OK : SPAR_ERR_MEMORY;
         if (size > 0 && status == SPAR_OK) {
             find_columns(w, j, n, side + n);

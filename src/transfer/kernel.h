@@ -1,15 +1,14 @@
-/* The transfer kernels for one vector width. Included by transfer.c once per width with the macros of math/width.h; W
-   nodes are in a vector. Without GNU vector types W is 1 and everything below is plain C. No include guard: this is a
-   body, not an interface.
-
-   Two vectors are worked on side by side (PAIR nodes): the chains of multiply-adds are then long enough apart to hide
-   their latency, and each coefficient is spread over the lanes once for both. */
+/* Transfer kernels for one vector width: motion from a line to fluid nodes, and loads from fluid nodes to the line.
+   Included by transfer.c once per width with the macros of math/width.h; a vector holds W nodes. Without GNU vector
+   types W is 1 and everything below is plain C. No include guard: this is a body, not an interface.
+   Two vectors (PAIR nodes) are processed together. This separates dependent multiply-adds enough to hide their
+     latency, and each coefficient is broadcast once for both. */
 
 #if W > 1
 typedef int64_t NAME(bits) __attribute__((vector_size(8 * W)));
 #endif
 #define PAIR (2 * W)
-#ifdef SPARI_SHUFFLEVECTOR /* lanes of a and of b, counted through */
+#ifdef SPARI_SHUFFLEVECTOR /* indices run through the lanes of a, then of b */
 #define MIX(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #else
 #define MIX(a, b, ...) __builtin_shuffle(a, b, (NAME(bits)){__VA_ARGS__})
@@ -34,7 +33,7 @@ HERE L NAME(size)(L a) {
 #endif
 }
 
-/* The lanes added in one fixed order. */
+/* Sum of the lanes in a fixed order. */
 HERE double NAME(total)(L v) {
     double t[W], s = 0;
     memcpy(t, &v, sizeof v);
@@ -54,9 +53,9 @@ HERE double NAME(least)(L v) {
     return s;
 }
 
-/* ---- triples in memory, rows in the tile ---- */
+/* ---- triples in memory, rows in tiles ---- */
 
-/* W triples x0 y0 z0 x1 ... as they lie in memory, from three vectors, and back. */
+/* Interleaves three vectors into W triples x0 y0 z0 x1 ... as in memory, and back. */
 HERE void NAME(weave)(const L *v, L *out) {
     const L x = v[0], y = v[1], z = v[2];
 #if W == 2
@@ -135,9 +134,9 @@ TARGET static void NAME(load_triples)(const double *in, int count, double (*row)
     }
 }
 
-/* To the host's array, which may lie anywhere. past: past the caches, in whole lines, where there are such stores: of
-   an array that is longer than they are nothing is there again when it is read, and a line that is written whole needs
-   not be read before. */
+/* Copies to the host's array, which may have any alignment. past: with non-temporal stores of whole cache lines, if
+   available. An array larger than the caches would be evicted before it is read again, and a line written as a whole
+   need not be read first. */
 HERE void NAME(copy)(const void *from, size_t bytes, void *to, const int past) {
     size_t i = 0;
 #ifdef STREAM
@@ -160,7 +159,7 @@ HERE void NAME(copy)(const void *from, size_t bytes, void *to, const int past) {
     memcpy((char *)to + i, (const char *)from + i, bytes - i);
 }
 
-enum { NAME(PART) = 128 }; /* nodes that are put together before they are copied */
+enum { NAME(PART) = 128 }; /* nodes that are collected before they are copied */
 
 TARGET static void NAME(give_triples)(double (*row)[SPARI_ROW], int count, double *out, int past) {
     double triples[3 * NAME(PART)];
@@ -175,7 +174,7 @@ TARGET static void NAME(give_triples)(double (*row)[SPARI_ROW], int count, doubl
     }
 }
 
-/* In single precision the host's numbers are doubles within: only what is copied is converted. */
+/* Single precision: computations are in double, and only the copied numbers are converted. */
 TARGET static void NAME(give_singles)(double (*row)[SPARI_ROW], int count, float *out, int past) {
     double triples[3 * NAME(PART)];
     float singles[3 * NAME(PART)];
@@ -190,7 +189,7 @@ TARGET static void NAME(give_singles)(double (*row)[SPARI_ROW], int count, float
 }
 
 #if W == 8 && defined(STREAM)
-/* 16 triples of floats into three rows of doubles. */
+/* 16 triples of floats to three rows of doubles. */
 HERE void NAME(unweave_singles)(const float *in, double *x, double *y, double *z) {
     const __m512i ab[3] = {_mm512_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21, 24, 27, 30, 0, 0, 0, 0, 0),
                            _mm512_setr_epi32(1, 4, 7, 10, 13, 16, 19, 22, 25, 28, 31, 0, 0, 0, 0, 0),
@@ -231,13 +230,15 @@ TARGET static void NAME(load_singles)(const float *in, int count, double (*row)[
 /* ---- sums over the modes ---- */
 
 #ifndef SUMMED
-#define SUMMED 14 /* fields at once, at most */
+#define SUMMED 14 /* maximum number of fields at once */
 #endif
 
 #if W == 8
-/* s[f] = sum_k T_k c[k][f] for both vectors: n fields, of which from the fourth on `skip` are left out before, at once
-   in 32 registers, with T_k found on the way. t: where they are kept for later, row k at t + k * stride; NULL: nowhere.
-   x: of both vectors. All but those of memory are constants where this is inlined. */
+/* s[f] = sum_k T_k c[k][f] for both vectors, in 32 registers; T_k is computed along the way.
+   n, skip: number of fields; `skip` fields are omitted after the third
+   t: where T_k is stored, row k at t + k * stride; NULL: not stored
+   x: of both vectors
+   All arguments but the memory are constants after inlining. */
 HERE void NAME(sum)(const int n, const int skip, int modes, const double *c, const L *x, double *t,
                     const ptrdiff_t stride, L (*s)[SUMMED]) {
     static const double one = 1;
@@ -271,7 +272,7 @@ HERE void NAME(sum)(const int n, const int skip, int modes, const double *c, con
     }
 }
 #else
-/* T_k of a pair of vectors, row k at t + k * stride; two modes at least. */
+/* T_k of two vectors, row k at t + k * stride; at least two modes. */
 HERE void NAME(chebyshev)(int modes, const L *x, double *t, const ptrdiff_t stride) {
     static const double one = 1;
     L a0 = SPLAT(&one), b0 = a0, a1 = x[0], b1 = x[1], a2 = a1 + a1, b2 = b1 + b1;
@@ -287,7 +288,7 @@ HERE void NAME(chebyshev)(int modes, const L *x, double *t, const ptrdiff_t stri
     }
 }
 
-/* Of the fields of `sum` below those from `from` on, n of them, in registers. */
+/* Fields [from, from + n) of `sum` below, as many as fit in registers. */
 HERE void NAME(sum_some)(const int from, const int n, const int skip, int modes, const double *c, const double *t,
                          const ptrdiff_t stride, L (*s)[SUMMED]) {
     L a[6], b[6];
@@ -311,9 +312,10 @@ HERE void NAME(sum_some)(const int from, const int n, const int skip, int modes,
     }
 }
 
-/* s[f] = sum_k T_k c[k][f] for both vectors: n fields, of which from the fourth on `skip` are left out before, in parts
-   for which there are registers. x: of both vectors; t: where T_k go, row k at t + k * stride. n, skip are constants
-   where this is inlined. */
+/* s[f] = sum_k T_k c[k][f] for both vectors, in groups of fields that fit in registers.
+   n, skip: number of fields; `skip` fields are omitted after the third; constants after inlining
+   x: of both vectors
+   t: where T_k is stored, row k at t + k * stride */
 HERE void NAME(sum)(const int n, const int skip, int modes, const double *c, const L *x, double *t,
                     const ptrdiff_t stride, L (*s)[SUMMED]) {
     const int part = n <= 6 ? n : n <= 12 ? (n + 1) / 2 : (n + 2) / 3;
@@ -330,7 +332,7 @@ HERE void NAME(sum)(const int n, const int skip, int modes, const double *c, con
 
 /* ---- rotations ---- */
 
-/* Without fused operations, for sums that are alike at every width. */
+/* Without fused operations, for sums with equal bits at every width. */
 HERE void NAME(cross)(const L *a, const L *b, L *c) {
     L x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
     c[0] = x, c[1] = y, c[2] = z;
@@ -340,7 +342,7 @@ HERE L NAME(square)(const L *q) {
     return (q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]);
 }
 
-/* The same with as few operations as there are: a x b, and with c before it. */
+/* The same with the fewest operations: a x b, and c + a x b. */
 HERE void NAME(fused_cross)(const L *a, const L *b, L *r) {
     L x = NMADD(a[2], b[1], a[1] * b[2]), y = NMADD(a[0], b[2], a[2] * b[0]), z = NMADD(a[1], b[0], a[0] * b[1]);
     r[0] = x, r[1] = y, r[2] = z;
@@ -379,10 +381,11 @@ HERE void NAME(spin)(const L *d, const L *q, L over, L *w) {
     }
 }
 
-/* ---- motion out ---- */
+/* ---- motion of nodes ---- */
 
-/* One vector's accelerations: alpha = vec(2 Q'' Q*) / |Q|^2 - omega d ln|Q|^2 / dt for the consistent kind. d, twist:
-   its fields as the nodes have them; u: which of the two vectors. */
+/* Accelerations of one vector of nodes: alpha = vec(2 Q'' Q*) / |Q|^2 - omega d ln|Q|^2 / dt for the consistent
+   kind.
+   d, twist: the nodal fields; u: which of the two vectors */
 HERE void NAME(accelerate)(const int consistent, const L *q, L over, const L *d, const L *accel, const L *twist,
                            const L *r, const L *w, const L *wr, L *out) {
     L alpha[3] = {twist[0], twist[1], twist[2]};
@@ -398,8 +401,8 @@ HERE void NAME(accelerate)(const int consistent, const L *q, L over, const L *d,
     out[3] = alpha[0], out[4] = alpha[1], out[5] = alpha[2];
 }
 
-/* The rows SPARI_R_* of one vector, of its interpolated fields: place, rate, Q, spin, accel, twist, what there is of
-   them. Returns |Q|^2. */
+/* Rows SPARI_R_* of one vector from its interpolated fields (position, rate, Q, spin, accel, twist), as far as
+   requested. Returns |Q|^2. */
 HERE L NAME(move_one)(const int consistent, const int what, const L *place, const L *rate, const L *q, const L *spin,
                       const L *accel, const L *twist, const L *con, L *out) {
     const int upto = what & SPARI_UPTO;
@@ -431,13 +434,13 @@ HERE L NAME(move_one)(const int consistent, const int what, const L *place, cons
     return square;
 }
 
-/* PAIR nodes of one element; in: xi and con of either vector; out: the rows that are asked for, of either. Returns the
-   lesser |Q|^2, lane by lane. */
+/* PAIR nodes of one element. in: xi and con of each vector; out: the requested rows of each. Returns the smaller
+   |Q|^2 per lane. */
 HERE L NAME(move)(int modes, const double *c, const int consistent, const int what, const L (*in)[2],
                   L (*out)[SPARI_ROWS]) {
     const int upto = what & SPARI_UPTO, spins = consistent ? 4 : 3;
     const int rates = upto >= SPARI_UPTO_RATE,
-              turned = rates ? SPARI_F_QUAT : 3; /* Q right after places without rates */
+              turned = rates ? SPARI_F_QUAT : 3; /* without rates, Q directly follows the positions */
     L field[2][SUMMED], second[2][SUMMED], least[2];
 #if W == 8
     double *t = NULL;
@@ -465,17 +468,17 @@ HERE void NAME(put_row)(const int width, const L *x, double (*row)[SPARI_ROW], i
     }
 }
 
-/* What is asked for of one vector, into the rows of the tile. */
+/* Stores the requested rows of one vector in the tile. */
 HERE void NAME(put_rows)(const int what, const L *x, double (*buf)[SPARI_ROW], int at) {
     const int upto = what & SPARI_UPTO, poses = what & SPARI_POSES, rates = upto >= SPARI_UPTO_RATE;
-    NAME(put_row)(rates ? 6 : 3, x, buf, at); /* places, velocities */
+    NAME(put_row)(rates ? 6 : 3, x, buf, at); /* positions, velocities */
     NAME(put_row)(poses ? 4 : 0, x + SPARI_R_QUAT, buf + SPARI_R_QUAT, at);
     NAME(put_row)(poses && rates ? 3 : 0, x + SPARI_R_OMEGA, buf + SPARI_R_OMEGA, at);
     NAME(put_row)(upto >= SPARI_UPTO_ACCEL ? 6 : 0, x + SPARI_R_ACCEL, buf + SPARI_R_ACCEL, at);
 }
 
-/* n rows of a run for its nodes from `begin` to `end`, whole pairs of vectors, or what is left beyond them: that is
-   copied to pad, where what lies beyond the end repeats the last node, so that every lane is a real one, or is zero. */
+/* Pointers to n rows of a run for nodes `begin` to `end`. Whole pairs of vectors are read in place. The remainder is
+   copied to pad, where the lanes past the end repeat the last node or are zero. */
 HERE void NAME(begin_rows)(const double *const *from, const int n, const int zero, int64_t first, int begin, int end,
                            double (*pad)[PAIR], const double **to) {
     const int count = end - begin;
@@ -501,8 +504,8 @@ HERE void NAME(get_pair)(const double *const *from, const int n, int i, L (*to)[
     }
 }
 
-/* n rows of the nodes' own, which are long: those that are worked on so much later are asked for. Each row is a stream
-   of its own that ends with its page for the processor. */
+/* Prefetches n rows of the nodes, which are long. Each row is a separate stream, which hardware prefetching ends at
+   a page boundary. */
 HERE void NAME(ask_ahead)(const spari_nodes *s, const double *const *from, const int n, int64_t p) {
     if (s->n >= SPARI_FAR && p + SPARI_ASK + PAIR <= s->n) {
         SPARI_UNROLL
@@ -514,7 +517,7 @@ HERE void NAME(ask_ahead)(const spari_nodes *s, const double *const *from, const
     }
 }
 
-/* Where two vectors of nodes are, from node p of all on, the i-th of the rows. Answers the least |Q|^2. */
+/* Motion of two vectors of nodes, from node p of all on, number i in the rows. Returns the smallest |Q|^2. */
 HERE L NAME(move_pair)(const spari_nodes *s, const double *const *from, const double *const *row, int64_t p, int i,
                        const double *c, const int consistent, const int what, L (*out)[SPARI_ROWS]) {
     L in[4][2];
@@ -541,7 +544,7 @@ HERE double NAME(run)(const spari_nodes *s, int64_t first, int count, const doub
     return NAME(least)(least);
 }
 
-/* ---- one node for all: a point, a rigid body; nothing of its motion is found node by node ---- */
+/* ---- one node for all nodes: point, rigid body ---- */
 
 HERE void NAME(splat)(const int n, const double *from, L *to) {
     SPARI_UNROLL
@@ -558,7 +561,7 @@ HERE void NAME(rotate)(const L *turn, const L *c, L *r) {
     }
 }
 
-/* Triples a + b of W nodes to the host's, of which `count` are there. */
+/* Stores triples a + b of W nodes in the host's array; `count` of them exist. */
 HERE void NAME(give)(const L *a, const L *b, int count, double *out) {
     double part[3 * W];
     const L v[3] = {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
@@ -568,7 +571,7 @@ HERE void NAME(give)(const L *a, const L *b, int count, double *out) {
     }
 }
 
-/* Places and velocities of all nodes to the host's triples, without a tile between them. */
+/* Stores positions and velocities of all nodes directly in the host's triples. */
 HERE void NAME(carry_all)(const spari_nodes *s, const carrier *m, const int places, const int rates, double *x,
                           double *v) {
     L turn[9], place[3], rate[3], w[3];
@@ -608,7 +611,7 @@ TARGET static void NAME(carry_to)(const spari_nodes *s, const carrier *m, double
     }
 }
 
-/* The arms of a pair of vectors. */
+/* Lever arms of two vectors of nodes. */
 HERE void NAME(fetch_nodes)(const spari_nodes *s, const double *const *from, int64_t p, int count, L (*to)[2]) {
     double pad[3][PAIR];
     const double *row[3];
@@ -617,7 +620,7 @@ HERE void NAME(fetch_nodes)(const spari_nodes *s, const double *const *from, int
     NAME(get_pair)(row, 3, 0, to);
 }
 
-/* The rows of a tile. */
+/* Computes the rows of a tile. */
 HERE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carrier *m, const int what,
                       double (*buf)[SPARI_ROW]) {
     const double *const *from = (const double *const *)s->con;
@@ -674,7 +677,7 @@ HERE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carr
     }
 }
 
-/* A point's or a rigid body's nodes. */
+/* Nodes of a point or rigid body. */
 TARGET SPARI_APART static double NAME(motion_carried)(const spari_nodes *s, int64_t first, int count, const double *c,
                                                       int what, double (*buf)[SPARI_ROW]) {
     const carrier m = carrier_of(c);
@@ -697,13 +700,13 @@ TARGET SPARI_APART static double NAME(motion_carried)(const spari_nodes *s, int6
     return m.square;
 }
 
-/* One function for each of what is asked, so that none has the room of all on its stack. */
+/* One function per request, so that none needs the stack of all. */
 #define RUN(name, consistent, what)                                                                                    \
     TARGET SPARI_APART static double NAME(run_##name)(const spari_nodes *s, int64_t first, int count, const double *c, \
                                                       double(*buf)[SPARI_ROW], int at) {                               \
         return NAME(run)(s, first, count, c, consistent, what, buf, at);                                               \
     }
-RUN(places, 0, SPARI_UPTO_PLACE) /* which are the same in both kinds */
+RUN(places, 0, SPARI_UPTO_PLACE) /* the same for both kinds */
 RUN(nodal_rates, 0, SPARI_UPTO_RATE)
 RUN(consistent_rates, 1, SPARI_UPTO_RATE)
 RUN(poses, 0, SPARI_UPTO_PLACE | SPARI_POSES)
@@ -741,9 +744,9 @@ TARGET static double NAME(motion)(const spari_nodes *s, int64_t first, int count
 
 #include "kernel_direct.h"
 
-/* ---- loads in ---- */
+/* ---- loads of nodes ---- */
 
-/* What the audit wants to know of one vector: totals of the fluid's side, largest sizes (as least negatives). */
+/* Contribution of one vector to the audit: fluid-side totals, and largest sizes (as smallest negatives). */
 HERE void NAME(audit)(const int has_moment, const L *place, const L *r, const L *rate, const L *w, const L *f,
                       const L *m, L *sums, L *tops) {
     static const double zero = 0;
@@ -769,8 +772,8 @@ HERE void NAME(audit)(const int has_moment, const L *place, const L *r, const L 
     tops[2] = NAME(less)(tops[2], NMADD(w[2], w[2], NMADD(w[1], w[1], NMADD(w[0], w[0], none))));
 }
 
-/* What is summed at the foot of a node of which the moment is M, into the rows g: M, or of the consistent kind
-   (0, M) Q / |Q|^2, the adjoint of vec(D Q*) / |Q|^2. */
+/* Moment term to be summed at the projection point of a node with moment M, stored in rows g: M, or for the
+   consistent kind (0, M) Q / |Q|^2, the adjoint of vec(D Q*) / |Q|^2. */
 HERE void NAME(put_moment)(const int consistent, const L *m, const L *q, L over, double (*g)[SPARI_ROW], int at) {
     if (!consistent) {
         NAME(put_row)(3, m, g, at);
@@ -788,7 +791,7 @@ HERE void NAME(put_moment)(const int consistent, const L *m, const L *q, L over,
     NAME(put_row)(4, s, g, at);
 }
 
-/* Moments at the feet of PAIR nodes, into the rows g at `at`; their T_k into t. in: xi, con, force, moment. */
+/* Moments of PAIR nodes at their projection points, stored in rows g at `at`; T_k in t. in: xi, con, force, moment. */
 HERE L NAME(lever)(int modes, const double *c, const int consistent, const int has_moment, const int audited,
                    const L (*in)[2], double *t, double (*g)[SPARI_ROW], int at, L *sums, L *tops) {
     static const double two = 2;
@@ -820,7 +823,7 @@ HERE L NAME(lever)(int modes, const double *c, const int consistent, const int h
     return NAME(less)(least[0], least[1]);
 }
 
-/* Sums of the lanes of n vectors, each in an order of its own. */
+/* Sums of the lanes of n vectors, each in its own order. */
 HERE void NAME(totals)(const int n, const L *v, double *sum) {
 #if W == 8
     SPARI_UNROLL_ALL
@@ -855,7 +858,7 @@ HERE void NAME(totals)(const int n, const L *v, double *sum) {
 #endif
 }
 
-/* Sums that are held between runs: n vectors from held, or zeros; and back, or with their lanes added into sum. */
+/* take: n accumulators from held, or zeros. give: stores them in held, or adds their lanes to sum. */
 HERE void NAME(take_held)(const int n, int begin, const double *held, L *a) {
     static const double zero = 0;
     SPARI_UNROLL_ALL
@@ -879,8 +882,8 @@ HERE int NAME(give_held)(const int n, int end, const L *a, double *held, double 
     return 0;
 }
 
-/* Modes k to k + most - 1 of sum_k over one run, those beyond the last again the last and left out: modal[k][f] +=
-   sum_i t[k][i] row_f[i]. The sums are in registers. */
+/* Modes k to k + most - 1 of a run: modal[k][f] += sum_i t[k][i] row_f[i]. Modes beyond the last repeat it and are
+   dropped. The sums are in registers. */
 HERE void NAME(project_some)(const int most, const int rows, int k, int modes, int count, double (*t)[SPARI_ROW],
                              const tile_loads *f, double (*g)[SPARI_ROW], double *modal, const char **next,
                              const char *last) {
@@ -926,13 +929,13 @@ HERE void NAME(project_some)(const int most, const int rows, int k, int modes, i
     }
 }
 
-/* As many modes at a time as there are registers for: how often the rows are gone through. */
+/* Number of passes over the rows: as many modes at a time as there are registers. */
 HERE int NAME(times)(int modes) {
     return W == 8 ? modes / 4 + (modes % 4 + 1) / 2 : (modes + 1) / 2;
 }
 
-/* The host's forces of a tile further on are asked for all the time: a line with each vector of each time the rows are
-   gone through, and the rest, so many bytes with each pair of vectors, before. */
+/* Prefetches of the host's forces of a later tile are spread over the work: one line per vector and pass, and the
+   remaining bytes per pair of vectors before that. */
 HERE int NAME(ask_before)(const tile_loads *f, int modes) {
     const int rest = 3 * PAIR * f->size - 128 * NAME(times)(modes);
     return f->next && rest > 0 ? rest : 0;
@@ -957,7 +960,7 @@ HERE void NAME(project)(const int rows, int modes, int count, double (*t)[SPARI_
     }
 }
 
-/* The host's forces of a tile further on are asked for. */
+/* Prefetches the host's forces of a later tile. */
 HERE void NAME(ask_loads)(const tile_loads *f, int at) {
     if (f->next) {
         SPARI_UNROLL
@@ -967,7 +970,7 @@ HERE void NAME(ask_loads)(const tile_loads *f, int at) {
     }
 }
 
-/* Loads of PAIR nodes; what lies beyond the end of a run carries nothing. */
+/* Loads of PAIR nodes; lanes past the end of a run have no load. */
 HERE void NAME(fetch_loads)(const tile_loads *f, const int rows, int at, int count, L (*to)[2]) {
     const double *const from[6] = {f->row[0], f->row[1], f->row[2], f->row[3], f->row[4], f->row[5]};
     double pad[6][PAIR];
@@ -989,7 +992,7 @@ HERE void NAME(add_audit)(const L *add, const L *top, double *sums, double *tops
     }
 }
 
-/* What a tile gives a point or rigid body: the sum of its forces and of its moments, and the moment of R Z. */
+/* Contribution of a tile to a point or rigid body: sums of forces and moments, and the moment of R Z. */
 HERE void NAME(add_carried)(const carrier *m, const int has_moment, const L *Z, const L *total, double *modal) {
     double z[9], load[6];
     SPARI_UNROLL
@@ -1010,8 +1013,8 @@ HERE void NAME(add_carried)(const carrier *m, const int has_moment, const L *Z, 
     }
 }
 
-/* The loads on a point or rigid body: the force, and the moment of R Z with Z = sum c f^T, in which the rotation waits
-   until the sum over the tile is done. */
+/* Loads on a point or rigid body: the force, and the moment of R Z with Z = sum c f^T. The rotation is applied once,
+   after the sum over the tile. */
 HERE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, const carrier *m, const int has_moment,
                              const tile_loads *f, const int audited, double *modal, double *sums, double *tops) {
     static const double zero = 0;
@@ -1105,7 +1108,7 @@ HERE double NAME(gather)(const spari_nodes *s, int64_t first, int count, const d
     return NAME(least)(least);
 }
 
-/* One function for each of what is asked, so that none has the room of all on its stack. */
+/* One function per request, so that none needs the stack of all. */
 #define GATHER(name, consistent, moment, audited)                                                                      \
     TARGET SPARI_APART static double NAME(gather_##name)(                                                              \
         const spari_nodes *s, int64_t first, int count, const double *c, const tile_loads *f,                          \
@@ -1122,7 +1125,7 @@ GATHER(nodal_moment_audited, 0, 1, 1)
 GATHER(consistent_moment_audited, 1, 1, 1)
 #undef GATHER
 
-/* A point's or a rigid body's loads. */
+/* Loads of a point or rigid body. */
 TARGET SPARI_APART static double NAME(loads_carried)(const spari_nodes *s, int64_t first, int count, const double *c,
                                                      int has_moment, const tile_loads *f, int audited, double *modal,
                                                      double *sums, double *tops) {

@@ -1,8 +1,8 @@
-/* Loads whose sums do not depend on the order of the nodes, for one vector width. Included by kernel.h, with its
-   macros. A node's share in the load of a line's node is found without fused operations, lane by lane: the same bits at
-   every width. */
+/* Loads as reproducible sums, which do not depend on the order of the nodes, for one vector width. Included by
+   kernel.h, with its macros. A node's share of the load is computed per lane without fused operations, so its bits
+   are the same at every width. */
 
-/* phi_l of the nodes of a run, row by row; xi: their coordinates. */
+/* Shape functions phi_l at the nodes of a run, row by row; xi: their coordinates. */
 HERE void NAME(shape_rows)(int modes, int count, const double *modal, const double *xi, double (*phi)[SPARI_ROW]) {
     static const double one = 1;
     for (int i = 0; i < count; i += W) {
@@ -21,8 +21,8 @@ HERE void NAME(shape_rows)(int modes, int count, const double *modal, const doub
     }
 }
 
-/* Moments at the feet of a run's nodes, into the rows g: 3, or 4 of the consistent kind. in: arm, force, moment, three
-   rows each; q: the quaternions of the line's nodes, in one chain. Returns the least |Q|^2. */
+/* Moments of a run's nodes at their projection points, in rows g: 3, or 4 for the consistent kind. in: arm, force,
+   moment, three rows each; q: chained quaternions of the line's nodes. Returns the smallest |Q|^2. */
 HERE double NAME(lever_rows)(int modes, int count, const double *q, const int consistent, const int has_moment,
                              double (*phi)[SPARI_ROW], const double *const *in, double (*g)[SPARI_ROW]) {
     static const double huge = HUGE_VAL;
@@ -63,7 +63,7 @@ HERE double NAME(lever_rows)(int modes, int count, const double *q, const int co
     return NAME(least)(least);
 }
 
-/* Adds the numbers x[count], a whole count of vectors, to a sum. Returns 0 where one is not finite. */
+/* Adds x[count], a whole number of vectors, to a sum. Returns 0 if a number is not finite. */
 HERE int NAME(bin_row)(const double *x, int count, spari_bin_cut *cut, spari_bins *sum) {
     static const double zero = 0;
     spari_bins run;
@@ -92,14 +92,14 @@ HERE int NAME(bin_row)(const double *x, int count, spari_bin_cut *cut, spari_bin
         SPARI_UNROLL
         for (int j = 0; j < SPARI_BINS; j++) {
             L p = (v + shift[j]) - shift[j];
-            part[j] += p; /* whole units, far fewer than 2^53: exact in any order */
+            part[j] += p; /* integers far below 2^53: exact in any order */
             v -= p;
         }
     }
     run.top = cut->top;
     for (int j = 0; j < SPARI_BINS; j++) {
         double units = NAME(total)(part[j]) * cut->per_unit[j];
-        if (!(fabs(units) <= 0x1p52)) { /* or a NaN */
+        if (!(fabs(units) <= 0x1p52)) { /* or NaN */
             return 0;
         }
         run.part[j] = (int64_t)units;
@@ -108,8 +108,8 @@ HERE int NAME(bin_row)(const double *x, int count, spari_bin_cut *cut, spari_bin
     return 1;
 }
 
-/* The run's shares in a node of the line, three rows: phi f, and the moment phi m or, of the consistent kind, phi times
-   the vector part of g q*. */
+/* Shares of the run in a node of the line, three rows: phi f, and the moment phi m or, for the consistent kind, phi
+   times the vector part of g q*. */
 HERE void NAME(share_rows)(int count, const double *phi, const double *const *f, double (*g)[SPARI_ROW],
                            const double *q, const int consistent, double (*out)[SPARI_ROW]) {
     for (int i = 0; i < count; i += W) {
@@ -126,14 +126,15 @@ HERE void NAME(share_rows)(int count, const double *phi, const double *const *f,
             NAME(put)(out[3 + j] + i, p * m[j]);
         }
     }
-    for (int j = 0; j < 6; j++) { /* lanes past the end carry nothing */
+    for (int j = 0; j < 6; j++) { /* lanes past the end have no load */
         for (int i = count; i % W; i++) {
             out[j][i] = 0;
         }
     }
 }
 
-/* A run of nodes of one element, from storage place `first`, their loads in the rows f at `at`: adds to load [P][6]. */
+/* Adds a run of nodes of one element to load [P][6]. The run begins at storage position `first`, its loads in the
+   rows f at `at`. */
 TARGET static int NAME(bins)(const spari_nodes *s, int64_t first, int count, const double *modal, const double *q,
                              int consistent, int has_moment, double (*f)[SPARI_ROW], int at, double (*work)[SPARI_ROW],
                              double *least, spari_bin_cut *cut, spari_bins *load) {
@@ -141,7 +142,7 @@ TARGET static int NAME(bins)(const spari_nodes *s, int64_t first, int count, con
     (*phi)[SPARI_ROW] = work + 14;
     const double *in[9];
     int whole = 1, up = (count + W - 1) / W * W, modes = s->per_element;
-    for (int k = 0; k < 4; k++) { /* what lies beyond the end repeats the last node, so that every lane is a real one */
+    for (int k = 0; k < 4; k++) { /* lanes past the end repeat the last node */
         const double *from = k < 3 ? s->con[k] : s->xi;
         for (int i = 0; i < up; i++) {
             own[k][i] = from ? from[first + (i < count ? i : count - 1)] : 0;

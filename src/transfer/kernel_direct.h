@@ -1,17 +1,16 @@
-/* Places and velocities straight from the registers to the host's triples, for one vector width. Included by kernel.h,
-   with its macros.
-
-   An array of the host's begins anywhere within a line of 64 bytes. With vectors of a line each, what is woven is
-   turned by as many numbers as that makes, together with the last of what came before, so that whole lines are written:
-   each once, and past the caches where that is wanted (processors gather written lines in few buffers, which whole
-   lines leave at once, here spread over the arithmetic of the nodes between them). */
+/* Stores positions and velocities from registers directly in the host's triples, for one vector width. Included by
+   kernel.h, with its macros.
+   The host's array may begin anywhere in a cache line of 64 bytes. With vectors of a full line, the interleaved
+     numbers are rotated by this offset and combined with the rest of the previous vector. So whole lines are
+     written, once each, and with non-temporal stores if wanted. (Processors collect written lines in few buffers;
+     whole lines leave them at once, and here the stores are spread over the arithmetic.) */
 
 #if W == 8 && defined(STREAM)
-/* Where the triples of a run go. */
+/* Destination of a run's triples. */
 typedef struct NAME(flow) {
-    __m512i last, turn; /* what is not written yet is at the end of last */
-    char *to;           /* of the next pair of vectors */
-    char *line;         /* which is written next; NULL: none yet, or lines cannot be made */
+    __m512i last, turn; /* numbers not yet written are at the end of last */
+    char *to;           /* address of the next pair of vectors */
+    char *line;         /* next line to write; NULL: not begun, or whole lines are impossible */
     int past;
 } NAME(flow);
 
@@ -34,7 +33,7 @@ HERE void NAME(write_line)(NAME(flow) * f, __m512i v) {
     f->last = v;
 }
 
-/* The n vectors of a pair. The first pair of a run is written as it lies, that lines may begin. */
+/* Writes the n vectors of a pair. The first pair of a run is written unaligned, up to the first line. */
 HERE void NAME(write_pair)(NAME(flow) * f, const int n, const __m512i *v) {
     if (f->line) {
         SPARI_UNROLL
@@ -54,7 +53,7 @@ HERE void NAME(write_pair)(NAME(flow) * f, const int n, const __m512i *v) {
     f->to += (ptrdiff_t)64 * n;
 }
 
-/* What is left of the last line. */
+/* Writes the rest of the last line. */
 HERE void NAME(end_flow)(NAME(flow) * f) {
     if (f->line) {
         __m512i line = _mm512_permutex2var_epi32(f->last, f->turn, f->last);
@@ -63,7 +62,7 @@ HERE void NAME(end_flow)(NAME(flow) * f) {
     }
 }
 
-/* 16 triples of floats from as many doubles. */
+/* 16 triples of floats from doubles. */
 HERE void NAME(weave_singles)(const L (*v)[3], __m512i *out) {
     __m512 x[3];
     SPARI_UNROLL
@@ -83,7 +82,7 @@ HERE void NAME(weave_singles)(const L (*v)[3], __m512i *out) {
     }
 }
 
-/* Triples of a pair of vectors, of which `count` nodes are there. */
+/* Triples of a pair of vectors, of which `count` nodes exist. */
 HERE void NAME(give_pair)(NAME(flow) * f, const int single, const L (*v)[3], int count) {
     const int n = single ? 3 : 6;
     __m512i out[6];
@@ -181,8 +180,8 @@ DIRECT(nodal_single, 0, SPARI_UPTO_RATE, 1)
 DIRECT(consistent_single, 1, SPARI_UPTO_RATE, 1)
 #undef DIRECT
 
-/* x, v: triples of the first node of the run, doubles or floats; either NULL. past: past the caches, which only whole
-   lines are. */
+/* x, v: triples of the first node of the run, double or float; either may be NULL. past: non-temporal stores, which
+   need whole lines. */
 TARGET static double NAME(move_to)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent,
                                    int single, void *x, void *v, int past) {
     switch (4 * !!single + 2 * !!v + (consistent && v)) {

@@ -1,8 +1,9 @@
-/* The nearest point of a curved line, found for sure: balls around its pieces, then zeros of a polynomial. */
+/* Nearest point of a curved line, with guaranteed bounds: bounding spheres around segments, then zeros of a
+   polynomial. */
 #include "projection.h"
 
-#include "../base/thread_pool.h"
 #include "../base/status.h"
+#include "../base/thread_pool.h"
 #include "../math/roots.h"
 #include "../math/rotation.h"
 #include "transfer.h"
@@ -11,34 +12,35 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The bounded search. On a segment of an element, mapped to s in [0,1], the squared distance D(s) = |r(s) - p|^2 is a
-   polynomial of degree N = 2 m. Its Bernstein coefficients are affine in p, apart from |p|^2:
-       D_i = G_i - 2 p . C_i + |p|^2,     G of |r|^2, C of r raised to degree N, origin in the segment,
-   so that a point costs 3 N multiplications per segment. With e_i = D_{i+1} - D_i:
-   - D(s) lies between the least and the largest D_i (convex hull): a segment whose least D_i exceeds the best distance
-   known is out;
-   - D' has at most as many zeros as the e_i change sign (Descartes' rule in Bernstein form): none, D is monotone; one,
-   from minus to plus, D has exactly one minimum, which guarded Newton finds; more, the segment is halved by de
-   Casteljau. Nothing is sampled, so nothing can be missed; what rounding can do is bounded and widens the comparisons
-   (noise below). Spheres over segments (a binary tree along the line) and capsules round their chords keep the segments
-   looked at to one or two, however many elements there are. */
+/* The bounded search. On a segment of an element, mapped to s in [0,1], the squared distance D(s) = |r(s) - p|^2 is
+   a polynomial of degree N = 2 m. Its Bernstein coefficients are affine in p, apart from |p|^2:
+       D_i = G_i - 2 p . C_i + |p|^2,     G of |r|^2, C of r raised to degree N, origin in the segment.
+   So a point costs 3 N multiplications per segment. With e_i = D_{i+1} - D_i:
+   - D(s) lies between the smallest and the largest D_i (convex hull). A segment whose smallest D_i exceeds the best
+     known distance is excluded.
+   - D' has at most as many zeros as the e_i have sign changes (Descartes' rule in Bernstein form). None: D is
+     monotone. One, from minus to plus: D has exactly one minimum, which guarded Newton finds. More: the segment is
+     halved by de Casteljau.
+   Nothing is sampled, so no minimum can be missed. Rounding errors are bounded and widen the comparisons (noise
+     below). Bounding spheres (a binary tree along the line) and capsules around chords limit the search to one or
+     two segments for any number of elements. */
 
 enum {
     MODES = SPARI_MAX_NODES,
     DEGREE = 2 * (SPARI_MAX_NODES - 1), /* of the squared distance */
     ROW = DEGREE + 2,                   /* padded to whole vectors */
-    DEPTH = 48,                         /* halvings of a segment at most; its ends are then one number */
-    SPLITS = 6                          /* halvings of an element into segments at most */
+    DEPTH = 48,                         /* maximum halvings of a segment; its ends are then equal numbers */
+    SPLITS = 6                          /* maximum halvings of an element into segments */
 };
 
 typedef struct segment {
-    int element, modes; /* r has `modes` Chebyshev coefficients here; what is left out is below rounding */
+    int element, modes; /* r has `modes` Chebyshev coefficients here; the rest is below rounding */
     double a, b;        /* local xi at its ends */
     double origin[3];
-    double end[2][3]; /* chord, from the origin */
-    double deviation; /* farthest the line gets from its chord */
-    double ball;      /* farthest it gets from the origin */
-    double radius;    /* what rounding is relative to: bound of all terms of r */
+    double end[2][3]; /* chord, relative to the origin */
+    double deviation; /* largest distance of the line from its chord */
+    double ball;      /* largest distance of the line from the origin */
+    double radius;    /* scale of rounding errors: bound of all terms of r */
     double c[MODES][4];
     double dg[ROW], dc[3][ROW], g0, c0[3]; /* differences of G_i and of -2 C_i; first entries */
     double pull[ROW], slope[MODES][3];     /* r . r' and r' in powers of s in [-1,1]: for the root finder */
@@ -51,8 +53,8 @@ typedef struct ball {
 
 struct spari_line {
     int elements, per_element;
-    double scale;     /* size of the line's box */
-    double origin[3]; /* its middle: everything below is relative to it */
+    double scale;     /* size of the line's bounding box */
+    double origin[3]; /* centre of the box: everything below is relative to it */
     double *c;        /* Chebyshev coefficients [element][mode][4] */
     int segments, balls;
     segment *segment;
@@ -61,7 +63,7 @@ struct spari_line {
 
 /* ---- polynomials ---- */
 
-/* Place and its first and second derivative by s in [-1,1]. */
+/* Position and its first and second derivative at s in [-1,1]. */
 static void series(const double (*c)[4], int modes, double s, double x[4], double dx[4], double ddx[4]) {
     double t0 = 1, t1 = s, d0 = 0, d1 = 1, q0 = 0, q1 = 0;
     for (int i = 0; i < 4; i++) {
@@ -88,7 +90,7 @@ static void place_at(const double (*c)[4], int modes, double s, double x[3]) {
     }
 }
 
-/* Binomials as far as C(46,23) < 2^53: all exact. */
+/* Binomials up to C(46,23) < 2^53: all exact. */
 typedef struct binomials {
     double c[DEGREE + 1][DEGREE + 1];
 } binomials;
@@ -104,7 +106,7 @@ static void fill_binomials(binomials *b) {
 
 /* Bernstein coefficients of T_k in degree k: (-1)^(k-j) C(2k,2j) / C(k,j). */
 static void bernstein_of_chebyshev(int k, double *b) {
-    double ratio = 1; /* C(2k,2j) / C(k,j), stepped in j */
+    double ratio = 1; /* C(2k,2j) / C(k,j), by recurrence in j */
     for (int j = 0; j <= k; j++) {
         b[j] = (k - j) % 2 ? -ratio : ratio;
         ratio *= (double)(2 * k - 2 * j - 1) / (2 * j + 1);
@@ -117,7 +119,7 @@ static void bernstein(const double (*c)[4], int modes, int i, double *b) {
     b[0] = c[0][i];
     for (int k = 1; k < modes; k++) {
         b[k] = b[k - 1];
-        for (int j = k - 1; j > 0; j--) { /* one degree up */
+        for (int j = k - 1; j > 0; j--) { /* raises the degree by one */
             b[j] = ((double)j * b[j - 1] + (double)(k - j) * b[j]) / k;
         }
         bernstein_of_chebyshev(k, t);
@@ -182,8 +184,8 @@ static double distance_to_chord(const double a[3], const double b[3], const doub
     return spari_norm(v);
 }
 
-/* Powers of s in place of Chebyshev polynomials. That loses digits with the degree, but on a segment the coefficients
-   fall off faster than the loss grows. */
+/* Converts Chebyshev coefficients to powers of s. This loses digits with the degree, but the coefficients of a
+   segment decay faster than the loss grows. */
 static void make_powers(segment *s) {
     double t[3][MODES] = {{1}, {0, 1}}, r[MODES][3] = {{0}};
     int m = s->modes - 1;
@@ -211,7 +213,7 @@ static void make_powers(segment *s) {
     }
 }
 
-/* Everything about r on [a,b] of an element. */
+/* All data of r on [a,b] of an element. */
 static void make_segment(const spari_line *line, const binomials *bin, int element, double a, double b, segment *s) {
     double control[3][MODES], square[ROW], sum[ROW] = {0}, one[MODES], raised[ROW], peak[MODES];
     memset(s, 0, sizeof *s);
@@ -258,7 +260,7 @@ static void make_segment(const spari_line *line, const binomials *bin, int eleme
     make_powers(s);
 }
 
-/* Nearly straight, and its control points near it: a segment worth keeping whole. */
+/* Whether a segment is nearly straight with its control points near it, so that it need not be split. */
 static int is_plain(const segment *s) {
     double chord[3];
     for (int i = 0; i < 3; i++) {
@@ -268,13 +270,13 @@ static int is_plain(const segment *s) {
     return s->deviation <= 0.05 * length && s->radius <= 2 * length;
 }
 
-/* What cutting works with, too large for a small stack. */
+/* Workspace of the subdivision, too large for a small stack. */
 typedef struct cutting {
     binomials bin;
-    segment s; /* the one that is looked at */
+    segment s; /* the current segment */
 } cutting;
 
-/* Halves [a,b] until its parts are plain; NULL: only count. Returns how many. */
+/* Halves [a,b] until its parts are plain; out NULL: only counts. Returns their number. */
 static int cut(const spari_line *line, cutting *with, int element, double a, double b, int splits, segment *out) {
     make_segment(line, &with->bin, element, a, b, &with->s);
     if (splits == 0 || is_plain(&with->s)) {
@@ -290,7 +292,7 @@ static int cut(const spari_line *line, cutting *with, int element, double a, dou
 
 /* ---- the tree ---- */
 
-/* Ball round segments [first, last): the middle of their boxes, and the farthest they reach from it. */
+/* Bounding sphere of segments [first, last): centre of their boxes, and largest distance from it. */
 static int make_ball(spari_line *line, int first, int last) {
     if (last - first == 1) {
         return -1 - first;
@@ -411,34 +413,34 @@ void spari_line_point(const spari_line *line, int element, double xi, double x[3
 
 /* ---- the search ---- */
 
-/* One point's search: what is best so far. */
+/* Search for one point, with the best result so far. */
 typedef struct search {
     const spari_line *line;
-    struct part *stack; /* [DEPTH + 1]: parts of a segment that are still to be looked at */
-    double p[3];        /* from the line's origin */
-    double square;      /* least squared distance met */
-    double reach;       /* its root, widened by the tie: nothing farther is looked at */
-    double tie;         /* squared distances this close are equal */
-    int element;        /* the foot; -1: none yet */
+    struct part *stack; /* [DEPTH + 1]: parts of a segment not yet examined */
+    double p[3];        /* relative to the line's origin */
+    double square;      /* smallest squared distance found */
+    double reach;       /* its root plus the tie tolerance: nothing farther is examined */
+    double tie;         /* squared distances this close count as equal */
+    int element;        /* element of the nearest point; -1: none yet */
     double xi;
     int ambiguous;
     int method;
 } search;
 
-/* Distances within 2e-13 of the line's size are one distance: rounding decides between them, so xi does. */
+/* Distances within 2e-13 of the line's size count as equal: rounding decides between them, so xi is used instead. */
 static void set_reach(search *q) {
     double d = sqrt(q->square), width = 2e-13 * q->line->scale + 8 * DBL_EPSILON * d;
     q->tie = (2 * d + width) * width;
     q->reach = d + width;
 }
 
-/* Coordinate along the line, in elements; a joint has one value from either side. */
+/* Coordinate along the line, in elements; an element boundary has the same value from both sides. */
 static double along(int element, double xi) {
     return element + 0.5 * (1 + xi);
 }
 
-/* A foot offers itself. Of equal ones the first along the line wins; that there are two is kept, unless they are one
-   place found twice (a joint, a split). */
+/* Proposes a nearest point. Of equally near points the first along the line wins. A second one is recorded as
+   ambiguous, unless both are the same point (an element boundary or a split). */
 static void offer(search *q, int element, double xi, double square) {
     double from = along(q->element, q->xi), to = along(element, xi);
     if (q->element < 0 ? square <= q->square + q->tie : square < q->square - q->tie) {
@@ -473,8 +475,8 @@ static double xi_of(const segment *s, double t) {
     return t <= 0 ? s->a : t >= 1 ? s->b : s->a + (s->b - s->a) * t;
 }
 
-/* Newton on D'/2 = (r - p) . r', kept between low and high (s of the segment, in [-1,1]) by bisection. If the zero is
-   not between them, the end nearest to it. */
+/* Newton on D'/2 = (r - p) . r', kept between low and high (s of the segment, in [-1,1]) by bisection. If the zero
+   is not between them, returns the nearer end. */
 static double refine_foot(const segment *s, const double p[3], double low, double high, double at) {
     const double first = low, last = high, small = 2 * DBL_EPSILON;
     double before = HUGE_VAL;
@@ -524,7 +526,7 @@ static void offer_inside(search *q, const segment *s, const double p[3], const p
     offer(q, s->element, xi, square_at(q, s->element, xi));
 }
 
-/* An end where D is least on its side; where rounding hides which way D goes there, Newton finds out. */
+/* Proposes an end where D is smallest. If rounding hides the slope of D there, uses Newton. */
 static void offer_end(search *q, const segment *s, const double p[3], const part *a, int end, int hidden,
                       double noise) {
     double t = end ? a->t1 : a->t0;
@@ -539,7 +541,7 @@ static void offer_end(search *q, const segment *s, const double p[3], const part
     }
 }
 
-/* The halves' differences by de Casteljau; each spans half the length. */
+/* Differences of the two halves by de Casteljau; each spans half the length. */
 static void halve(const part *from, int n, part *left, part *right) {
     double e[ROW], sum = 0, middle = 0.5 * (from->t0 + from->t1);
     memcpy(e, from->e, sizeof *e * (size_t)n);
@@ -555,7 +557,7 @@ static void halve(const part *from, int n, part *left, part *right) {
     right->t0 = middle, right->t1 = from->t1, right->d0 = left->d1, right->d1 = from->d1;
 }
 
-/* Looks at one part. Returns 1 when it has to be halved. */
+/* Examines one part. Returns 1 if it must be halved. */
 static int settle(search *q, const segment *s, const double p[3], part *a, int n, double noise, double slope_noise) {
     double sum = a->d0, low = sum, high = sum;
     int sign = 0, begin = 0, changes = 0, at = 0, lead = 0, trail = 0;
@@ -578,7 +580,7 @@ static int settle(search *q, const segment *s, const double p[3], part *a, int n
     if (low > q->square + q->tie + noise) {
         return 0;
     }
-    if (changes == 0) { /* monotone, or flat: then one end is as good as the other */
+    if (changes == 0) { /* monotone, or constant: an end is the minimum */
         if (begin >= 0) {
             offer_end(q, s, p, a, 0, begin && lead, noise);
         }
@@ -587,13 +589,13 @@ static int settle(search *q, const segment *s, const double p[3], part *a, int n
         }
         return 0;
     }
-    if (changes == 1 && begin > 0) { /* a hill */
+    if (changes == 1 && begin > 0) { /* a maximum */
         offer_end(q, s, p, a, 0, lead, noise);
         offer_end(q, s, p, a, 1, trail, noise);
         return 0;
     }
     if (changes == 1) {
-        double e0 = a->e[at - 1], e1 = a->e[at]; /* the polygon's zero is near the polynomial's */
+        double e0 = a->e[at - 1], e1 = a->e[at]; /* the zero of the control polygon is near that of the polynomial */
         double cross = at - 1 + (e0 < 0 ? e0 / (e0 - e1) : 0);
         offer_inside(q, s, p, a, a->t0 + (a->t1 - a->t0) * cross / (n - 1));
         return 0;
@@ -606,7 +608,7 @@ static int settle(search *q, const segment *s, const double p[3], part *a, int n
     return 1;
 }
 
-/* By Descartes' rule and halving, as said at the top. */
+/* By Descartes' rule and halving, as described above. */
 static void bound(search *q, const segment *s, const double p[3]) {
     part *stack = q->stack;
     int n = 2 * (s->modes - 1), depth = 1;
@@ -621,7 +623,7 @@ static void bound(search *q, const segment *s, const double p[3]) {
         part *top = &stack[depth - 1];
         if (!settle(q, s, p, top, n, noise, slope_noise * (top->t1 - top->t0))) {
             depth--;
-        } else if (depth == DEPTH) { /* its ends are one number by now */
+        } else if (depth == DEPTH) { /* its ends are equal numbers */
             offer_end(q, s, p, top, 0, 1, noise);
             depth--;
         } else {
@@ -632,9 +634,9 @@ static void bound(search *q, const segment *s, const double p[3]) {
     }
 }
 
-/* By all zeros of D'/2 = (r - p) . r', degree 2 m - 1, and the ends. Two real zeros close together come back as a
-   complex pair with an imaginary part of the order of the root of rounding: such pairs count as real, and Newton puts
-   them right. Returns 0 if the root finder gave up. */
+/* By all zeros of D'/2 = (r - p) . r', degree 2 m - 1, and the ends. Two close real zeros come back as a complex
+   pair with an imaginary part of the order of the root of rounding. Such pairs count as real, and Newton refines
+   them. Returns 0 if the root finder failed. */
 static int solve_by_roots(search *q, const segment *s, const double p[3]) {
     const double near = 1e-3;
     double c[ROW], re[ROW], im[ROW], most = 0;
@@ -675,7 +677,7 @@ static void look_at(search *q, const segment *s) {
     }
 }
 
-/* Squared distance to a ball's or segment's middle, and how far it reaches round it. */
+/* Squared distance to the centre of a sphere or segment minus its radius. */
 static double gap(const search *q, int node) {
     const double *x = node < 0 ? q->line->segment[-1 - node].origin : q->line->ball[node].x;
     double r = node < 0 ? q->line->segment[-1 - node].ball : q->line->ball[node].radius, d[3];
@@ -705,14 +707,14 @@ static void walk(search *q) {
         }
         int left = line->ball[node].child[0], right = line->ball[node].child[1];
         double gl = gap(q, left), gr = gap(q, right);
-        int near = gl <= gr; /* the nearer one is looked at first */
+        int near = gl <= gr; /* the nearer one is examined first */
         stack[depth].node = near ? right : left, stack[depth].gap = near ? gr : gl;
         stack[depth + 1].node = near ? left : right, stack[depth + 1].gap = near ? gl : gr;
         depth += 2;
     }
 }
 
-/* The foot is at an end of the line and the point beyond it, by more than rounding. */
+/* Whether the nearest point is an end of the line and the point lies beyond it, by more than rounding. */
 static int is_beyond(const search *q) {
     const spari_line *line = q->line;
     double x[4], d[4], dd[4];
@@ -728,7 +730,7 @@ static int is_beyond(const search *q) {
     return first ? ahead < -small : ahead > small;
 }
 
-/* Points looked for one after the other. */
+/* Points that are projected one after the other. */
 typedef struct points {
     const spari_line *line;
     int method;
@@ -737,10 +739,10 @@ typedef struct points {
     int *element;
     double *xi, *feet;
     uint8_t *flags;
-    struct part *stacks; /* of each thread */
+    struct part *stacks; /* per thread */
 } points;
 
-enum { SLAB = 1024 }; /* a thread's share; the first of them knows no neighbour */
+enum { SLAB = 1024 }; /* points per item; the first of an item has no neighbour */
 
 static void project_item(void *context, int64_t item, int worker) {
     const points *p = context;
@@ -755,7 +757,7 @@ static void project_item(void *context, int64_t item, int worker) {
         }
         q.ambiguous = 0;
         if (line->per_element >
-            1) { /* neighbours have neighbouring feet: the distance to the last one is the first bound */
+            1) { /* neighbours have neighbouring nearest points: the distance to the previous one is the first bound */
             int last = q.element;
             q.square = square_at(&q, last, q.xi);
             q.element = -1;

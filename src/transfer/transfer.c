@@ -1,8 +1,9 @@
-/* Between lines and nodes: which kernels this processor has, and what they are given. */
+/* Transfer between lines and fluid nodes: choice of the kernels for this processor, tiles, and sums over threads.
+   See transfer.h. */
 #include "transfer.h"
 
-#include "../base/thread_pool.h"
 #include "../base/status.h"
+#include "../base/thread_pool.h"
 #include "../math/lanes.h"
 #include "../math/rotation.h"
 #include <float.h>
@@ -10,20 +11,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#if defined(__has_builtin) /* in Clang, and in GCC from 12 on; GCC's own shuffle is older */
+#if defined(__has_builtin) /* in Clang, and in GCC from 12 on; older GCC has its own shuffle */
 #if __has_builtin(__builtin_shufflevector)
 #define SPARI_SHUFFLEVECTOR 1
 #endif
 #endif
 
-/* s[0] + s[1] += x, the rounding error kept (Knuth's two-sum): the sum over tiles loses nothing that matters. */
+/* s[0] + s[1] += x with the rounding error in s[1] (Knuth's two-sum): the sum over tiles loses nothing significant. */
 static inline void spari_add(double *s, double x) {
     double a = s[0], t = a + x, b = t - a;
     s[0] = t;
     s[1] += (a - (t - b)) + (x - b);
 }
 
-/* How the one node of a point or rigid body moves what is tied to it: place + R arm. */
+/* Motion of nodes attached to a point or rigid body: position + R arm. */
 typedef struct carrier {
     double place[3], rate[3], q[4], turn[9], omega[3], accel[3], alpha[3];
     double square; /* |q|^2 */
@@ -45,9 +46,10 @@ static carrier carrier_of(const double *c) {
     return m;
 }
 
-/* The loads of a tile's nodes, as rows, of which a run of one element begins at `at`. next: the host's forces of the
-   tile's nodes after it, numbers of `size` bytes; NULL: of no use, or not triples. held: the sums of the runs of one
-   element, lane by lane, which have their lanes added once for several tiles: they begin with this run, end with it. */
+/* Loads of a tile's nodes, as rows; a run of one element begins at `at`.
+   next: the host's forces of the next tile's nodes, numbers of `size` bytes; NULL: useless, or not triples
+   held: sums of the runs of one element per lane, whose lanes are added once for several tiles; begin, end: whether
+     this run begins or ends them */
 typedef struct tile_loads {
     double (*row)[SPARI_ROW];
     int at, size;
@@ -140,7 +142,7 @@ void spari_nodes_free(spari_nodes *s) {
     free(s);
 }
 
-/* The tile's nodes by element, in their own order within an element. */
+/* Orders the tile's nodes by element, keeping their order within an element. */
 static void order_tile(const int *element, int count, uint16_t *place) {
     for (int i = 0; i < count; i++) {
         int j = i;
@@ -151,7 +153,7 @@ static void order_tile(const int *element, int count, uint16_t *place) {
     }
 }
 
-/* The nodes are stored as they come: along the line. */
+/* The nodes are stored in their own order along the line. */
 static int is_in_order(const spari_nodes *s) {
     for (int64_t p = 0; p < s->n; p++) {
         if (s->place[p] != p % SPARI_TILE) {
@@ -203,7 +205,7 @@ void spari_modal_matrix(int n, double *m) {
     }
 }
 
-/* Fields of one node: what is interpolated. */
+/* Fields of one node that are interpolated. */
 static void node_fields(const double *xr, const double *q, const double *v, const double *a, const double chained[4],
                         int consistent, int upto, double g[SPARI_FIELDS]) {
     for (int i = 0; i < 3; i++) {
@@ -239,7 +241,7 @@ void spari_field_fill(int elements, int per_element, const double *modal, int co
     static const int width[] = {SPARI_F_SPIN, SPARI_F_ACCEL, SPARI_FIELDS};
     double chained[4 * SPARI_MAX_NODES], g[SPARI_FIELDS];
     ptrdiff_t block = (ptrdiff_t)per_element * SPARI_FIELDS;
-    consistent = consistent && per_element > 1; /* with one node both kinds are the same */
+    consistent = consistent && per_element > 1; /* with one node both kinds are equal */
     for (int e = 0; e < elements; e++) {
         ptrdiff_t node = (ptrdiff_t)e * per_element;
         double *to = c + e * block;
@@ -261,7 +263,7 @@ void spari_field_fill(int elements, int per_element, const double *modal, int co
 
 /* ---- tiles ---- */
 
-/* Length of the run of one element that begins at storage place p, within count. */
+/* Length of the run of one element that begins at storage position p, within count. */
 static int run_length(const spari_nodes *s, int64_t p, int count) {
     if (!s->element) {
         return count;
@@ -289,7 +291,7 @@ double spari_tile_motion(const spari_nodes *s, int64_t first, const double *c, i
     return least;
 }
 
-/* Past the caches are whole lines, which only the widest vectors make. */
+/* Whether to use non-temporal stores. They need whole lines, which only the widest vectors write. */
 static int is_past(const spari_nodes *s) {
     return s->n >= SPARI_PAST;
 }
@@ -322,7 +324,7 @@ double spari_carry(const spari_nodes *s, const double *c, double *x, double *v) 
     return m.square;
 }
 
-/* Rows of a tile from where a layout says: component by component, each of which may be an array of its own. */
+/* Rows of a tile through a layout, component by component; each component may be an array of its own. */
 static void fetch_at(const spari_nodes *s, int64_t first, int count, spari_source x, double (*f)[SPARI_ROW]) {
     for (int k = 0; k < 3; k++) {
         for (int i = 0; i < count; i++) {
@@ -331,13 +333,13 @@ static void fetch_at(const spari_nodes *s, int64_t first, int count, spari_sourc
     }
 }
 
-/* The same of triples of nodes that are not stored as they come. */
+/* The same for triples of nodes that are not stored in order. */
 static void fetch_placed(const spari_nodes *s, int64_t first, int count, spari_source x, double (*f)[SPARI_ROW]) {
     for (int i = 0; i < count; i++) {
         int64_t node = first + s->place[first + i];
         double t[3];
         if (x.d) {
-            memcpy(t, x.d + 3 * node, sizeof t); /* the host's array may lie anywhere */
+            memcpy(t, x.d + 3 * node, sizeof t); /* the host's array may have any alignment */
         } else {
             float single[3];
             memcpy(single, x.f + 3 * node, sizeof single);
@@ -347,7 +349,7 @@ static void fetch_placed(const spari_nodes *s, int64_t first, int count, spari_s
     }
 }
 
-/* Triples of the host's as rows in storage order, and back. */
+/* The host's triples to rows in storage order, and back. */
 static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t first, int count, spari_source x,
                        double (*f)[SPARI_ROW]) {
     if (x.layout) {
@@ -387,7 +389,7 @@ void spari_tile_store_f32(const spari_nodes *s, int64_t first, double (*row)[SPA
 
 void spari_tiles_end(void) {
 #if defined(__GNUC__) && defined(__x86_64__)
-    _mm_sfence(); /* stores that pass the caches */
+    _mm_sfence(); /* after non-temporal stores */
 #endif
 }
 
@@ -407,7 +409,7 @@ void spari_tile_store_at(const spari_nodes *s, int64_t first, double (*row)[SPAR
     }
 }
 
-/* Modal sums back to the nodes: f_l = sum_k m[k][l] F_k. */
+/* Transposed transform: f_l = sum_k m[k][l] F_k. */
 static void spread(int elements, int per_element, const double *modal, int consistent, const double *q,
                    const double *work, double *load) {
     double chained[4 * SPARI_MAX_NODES], back[4], g[7], m[4];
@@ -440,8 +442,8 @@ static void spread(int elements, int per_element, const double *modal, int consi
 
 /* ---- sums of loads ---- */
 
-/* What is summed over nodes, in one block of doubles: modal sums [elements][P][7][2] and those of the audit, each with
-   its rounding error; the extremes, least first. */
+/* Sums over nodes, in one block of doubles: modal sums [elements][P][7][2] and those of the audit, each with its
+   rounding error; then the extremes, minima first. */
 typedef struct load_sums {
     double *modal, *audit, *tops, *least;
 } load_sums;
@@ -451,15 +453,15 @@ static load_sums sums_at(double *block, int64_t nodes) {
     return (load_sums){block, audit, audit + 18, audit + 21};
 }
 
-/* What the loads of nodes are asked of. */
+/* Arguments of the sum of loads. */
 typedef struct gathering {
     const spari_nodes *s;
     kernels kernel;
     const double *c;
     int consistent, has_moment, audited;
     spari_source force, moment;
-    int64_t nodes, slab, first; /* of the line; of fluid nodes in a slab; the slab that goes to work space 0 */
-    int64_t rows;               /* doubles of work space before the sums */
+    int64_t nodes, slab, first; /* nodes of the line; fluid nodes per slab; slab of the first workspace */
+    int64_t rows;               /* doubles of workspace before the sums */
     double *work;
 } gathering;
 
@@ -468,7 +470,7 @@ static void clear_sums(double *block, int64_t nodes) {
     *sums_at(block, nodes).least = HUGE_VAL;
 }
 
-/* Where the host's forces of the tile after this one are, for those who read ahead of many. */
+/* The host's forces of the tile after this one, for prefetching with many nodes. */
 static const char *forces_ahead(const spari_nodes *s, int64_t first, spari_source force, int size) {
     if (s->n < SPARI_FAR || force.layout || first + 2 * SPARI_TILE > s->n) {
         return NULL;
@@ -476,7 +478,7 @@ static const char *forces_ahead(const spari_nodes *s, int64_t first, spari_sourc
     return (force.d ? (const char *)force.d : (const char *)force.f) + 3 * (first + SPARI_TILE) * size;
 }
 
-/* A run, which lies before `end`, where a slab does. f: rows of work space. */
+/* Adds a run of one element. It lies before `end`, the end of the slab. f: rows of workspace. */
 static void add_run(const gathering *g, int64_t p, int run, int64_t end, tile_loads *loads, double (*f)[SPARI_ROW],
                     const load_sums *to) {
     const spari_nodes *s = g->s;
@@ -493,7 +495,7 @@ static void add_run(const gathering *g, int64_t p, int run, int64_t end, tile_lo
     loads->at += run;
 }
 
-/* Its rows are the first six of work space. */
+/* Its rows are the first six of the workspace. */
 static void add_tile(const gathering *g, int64_t first, int64_t end, tile_loads *loads, const load_sums *to) {
     const spari_nodes *s = g->s;
     double(*f)[SPARI_ROW] = loads->row;
@@ -502,7 +504,7 @@ static void add_tile(const gathering *g, int64_t first, int64_t end, tile_loads 
     if (g->has_moment) {
         fetch_rows(&g->kernel, s, first, count, g->moment, f + 3);
     }
-    for (int i = count; i < SPARI_ROW; i++) { /* lanes past the end are multiplied with zeros */
+    for (int i = count; i < SPARI_ROW; i++) { /* lanes past the end are multiplied by zeros */
         f[0][i] = f[1][i] = f[2][i] = 0;
     }
     loads->next = forces_ahead(s, first, g->force, loads->size);
@@ -529,13 +531,13 @@ static spari_crew *crew_of(const spari_nodes *s) {
     return s->crew ? *s->crew : NULL;
 }
 
-/* The work space of a thread, its rows first. */
+/* Workspace of a thread, which begins with its rows. */
 static double *work_of(const gathering *g, int worker) {
     int64_t size = g->rows + spari_gather_share(g->nodes);
     return worker == 0 ? g->work : spari_crew_room(crew_of(g->s), worker, size);
 }
 
-/* Of several slabs at once each has a block of its own, whichever thread fills it. */
+/* If several slabs are summed at once, each has a block of its own, whichever thread fills it. */
 static double *block_of(const gathering *g, int64_t k) {
     return work_of(g, (int)k) + g->rows;
 }
@@ -552,12 +554,12 @@ static void join_sums(const double *block, double *total, int64_t nodes) {
         spari_add(total + i, block[i]);
         spari_add(total + i, block[i + 1]);
     }
-    for (int i = 0; i < 4; i++) { /* with the least */
+    for (int i = 0; i < 4; i++) { /* minimum */
         to.tops[i] = tops[i] < to.tops[i] ? tops[i] : to.tops[i];
     }
 }
 
-/* All loads, into a block. */
+/* Sums all loads into one block. */
 static void sum_all_loads(gathering *g, double *total) {
     int64_t slabs = spari_slabs(g->s->n, g->slab);
     spari_crew *crew = crew_of(g->s);
@@ -586,7 +588,7 @@ static void finish_audit(const load_sums *of, spari_audit *audit) {
     audit->power = sums[12] + sums[13];
     audit->force_sum = sums[14] + sums[15];
     audit->moment_sum = sums[16] + sums[17];
-    audit->x_max = sqrt(0 - of->tops[0]), audit->v_max = sqrt(0 - of->tops[1]); /* no negative zero */
+    audit->x_max = sqrt(0 - of->tops[0]), audit->v_max = sqrt(0 - of->tops[1]); /* 0 minus avoids negative zero */
     audit->omega_max = sqrt(0 - of->tops[2]);
 }
 
@@ -597,7 +599,7 @@ double spari_gather_loads(const spari_nodes *s, const double *modal, const doubl
     g.moment = moment, g.has_moment = moment.d || moment.f, g.audited = audit != NULL;
     g.nodes = nodes, g.work = work, g.rows = spari_gather_rows(s->per_element);
     double *block = work + g.rows + spari_gather_share(nodes);
-    g.slab = SPARI_SUM_SLAB * (1 + nodes / 1024); /* to join the sums is little beside making them */
+    g.slab = SPARI_SUM_SLAB * (1 + nodes / 1024); /* joining the sums costs little compared with computing them */
     sum_all_loads(&g, block);
     const load_sums total = sums_at(block, nodes);
     spread(s->elements, s->per_element, modal, consistent, q, total.modal, load);

@@ -1,4 +1,4 @@
-/* What a run costs: see cost.h. */
+/* Cost of a run, counted: see cost.h. */
 #include "cost.h"
 
 #include "../comm/comm.h"
@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-/* Whole numbers: their sum over the ranks is the same in any order. */
+/* Integers: their sum over the ranks does not depend on the order. */
 static double whole(double cost) {
     return floor(cost + 0.5);
 }
@@ -80,7 +80,7 @@ static double count_nodes(const spar_fluid *f) {
     return (double)n;
 }
 
-/* Motion to the fluids and loads from them, once. */
+/* Transfer of motion to the fluids and of loads from them, once. */
 static double map_cost(const spar_session *s) {
     const spari_prices *p = &spari_rule.price;
     double sum = 0;
@@ -124,7 +124,7 @@ double spari_cost_solution(const spar_session *s, double by_nodes, double second
 }
 
 int spari_cost_wavers(const spar_session *s, double by_nodes, double seconds, int64_t solutions) {
-    const double near = 2; /* what a busy machine makes of a clock */
+    const double near = 2; /* timing error of a busy machine */
     return spari_cost_solution(s, by_nodes, seconds / near, solutions) !=
            spari_cost_solution(s, by_nodes, seconds * near, solutions);
 }

@@ -1,4 +1,4 @@
-/* What an effect is worth: its size in a run, and trials with it and without. */
+/* Contribution of effects: their size in a run, and trials with and without them. */
 #include "../base/environment.h"
 #include "trial.h"
 
@@ -61,10 +61,10 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
 
 /* ---- sizes ---- */
 
-/* Terms of the balance of forces */
+/* Terms of the equations of motion */
 enum { INTERNAL, INERTIA, GYROSCOPIC, GRAVITY, DAMPING, MASSES, FOUNDATION, PRETENSION, LOADS, TERMS };
 
-/* Sum of the squares of nodal forces r [n][6], moments by the length. */
+/* Sum of the squares of nodal forces r [n][6]; moments are divided by the length. */
 static double squares(const double *r, int64_t n, double length) {
     double sum = 0;
     for (int64_t i = 0; i < 6 * n; i++) {
@@ -80,7 +80,7 @@ static void minus(double *r, const double *from, int64_t n) {
     }
 }
 
-/* Forces of the bodies that sit on a beam: with them less without. r, less: work of [6 n] each. */
+/* Forces of attached masses: difference with and without them. r, less: workspace of [6 n] each. */
 static double lump_squares(const spar_member *m, const double *q, const double *v, const double *a, double *r,
                            double *less, double length) {
     int inertia = (m->effects & SPAR_EFFECT_INERTIA) != 0;
@@ -93,7 +93,7 @@ static double lump_squares(const spar_member *m, const double *q, const double *
     return squares(r, m->body->unique, length);
 }
 
-/* Forces of pretension: with it less without, at rest. r, less: work of [6 n] each. */
+/* Forces of pretension: difference with and without it, at rest. r, less: workspace of [6 n] each. */
 static double pretension_squares(const spar_member *m, const double *q, double *r, double *less, double length) {
     spari_body loose = *m->body;
     loose.pre = NULL;
@@ -103,8 +103,8 @@ static double pretension_squares(const spar_member *m, const double *q, double *
     return squares(r, m->body->unique, length);
 }
 
-/* Adds the squares of the loads, and of the foundation's forces, which are terms of their own. loads: work of [6
-   nodes], with a foundation twice that. */
+/* Adds the squares of the loads, and of the foundation's forces, as separate terms. loads: workspace of [6 nodes],
+   with a foundation twice that. */
 static void load_squares(const spar_member *m, double *loads, double length, double sum[TERMS]) {
     for (int64_t i = 0; i < 6 * m->nodes; i++) {
         loads[i] = m->dead[i] + m->load_pushed[i];
@@ -135,7 +135,7 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
     spari_member_to_unique(m, 7, m->now.q, q);
     spari_member_to_unique(m, 6, m->now.v, v);
     spari_member_to_unique(m, 6, m->now.a, a);
-    plain.drag = 0; /* its forces have the shape of inertia's, and are damping's */
+    plain.drag = 0; /* mass-proportional damping has the form of inertia but counts as damping */
     spari_body_residual(b, q, NULL, NULL, 0, rest, NULL);
     sum[INTERNAL] += squares(rest, n, length);
     spari_body_residual(b, q, NULL, NULL, 1, r, NULL);
@@ -157,7 +157,7 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
         sum[DAMPING] += squares(r, n, length);
     }
     if (m->effects & SPAR_EFFECT_INERTIA) {
-        /* inertia is linear in the accelerations: what is there without any is gyroscopic */
+        /* inertia is linear in the accelerations: the part at zero acceleration is gyroscopic */
         const double *rate = b->D ? v : NULL;
         spari_body_residual(b, q, v, none, 0, r, NULL);
         spari_body_residual(b, q, rate, NULL, 0, rest, NULL);
@@ -198,7 +198,7 @@ static int add_state(spar_session *s, void *to) {
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }
 
-/* Terms of the whole run, by the largest of them. */
+/* Terms of the whole run, relative to the largest. */
 static void find_sizes(const sizes *of, double dt, double size[SPAR_ROW_COUNT]) {
     double leading = 0;
     for (int k = 0; k < TERMS; k++) {
@@ -275,14 +275,14 @@ static void leave_row_out(const spar_session *s, int r, spari_wish *wish) {
     }
 }
 
-/* Statuses after which the other rows can still be tried. */
+/* Failures after which the other rows can still be tried. */
 static int is_of_the_run(int status) {
     return status == SPAR_ERR_NUMERIC || status == SPAR_ERR_USER || status == SPAR_ERR_STATE ||
            status == SPAR_ERR_UNSUPPORTED;
 }
 
-/* A run that begins out of its own balance iterates more, and that is not what the effect costs: so the time of one
-   solution is compared, but for the rows that change how many there are. */
+/* Compares the time of one solution, because a run that starts out of equilibrium iterates more, which is not the
+   cost of the effect. Exception: rows that change the number of solutions. */
 static double cost_of_row(const spari_record *record, int r) {
     int of_coupling = r == SPAR_ROW_PREDICTOR || r == SPAR_ROW_ITERATION;
     return of_coupling || record->solutions == 0 ? record->seconds : record->seconds / (double)record->solutions;
@@ -296,9 +296,9 @@ static void tell_failure(spar_session *s, const char *call, int r) {
     }
 }
 
-enum { REPEATS = 3 }; /* times of a row are the least of so many, with and without in turn */
+enum { REPEATS = 3 }; /* times are the smallest of this many runs, with and without in turn */
 
-/* Runs there are in rows from r on. asked: as of in_force. */
+/* Number of runs for rows from r on. asked: as in in_force. */
 static int count_runs(const spar_session *s, int r, int asked) {
     int runs = 0;
     for (; r < SPAR_ROW_COUNT; r++) {
@@ -307,12 +307,12 @@ static int count_runs(const spar_session *s, int r, int asked) {
     return runs;
 }
 
-/* Runs made, and those to come. */
+/* Number of runs made, and in total. */
 typedef struct run_tally {
     int done, left;
 } run_tally;
 
-/* A run that the host hears of first. */
+/* A run with a call of the progress callback before it. */
 static int run_told(spar_session *s, const spari_run *run, const spari_wish *wish, run_tally *runs,
                     spari_record *record) {
     *record = (spari_record){0};
@@ -361,7 +361,7 @@ static int try_row_out(spar_session *s, const char *call, const spari_run *run, 
     return status;
 }
 
-/* What any rank's fluids have asked for. */
+/* Requests of the fluids on all ranks. */
 static int asked_anywhere(spar_session *s, int *asked) {
     enum { BITS = 5 };
     double bit[BITS + 1];
@@ -397,7 +397,7 @@ static int fill_rows(spar_session *s, const char *call, const spari_run *run, do
     spari_run watched = *run;
     spari_wish wish;
     spari_record base;
-    run_tally runs = {0, 1 + count_runs(s, 0, run->solve ? ~0 : 0)}; /* what the fluid asks for the first run tells */
+    run_tally runs = {0, 1 + count_runs(s, 0, run->solve ? ~0 : 0)}; /* the first run shows the fluid's requests */
     watched.watch = add_state, watched.watcher = &seen;
     SPARI_TRY(add_state(s, &seen));
     SPARI_TRY(spari_wish_create(s, &wish));

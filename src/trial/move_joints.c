@@ -1,4 +1,4 @@
-/* Joints of members made anew: see move_joints.h. */
+/* Joints of rebuilt members: see move_joints.h. */
 #include "move_joints.h"
 
 #include <stdlib.h>
@@ -60,7 +60,7 @@ void spari_ties_restore(spar_session *s, spari_ties *t) {
 
 void spari_ties_adopt(spar_session *s, spari_ties *t) {
     const spar_joint *copy = t->joints;
-    for (spar_joint *j = s->joints; j && copy; j = j->next, copy++) { /* their account goes on */
+    for (spar_joint *j = s->joints; j && copy; j = j->next, copy++) { /* their work accounts continue */
         memcpy(j->account, copy->account, sizeof j->account);
     }
     spari_assemblies_drop(t->assemblies);

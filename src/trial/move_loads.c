@@ -1,4 +1,4 @@
-/* Reproducible sums of loads go over to other nodes: see move_loads.h. */
+/* Transfers reproducible load sums to other nodes: see move_loads.h. */
 #include "move_loads.h"
 
 #include "../base/session.h"
@@ -7,17 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FLAGS = 32 }; /* fluids in a word */
+enum { FLAGS = 32 }; /* fluids per word */
 
 typedef struct carry_room {
     const spari_carried *fluids;
-    int64_t count, words, *first, sums; /* words: of a rank, and one for its status */
-    double *here;                       /* [ranks][words]: which fluids have force nodes there */
+    int64_t count, words, *first, sums; /* words: per rank, including its status */
+    double *here;                       /* [ranks][words]: bit mask of fluids with force nodes on the rank */
     spari_bins *sum;                    /* [sums], and room for a status */
     double *value;                      /* of the largest fluid */
 } carry_room;
 
-/* What must be alike on all ranks, for sums over them to be of one fluid. */
+/* Hash of what must agree across ranks, so that sums over them belong to one fluid. */
 static uint64_t hash_of(const carry_room *c) {
     uint64_t h = SPARI_HASH_BEGIN;
     for (int64_t k = 0; k < c->count; k++) {
@@ -58,7 +58,7 @@ static void flag_own(const spar_session *s, carry_room *c) {
     }
 }
 
-/* The first rank that has force nodes of the k-th fluid; 0 if none has. */
+/* First rank with force nodes of the k-th fluid; 0 if none. */
 static int holder_of(const spar_session *s, const carry_room *c, int64_t k) {
     for (int r = 0; r < spari_comm_size(s->comm); r++) {
         if ((uint32_t)c->here[c->first[r] + k / FLAGS] >> k % FLAGS & 1) {

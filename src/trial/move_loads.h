@@ -1,21 +1,21 @@
-/* Loads of members made anew with other nodes, as reproducible sums over the ranks. What a rank's share would become
-   there is rounded, and so depends on who has which nodes; the sum over the ranks does not. So that is what goes over,
-   and one of the ranks whose nodes it is of has it from then on, until they push again. */
+/* Loads on rebuilt members with other nodes, as reproducible sums over the ranks. Transferring each rank's share
+   would round it, so the result would depend on the distribution of nodes. The sum over the ranks does not; so the
+   sum is transferred, and one of the fluid's ranks holds it until the fluid pushes again. */
 #ifndef SPARI_CARRY_H
 #define SPARI_CARRY_H
 
 #include "../fluid/fluid.h"
 
-/* A fluid that has been made anew, what it was, and what its member was. */
+/* A rebuilt fluid, and the old fluid and member. */
 typedef struct spari_carried {
     spar_fluid *fluid;
     const spar_fluid *old;
     const spar_member *before;
 } spari_carried;
 
-/* fluids[count]: those whose members have other nodes now. any: whether there are members with other nodes, which is
-   alike on all ranks; the list need not be, and is refused then: SPAR_ERR_COMM, in a call of that name. Nothing to do,
-   and nothing sent, without any, where sums are not reproducible, and on one rank. Collective. */
+/* fluids[count]: fluids whose members have other nodes. any: whether there are members with other nodes, which
+   agrees on all ranks; the lists need not agree, which is refused: SPAR_ERR_COMM, in the name of `call`. Does and
+   sends nothing if `any` is 0, if sums are not reproducible, and on one rank. Collective. */
 int spari_carry_loads(spar_session *session, const char *call, int any, const spari_carried *fluids, int64_t count);
 
 #endif

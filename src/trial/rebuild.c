@@ -1,4 +1,4 @@
-/* Members made anew in other elements or of another fidelity for a trial, and put back. */
+/* Rebuilds members with other elements or fidelity for a trial, and restores them: see rebuild.h. */
 #include "rebuild.h"
 
 #include "../base/session.h"
@@ -8,8 +8,8 @@
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/mean_acceleration.h"
-#include "../time/fidelity.h"
 #include "../solve/life.h"
+#include "../time/fidelity.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@ spari_remake spari_remake_of(const spar_member *m) {
 
 /* ---- description and state ---- */
 
-/* The description with another rule, or other nodes where they were given; a copy that shares the rest. */
+/* The description with another quadrature rule, or other nodes if nodes were given; a copy that shares the rest. */
 static int describe_again(spar_member *m, const spari_remake *wish, const spar_member *old) {
     if (m->kind != SPARI_BEAM) {
         return SPAR_OK;
@@ -34,7 +34,7 @@ static int describe_again(spar_member *m, const spari_remake *wish, const spar_m
     b->rule = spari_beam_rule(old->beam);
     if (wish->points > 0) {
         b->points = wish->points;
-    } else if (b->points > 0 && b->rule != SPAR_QUADRATURE_SECTIONS) { /* as many as an element of more nodes needs */
+    } else if (b->points > 0 && b->rule != SPAR_QUADRATURE_SECTIONS) { /* as many as an element with more nodes needs */
         int least = wish->per_element + (b->rule == SPAR_QUADRATURE_LOBATTO);
         b->points = b->points < least ? least : b->points;
     }
@@ -45,7 +45,7 @@ static int describe_again(spar_member *m, const spari_remake *wish, const spar_m
                   "or keep the elements",
                   m->name, m->elements, old->elements);
     m->nodes = (int64_t)m->elements * m->per_element;
-    if (old->beam->node_x) { /* the nodes given stand for the line between them */
+    if (old->beam->node_x) { /* given nodes are replaced by the line through them */
         const spari_beam *given = old->beam;
         b->node_x = spari_zalloc(3 * m->nodes, sizeof *b->node_x);
         b->node_q = given->node_q ? spari_zalloc(4 * m->nodes, sizeof *b->node_q) : NULL;
@@ -59,7 +59,7 @@ static int describe_again(spar_member *m, const spari_remake *wish, const spar_m
     return SPAR_OK;
 }
 
-/* Past loads are kept as far as either predictor looks. */
+/* Past loads are kept as far as both predictors need. */
 static void carry_state(spar_member *old, spar_member *m) {
     const spari_mesh was = spari_member_mesh(old), is = spari_member_mesh(m);
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
@@ -97,7 +97,7 @@ int spari_member_remake(spar_member *m, const spari_remake *wish, spar_member *o
     return SPAR_OK;
 }
 
-/* A copy that describe_again has made, which the member that stays does not have. */
+/* Frees a copy made by describe_again, except what the other member shares. */
 static void drop_description(spari_beam *beam, const spari_beam *stays) {
     if (beam != stays) {
         free(beam->node_x);

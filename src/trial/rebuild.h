@@ -1,5 +1,5 @@
-/* A member made anew from its description, with other settings, in the state it is in: what a trial run is made with.
-   The handle stays where it is, so that the host's calls reach the member made anew; what it was waits in a copy. */
+/* Rebuilds a member from its description with other settings, in its present state, for trials. The handle stays
+   valid, so the host's calls reach the rebuilt member; a copy holds the old one. */
 #ifndef SPARI_REMAKE_H
 #define SPARI_REMAKE_H
 
@@ -10,18 +10,18 @@ struct spari_remake {
     int fidelity;    /* SPAR_FIDELITY_* */
     int64_t modes;   /* of a modal member */
     int points;      /* beams: quadrature points of the rule in force; 0: as described */
-    int left_out;    /* SPAR_EFFECT_* that are not to be there */
-    int elements;    /* beams: how many, 0: as many as there are. One whose nodes were given keeps its own */
+    int left_out;    /* SPAR_EFFECT_* to switch off */
+    int elements;    /* beams: number; 0: unchanged. A beam with given nodes keeps its own */
 };
 
-/* The member as it is. */
+/* Present settings of the member. */
 spari_remake spari_remake_of(const spar_member *member);
-/* Makes `member` anew. Its state at t^n goes over: displacements and rotations by the elements' own interpolation,
-   loads by its transpose, so that their sum is kept. Accelerations begin from the balance of forces. *old: what it was;
-   give it to spari_member_restore, also after a failure. Local. */
+/* Rebuilds `member`. Its state at t^n is transferred: displacements and rotations by interpolation, loads by its
+   transpose, so their sum is conserved. Accelerations follow from the equations of motion. *old: the member before;
+   pass it to spari_member_restore, also after a failure. Local. */
 int spari_member_remake(spar_member *member, const spari_remake *wish, spar_member *old);
 void spari_member_restore(spar_member *member, const spar_member *old);
-/* It stays as it was made anew: what it was goes. */
+/* Keeps the rebuilt member and frees the old one. */
 void spari_member_adopt(spar_member *member, spar_member *old);
 
 #endif

@@ -1,4 +1,4 @@
-/* The constants of advice: see rules.h for what each is. */
+/* Constants of the advice: described in rules.h. */
 #include "rules.h"
 
 const spari_rules spari_rule = {.reference_ends = 0.25,

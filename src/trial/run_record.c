@@ -1,4 +1,4 @@
-/* What a run leaves behind: see run_record.h. */
+/* Results of a trial run: see run_record.h. */
 #include "run_record.h"
 
 #include "../base/session.h"
@@ -17,20 +17,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Places looked at along a beam; a member of one node has its place and three arms. RECENT: points of a cubic. */
+/* Positions along a beam; a member of one node has its position and three lever arms. RECENT: points of a cubic. */
 enum { STATIONS = 8, ARMS = 4, PLACES = 9, RECENT = 4 };
-/* What turns less often in a run looks like the beginning of something. */
+/* A motion with fewer periods in a run counts as incomplete. */
 enum { LEAST_PERIODS = 4 };
 static const double pi = 3.14159265358979323846;
 
 /* ---- a sample ---- */
 
-/* Members that follow what the host says have no error. */
+/* Members with prescribed motion have no error. */
 static int stations_of(const spar_member *m) {
     return m->kind == SPARI_POINT ? 0 : m->nodes == 1 ? ARMS : STATIONS;
 }
 
-/* The element of a place of a beam, and where it is there, -1 .. 1. */
+/* Element of a position on a beam, and its coordinate there, -1 .. 1. */
 static int place_of_station(const spar_member *m, int k, double *xi) {
     double eta = (k + 1.0) / STATIONS * m->elements;
     int e = (int)ceil(eta) - 1;
@@ -38,7 +38,7 @@ static int place_of_station(const spar_member *m, int k, double *xi) {
     return e;
 }
 
-/* Bases at the places of all beams, which stay as they are through a run. */
+/* Basis functions at the positions of all beams, constant through a run. */
 static void find_bases(const spar_session *s, double *basis) {
     for (const spar_member *m = s->members; m; m = m->next) {
         for (int k = 0; k < stations_of(m); k++, basis += SPARI_MAX_NODES) {
@@ -51,7 +51,7 @@ static void find_bases(const spar_session *s, double *basis) {
     }
 }
 
-/* A place of a beam in the reference configuration, and its displacement. */
+/* Reference position of a point of a beam, and its displacement. */
 static void beam_station(const spar_member *m, int k, const double *phi, double X[3], double u[3]) {
     double xi;
     int e = place_of_station(m, k, &xi);
@@ -65,7 +65,7 @@ static void beam_station(const spar_member *m, int k, const double *phi, double 
     }
 }
 
-/* The end of an arm, k = 0: the node itself. */
+/* End of a lever arm; k = 0: the node itself. */
 static void body_station(const spar_member *m, int k, double X[3], double u[3]) {
     double arm[3] = {0, 0, 0}, turned[3];
     if (k > 0) {
@@ -78,7 +78,7 @@ static void body_station(const spar_member *m, int k, double X[3], double u[3]) 
     }
 }
 
-/* What of the displacement u at X is not that of the root. */
+/* The part of the displacement u at X beyond the rigid motion of the root. */
 static void beyond_root(const spar_member *m, const double X[3], const double u[3], double out[3]) {
     double arm[3] = {X[0] - m->xr[0], X[1] - m->xr[1], X[2] - m->xr[2]}, turned[3];
     spari_rotate(m->after.q + 3, arm, turned);
@@ -204,7 +204,7 @@ int spari_record_create(spar_session *s, int64_t steps, int goals, spari_record 
     r->start = spari_zalloc(3 * r->stations, sizeof *r->start);
     r->room = spari_zalloc(room, sizeof *r->room);
     r->basis = spari_zalloc(SPARI_MAX_NODES * r->stations, sizeof *r->basis);
-    r->member_work = spari_zalloc(r->members + 1, sizeof *r->member_work); /* and a status, where it is summed */
+    r->member_work = spari_zalloc(r->members + 1, sizeof *r->member_work); /* and a status, when it is summed */
     SPARI_REQUIRE(s, r->value && r->recent && r->load && r->trail && r->start && r->room && r->basis && r->member_work,
                   SPAR_ERR_MEMORY, "no memory for the record of a trial run");
     find_bases(s, r->basis);
@@ -227,7 +227,7 @@ int64_t spari_record_size(const spari_record *r) {
     return SPARI_SAMPLES * width(r);
 }
 
-/* ---- looking ---- */
+/* ---- sampling ---- */
 
 static double *recent(const spari_record *r, int64_t i) {
     return r->recent + i % RECENT * width(r);
@@ -240,12 +240,12 @@ void spari_record_begin(spari_record *r, const spar_session *s) {
     look_at_motion(s, r, now + r->first[SPARI_OF_MOTION], now + r->first[SPARI_OF_BEYOND]);
 }
 
-/* Sample k, in steps from the beginning. */
+/* Time of sample k, in steps from the beginning. */
 static double place(const spari_record *r, int k) {
     return (k + 1.0) * (double)r->steps / SPARI_SAMPLES;
 }
 
-/* Samples after `from` up to `to` by the cubic through the steps i - 3 .. i. */
+/* Samples after `from` up to `to`, by the cubic through the steps i - 3 .. i. */
 static void interpolate(spari_record *r, int64_t i, double from, double to) {
     int64_t n = width(r);
     for (int k = (int)floor(from / (double)r->steps * SPARI_SAMPLES); k < SPARI_SAMPLES && place(r, k) <= to; k++) {
@@ -265,7 +265,7 @@ static void interpolate(spari_record *r, int64_t i, double from, double to) {
     }
 }
 
-/* Beside the motion, what is asked for; numbers are the sum of the ranks'. */
+/* Goals beside the motion; numbers are summed over the ranks. */
 static int look_at_goals(const spari_record *r, spar_session *s, double *now) {
     int status = SPAR_OK;
     if (r->goals & SPARI_GOAL(SPARI_OF_REACTION)) {
@@ -314,7 +314,7 @@ static part_of whole_of(const spari_record *r, int block) {
     return (part_of){block, 0, r->first[block + 1] - r->first[block]};
 }
 
-/* Squares of a sample's difference in a part of a block, and of what it is relative to. */
+/* Squares of a sample's difference in a part of a block, and of its scale. */
 static void add_squares(const spari_record *a, const spari_record *b, part_of of_which, int k, double *difference,
                         double *scale) {
     int block = of_which.block;
@@ -327,18 +327,18 @@ static void add_squares(const spari_record *a, const spari_record *b, part_of of
     }
 }
 
-/* Where the first step of both is over: before, there is the motion alone. */
+/* First sample after the first step of both: before, only the motion exists. */
 static int first_sample(const spari_record *a, const spari_record *b, int block) {
     int64_t few = a->steps < b->steps ? a->steps : b->steps;
     return block == SPARI_OF_MOTION || few >= SPARI_SAMPLES ? 0 : (int)((SPARI_SAMPLES + few - 1) / few) - 1;
 }
 
-/* |a - b| / |scale|; where there is no scale any difference counts as all. */
+/* |a - b| / |scale|; with zero scale any difference counts as 1. */
 static double relative(double difference, double scale) {
     return difference == 0 ? 0 : scale > 0 ? sqrt(difference / scale) : 1;
 }
 
-/* a has come to so many samples: what differs after them is left out, and not what that is relative to. */
+/* a ends after `samples`: later differences are left out, the scale is not. */
 static double distance_of(const spari_record *a, const spari_record *b, part_of which, int samples) {
     double difference = 0, scale = 0, later = 0;
     for (int k = first_sample(a, b, which.block); k < SPARI_SAMPLES; k++) {
@@ -360,16 +360,15 @@ double spari_record_load(const spari_record *a, const spari_record *b) {
     return relative(difference, scale);
 }
 
-/* Root of the mean square of a + b t over 0 .. h. */
+/* Root mean square of a + b t over 0 .. h. */
 static double line_mean(double a, double b, double h) {
     return sqrt(a * a + a * b * h + b * b * h * h / 3);
 }
 
-enum { PARTS = 3 }; /* of a run */
+enum { PARTS = 3 }; /* thirds of a run */
 
-/* How much larger e, the roots of the mean squares in the parts of a run, are over `longer` times the run, if they go
-   on with the power of time that they have grown by last; over that of the motion, w, if it goes on as it is at the
-   end. */
+/* Growth of e, the root mean squares in the thirds of a run, over `longer` times the run, if it continues with its
+   last power of time; relative to that of the motion, w, if the motion stays as at the end. */
 static double bent_growth(const double e[PARTS + 1], const double w[PARTS + 1], double longer) {
     const double middle = (PARTS - 0.5) / PARTS, last = fmax(w[PARTS - 1], w[PARTS]);
     double power = fmin(log(e[2] / fmax(e[1], DBL_MIN)) / log(middle / 0.5), spari_rule.bends),
@@ -378,7 +377,7 @@ static double bent_growth(const double e[PARTS + 1], const double w[PARTS + 1], 
     return motion > 0 ? error / e[PARTS] * w[PARTS] / motion : error / e[PARTS];
 }
 
-/* Roots of the mean squares of the difference and of what it is relative to, in each part and at last in all. */
+/* Root mean squares of the difference and of its scale, in each third and in total. */
 static void sizes_of_parts(const spari_record *a, const spari_record *b, part_of which, double *e, double *w) {
     memset(e, 0, (PARTS + 1) * sizeof *e);
     memset(w, 0, (PARTS + 1) * sizeof *w);
@@ -392,10 +391,10 @@ static void sizes_of_parts(const spari_record *a, const spari_record *b, part_of
     e[PARTS] = sqrt(e[PARTS] / SPARI_SAMPLES), w[PARTS] = sqrt(w[PARTS] / SPARI_SAMPLES);
 }
 
-/* How much larger the root of the mean square of the difference is over `longer` times the run, if it goes on as from
-   the second third of it to the last. In the first it begins, from nothing. Motion that turns goes on as it is: what it
-   is off by is phase, and grows straight. Where it does not yet turn, b shows the beginning of something, and the
-   difference goes on bending as it does. */
+/* Growth of the root mean square of the difference over `longer` times the run, extrapolated from the second third
+   to the last. (In the first it begins from zero.) For a motion with full periods the error is one of phase and
+   grows linearly. For an incomplete one, b shows only a beginning, and the difference continues with its power of
+   time. */
 static double error_growth(const spari_record *a, const spari_record *b, part_of which, double longer) {
     double e[PARTS + 1], w[PARTS + 1];
     sizes_of_parts(a, b, which, e, w);
@@ -410,7 +409,7 @@ static double error_growth(const spari_record *a, const spari_record *b, part_of
     }
     if (level >= 0) {
         grown = line_mean(level, slope, longer) / seen;
-    } else { /* it was not there, at no time: it began with nothing */
+    } else { /* it was zero at all times before */
         grown = spari_record_vouches(b) ? line_mean(0, e[2] / middle, longer) / seen : bent_growth(e, w, longer);
     }
     return fmax(grown, 1);
@@ -421,7 +420,7 @@ static double error_of_part(const spari_record *a, const spari_record *b, part_o
     return longer > 1 ? e * (1 + spari_rule.doubt * (error_growth(a, b, which, longer) - 1)) : e;
 }
 
-/* Reactions are of roots and of joints; numbers stand for themselves. */
+/* Reactions are of roots and of joints; numbers count individually. */
 static double error_of_goals(const spari_record *a, const spari_record *b, int goals, double longer, int samples) {
     double most = 0;
     for (int block = 0; block <= SPARI_OF_LOAD; block++) {
@@ -442,7 +441,7 @@ double spari_record_error(const spari_record *a, const spari_record *b, int goal
     return error_of_goals(a, b, goals, longer, SPARI_SAMPLES);
 }
 
-/* Samples are there up to the step before the last one. */
+/* Samples exist up to the step before the last one. */
 double spari_record_least_error(const spari_record *a, const spari_record *b, int goals, int64_t i) {
     int samples = i < 3 ? 0 : (int)((i - 1) * SPARI_SAMPLES / a->steps);
     return error_of_goals(a, b, goals, 1, samples);
@@ -454,9 +453,9 @@ void spari_record_extrapolate(spari_record *finer, const spari_record *coarser, 
     }
 }
 
-/* ---- what it shows ---- */
+/* ---- properties of a run ---- */
 
-/* The straight line nearest to x[SPARI_SAMPLES], `stride` apart: its middle and its slope. */
+/* Straight line fitted to x[SPARI_SAMPLES], `stride` apart: its middle and slope. */
 static void fit_line(const double *x, int64_t stride, double *middle, double *slope) {
     double sum = 0, moment = 0, squares = 0;
     for (int j = 0; j < SPARI_SAMPLES; j++) {
@@ -467,8 +466,8 @@ static void fit_line(const double *x, int64_t stride, double *middle, double *sl
     *slope = moment / squares;
 }
 
-/* Power of the motion beyond the root, less the line nearest to it, in the k-th frequency, 2 pi k over the run's time,
-   behind a Hann window. */
+/* Power of the motion relative to the root, minus its fitted line, at the k-th frequency, 2 pi k over the run's
+   time, with a Hann window. */
 static double power_at(const spari_record *r, int k) {
     double sum = 0, wave[SPARI_SAMPLES];
     int64_t n = r->first[SPARI_OF_BEYOND + 1] - r->first[SPARI_OF_BEYOND];
@@ -528,7 +527,8 @@ double spari_record_shortest(const spari_record *r, double part) {
             total += x[c] * x[c];
         }
     }
-    /* a sine's sum of squares, S/2, has S/2 of c or s of the mean window 1: power S^2/4 in its line, 3/8 S^2 in all */
+    /* a sine with sum of squares S/2 gives S/2 in c or s (mean of the window 1): power S^2/4 in its line, 3/8 S^2 in
+       total */
     total *= 0.75 * SPARI_SAMPLES;
     for (int k = SPARI_SAMPLES / 2; k >= LEAST_PERIODS; k--) {
         above += power_at(r, k);
@@ -539,7 +539,7 @@ double spari_record_shortest(const spari_record *r, double part) {
     return 0;
 }
 
-/* Of the samples from..to: their mean, the size of what differs from it, and the sample that differs most. */
+/* For the samples from..to: their mean, the size of the deviation, and the sample that deviates most. */
 static double scatter_of(const spari_record *r, int from, double *mean, int *most) {
     int64_t n = 3 * r->stations, at = r->first[SPARI_OF_BEYOND];
     double sum = 0, largest = -1;
@@ -564,7 +564,7 @@ static double scatter_of(const spari_record *r, int from, double *mean, int *mos
 
 int spari_record_vouches(const spari_record *r) {
     int64_t n = 3 * r->stations, at = r->first[SPARI_OF_BEYOND];
-    double *mean = r->recent, size = 0, before = 0; /* the steps are over: there is room */
+    double *mean = r->recent, size = 0, before = 0; /* the steps are over, so the memory is free */
     int most = 0, crossings = 0;
     for (int k = SPARI_SAMPLES / 2; k < SPARI_SAMPLES; k++) {
         for (int64_t i = 0; i < n; i++) {
@@ -575,7 +575,7 @@ int spari_record_vouches(const spari_record *r) {
         return 1;
     }
     (void)scatter_of(r, 0, mean, &most);
-    for (int k = 0; k < SPARI_SAMPLES; k++) { /* along the way that it goes farthest */
+    for (int k = 0; k < SPARI_SAMPLES; k++) { /* in the direction of the largest excursion */
         double along = 0;
         for (int64_t i = 0; i < n; i++) {
             along += (r->value[k * width(r) + at + i] - mean[i]) * (r->value[most * width(r) + at + i] - mean[i]);

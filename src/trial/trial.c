@@ -1,4 +1,4 @@
-/* A step tried on copies: other settings, without some effect, and the scene as it was afterwards. */
+/* Trials: runs steps with other settings or without an effect, and restores the session. See trial.h. */
 #include "trial.h"
 
 #include "cost.h"
@@ -21,7 +21,7 @@
 #include <string.h>
 #include <time.h>
 
-/* ---- wishes ---- */
+/* ---- trial settings ---- */
 
 int spari_wish_create(spar_session *s, spari_wish *wish) {
     *wish = (spari_wish){.member = spari_zalloc(s->member_count, sizeof *wish->member)};
@@ -43,9 +43,9 @@ void spari_wish_free(spari_wish *wish) {
     wish->member = NULL;
 }
 
-/* ---- there and back ---- */
+/* ---- save and restore ---- */
 
-/* What of a session a run changes beside its settings, which have a table of their own. */
+/* Fields of a session that a run changes, beside its settings, which have a table. */
 #define SPARI_SAVED(field)                                                                                             \
     { offsetof(spar_session, field), sizeof((spar_session *)NULL)->field }
 static const struct {
@@ -72,14 +72,14 @@ static void copy_saved(spar_session *to, const spar_session *from) {
 }
 
 typedef struct stash {
-    spar_session session;  /* of it, what is saved */
-    double *pack, *motion; /* of the session's own, what stays aside */
+    spar_session session;  /* the saved fields of it */
+    double *pack, *motion; /* private data of the session that are set aside */
     int64_t pack_count, *first;
     spari_coupling *coupling;
-    spar_member *members; /* [member_count] what they were; */
-    int made;             /* so many have been made anew */
+    spar_member *members; /* [member_count] old members; */
+    int made;             /* number of those rebuilt */
     spari_ties ties;      /* of the members */
-    spar_fluid **fluids;  /* what they were, in their order */
+    spar_fluid **fluids;  /* old fluids, in their order */
     int fluid_count, fluids_made;
     spari_carried *carried; /* [fluid_count] room for those with other nodes */
 } stash;
@@ -90,7 +90,7 @@ static void stash_free(const stash *t) {
     free(t->carried);
 }
 
-/* Where it fails the session is as it was: there is nothing to go back to. */
+/* After a failure the session is unchanged, with nothing to restore. */
 static int stash_create(spar_session *s, stash *t) {
     spari_own *own = s->own;
     *t = (stash){.session = {.settings = s->settings, .setting_count = s->setting_count},
@@ -151,7 +151,7 @@ static int make_anew(spar_session *s, stash *t, const spari_wish *wish) {
     return SPAR_OK;
 }
 
-/* Loads that fluids bring to other nodes; collective. */
+/* Transfers the fluids' loads to other nodes; collective. */
 static int carry_loads(spar_session *s, const stash *t) {
     int64_t count = 0;
     int any = 0, k = 0;
@@ -167,7 +167,7 @@ static int carry_loads(spar_session *s, const stash *t) {
     return spari_carry_loads(s, "a trial run", any, t->carried, count);
 }
 
-/* The message of a failure stays. */
+/* The message of a failure is kept. */
 static void go_back(spar_session *s, stash *t) {
     spar_fluid *f = s->fluids;
     for (int k = 0; k < t->fluids_made; k++, f = spari_fluid_next(f)) {
@@ -214,8 +214,9 @@ int spari_trial_keep(spar_session *s, spari_record *record) {
     return SPAR_OK;
 }
 
-/* Loads of step i: unstable explicit coupling begins as a saw-tooth, whose second differences change sign with every
-   step, while those of a motion that the steps resolve keep theirs. size: squares of the loads in each quarter. */
+/* Alternation of the loads at step i. Unstable explicit coupling begins as an alternation, whose second differences
+   change sign with every step; those of a resolved motion keep their sign. size: squares of the loads in each
+   quarter. */
 static void watch_loads(const spar_session *s, int64_t i, int64_t steps, spari_record *r, double size[4]) {
     int n = 6 * r->members, quarter = (int)((i - 1) * 4 / steps);
     double *now = r->trail + i % 3 * n, *last = r->trail + (i + 2) % 3 * n, *before = r->trail + (i + 1) % 3 * n,
@@ -252,7 +253,7 @@ static int solve_timed(spar_session *s, double t, double dt, int iteration, void
     return answer;
 }
 
-/* Steps once, and keeps what it cost. */
+/* One step, with its cost. */
 static int step_once(spar_session *s, const spari_run *run, spari_record *r) {
     int iterations = 0, timed = run->timed && run->solve;
     timed_fluid fluid = {run, 0};
@@ -266,9 +267,9 @@ static int step_once(spar_session *s, const spari_run *run, spari_record *r) {
     return status;
 }
 
-enum { LOOKS = 32 }; /* at what a run has come to, where that must not be more than so much */
+enum { LOOKS = 32 }; /* number of checks in a run with limits */
 
-/* Collective where there is a limit. What an error comes to is guessed as if it grew with the time. */
+/* Checks the limits of a run; collective if there is one. The final error is estimated as if it grew with time. */
 static int check_use(spar_session *s, const spari_run *run, int64_t i, spari_record *r) {
     if ((run->most <= 0 && !run->beside) || i == run->steps || i * LOOKS / run->steps == (i - 1) * LOOKS / run->steps) {
         return SPAR_OK;
@@ -305,7 +306,7 @@ static int march(spar_session *s, const spari_run *run, spari_record *r) {
     return SPAR_OK;
 }
 
-/* What a run took, summed over the ranks. */
+/* Cost of a run, summed over the ranks. */
 static int share_costs(spar_session *s, spari_record *r) {
     enum { COSTS = 4 };
     double cost[COSTS + 1] = {r->seconds, r->fluid_seconds, r->work + spari_cost_members(s, r->member_work),
@@ -340,13 +341,13 @@ static int run_there(spar_session *s, const spari_run *run, int balanced, spari_
     return status;
 }
 
-/* The failing rank's status, on all ranks, where it is of the run: they go on alike. Of a failure of the machine, after
-   which none goes on, each keeps its own, or learns that it is a peer's. */
+/* The failing rank's status on all ranks, for failures of the run, so that they continue equally. After a failure of
+   the machine no rank continues; each keeps its own status, or learns that a peer failed. */
 static int share_failure(spar_session *s, int own, double *work) {
     enum { CODES = SPAR_ERR_LIMIT + 1 };
-    double there[CODES + 2] = {0}; /* and what the run has cost */
+    double there[CODES + 2] = {0}; /* and the cost of the run */
     if (own == SPAR_OK || own == SPAR_ERR_COMM) {
-        return own; /* known to all; and there is no asking through a broken communicator */
+        return own; /* known to all; a broken communicator cannot be used */
     }
     there[own] = 1;
     there[CODES] = *work;
@@ -361,7 +362,7 @@ static int share_failure(spar_session *s, int own, double *work) {
     while (shared < CODES && (there[shared] == 0 || shared == SPAR_ERR_PEER)) {
         shared++;
     }
-    return shared < CODES ? shared : SPAR_ERR_PEER; /* a host may say of its fluid, on all ranks, that a peer failed */
+    return shared < CODES ? shared : SPAR_ERR_PEER; /* a host may report on all ranks that a peer of its fluid failed */
 }
 
 int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wish, spari_record *record) {
@@ -412,7 +413,7 @@ int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
     SPARI_REQUIRE(s, run->steps > 0 && run->steps % SPARI_MULTIPLE == 0, SPAR_ERR_ARGUMENT,
                   "%s: %lld steps; give a multiple of %d, as advice tries other dt", call, (long long)run->steps,
                   SPARI_MULTIPLE);
-    /* advice varies dt, and looks further than it was asked */
+    /* advice varies dt, and runs longer than requested */
     const double longer = 1e6;
     SPARI_REQUIRE(s, isfinite(s->time + longer * (double)run->steps * run->dt), SPAR_ERR_ARGUMENT,
                   "%s: %lld steps of %g s from t = %g are beyond the range of numbers", call, (long long)run->steps,

@@ -1,7 +1,7 @@
-/* The cheapest settings for a tolerance, by trials (plan.h). First a run that is converged; then, one after the other
-   with a share of the tolerance for each, what of the structure can be left out; then the coupling and dt together;
-   then single and double moves that still pay; at last a longer run, whether what is cheapest stays stable. Errors are
-   those of whole runs, costs what is counted in them (cost.h). */
+/* Finds the cheapest settings for a tolerance by trials (settings_trial.h). First a converged reference run; then,
+   each with a share of the tolerance, the simplifications of the structure; then coupling and dt together; then
+   single and double moves as long as they pay; finally a longer run to check stability. Errors are those of whole
+   runs; costs are counted (trial/cost.h). */
 #include "../base/environment.h"
 #include "../trial/cost.h"
 #include "apply.h"
@@ -17,40 +17,39 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double finer_power = 0.7; /* of the steps: finer ones cost less each */
+static const double finer_power = 0.7; /* exponent of the cost in the number of steps: finer steps cost less each */
 
 /* ---- the structure ---- */
 
-/* The run that shapes are measured against. */
+/* The run against which shapes are measured. */
 typedef struct shaping {
     spari_record base;
-    double scale;               /* times its cost: about what a trial's time in the run will cost */
-    double work[SPARI_GROUPS];  /* of its cost, solving for the members of each group, */
-    double nodes[SPARI_GROUPS]; /* what else their nodes cost, */
-    double count[SPARI_GROUPS]; /* and how many they are */
+    double scale;               /* factor from its cost to the expected cost of a trial's time in the run */
+    double work[SPARI_GROUPS];  /* of its cost: solving the members of each group, */
+    double nodes[SPARI_GROUPS]; /* their nodes' other costs, */
+    double count[SPARI_GROUPS]; /* and the number of nodes */
 } shaping;
 
 static double base_cost(const spari_advisor *d, const shaping *w) {
     return spari_plan_cost(d, &w->base);
 }
 
-/* Whether a trial can pay that brings the cost of the base down to so much at best; what keeps the tolerance already
-   is what to beat. before: of what is best so far, which the trial costs about. */
+/* Whether a trial can pay that reduces the base's cost to `after` at best; a setting that keeps the tolerance
+   already must be beaten. before: cost of the present best, about that of the trial. */
 static int shape_pays(spari_advisor *d, const shaping *w, double before, double after) {
     double have = fmin(w->scale * before, d->known_good);
     return after <= spari_rule.worth * before && spari_plan_pays(d, before, have - w->scale * after);
 }
 
-/* The least of a run that costs `cost`, with other nodes of a group: what it is solved and mapped for falls with them.
- */
+/* Lower bound of the cost of a run with other nodes of a group: solution and transfer scale with the nodes. */
 static double with_nodes(const spari_advisor *d, const shaping *w, int g, double cost, int from, int to) {
     double part = (w->work[g] + w->nodes[g]) / base_cost(d, w);
     return cost * (1 - part + part * to / from);
 }
 
-/* The fewest nodes whose error stays in its share; the error falls with the nodes. Where one less than the reference
-   has is too few, which a coarse dt had shown to be enough, that was misled. cost: of a run with the nodes there are.
- */
+/* Fewest nodes whose error stays in its share; the error decreases with the nodes. If one node less than the
+   reference is too few, although a coarse dt had shown it sufficient, the reference was misled. cost: of a run with
+   the present nodes. */
 static int choose_nodes(spari_advisor *d, spari_plan *p, int g, const shaping *w, double part_before, double *cost) {
     int most = p->group[g].nodes, few = spari_rule.least_nodes - 1, enough = most;
     few = d->groups == 1 && d->few > few ? d->few : few;
@@ -75,8 +74,7 @@ static int choose_nodes(spari_advisor *d, spari_plan *p, int g, const shaping *w
     return SPAR_OK;
 }
 
-/* What a run costs, in what a shape of a group has to do with, with another of its shapes: by what an iteration of its
-   solution counts for, and by its nodes. */
+/* Cost of a run with another shape of a group, from the cost of an iteration and from its nodes. */
 static double with_shape(const spari_advisor *d, const shaping *w, int g, double cost, const spari_shape *from,
                          const spari_shape *to) {
     const spar_member *m = spari_plan_member(d, g);
@@ -91,7 +89,7 @@ static double with_shape(const spari_advisor *d, const shaping *w, int g, double
     return cost * (1 + w->work[g] / whole * (solved[1] / solved[0] - 1) + w->nodes[g] / whole * (nodes - 1));
 }
 
-/* The most nodes of so many elements that are expected to be cheaper than what there is; 0: none. */
+/* Largest number of nodes, with this number of elements, that is expected to be cheaper than the present; 0: none. */
 static int most_nodes(const spari_advisor *d, const shaping *w, int g, double cost, const spari_shape *now,
                       int elements) {
     spari_shape b = *now;
@@ -104,15 +102,16 @@ static int most_nodes(const spari_advisor *d, const shaping *w, int g, double co
     return 0;
 }
 
-/* So many elements: with the most nodes that are cheaper than what there is; where they will do, the fewest that do. No
-   fewer than half the unknowns there are will, in more elements, of lower order, not much fewer. *found: whether it is
-   better so. */
+/* Tries a number of elements with the most nodes that are cheaper than the present; if these are sufficient, finds
+   the fewest. Fewer than half of the present unknowns cannot be sufficient; with more elements, of lower order, not
+   much fewer. *found: whether it is better. */
 static int try_elements(spari_advisor *d, spari_plan *p, int g, const shaping *w, int elements, double *cost,
                         int *found) {
     const spari_shape now = p->group[g];
     const double before = *cost;
     const double unknowns = spari_rule.unknowns[elements > now.elements];
-    int few = (int)ceil(unknowns * now.elements * (now.nodes - 1) / elements - 1e-9), /* one has one node more */
+    int few =
+            (int)ceil(unknowns * now.elements * (now.nodes - 1) / elements - 1e-9), /* one element has one node more */
         most = most_nodes(d, w, g, before, &now, elements), enough = most + 1;
     few = few < spari_rule.least_nodes - 1 ? spari_rule.least_nodes - 1 : few;
     *found = 0;
@@ -150,7 +149,8 @@ static void tell_kept(const spari_advisor *d, const spar_member *m, const char *
     }
 }
 
-/* Other numbers of elements, from those there are on down and up, as far as they are better, and two beyond. */
+/* Tries other numbers of elements, from the present ones downwards and upwards, as far as they are better, and two
+   beyond. */
 static int choose_elements(spari_advisor *d, spari_plan *p, int g, const shaping *w, double *cost) {
     static const int ladder[] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
     enum { RUNGS = sizeof ladder / sizeof *ladder, TRIED = 2 };
@@ -176,8 +176,7 @@ static int choose_elements(spari_advisor *d, spari_plan *p, int g, const shaping
     return SPAR_OK;
 }
 
-/* What is tried of a beam in place of what it is, in this order. after: an earlier row that must have been taken, -1:
-   none is needed. */
+/* Changes of a beam that are tried, in order. after: an earlier row that must have been adopted; -1: none. */
 static const struct {
     int fidelity, after;
     int64_t modes;
@@ -186,8 +185,8 @@ static const struct {
                   {SPAR_FIDELITY_PRESCRIBED, 5, 0}};
 enum { FIDELITIES = sizeof fidelities / sizeof *fidelities };
 
-/* What the motion beyond the root of the members of a group is of all there is, where their roots are given: what they
-   lose if they do not bend. */
+/* Fraction of the motion relative to the root that belongs to a group with prescribed roots: lost if its members do
+   not bend. */
 static double bend_of_group(const spari_advisor *d, int g, const spari_record *base) {
     double most = 0;
     int k = 0;
@@ -199,8 +198,8 @@ static double bend_of_group(const spari_advisor *d, int g, const spari_record *b
     return most;
 }
 
-/* Whether the member can be of that fidelity: what needs a root that is given is not for one that is free, of whose
-   modes six move it as a rigid body; and what bends is not rigid. */
+/* Whether the member can have this fidelity. Fidelities that need a prescribed root exclude free members, whose
+   first six modes are rigid. Members that bend are not rigid. */
 static int is_possible(const spari_advisor *d, int g, int fidelity, int64_t modes, const spari_record *base) {
     enum { RIGID_MODES = 6 };
     int given = spari_member_root_is_given(spari_plan_member(d, g));
@@ -211,11 +210,11 @@ static int is_possible(const spari_advisor *d, int g, int fidelity, int64_t mode
            bend_of_group(d, g, base) <= spari_rule.fidelity * d->tolerance;
 }
 
-/* The least that a run can cost with the group of that fidelity; cost: as it is now. */
+/* Lower bound of the cost of a run with the group at this fidelity; cost: the present one. */
 static double least_cost(const spari_advisor *d, const spari_plan *p, int g, int k, const shaping *w, double cost) {
     double solved = 0;
     const spar_member *m = spari_plan_member(d, g);
-    int solves = spari_member_is_tied(m) ? 2 : 1; /* what is tied is iterated, whatever it is */
+    int solves = spari_member_is_tied(m) ? 2 : 1; /* connected members are iterated at any fidelity */
     if (fidelities[k].fidelity >= SPAR_FIDELITY_LINEAR) {
         solved = w->count[g] * solves * (double)w->base.solutions *
                  spari_cost_frame(m, p->group[g].elements, p->group[g].nodes, (int)fidelities[k].modes);
@@ -224,7 +223,7 @@ static double least_cost(const spari_advisor *d, const spari_plan *p, int g, int
 }
 
 static int choose_fidelity(spari_advisor *d, spari_plan *p, int g, const shaping *w, double *cost, double *part_of) {
-    const double looser = 1.5; /* linear leads on to modal */
+    const double looser = 1.5; /* linear may lead to modal */
     spari_plan best = *p, q = *p;
     double as_it_was = *cost;
     int taken[FIDELITIES] = {0};
@@ -273,7 +272,7 @@ static int is_elastic(const spari_plan *p, int g) {
     return p->group[g].fidelity >= SPAR_FIDELITY_LINEAR;
 }
 
-/* Of what does not bend: the fewest, where the loads find the same line. */
+/* For members that do not bend: the fewest nodes with which the loads find the same line. */
 static int choose_stiff_nodes(spari_advisor *d, spari_plan *p, int g, const shaping *w, double *cost) {
     double part = INFINITY, took = *cost;
     int now = p->group[g].nodes, own = spari_plan_member(d, g)->per_element;
@@ -310,14 +309,13 @@ static int choose_shapes(spari_advisor *d, spari_plan *p, const shaping *w) {
     return SPAR_OK;
 }
 
-/* Whether the fluid that comes along is too heavy for the scheme, as the reference's coupling has found it. */
+/* Whether the fluid's added mass is too large for the scheme, according to the reference's coupling. */
 static int is_too_heavy(const spari_advisor *d, int scheme) {
     return (scheme == SPAR_COUPLING_EXPLICIT || scheme == SPAR_COUPLING_FIXED_POINT) &&
            d->reference.report[SPAR_REPORT_ADDED_MASS] > spari_rule.heavy;
 }
 
-/* A run that shapes are measured against: the reference's, with a coarser dt, Newton and coupling: explicit, if that
-   does not lead far away. */
+/* Base run for shapes: the reference with a coarser dt, Newton and coupling; explicit, if the result is close. */
 static int run_base(spari_advisor *d, const spari_plan *finest, spari_plan *p, spari_record *base) {
     const spari_level *rough = spari_plan_rough(d);
     double away = INFINITY;
@@ -343,7 +341,7 @@ static int run_base(spari_advisor *d, const spari_plan *finest, spari_plan *p, s
     return spari_plan_run(d, p, 1, INFINITY, base);
 }
 
-/* What of the base's cost is whose, and what the run will cost with the steps that it needs. */
+/* Splits the base's cost by groups, and estimates the cost of the run with the steps that it needs. */
 static void weigh_base(const spari_advisor *d, const spari_plan *p, shaping *w) {
     double rest = w->base.work, nodes = 0;
     int k = 0;
@@ -364,7 +362,7 @@ static void weigh_base(const spari_advisor *d, const spari_plan *p, shaping *w) 
     }
 }
 
-/* Each choice is measured against it. */
+/* Each choice is measured against the base. */
 static SPARI_APART int choose_structure(spari_advisor *d, const spari_plan *finest, spari_plan *chosen) {
     spari_plan p;
     shaping w = {.scale = 1};
@@ -382,18 +380,18 @@ static SPARI_APART int choose_structure(spari_advisor *d, const spari_plan *fine
 
 /* ---- dt and coupling ---- */
 
-/* Places of the grid to go on by, with an error of that order in dt. */
+/* Steps on the dt grid to move, for an error of this order in dt. */
 static int leap_of(double ratio, double order) {
     return (int)lround(2 / order * log2(fmax(ratio, 1e-2)));
 }
 
-/* The order of the error in dt that two measures show. */
+/* Order of the error in dt shown by two measurements. */
 static double order_of(const spari_outcome *a, const spari_outcome *b) {
     double steps = log((double)b->plan.steps / (double)a->plan.steps), fall = log(a->error / b->error);
     return isfinite(fall) && fabs(steps) > 0.1 ? fmin(fmax(fall / steps, 0.7), 4) : 2;
 }
 
-/* The coarsest steps that keep the tolerance, from grid place j on; *best improves if that is cheaper. */
+/* Coarsest steps that keep the tolerance, from grid position j on; *best improves if that is cheaper. */
 static int coarsest_steps(spari_advisor *d, spari_plan p, int j, spari_outcome *best) {
     const int finest = 2 * SPARI_FINEST, coarsest = (int)floor(2 * log2((double)SPARI_MULTIPLE / (double)d->run.steps));
     int good = finest + 1, bad = coarsest - 1, at = j, failed = 0; /* twice: finer steps will not help */
@@ -411,15 +409,15 @@ static int coarsest_steps(spari_advisor *d, spari_plan p, int j, spari_outcome *
             good = at;
             *best = o.cost < spari_rule.worth * best->cost ? o : *best;
             if (ratio > 0.5 * spari_rule.good) {
-                return SPAR_OK; /* the next place has twice the error */
+                return SPAR_OK; /* the next position has twice the error */
             }
         } else {
             bad = at;
             if (o.cost > best->cost && isfinite(o.cost)) {
-                return SPAR_OK; /* finer steps cost more still */
+                return SPAR_OK; /* finer steps cost even more */
             }
         }
-        /* by the order the next place is near; then halve the gap */
+        /* by the order the next position is near; then halve the gap */
         int leap = leap_of(ratio / spari_rule.good, order);
         leap = is_good ? (leap < -1 ? leap : -1) : (leap > 1 ? leap : 1);
         at += leap;
@@ -431,8 +429,8 @@ static int coarsest_steps(spari_advisor *d, spari_plan p, int j, spari_outcome *
     return SPAR_OK;
 }
 
-/* Whether a scheme that iterates can be cheaper: it has two solutions in a step at least, and not fewer steps than a
-   tight coupling needs. */
+/* Whether an iterated scheme can be cheaper: it needs at least two solutions per step, and at least the steps of a
+   tight coupling. */
 static int may_iterate(const spari_advisor *d, const spari_outcome *best) {
     const double saved = 1.6;
     return !isfinite(best->cost) || best->plan.scheme != SPAR_COUPLING_EXPLICIT ||
@@ -445,7 +443,7 @@ static spari_plan coupled_by(const spari_plan *structure, int scheme, int predic
     return p;
 }
 
-/* By steps from those that a tight coupling needs, from others, or with the host's own. */
+/* Searches from the steps that a tight coupling needs, from others, or from the host's own. */
 static int search_steps(spari_advisor *d, const spari_plan *p, int64_t from, spari_outcome *best) {
     spari_outcome o;
     spari_plan q = *p;
@@ -458,8 +456,8 @@ static int search_steps(spari_advisor *d, const spari_plan *p, int64_t from, spa
     return SPAR_OK;
 }
 
-/* The place of the grid to begin with: what a tight coupling needs, or more where a run of the structure, explicit too,
-   has shown it. seen: that run; of infinite error where there is none. */
+/* Grid position to begin with: what a tight coupling needs, or more if a structure run, also an explicit one, shows
+   it. seen: that run; of infinite error if there is none. */
 static int begin_explicit(const spari_advisor *d, const spari_plan *structure, spari_outcome *seen) {
     int least = spari_plan_grid(d, spari_plan_least_steps(d)), begin = least;
     seen->error = INFINITY;
@@ -476,8 +474,8 @@ static int begin_explicit(const spari_advisor *d, const spari_plan *structure, s
     return begin > least ? begin : least;
 }
 
-/* Explicit coupling at a place of the grid, from one predictor on: the better of them; the second where the first does
-   not keep the tolerance. */
+/* Explicit coupling at a grid position, from one predictor on: the better of them; the second if the first does not
+   keep the tolerance. */
 static int try_explicit(spari_advisor *d, const spari_plan *structure, int at, int predictor, spari_outcome *better) {
     *better = (spari_outcome){.error = INFINITY, .cost = INFINITY};
     for (; predictor <= 2 && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT) && !spari_plan_is_good(d, better); predictor++) {
@@ -490,8 +488,7 @@ static int try_explicit(spari_advisor *d, const spari_plan *structure, int at, i
     return SPAR_OK;
 }
 
-/* Whether another accelerator or predictor can pay: one that would take the solutions of the best in a step down to
-   one. */
+/* Whether another accelerator or predictor can pay: if it reduced the solutions of the best per step to one. */
 static int other_pays(spari_advisor *d, const spari_outcome *best) {
     double least = best->cost / fmax(best->solutions, 1);
     return !isfinite(best->cost) || (least < spari_rule.worth * best->cost &&
@@ -532,7 +529,7 @@ static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outc
     int least = spari_plan_grid(d, spari_plan_least_steps(d)), begin = begin_explicit(d, structure, &seen),
         lags = begin > least + 1;
     if (spari_plan_is_good(d, &seen) && begin == spari_plan_grid(d, seen.plan.steps)) {
-        direct = seen; /* with a looser Newton it is not worth a run */
+        direct = seen; /* with a looser Newton it does not justify a run */
     } else {
         SPARI_TRY(try_explicit(d, structure, lags ? least : begin, lags ? 2 : 1, &direct));
     }
@@ -560,7 +557,7 @@ static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outc
 
 /* ---- moves ---- */
 
-/* Changes one thing of the plan; 0: there is no such change. */
+/* Changes one setting of the plan; 0: impossible. */
 typedef int (*move)(const spari_advisor *d, spari_plan *p, int g);
 
 static int coarser(const spari_advisor *d, spari_plan *p, int g) {
@@ -635,7 +632,7 @@ static const struct {
              {coarser, more_nodes},     {finer, lower_fidelity},    {finer, fewer_points}, {coarser, coarser},
              {fewer_nodes, fewer_nodes}};
 
-/* Whether asking on can pay: what it has cost is less than a part of what it has saved. */
+/* Whether further search can pay: its cost so far is less than a fraction of its savings. */
 static int pays(const spari_advisor *d, const spari_outcome *best) {
     double now = d->now > 0 ? d->now : best->cost, spent = d->spent - (d->good_as_is ? 0 : d->shown),
            saved = d->runs * (d->known_good - best->cost);
@@ -664,7 +661,7 @@ static int improve(spari_advisor *d, spari_outcome *best) {
     return SPAR_OK;
 }
 
-/* ---- the answer ---- */
+/* ---- stability of the result ---- */
 
 /* Of one kind in time, whatever the steps. */
 static int is_same_kind(const spari_plan *a, const spari_plan *b) {
@@ -691,8 +688,8 @@ static spari_outcome next_best(spari_advisor *d, const spari_plan *drifts, int s
     return next;
 }
 
-/* What a look at settings may cost at most, in a trial's time: beyond what there is to take in their place they are not
-   wanted, whatever the look would show. What drifts away makes Newton work. */
+/* Maximum useful cost of a longer run, in trials: above the cost of the alternative the setting is not wanted in any
+   case. Unstable settings make Newton iterate more. */
 static double most_of_look(const spari_advisor *d, const spari_outcome *now, const spari_plan *looked) {
     double most = d->good_as_is ? now->cost : INFINITY;
     for (int k = 0; k < d->known_count; k++) {
@@ -702,7 +699,8 @@ static double most_of_look(const spari_advisor *d, const spari_outcome *now, con
     return spari_rule.at_most * most;
 }
 
-/* In place of what drifts away: the other predictor, what iterates; finer steps; whatever is known and dearer. */
+/* Alternatives to an unstable setting: the other predictor, iterated schemes; finer steps; any known, more expensive
+   setting. */
 static int try_stabler(spari_advisor *d, const spari_outcome *now, const spari_plan *drifts, spari_outcome *best) {
     spari_plan p = *drifts;
     spari_outcome o = {.error = INFINITY, .cost = INFINITY};
@@ -720,8 +718,8 @@ static int try_stabler(spari_advisor *d, const spari_outcome *now, const spari_p
     return SPAR_OK;
 }
 
-/* The cheapest of all settings that keep the tolerance and stay stable. The session as it is stays where a longer look
-   at others would cost more than they save; it is not looked at, the host has it. */
+/* The cheapest setting that keeps the tolerance and is stable. The present session is kept if a longer run of the
+   others costs more than they save; it is not checked itself, because the host uses it. */
 static int find_stable(spari_advisor *d, const spari_outcome *now, spari_outcome *best) {
     int stays = 0;
     for (int k = 0; k < spari_rule.doubted && isfinite(best->cost); k++) {
@@ -755,8 +753,8 @@ static void take_known(const spari_advisor *d, spari_outcome *best) {
     }
 }
 
-/* What the structure costs at least in any steps and coupling that keep the tolerance, as its own runs show: with
-   explicit coupling, and as few steps as a tight one needs; 0: they show nothing. */
+/* Lower bound of the structure's cost for any steps and coupling that keep the tolerance, from its own runs:
+   explicit coupling with the steps of a tight one; 0: unknown. */
 static double least_in_time(const spari_advisor *d, const spari_plan *structure) {
     double least = 0, steps = (double)spari_plan_least_steps(d);
     for (int k = 0; k < d->known_count; k++) {
@@ -770,8 +768,8 @@ static double least_in_time(const spari_advisor *d, const spari_plan *structure)
     return least;
 }
 
-/* Coupling and dt, with a Newton that is looser first. Where the shares of the structure left nothing the reference's
-   settings are tried as they are. */
+/* Coupling and dt, first with a looser Newton. If the structure's shares left nothing, the reference's settings are
+   tried as they are. */
 static int choose_rest(spari_advisor *d, spari_plan structure, const spari_plan *finest, spari_outcome *best) {
     static const double newton[] = {1e-3, 1e-6};
     spari_outcome have = *best;
@@ -791,8 +789,9 @@ static int choose_rest(spari_advisor *d, spari_plan structure, const spari_plan 
     return SPAR_OK;
 }
 
-/* What is known by now to keep the tolerance: the session as it is, or the cheapest level with steps, of order 2, that
-   are fine enough; and what that took. The rest of asking is to bring as much as it costs. */
+/* Records the present knowledge: the cheapest setting that keeps the tolerance (the session as it is, or the
+   cheapest level with sufficiently fine steps at order 2), and the cost so far. The rest of the search must save its
+   own cost. */
 static void take_stock(spari_advisor *d, const spari_outcome *now) {
     double goal = spari_rule.good * d->tolerance;
     d->shown = d->spent;
@@ -854,7 +853,7 @@ static SPARI_APART int search_plans(spari_advisor *d, const spari_plan *present,
                       SPARI_ADVISE, d->trials, d->tolerance, least);
 }
 
-/* Memory for the advice, before the work begins: for members that have none yet [members], else NULL. */
+/* Allocates the advice in advance: for members that have none yet [members], else NULL. */
 static int make_remakes(const spari_advisor *d, spari_remake ***room) {
     spari_own *own = d->session->own;
     own->advised = own->advised ? own->advised : spari_zalloc(1, sizeof *own->advised);
@@ -950,7 +949,7 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
         status = spari_progress_ends(&d.progress, search_plans(&d, &present, &now, &best));
     }
     if (status == SPAR_OK) {
-        memcpy(s->message, message, sizeof message); /* what failed in a trial is no failure of the session's */
+        memcpy(s->message, message, sizeof message); /* a failure in a trial is no failure of the session */
         double made[SPAR_ADVICE_COUNT];
         hand_over(&d, &now, &best, room, made);
         spari_fill(capacity, advice, SPAR_ADVICE_COUNT, made);

@@ -1,5 +1,4 @@
-/* Advice comes into force: settings, and members made anew in place as trials make them, to stay. Numbers of the host's
-   own that advice is to keep. */
+/* Puts advice in force: settings, and members rebuilt in place as in trials, permanently. */
 #include "apply.h"
 
 #include "../base/environment.h"
@@ -30,23 +29,23 @@ uint64_t spari_advised_of(const spar_session *s) {
     return h;
 }
 
-/* ---- there, and back where it fails ---- */
+/* ---- apply, and undo after a failure ---- */
 
-/* A member or a fluid made anew, and what it was. */
+/* A rebuilt member or fluid, and the old one. */
 typedef struct anew {
     spar_member *member, was;
     spar_fluid *fluid, *fluid_was;
 } anew;
 
 typedef struct change {
-    double before[SPARI_MOST_VARIED]; /* the settings there were */
+    double before[SPARI_MOST_VARIED]; /* old settings */
     int past;
-    double *pack, *motion; /* what the ranks exchange through, likewise */
+    double *pack, *motion; /* exchange memory of the ranks, likewise */
     int64_t pack_count, *first;
-    anew *made; /* [count] in their order */
+    anew *made; /* [count] in order */
     int64_t count;
     spari_carried *carried; /* [count] room for the fluids with other nodes */
-    spari_ties ties;        /* of the members; laid aside where one that is tied is made anew */
+    spari_ties ties;        /* of the members; copied if a connected one is rebuilt */
 } change;
 
 static int change_create(spar_session *s, change *c) {
@@ -180,7 +179,7 @@ static void confirm(spar_session *s, change *c) {
     s->own->advised->of = spari_advised_of(s);
 }
 
-/* ---- the call ---- */
+/* ---- public call ---- */
 
 static int check_apply(spar_session *s, const char *call) {
     const spari_advised *a = s->own->advised;
@@ -216,7 +215,7 @@ int spar_session_apply_advice(spar_session *session, double *dt) {
         status = remake_members(s, &c);
         status = status == SPAR_OK ? remake_fluids(s, &c) : status;
     }
-    if (s->joints) { /* whether there are any is alike on all ranks, whether they change too where all goes well */
+    if (s->joints) { /* whether there are joints agrees on all ranks; they change only on success */
         status = spari_enter(s, "advice", status);
         status = status == SPAR_OK ? spari_assemblies_make(s, __func__) : status;
     }

@@ -1,4 +1,4 @@
-/* What was advised last, until it comes into force. */
+/* The last advice, until it is put in force. */
 #ifndef SPARI_APPLY_H
 #define SPARI_APPLY_H
 
@@ -6,11 +6,11 @@
 
 struct spari_advised {
     double dt, setting[SPARI_MOST_VARIED]; /* session/settings.h */
-    int given;                             /* the advice has come to its end */
-    uint64_t of;                           /* the members it is for: spari_advised_of when it was given */
+    int given;                             /* the search is complete */
+    uint64_t of;                           /* members for which it is valid: spari_advised_of at that time */
 };
 
-/* The members as they are described now, as one number. */
+/* Hash of the members' present description. */
 uint64_t spari_advised_of(const spar_session *session);
 
 #endif

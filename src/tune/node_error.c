@@ -1,5 +1,5 @@
-/* What the nodes of a beam leave of error: its equations in more nodes, started from the shape that it has ((E3)
-   of docs/theory.md). */
+/* Error due to the nodes of a beam: solves its equations with more nodes from its present shape ((E3) of
+   docs/theory.md). */
 #include "../base/environment.h"
 #include "../base/session.h"
 #include "../comm/comm.h"
@@ -16,14 +16,15 @@
 #include <string.h>
 
 enum { MORE = 4, SLOWER = 2, CORRECTIONS = 5 };
-/* Nodes that are too few leave axial forces that are none, under which the tangent would say anything: first what is as
-   stiff as a step of the run and of ten of them show finds its place, with so much mass over dt^2 in the tangent; from
-   SLOWER on all of it, where the root holds the member. */
+/* Too few nodes leave spurious axial forces, with which the tangent is meaningless. So the first corrections move
+   only the stiffest components, those unresolved by a step of the run and by ten of them: this multiple of mass over
+   dt^2 is added to the tangent. From SLOWER on there is no mass if the root constrains the member. */
 static const double mass[CORRECTIONS] = {4, 0.04, 0, 0, 0};
-/* The inertia of the correction is left out, and with it that motion is larger than shape: so much in the mean. */
+/* The correction neglects inertia, which amplifies the error of motion relative to that of the shape, by this factor
+   on average. */
 static const double amplified = 1.7;
 
-/* In the unknowns of the finer beam: state, corrected, and what it was; loads. */
+/* In the unknowns of the finer beam: state, corrected state, original state; loads. */
 typedef struct finer {
     double *q, *v, *a, *begun, *load;
 } finer;
@@ -51,7 +52,7 @@ static void finer_free(finer *f) {
     free(f->load);
 }
 
-/* One correction of the shape by forces less loads, with cm times the mass where the root holds nothing; its size by
+/* One correction of the shape by the force residual, with cm times the mass if the root is free; *size: relative to
    the member's length. 1: the tangent is singular. */
 static int correct_shape(const spar_member *m, spari_solver *s, const finer *f, double cm, double *size) {
     spari_body_residual(m->body, f->q, f->v, f->a, 1, s->r, NULL);
@@ -80,7 +81,7 @@ static int correct_shape(const spar_member *m, spari_solver *s, const finer *f, 
     return 0;
 }
 
-/* The member is the finer one. -1: there is no answer. */
+/* The member is the finer one. -1: no result. */
 static double distance(const spar_member *m, const finer *f) {
     spari_solver *s = m->solution;
     double h = m->session->dt_last[0], sum = 0, size = INFINITY, last;
@@ -106,7 +107,7 @@ static double distance(const spar_member *m, const finer *f) {
     return amplified * sqrt(sum / s->n);
 }
 
-/* Nodal loads [nodes][6] that the accelerations now answer to: what the equations in the nodes there are leave. */
+/* Nodal loads [nodes][6] in equilibrium with the present accelerations: the residual of the present equations. */
 static int find_loads(const spar_member *m, double **load) {
     const spari_body *body = m->body;
     int64_t n = body->unique;
@@ -120,7 +121,8 @@ static int find_loads(const spar_member *m, double **load) {
         spari_body_residual(body, x, x + 7 * n, x + 13 * n, 1, r, NULL);
         memset(r, 0, (size_t)spari_member_held(m) * sizeof *r);
         spari_member_from_unique(m, 6, r, *load);
-        for (int64_t e = 1; e < m->elements; e++) { /* of the two nodes of a joint one has all of it */
+        for (int64_t e = 1; e < m->elements;
+             e++) { /* of the two nodes at an element boundary, one has the whole load */
             memset(*load + 6 * e * m->per_element, 0, 6 * sizeof **load);
         }
         spari_member_even_loads(m, *load);
@@ -130,7 +132,7 @@ static int find_loads(const spar_member *m, double **load) {
     return SPAR_OK;
 }
 
-/* For the time of the call the member is another one, which this rank solves. */
+/* During the call the member is replaced by the finer one, which this rank solves. */
 static int find_nodes_error(spar_member *m, double *error) {
     spari_remake wish = spari_remake_of(m);
     int P = m->per_element, n = P + MORE < SPARI_MAX_NODES ? P + MORE : SPARI_MAX_NODES;
@@ -141,7 +143,7 @@ static int find_nodes_error(spar_member *m, double *error) {
     if (status == SPAR_OK) {
         spari_resample_loads(spari_member_mesh(m), (spari_mesh){m->elements, n}, load, onto);
         wish.per_element = n;
-        wish.left_out = SPAR_EFFECT_WORK; /* an account that begins takes those of the joints back to 0 */
+        wish.left_out = SPAR_EFFECT_WORK; /* a new work account would reset those of the joints */
         int owner = m->owner;
         m->owner = spari_comm_rank(m->session->comm);
         status = spari_member_remake(m, &wish, &old);
@@ -156,7 +158,7 @@ static int find_nodes_error(spar_member *m, double *error) {
     return status;
 }
 
-/* Whether there is anything to find: rigid ones have no error of this kind. */
+/* Whether the estimate applies: rigid members have no such error. */
 static int has_nodes(const spar_member *m) {
     return m->kind == SPARI_BEAM && !m->external && m->row->solved && m->fidelity >= SPAR_FIDELITY_LINEAR;
 }

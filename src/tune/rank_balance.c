@@ -1,16 +1,16 @@
-/* Who solves how much. */
+/* Reports how the cost of solving is distributed over ranks. */
+#include "../assembly/assembly.h"
+#include "../assembly/owners.h"
 #include "../base/environment.h"
 #include "../comm/enter.h"
-#include "../assembly/assembly.h"
 #include "../time/fidelity.h"
-#include "../assembly/owners.h"
 #include "../trial/cost.h"
 
 #include <stdlib.h>
 
 enum { BALANCE_MEMBERS, BALANCE_EXPECTED, BALANCE_COUNTED, BALANCE_COLUMNS };
 
-/* Of this rank, from what it solves. */
+/* This rank's cost, from what it solves. */
 static void find_balance(const spar_session *s, double own[BALANCE_COLUMNS]) {
     int rank = spari_comm_rank(s->comm);
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -29,7 +29,7 @@ int spar_session_get_balance(const spar_session *session, int64_t capacity, int6
                              double *counted) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    spar_session *s = (spar_session *)(uintptr_t)session; /* its message is written; its state is not touched */
+    spar_session *s = (spar_session *)(uintptr_t)session; /* writes its message; the state is not changed */
     int64_t ranks = spari_comm_size(s->comm);
     double *all = NULL;
     int status = spari_need_capacity(s, __func__, capacity);

@@ -1,4 +1,4 @@
-/* Settings that advice tries: how they are written down, run, measured and compared. */
+/* Trials of settings for the advice: describe, run, measure, compare. See settings_trial.h. */
 #include "settings_trial.h"
 
 #include "../trial/cost.h"
@@ -49,7 +49,7 @@ int spari_plan_groups(spari_advisor *d) {
     return SPAR_OK;
 }
 
-/* Whether a load is kept at a node that is the end of an element now, or would be, and not both. */
+/* Whether a load is applied at a node that is the end of an element in only one of the present and the new mesh. */
 static int is_loaded_within(const spar_member *m, int elements) {
     const double *follower = spari_applied_follower(m);
     for (int64_t node = 0; node < m->nodes; node++) {
@@ -119,7 +119,7 @@ int spari_plan_fails(int status) {
            status == SPAR_ERR_UNSUPPORTED || status == SPAR_ERR_ARGUMENT || status == SPAR_ERR_MAPPING;
 }
 
-/* What has been spent, in trials with the session as it is; where that fails, in runs. */
+/* Cost so far, in trials with the present session; if that fails, in runs. */
 static double spent_so_far(const spari_advisor *d) {
     return d->now > 0 ? d->spent / d->now : d->trials;
 }
@@ -129,7 +129,7 @@ void spari_plan_begin(spari_advisor *d, int stage) {
     d->stage = stage;
 }
 
-/* A stage that takes longer than its share tells that all will. */
+/* A stage that takes longer than its share predicts that all will. */
 static int tell_progress(spari_advisor *d) {
     double done = spent_so_far(d), expected = d->foreseen;
     if (expected <= 0) {
@@ -227,7 +227,7 @@ double spari_plan_cost(const spari_advisor *d, const spari_record *r) {
     return r->work + d->fluid * (double)r->solutions;
 }
 
-/* Of a against b, over a run so many times as long; on all ranks what rank 0 finds, to whose bits they decide. */
+/* Error of a relative to b, over a run `longer` times as long; all ranks use rank 0's bits. */
 static int compare_runs(spari_advisor *d, const spari_record *a, const spari_record *b, double longer, double *error) {
     spar_session *s = d->session;
     double found[2] = {spari_comm_rank(s->comm) == 0 ? spari_record_error(a, b, d->goals, longer) : 0, 0};
@@ -236,7 +236,7 @@ static int compare_runs(spari_advisor *d, const spari_record *a, const spari_rec
     return SPAR_OK;
 }
 
-/* Whether dt resolves what carries the answer. */
+/* Whether dt resolves the significant motion. */
 static int resolves(const spari_advisor *d, const spari_plan *p) {
     return d->shortest <= 0 || d->shortest * (double)p->steps >= spari_rule.resolves;
 }
@@ -247,7 +247,7 @@ static void remember(spari_advisor *d, const spari_outcome *o) {
     }
 }
 
-/* Silently. */
+/* Without messages. */
 static int judge_silently(spari_advisor *d, const spari_record *r, spari_outcome *out) {
     double error;
     SPARI_TRY(compare_runs(d, r, &d->reference, d->longer, &error));
@@ -272,7 +272,7 @@ int spari_plan_judge_levels(spari_advisor *d) {
     return SPAR_OK;
 }
 
-/* A run that ends where it is further from another than is of use. */
+/* A run that ends when it is farther from another than is useful. */
 static int run_beside(spari_advisor *d, const spari_plan *p, const spari_record *other, spari_use use,
                       spari_record *r) {
     d->beside = isfinite(use.share) ? other : NULL, d->off = use.share * d->tolerance;
@@ -291,7 +291,7 @@ int spari_plan_measure(spari_advisor *d, const spari_plan *p, double most, spari
     spari_record r = {0};
     *out = (spari_outcome){.plan = *p, .error = INFINITY, .cost = INFINITY};
     if (!resolves(d, p)) {
-        return SPAR_OK; /* never advised, whatever a trial would say */
+        return SPAR_OK; /* never advised, whatever a trial shows */
     }
     double off = spari_rule.near * spari_rule.good * d->tolerance - d->reference_error;
     int status = run_beside(d, p, &d->reference, (spari_use){most, off / d->tolerance}, &r);
@@ -343,9 +343,9 @@ int spari_plan_distance(spari_advisor *d, const spari_plan *p, const spari_recor
 /* ---- the reference ---- */
 
 static const spari_use whole = {INFINITY, INFINITY};
-enum { MOST_MORE = 10 }; /* nodes that the reference has beyond those there are */
+enum { MOST_MORE = 10 }; /* maximum additional nodes of the reference */
 
-/* What a solution of the fluid counts for, by the first run that comes to its end. */
+/* Cost of a fluid solution, from the first completed run. */
 static void weigh_fluid(spari_advisor *d, const spari_record *r) {
     spar_session *s = d->session;
     char text[SPARI_MESSAGE_SIZE];
@@ -385,9 +385,9 @@ int spari_plan_try_present(spari_advisor *d, const spari_plan *present, spari_re
     return status;
 }
 
-/* level 0: with the host's dt; more: nodes beyond those there are. From there on the coupling's tolerance falls with dt
-   as the error of predicted loads does: the prediction itself would meet another one once dt is fine enough, and its
-   lag, which adds up over the run, change the order that finer dt show. */
+/* level 0: the host's dt; more: additional nodes. From level 0 on the coupling tolerance decreases with dt like the
+   error of predicted loads. Otherwise the prediction alone meets the tolerance at a fine dt, and its lag, which
+   accumulates over the run, changes the observed order. */
 static spari_plan reference_plan(const spari_advisor *d, const spari_plan *present, int level, int more) {
     const spar_session *s = d->session;
     const double falls = s->keep_dt ? 1 : pow(4, -fmax(0, level));
@@ -416,7 +416,7 @@ static spari_plan reference_plan(const spari_advisor *d, const spari_plan *prese
     return p;
 }
 
-/* A dt coarser than the host's is there to be cheap. */
+/* A dt coarser than the host's must be cheap. */
 static double most_of_level(const spari_advisor *d, const spari_plan *p) {
     return d->now > 0 && p->steps < d->run.steps ? spari_rule.coarse_most * d->now : INFINITY;
 }
@@ -446,7 +446,7 @@ static spari_plan rough_plan(const spari_advisor *d, const spari_plan *present, 
     return p;
 }
 
-/* The coarsest level that comes to its end. */
+/* Coarsest level that completes. */
 static int run_coarsest(spari_advisor *d, const spari_plan *present, int *level, int more, spari_record *run) {
     int last = d->session->keep_dt ? 0 : SPARI_FINEST, status;
     spari_plan p = rough_plan(d, present, *level, more);
@@ -463,8 +463,8 @@ static int run_coarsest(spari_advisor *d, const spari_plan *present, int *level,
     return SPAR_OK;
 }
 
-/* Whether a finer dt is to be tried since nodes change not much less where there are more of them: it is the dt, a
-   finer one shows what nodes do. Where that shows the same it is the nodes, from then on. */
+/* Whether to try a finer dt because more nodes reduce the change only little: then the change is due to dt, and a
+   finer dt shows the effect of the nodes. If it shows the same, the nodes are the cause from then on. */
 static int is_dt(spari_advisor *d, int level, double part, double before) {
     const double same = 0.8;
     int stalls = part > before && isfinite(part) && level < SPARI_FINEST && !d->session->keep_dt;
@@ -475,8 +475,8 @@ static int is_dt(spari_advisor *d, int level, double part, double before) {
     return stalls && d->stalls <= 1;
 }
 
-/* Fewer nodes than a run with `most` has, and one more than those that change little: finer dt need no more of the line
-   than that. *shown: the least change that fewer make; where that is little the run has enough. *finer: see above. */
+/* Fewer nodes than a run with `most`: one more than the number that changes little, because finer dt need no finer
+   line. *shown: smallest change by fewer nodes; if it is small the run has enough nodes. *finer: see above. */
 static int fewer_reference_nodes(spari_advisor *d, const spari_plan *present, int level, const spari_record *base,
                                  double *shown, double *two, int *finer) {
     int few = spari_rule.least_nodes - 1, most = few;
@@ -486,7 +486,7 @@ static int fewer_reference_nodes(spari_advisor *d, const spari_plan *present, in
     }
     int enough = most;
     double before = INFINITY;
-    const double near = 5; /* times what it is to be: one node more may do */
+    const double near = 5; /* factor from the target: one more node may be sufficient */
     few = d->few > few && d->few < most ? d->few : few;
     while (enough - few > 2 || (enough == most && enough - few > 1 && *shown > spari_rule.reference_nodes &&
                                 before < near * spari_rule.reference_nodes)) {
@@ -511,8 +511,7 @@ static int fewer_reference_nodes(spari_advisor *d, const spari_plan *present, in
     return SPAR_OK;
 }
 
-/* More nodes than a run has until two more change little; *shown: how much fewer have changed, and then the last two.
- */
+/* Adds nodes to a run until two more change little; *shown: change by the fewer nodes, then by the last two. */
 static int more_reference_nodes(spari_advisor *d, const spari_plan *present, int level, int *more, spari_record *few,
                                 double before, double *shown, int *finer) {
     spari_record many = {0};
@@ -542,16 +541,16 @@ static int more_reference_nodes(spari_advisor *d, const spari_plan *present, int
     return status;
 }
 
-/* How many nodes the reference has: as many as there are, fewer where these are not needed, or more until two more
-   change little; *left: about so much is left. The coarsest dt, coupling and Newton will do for that. */
+/* Number of nodes of the reference: the present one, fewer, or more until two more change little; *left: estimated
+   remaining error. The coarsest dt, coupling and Newton are used. */
 static int reference_nodes(spari_advisor *d, const spari_plan *present, int *level, int *more, double *left) {
-    const double spectral = 0.25; /* of the error, at most, stays with two nodes more */
+    const double spectral = 0.25; /* maximum fraction of the error that remains with two more nodes */
     const spar_session *s = d->session;
     const int begun = d->thorough || s->keep_dt ? 2 : 0;
     int status, finer;
     do {
         spari_record base = {0};
-        double shown = INFINITY, two = INFINITY; /* changes by fewer nodes: the least, and by two */
+        double shown = INFINITY, two = INFINITY; /* changes by fewer nodes: the smallest, and by two */
         finer = 0;
         *more = begun;
         status = run_coarsest(d, present, level, begun, &base);
@@ -569,8 +568,8 @@ static int reference_nodes(spari_advisor *d, const spari_plan *present, int *lev
     return status;
 }
 
-/* The error that is left in the last level, by how the changes fall; *extrapolate: the part of the last change that is
-   still to come, 0: not known. */
+/* Error of the last level, from the decrease of the changes; *extrapolate: remaining part of the last change, 0:
+   unknown. */
 static double left_in_levels(const spari_advisor *d, double *extrapolate) {
     double change = d->level[d->levels - 1].change, before = d->levels > 2 ? d->level[d->levels - 2].change : 0,
            rate = before > 0 && change > 0 ? before / change : 2;
@@ -582,7 +581,7 @@ static double left_in_levels(const spari_advisor *d, double *extrapolate) {
     return change / (fmin(fmax(rate, 1.25), 4) - 1) * d->tolerance;
 }
 
-/* What a level's own steps leave of error, in tolerances. */
+/* Error of a level due to its own steps, in tolerances. */
 static double error_of_level(const spari_advisor *d, int k) {
     double after = 0, part = 0, last = d->levels > 1 ? left_in_levels(d, &part) / d->tolerance : 0;
     for (int i = k + 1; i < d->levels; i++) {
@@ -621,8 +620,8 @@ void spari_plan_forget(spari_advisor *d) {
     d->levels = 0;
 }
 
-/* Whether half the dt can pay although the error that is left will do: of the tolerance it leaves more to dt, of
-   order 2, in runs that cost at least about what a level that keeps the tolerance does. */
+/* Whether half the dt can pay although the present error is sufficient: a more accurate reference leaves more of the
+   tolerance to dt, of order 2, in runs that cost at least about a level that keeps the tolerance. */
 static int finer_pays(spari_advisor *d) {
     const spari_level *last = &d->level[d->levels - 1], *good = spari_plan_good_level(d);
     double room = spari_rule.good - d->reference_error / d->tolerance, cost = spari_plan_cost(d, &last->record),
@@ -631,8 +630,8 @@ static int finer_pays(spari_advisor *d) {
            spari_plan_pays(d, 2 * cost, run * (1 - sqrt(room / spari_rule.good)));
 }
 
-/* Halves dt until the error that is left in the steps and the one in the nodes are a small part of the tolerance, or
-   small enough and the next run would not pay. */
+/* Halves dt until the errors of steps and nodes are a small fraction of the tolerance, or small enough if the next
+   run would not pay. */
 static int refine(spari_advisor *d, const spari_plan *present, int level, int more, double nodes) {
     int made, keeps = d->session->keep_dt, ends = keeps ? level : SPARI_FINEST;
     double goal = spari_rule.reference_ends * d->tolerance, part;
@@ -656,7 +655,7 @@ static int refine(spari_advisor *d, const spari_plan *present, int level, int mo
     return SPAR_OK;
 }
 
-/* What a longer run comes to is not in the trials where the motion still grows at their end. */
+/* Warns if the motion still grows at the end of the trials: a longer run is then not covered. */
 static void tell_growth(const spari_advisor *d, double T, double swells) {
     char text[SPARI_MESSAGE_SIZE];
     if (d->session->log && d->longer > spari_rule.foreseen && swells > spari_rule.swells) {
@@ -670,7 +669,7 @@ static void tell_growth(const spari_advisor *d, double T, double swells) {
     }
 }
 
-/* What trials of this time can say of the run. */
+/* Checks what trials of this length can establish about the run. */
 static int check_reference(spari_advisor *d) {
     const spar_session *s = d->session;
     double T = d->run.dt * (double)d->run.steps, said[4] = {0};
@@ -734,7 +733,7 @@ const spari_level *spari_plan_good_level(const spari_advisor *d) {
 
 int64_t spari_plan_least_steps(const spari_advisor *d) {
     double resolving = d->shortest > 0 ? ceil(spari_rule.resolves / d->shortest) : 0;
-    resolving = fmax(resolving, 1.4 * (double)d->dear_steps); /* the next place of the grid */
+    resolving = fmax(resolving, 1.4 * (double)d->dear_steps); /* the next grid position */
     for (int k = 0; k < d->levels; k++) {
         double error = error_of_level(d, k);
         if (error <= spari_rule.good) { /* of order 2 */
@@ -761,8 +760,7 @@ static int seesaws(const spari_advisor *d, const spari_plan *p, const spari_reco
            r->alternating[1] * pow(grows, fmin(more, 100)) > limit * limit;
 }
 
-/* What settings that are looked at are compared with: a tight coupling, and half the dt where theirs is tight already.
- */
+/* Comparison settings for the longer run: tight coupling, and half the dt if the coupling is tight already. */
 static spari_plan calm_plan(const spari_advisor *d, const spari_plan *p) {
     spari_plan q = *p;
     int keeps = d->session->keep_coupling;
@@ -775,20 +773,20 @@ static spari_plan calm_plan(const spari_advisor *d, const spari_plan *p) {
     return q;
 }
 
-/* Runs that, unless the last look was compared with the same. */
+/* Runs them, unless the last comparison used the same. */
 static int run_calm(spari_advisor *d, const spari_plan *q, int longer, const spari_record *run, double limit) {
     int status = SPAR_OK;
     if (!d->calm.value || d->calm_longer != longer || memcmp(&d->calm_plan, q, sizeof *q) != 0) {
         spari_record_free(&d->calm);
         d->calm_plan = *q, d->calm_longer = longer;
-        d->beside = run, d->off = limit; /* about: that is relative to this one */
+        d->beside = run, d->off = limit; /* approximately: that run's error is relative to this one */
         status = spari_plan_run(d, q, longer, INFINITY, &d->calm);
         d->beside = NULL;
     }
     return status;
 }
 
-/* Errors of phase may have grown as the time has. */
+/* Phase errors may have grown with time. */
 static int stays_beside(spari_advisor *d, const spari_plan *p, int longer, const spari_record *run, int *stays) {
     const spari_plan q = calm_plan(d, p);
     const double limit = longer * d->tolerance;
@@ -808,11 +806,11 @@ static int stays_beside(spari_advisor *d, const spari_plan *p, int longer, const
 int spari_plan_look(const spari_advisor *d, const spari_plan *p) {
     int longer = spari_rule.longer, least = spari_rule.least_steps;
     longer = p->steps * longer < least ? (int)(least / p->steps) + 1 : longer;
-    return (int)fmin(longer, ceil(d->longer)); /* what comes after the host's run is nobody's concern */
+    return (int)fmin(longer, ceil(d->longer)); /* times after the host's run are irrelevant */
 }
 
-/* What the look shows: nothing; what may be so, and is to be seen beside another run; or what is evident, a saw-tooth
-   in the loads that grows and counts already, while the motion does not. */
+/* Result of the longer run: nothing suspicious; doubtful, to be compared with another run; or certain: an
+   alternation in the loads that grows and is significant, while the motion does not grow. */
 enum { LOOKS_FINE, LOOKS_DOUBTFUL, LOOKS_UNSTABLE };
 
 static int verdict_of(const spari_advisor *d, const spari_plan *p, const spari_record *run, int longer) {
