@@ -107,12 +107,18 @@ void spari_lagrange(int n, const double *x, const double *bary, double xi, doubl
 /* A distributed load p has the moments sum of P_k(x_j) f_j with Legendre polynomials P_k, which are combinations of
    the basis. The integral of P_k beyond xi is (P_{k-1} - P_{k+1})(xi) / (2 k + 1). */
 void spari_share_beyond(int n, const double *x, double xi, double *share) {
+    double beyond[SPARI_MAX_NODES], older = 1, old = xi;
+    for (int k = 1; k < n; k++) {
+        const double next = ((2 * k + 1) * xi * old - k * older) / (k + 1);
+        beyond[k] = older - next;
+        older = old, old = next;
+    }
     for (int j = 0; j < n; j++) {
-        double before, sum = 1 - xi;
+        double sum = 1 - xi, before = 1, at = x[j];
         for (int k = 1; k < n; k++) {
-            double at = legendre(k, x[j], &before), below, above = legendre(k + 1, xi, &below);
-            (void)legendre(k, xi, &below);
-            sum += (below - above) * at;
+            sum += beyond[k] * at;
+            const double next = ((2 * k + 1) * x[j] * at - k * before) / (k + 1);
+            before = at, at = next;
         }
         share[j] = 0.5 * sum;
     }

@@ -14,8 +14,8 @@ int spari_beyond_is_known(const spar_member *member);
 spari_beyond *spari_beyond_create(const spar_member *member);
 void spari_beyond_free(spari_beyond *beyond);
 /* Force and moment about the station on the part beyond it, global axes. Nodal loads at the station count at the tip
-   and within the line, not at the root. Returns 0, or 1: no memory. */
-int spari_beyond_at(const spari_beyond *beyond, const spari_station *s, double force[6]);
+   and within the line, not at the root. */
+void spari_beyond_at(const spari_beyond *beyond, const spari_station *s, double force[6]);
 /* Whether the member's equations use reference lever arms and unrotated sections. */
 int spari_beyond_is_undeformed(const spar_member *member);
 
