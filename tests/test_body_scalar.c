@@ -2,5 +2,6 @@
    with this file instead of the library's. */
 #define SPARI_PLAIN_LANES 1
 #include "member/lanes.c"
+#include "member/element_lanes.c"
 
 #include "test_body.c"

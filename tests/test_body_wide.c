@@ -5,5 +5,6 @@
 #pragma GCC diagnostic ignored "-Wpsabi" /* such vectors are never passed, all is inlined */
 #endif
 #include "member/lanes.c"
+#include "member/element_lanes.c"
 
 #include "test_body.c"

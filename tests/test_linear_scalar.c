@@ -2,5 +2,6 @@
    with this file instead of the library's. */
 #define SPARI_PLAIN_LANES 1
 #include "algebra/linear.c"
+#include "algebra/linear_lanes.c"
 
 #include "test_linear.c"

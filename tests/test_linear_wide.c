@@ -6,5 +6,6 @@
 #pragma GCC diagnostic ignored "-Wpsabi" /* such vectors are never passed, all is inlined */
 #endif
 #include "algebra/linear.c"
+#include "algebra/linear_lanes.c"
 
 #include "test_linear.c"

@@ -2,5 +2,6 @@
    this file instead of the library's. */
 #define SPARI_PLAIN_LANES 1
 #include "time/node_kinematics.c"
+#include "time/node_kinematics_lanes.c"
 
 #include "test_nodes.c"

@@ -5,5 +5,6 @@
 #pragma GCC diagnostic ignored "-Wpsabi" /* such vectors are never passed, all is inlined */
 #endif
 #include "time/node_kinematics.c"
+#include "time/node_kinematics_lanes.c"
 
 #include "test_nodes.c"

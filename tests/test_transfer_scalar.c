@@ -2,5 +2,6 @@
    instead of the library's. */
 #define SPARI_PLAIN_LANES 1
 #include "transfer/transfer.c"
+#include "transfer/transfer_lanes.c"
 
 #include "test_transfer.c"

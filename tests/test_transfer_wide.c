@@ -5,5 +5,6 @@
 #pragma GCC diagnostic ignored "-Wpsabi" /* such vectors are never passed, all is inlined */
 #endif
 #include "transfer/transfer.c"
+#include "transfer/transfer_lanes.c"
 
 #include "test_transfer.c"

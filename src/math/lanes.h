@@ -1,4 +1,9 @@
-/* What code needs that is compiled once for each width of vectors: see width.h and widths.h. */
+/* What kernels need that are compiled once for each width of vectors.
+
+   A source of kernels is a file src/<room>/<name>_lanes.c. CMakeLists.txt compiles it into one object for each width
+   and defines SPARI_OBJECT_WIDTH: 2 (portable), 4 (AVX2), 8 (AVX-512). The source includes width.h for the macros of
+   its width, and ends with the table of its functions. The header <name>_kernels.h declares the tables of all widths.
+ */
 #ifndef SPARI_LANES_H
 #define SPARI_LANES_H
 
@@ -17,13 +22,21 @@
 #define SPARI_AHEAD(p) ((void)(p))
 #endif
 
-/* SPARI_PLAIN_LANES (1, 2, 4, 8) builds the portable kernels alone at a width of choice, so that every width can be
-   tried on any processor. */
+/* SPARI_AVX_KERNELS: there are kernels for AVX2 and AVX-512. SPARI_PLAIN_LANES (1, 2, 4, 8) builds the portable kernels
+   alone at a width of choice, so that every width can be tried on any processor. */
 #if defined(__GNUC__) && defined(__x86_64__)
 #include <immintrin.h>
 #if !defined(SPARI_PLAIN_LANES)
-#define SPARI_X86 1
+#define SPARI_AVX_KERNELS 1
 #endif
+#endif
+
+/* The width of this object. SPARI_HAS_OBJECT: the compiler can make kernels of this width. */
+#if !defined(SPARI_OBJECT_WIDTH)
+#define SPARI_OBJECT_WIDTH 2
+#endif
+#if SPARI_OBJECT_WIDTH == 2 || defined(SPARI_AVX_KERNELS)
+#define SPARI_HAS_OBJECT 1
 #endif
 
 /* Doubles from x on to where a cache line of eight begins: vectors that lie across two take twice as long. */
@@ -34,7 +47,7 @@ static inline int64_t spari_to_line(const double *x) {
 
 /* How wide the vectors are that this processor has kernels for, `most` at most: 8, 4, or 0 for the portable ones. */
 static inline int spari_lanes_here(int most) {
-#ifdef SPARI_X86
+#ifdef SPARI_AVX_KERNELS
     if (most >= 8 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
         return 8;
     }
@@ -45,5 +58,29 @@ static inline int spari_lanes_here(int most) {
     (void)most;
     return 0;
 }
+
+/* SPARI_KERNEL_TABLES(set) declares a set of kernels, whose type is `set`: the table of each width, and the function
+   set_for(most), which gives the widest table that this processor can use, of `most` lanes at most. */
+#ifdef SPARI_AVX_KERNELS
+#define SPARI_KERNEL_TABLES(set)                                                                                       \
+    extern const set set##_plain, set##_avx2, set##_avx512;                                                            \
+    static inline const set *set##_for(int most) {                                                                     \
+        switch (spari_lanes_here(most)) {                                                                              \
+        case 8:                                                                                                        \
+            return &set##_avx512;                                                                                      \
+        case 4:                                                                                                        \
+            return &set##_avx2;                                                                                        \
+        default:                                                                                                       \
+            return &set##_plain;                                                                                       \
+        }                                                                                                              \
+    }
+#else
+#define SPARI_KERNEL_TABLES(set)                                                                                       \
+    extern const set set##_plain;                                                                                      \
+    static inline const set *set##_for(int most) {                                                                     \
+        (void)most;                                                                                                    \
+        return &set##_plain;                                                                                           \
+    }
+#endif
 
 #endif

@@ -12,8 +12,8 @@
      STREAM(p,v) v to p, a multiple of its size, past the caches, likewise
      L           the vector; get and put take it from memory and bring it there
      HERE        how a function begins that is inlined
-   and for SPARI_WIDTH 0 nothing. SPARI_WIDTH itself is gone afterwards. 4 and 8 are for SPARI_X86 alone. No include
-   guard: this is a body, not an interface. */
+   and for SPARI_WIDTH 0 nothing. SPARI_WIDTH itself is gone afterwards. 4 and 8 are for SPARI_AVX_KERNELS alone. No
+   include guard: this is a body, not an interface. */
 #include "lanes.h"
 
 #undef W

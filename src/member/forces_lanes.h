@@ -1,5 +1,5 @@
 /* Forces of an element's points for one vector width: fields of the nodes summed to the points, what the points give
-   back, and its sum onto the nodes. Included by element_lanes.h once per width with the macros of math/width.h. No
+   back, and its sum onto the nodes. Included by element_lanes.c with the macros of math/width.h. No
    include guard: this is a body, not an interface. */
 #include "section_lanes.h"
 

@@ -1,5 +1,5 @@
 /* An element's nodes, W of them at once: what its points are given, and what they give back. Included by
-   element_lanes.h once per width with the macros of math/width.h. No include guard: this is a body, not an interface.
+   element_lanes.c with the macros of math/width.h. No include guard: this is a body, not an interface.
 
    Arrays of nodes go in and out with the numbers of a node side by side; the rows z [ROW][SPARI_MAX_NODES] and
    g [BACK][SPARI_MAX_NODES] between have nodes side by side. Nothing is fused: the same bits at every width. */

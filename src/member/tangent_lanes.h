@@ -1,5 +1,5 @@
 /* Tangents of an element for one vector width: the matrices of its points, their sums over the points, and the unknowns
-   of the nodes. Included by element_lanes.h once per width, after forces_lanes.h. No include guard: this is a body, not
+   of the nodes. Included by element_lanes.c, after forces_lanes.h. No include guard: this is a body, not
    an interface. docs/theory.md, "The tangent of a point". */
 
 /* ---- points: lanes are points ---- */

@@ -1,6 +1,6 @@
-/* Loads whose sums do not depend on the order of the nodes, for one vector width. Included by kernel.h, with its
-   macros. A node's share in the load of a line's node is found without fused operations, lane by lane: the same bits at
-   every width. */
+/* Loads whose sums do not depend on the order of the nodes, for one vector width. Included by transfer_lanes.c, with
+   its macros. A node's share in the load of a line's node is found without fused operations, lane by lane: the same
+   bits at every width. */
 
 /* phi_l of the nodes of a run, row by row; xi: their coordinates. */
 HERE void NAME(shape_rows)(int modes, int count, const double *modal, const double *xi, double (*phi)[SPARI_ROW]) {

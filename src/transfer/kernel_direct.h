@@ -1,5 +1,5 @@
-/* Places and velocities straight from the registers to the host's triples, for one vector width. Included by kernel.h,
-   with its macros.
+/* Places and velocities straight from the registers to the host's triples, for one vector width. Included by
+   transfer_lanes.c, with its macros.
 
    An array of the host's begins anywhere within a line of 64 bytes. With vectors of a line each, what is woven is
    turned by as many numbers as that makes, together with the last of what came before, so that whole lines are written:

@@ -1,8 +1,36 @@
-/* What generalised-alpha does of W nodes at once: one in each lane of a vector. Included by node_kinematics.c once per
-   width with the macros of math/width.h. No include guard: this is a body, not an interface. docs/theory.md, "Time".
+/* What generalised-alpha does of W nodes at once: one in each lane of a vector, for one width of vectors
+   (math/lanes.h). docs/theory.md, "Time".
 
    Lanes do not see each other and nothing is fused: a node's numbers have the same bits at every width. */
+#include "node_kinematics_kernels.h"
+
+#include "../base/status.h"
+
+#include <math.h>
+
+#ifdef SPARI_HAS_OBJECT
+#define SPARI_WIDTH SPARI_OBJECT_WIDTH
+#include "../math/width.h"
+
 #include "../math/rotation_lanes.h"
+
+/* Up to an angle of 1 series in its square are exact to rounding: the cosine of half of it, half the sine by the half,
+   and the second order of the inverse tangent operator, |B_2k| / (2k)! with Bernoulli's numbers. */
+#define SMALL_TURN 1.0
+static const double cosine_series[] = {1,           -1.0 / 2,       1.0 / 24,        -1.0 / 720,
+                                       1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600, -1.0 / 87178291200};
+static const double sine_series[] = {0.5,          -0.5 / 6,        0.5 / 120,       -0.5 / 5040,
+                                     0.5 / 362880, -0.5 / 39916800, 0.5 / 6227020800};
+static const double inverse_series[] = {1.0 / 12,
+                                        1.0 / 720,
+                                        1.0 / 30240,
+                                        1.0 / 1209600,
+                                        1.0 / 47900160,
+                                        691.0 / 1307674368000,
+                                        1.0 / 74724249600,
+                                        3617.0 / 10670622842880000,
+                                        43867.0 / 5109094217170944000,
+                                        174611.0 / 802857662698291200000.0};
 
 /* All nodes of a span: whole vectors of them, and what is left over. */
 #undef EACH_BLOCK
@@ -553,3 +581,18 @@ TARGET static void NAME(lose)(const spari_root_jump *t, int64_t from, int64_t to
     EACH_BLOCK(from, to, WORK)
 #undef WORK
 }
+
+const spari_node_kernels NAME(spari_node_kernels) = {
+    .width = W,
+    .back = NAME(turn_back),
+    .forth = NAME(turn_forth),
+    .sized =
+        {[SPARI_SIZED_BY_TAKE] = NAME(take), [SPARI_SIZED_BY_PLACE] = NAME(place), [SPARI_SIZED_BY_SIZE] = NAME(size)},
+    .predict = NAME(predict),
+    .correct = NAME(correct),
+    .advance = NAME(advance),
+    .show = NAME(show),
+    .look = NAME(look),
+    .lose = NAME(lose),
+};
+#endif

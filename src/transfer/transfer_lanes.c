@@ -1,9 +1,24 @@
-/* The transfer kernels for one vector width. Included by transfer.c once per width with the macros of math/width.h; W
-   nodes are in a vector. Without GNU vector types W is 1 and everything below is plain C. No include guard: this is a
-   body, not an interface.
+/* The transfer kernels for one width of vectors (math/lanes.h); W nodes are in a vector. Without GNU vector types W is
+   1 and everything below is plain C.
 
    Two vectors are worked on side by side (PAIR nodes): the chains of multiply-adds are then long enough apart to hide
    their latency, and each coefficient is spread over the lanes once for both. */
+#include "transfer_kernels.h"
+
+#include "../base/status.h"
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#if defined(__has_builtin) /* in Clang, and in GCC from 12 on; GCC's own shuffle is older */
+#if __has_builtin(__builtin_shufflevector)
+#define SPARI_SHUFFLEVECTOR 1
+#endif
+#endif
+
+#ifdef SPARI_HAS_OBJECT
+#define SPARI_WIDTH SPARI_OBJECT_WIDTH
+#include "../math/width.h"
 
 #if W > 1
 typedef int64_t NAME(bits) __attribute__((vector_size(8 * W)));
@@ -677,7 +692,7 @@ HERE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carr
 /* A point's or a rigid body's nodes. */
 TARGET SPARI_APART static double NAME(motion_carried)(const spari_nodes *s, int64_t first, int count, const double *c,
                                                       int what, double (*buf)[SPARI_ROW]) {
-    const carrier m = carrier_of(c);
+    const carrier m = spari_carrier_of(c);
     switch (what) {
     case SPARI_UPTO_PLACE:
         NAME(carry)(s, first, count, &m, SPARI_UPTO_PLACE, buf);
@@ -1126,7 +1141,7 @@ GATHER(consistent_moment_audited, 1, 1, 1)
 TARGET SPARI_APART static double NAME(loads_carried)(const spari_nodes *s, int64_t first, int count, const double *c,
                                                      int has_moment, const tile_loads *f, int audited, double *modal,
                                                      double *sums, double *tops) {
-    const carrier m = carrier_of(c);
+    const carrier m = spari_carrier_of(c);
     switch (2 * !!has_moment + !!audited) {
     case 0:
         NAME(load_carrier)(s, first, count, &m, 0, f, 0, modal, sums, tops);
@@ -1171,5 +1186,15 @@ TARGET static double NAME(loads)(const spari_nodes *s, int64_t first, int count,
 
 #include "kernel_bins.h"
 
-#undef PAIR
-#undef MIX
+const spari_transfer_kernels NAME(spari_transfer_kernels) = {
+    .motion = NAME(motion),
+    .loads = NAME(loads),
+    .bins = NAME(bins),
+    .carry = NAME(carry_to),
+    .move_to = NAME(move_to),
+    .give = NAME(give_triples),
+    .give_singles = NAME(give_singles),
+    .load = NAME(load_triples),
+    .load_singles = NAME(load_singles),
+};
+#endif

@@ -1,6 +1,15 @@
-/* Factors and back-substitution for one width of vectors. Included by linear.c once per width with the macros of
-   math/width.h. No include guard: this is a body, not an interface. Columns lie one after the other, contiguous. BLAS
-   takes three to four times as many instructions for so few unknowns (docs/performance.md). */
+/* Factors and back-substitution for one width of vectors (math/lanes.h). Columns lie one after the other, contiguous.
+   BLAS takes three to four times as many instructions for so few unknowns (docs/performance.md). */
+#include "linear_kernels.h"
+
+#include "../base/status.h"
+
+#include <math.h>
+
+#ifdef SPARI_HAS_OBJECT
+#define SPARI_WIDTH SPARI_OBJECT_WIDTH
+#include "../math/width.h"
+
 #include "../math/rotation_lanes.h"
 
 /* Columns [m] of A, `step` apart, += S [m][m] row by row: two columns of W rows at a time. */
@@ -632,3 +641,18 @@ TARGET static void NAME(add_rows)(int64_t n, int64_t count, const double *rows, 
         NAME(more_rows)(1, n, rows + n * k, by, x, y + k);
     }
 }
+
+const spari_linear_kernels NAME(spari_linear_kernels) = {
+    .add = NAME(add_by_columns),
+    .factor_dense = NAME(factor_dense),
+    .factor_band = NAME(factor_band),
+    .corner = NAME(invert_corner),
+    .dense = NAME(solve_dense),
+    .forth_dense = NAME(forth_dense),
+    .back_dense = NAME(back_dense),
+    .forth = NAME(forth_band),
+    .back = NAME(back_band),
+    .columns = NAME(take_columns),
+    .rows = NAME(add_rows),
+};
+#endif

@@ -1,16 +1,20 @@
-/* What mixing does of W unknowns at once. Included by anderson.c once per width with the macros of math/width.h. No
-   include guard: this is a body, not an interface.
+/* What mixing does of W unknowns at once, for one width of vectors (math/lanes.h).
 
    Sums are those of every 24th unknown whatever the width, and nothing is fused: the same bits at every width. */
+#include "anderson_kernels.h"
+
+#ifdef SPARI_HAS_OBJECT
+#define SPARI_WIDTH SPARI_OBJECT_WIDTH
+#include "../math/width.h"
 
 /* The sum of a b over the unknowns from..to, whole stripes, each by its weight [24]. */
 HERE double NAME(weighed)(const double *a, const double *b, const double *weight, int64_t from, int64_t to) {
-    enum { EIGHT = STRIPE / 3, THIRD = EIGHT / W };
-    L sum[STRIPE / W] = {0};
+    enum { EIGHT = SPARI_MIXED_STRIPE / 3, THIRD = EIGHT / W };
+    L sum[SPARI_MIXED_STRIPE / W] = {0};
     double p[EIGHT];
-    for (int64_t i = from; i < to; i += STRIPE) {
+    for (int64_t i = from; i < to; i += SPARI_MIXED_STRIPE) {
         SPARI_UNROLL
-        for (int v = 0; v < STRIPE / W; v++) {
+        for (int v = 0; v < SPARI_MIXED_STRIPE / W; v++) {
             sum[v] = sum[v] + NAME(get)(a + i + W * v) * NAME(get)(b + i + W * v);
         }
     }
@@ -56,3 +60,6 @@ TARGET static void NAME(mix)(const spari_mixing *m, const double *by, double *x,
         NAME(put)(x + i, now);
     }
 }
+
+const spari_mixing_kernels NAME(spari_mixing_kernels) = {.look = NAME(look), .mix = NAME(mix)};
+#endif
