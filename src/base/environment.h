@@ -16,7 +16,7 @@
    takes 100 ns a call; where the processor and its C library are known the few words that tell are looked at, and
    loaded only where they differ. */
 #if defined(__x86_64__) && defined(__GNUC__) && defined(__GLIBC__)
-#define SPARI_X86 1
+#define SPARI_MXCSR 1 /* its registers are read and written directly */
 typedef struct spari_environment {
     uint32_t sse;             /* MXCSR */
     uint16_t control, status; /* of the coprocessor, which long double computes with */

@@ -3,9 +3,9 @@
 #ifndef SPARI_COLUMNS_H
 #define SPARI_COLUMNS_H
 
+#include "../algebra/secants.h"
 #include "../time/tangent_snapshot.h"
 #include "schemes.h"
-#include "../algebra/secants.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -157,9 +157,9 @@ void spari_columns_accept(spari_accelerator *a);
 double spari_columns_residual(const spari_accelerator *a, const double *x, const double *g, const double *image,
                               double *r);
 
-/* Contradiction of answers (spari_recollection) above SPARI_QUIET is looked at; scatter above SPARI_LOUD is averaged.
- */
-static const double SPARI_QUIET = 1e-3, SPARI_LOUD = 0.05;
+/* Limits of spari_recollection. The scheme acts on a contradiction of the fluid's responses above the first. It
+   averages difference columns whose scatter is above the second. */
+static const double SPARI_CONTRADICTION_SEEN = 1e-3, SPARI_SCATTER_AVERAGED = 0.05;
 
 /* How much of a change of the fluid's answer comes again with the next; 0: none, or not known. */
 static inline double spari_rho_of(const spari_accelerator *a) {
