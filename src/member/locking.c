@@ -1,6 +1,6 @@
 /* Elements with too few nodes for their stiffness: a bent element of few nodes cannot keep its length, or its sections
    across its line, and is then as stiff as its axial and shear stiffness make it. Told once, at commit. Limits are
-   those at which a cantilever of one element deflects by 10 % too little (tests/test_beam.c). */
+   those at which a cantilever of one element deflects by 10 % too little (tests/member/test_beam.c). */
 #include "beam.h"
 
 #include "../base/session.h"
