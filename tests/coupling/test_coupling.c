@@ -842,6 +842,109 @@ static void messages(void **state) {
     }
 }
 
+/* A first step that is rejected, or that fails, leaves the clock at rest: members may still be added. The coupling is
+   then made for all of them (it kept the size of the first ones and wrote beyond it). Two bodies under a constant load:
+   u = F t^2 / (2 m) in the limit; here the second is only asked to move with its own load. */
+static void members_after_a_first_step(void **state) {
+    (void)state;
+    for (int fails = 0; fails <= 1; fails++) {
+        const double ratio = 2, load[6] = {0, 4, 0, 0, 0, 0};
+        pistons p;
+        pistons_create(&p, 1, &ratio);
+        p.b[0] = 5;
+        spar_session *s = p.session;
+        OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 0, 1e-10, 50));
+        if (fails) {
+            p.bad_call = 2;
+            assert_int_not_equal(spar_step(s, 0.1, pistons_fluid, &p, NULL), SPAR_OK);
+            p.bad_call = 0;
+        } else {
+            OK(s, spar_step_begin(s, 0.1));
+            OK(s, spar_step_reject(s));
+        }
+        spar_member *late[3];
+        for (int i = 0; i < 3; i++) {
+            char name[8] = {'l', (char)('0' + i), 0};
+            late[i] = scene_body(s, name, (double[3]){0}, 2, (double[]){1, 1, 1});
+            OK(s, spar_member_set_load(late[i], 0, SPAR_LOAD_DEAD, load));
+        }
+        for (int i = 0; i < 3; i++) {
+            OK(s, spar_step(s, 0.1, pistons_fluid, &p, NULL));
+        }
+        double a[6];
+        OK(s, spar_member_get_motion(p.body[0], NULL, NULL, a));
+        NEAR(a[0], 5 / (1 + ratio) / 2, 5e-9);
+        for (int i = 0; i < 3; i++) {
+            OK(s, spar_member_get_motion(late[i], NULL, NULL, a));
+            NEAR(a[1], 2, 1e-12);
+        }
+        pistons_destroy(&p);
+    }
+}
+
+/* The host has room for as many residuals as it has asked for iterations, now. */
+static void room_for_residuals(void **state) {
+    (void)state;
+    const double r = 0.9;
+    double residual[3] = {-1, -1, -1}, size[3] = {-1, -1, -1};
+    int iterations;
+    pistons p;
+    pistons_create(&p, 1, &r);
+    p.b[0] = 5;
+    OK(p.session, spar_session_set_predictor(p.session, 0));
+    OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_FIXED_POINT, 0, 1e-6, 300));
+    OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, &iterations));
+    assert_true(iterations > 50);
+    OK(p.session, spar_session_get_iterations(p.session, &iterations, 2, residual, size));
+    assert_true(iterations > 50);
+    NEAR(residual[1], 5 * 0.9, 1e-12); /* 5 r^k: the first ones */
+    assert_true(residual[2] == -1 && size[2] == -1);
+    assert_int_equal(spar_session_get_iterations(p.session, &iterations, -1, residual, size), SPAR_ERR_ARGUMENT);
+    assert_true(residual[0] > 0 && strstr(spar_session_message(p.session), "capacity of -1"));
+    pistons_destroy(&p);
+}
+
+/* Loads f^0, f^1 on a body of 2 kg a step of `first` apart, then a step of 1 ms: predicted is f^1 + R (f^1 - f^0) with
+   R the ratio of the steps, at most 10 (unbounded it was 1e27, and Newton was blamed). */
+static void extrapolation_has_a_reach(void **state) {
+    (void)state;
+    const double none = 0, first[] = {1e-30, 1e-6, 5e-4};
+    for (int k = 0; k < 3; k++) {
+        pistons p;
+        double a[6], R = 1e-3 / first[k];
+        pistons_create(&p, 1, &none);
+        p.b[0] = 1;
+        OK(p.session, spar_fluid_push_forces(p.fluid[0], (double[]){1, 0, 0}, NULL));
+        p.b[0] = 1.125;
+        OK(p.session, spar_step(p.session, first[k], pistons_fluid, &p, NULL));
+        OK(p.session, spar_step_begin(p.session, 1e-3));
+        OK(p.session, spar_step_solve(p.session));
+        OK(p.session, spar_member_get_motion(p.body[0], NULL, NULL, a));
+        NEAR(a[0], (1.125 + (R < 10 ? R : 10) * 0.125) / 2, 1e-12);
+        pistons_destroy(&p);
+    }
+}
+
+/* Order 2 through values a step of 1e-12 and one of 0.1 apart is order 1: f^2 + (f^2 - f^1), not 1e11 (f^1 - f^0). */
+static void no_curve_through_close_values(void **state) {
+    (void)state;
+    const double none = 0;
+    pistons p;
+    double a[6];
+    pistons_create(&p, 1, &none);
+    OK(p.session, spar_session_set_predictor(p.session, 2));
+    OK(p.session, spar_fluid_push_forces(p.fluid[0], (double[]){1, 0, 0}, NULL));
+    p.b[0] = 1.25;
+    OK(p.session, spar_step(p.session, 1e-12, pistons_fluid, &p, NULL));
+    p.b[0] = 1.5;
+    OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, NULL));
+    OK(p.session, spar_step_begin(p.session, 0.1));
+    OK(p.session, spar_step_solve(p.session));
+    OK(p.session, spar_member_get_motion(p.body[0], NULL, NULL, a));
+    NEAR(a[0], 1.75 / 2, 1e-12);
+    pistons_destroy(&p);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(explicit_limits),
@@ -866,6 +969,10 @@ int main(void) {
         cmocka_unit_test(moments_of_parts_come_and_go),
         cmocka_unit_test(settings_are_checked),
         cmocka_unit_test(messages),
+        cmocka_unit_test(members_after_a_first_step),
+        cmocka_unit_test(room_for_residuals),
+        cmocka_unit_test(extrapolation_has_a_reach),
+        cmocka_unit_test(no_curve_through_close_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

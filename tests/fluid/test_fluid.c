@@ -301,6 +301,11 @@ static void poses_and_matrices(void **state) {
     assert_int_equal(spar_fluid_check_matrices(f, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]), SPAR_ERR_ARGUMENT);
     assert_true(says(&r, "is not a number"));
     assert_int_equal(spar_fluid_pull_matrices(f, 1, 2, m[0]), SPAR_ERR_ARGUMENT);
+    /* NULL is for a fluid that has no nodes */
+    spar_fluid *empty;
+    OK(spar_fluid_create(r.member, "empty", &empty));
+    OK(spar_fluid_pull_matrices(empty, 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, NULL));
+    assert_int_equal(spar_fluid_pull_matrices(f, 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, NULL), SPAR_ERR_ARGUMENT);
     rig_end(&r);
 }
 

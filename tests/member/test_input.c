@@ -412,6 +412,89 @@ static void test_layers_above(void **state) {
     spar_session_destroy(&s);
 }
 
+/* Counts that no memory holds: three times n, or its bytes, would pass 2^63. */
+static void test_counts_beyond_memory(void **state) {
+    (void)state;
+    const double x[6] = {0, 0, 0, 1, 0, 0}, eta[2] = {0, 1};
+    double out[6];
+    static const int64_t huge[] = {INT64_MAX, INT64_MAX / 3 + 1, (INT64_C(1) << 62) / 3 * 2 + 1, INT64_C(1) << 61,
+                                   (INT64_C(1) << 40) + 1};
+    spar_session *s = scene_session();
+    spar_member *open = scene_beam(s, "open", 1, 2, 1, K, M), *b = scene_beam(s, "b", 1, 2, 1, K, M);
+    spar_fluid *f = NULL;
+    OK(s, spar_member_commit(b));
+    OK(s, spar_fluid_create(b, "f", &f));
+    for (size_t k = 0; k < sizeof huge / sizeof *huge; k++) {
+        int64_t n = huge[k];
+        assert_int_equal(spar_fluid_set_motion_nodes(f, n, x), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_fluid_set_force_nodes(f, n, x), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_fluid_set_sections(f, n, eta, NULL), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_beam_set_axis(open, n, eta, x, NULL), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_beam_set_nodes(open, n, x, NULL), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_beam_set_sections(open, n, eta, K, M), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_beam_set_line_load(b, SPAR_LOAD_DEAD, n, eta, x), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_beam_get_section(b, n, eta, out, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_member_solve_modes(b, n, out, NULL), SPAR_ERR_ARGUMENT);
+    }
+    spar_session_destroy(&s);
+}
+
+/* Numbers near the largest: a status, and the state as it was, for every fidelity and for what a root is driven with.
+ */
+static void test_loads_beyond_numbers(void **state) {
+    (void)state;
+    const double huge[6] = {0, 1e200, 0, 0, 0, 1e200}, heavy[3] = {0, 0, -1e200}, none[6] = {0}, no_g[3] = {0};
+    for (int fidelity = SPAR_FIDELITY_PRESCRIBED; fidelity <= SPAR_FIDELITY_EXACT; fidelity++) {
+        double tip[7], after[7];
+        spar_session *s = scene_session();
+        spar_member *b = scene_beam(s, "beam", 1, 4, 10, K, M);
+        OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
+        OK(s, spar_member_set_fidelity(b, fidelity, 5));
+        OK(s, spar_member_commit(b));
+        scene_run(s, 0.1, 2);
+        scene_tip(b, tip);
+        int elastic = fidelity >= SPAR_FIDELITY_LINEAR;
+        for (int k = 0; k < 3; k++) {
+            const double q[7] = {0, 0, 0, 1, 0, 0, 0}, fast[6] = {0, 0, 0, 1e200, 0, 1e200};
+            OK(s, k == 0   ? spar_member_set_load(b, 3, SPAR_LOAD_DEAD, huge)
+                  : k == 1 ? spar_session_set_gravity(s, heavy)
+                           : spar_member_drive_root(b, q, fast, NULL));
+            int status = spar_step(s, 0.1, NULL, NULL, NULL);
+            int bears = fidelity == SPAR_FIDELITY_PRESCRIBED || (fidelity == SPAR_FIDELITY_RIGID && k == 0);
+            assert_int_equal(status, k < 2 && bears ? SPAR_OK : SPAR_ERR_NUMERIC);
+            if (elastic && k < 2) {
+                assert_int_equal(spar_member_solve_static(b, 1), SPAR_ERR_NUMERIC);
+                assert_non_null(strstr(spar_session_message(s), "'beam'"));
+            }
+            scene_tip(b, after);
+            assert_memory_equal(tip, after, sizeof tip);
+            OK(s, spar_member_set_load(b, 3, SPAR_LOAD_DEAD, none));
+            OK(s, spar_session_set_gravity(s, no_g));
+            OK(s, spar_member_drive_root(b, q, NULL, NULL));
+            scene_run(s, 0.1, 1);
+            scene_tip(b, tip);
+        }
+        spar_session_destroy(&s);
+    }
+}
+
+static void test_velocities_beyond_numbers(void **state) {
+    (void)state;
+    const double wild[3] = {0, 0, 1e200};
+    double v[24];
+    spar_session *s = scene_session();
+    spar_member *b = scene_beam(s, "beam", 1, 4, 10, K, M), *late = scene_beam(s, "late", 1, 4, 10, K, M);
+    OK(s, spar_member_commit(b));
+    assert_int_equal(spar_member_set_initial_velocity(b, NULL, NULL, wild), SPAR_ERR_ARGUMENT);
+    OK(s, spar_member_get_motion(b, NULL, v, NULL));
+    for (int i = 0; i < 24; i++) {
+        assert_true(v[i] == 0);
+    }
+    OK(s, spar_member_set_initial_velocity(late, NULL, NULL, wild));
+    assert_int_equal(spar_member_commit(late), SPAR_ERR_ARGUMENT);
+    spar_session_destroy(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_read_back),
@@ -423,6 +506,9 @@ int main(void) {
         cmocka_unit_test(test_beam_description),
         cmocka_unit_test(test_use_before_commit_and_loads),
         cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_counts_beyond_memory),
+        cmocka_unit_test(test_loads_beyond_numbers),
+        cmocka_unit_test(test_velocities_beyond_numbers),
     };
     scene_box(K, M);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,8 @@
 /* Static equilibrium against closed forms and converged solutions of the exact beam equations. */
 #include "scene.h"
 
+#include <stdio.h>
+
 static const double pi = 3.14159265358979323846;
 
 /* A cantilever under a tip moment rolls up to an arc of radius EI/M: u1 = r sin(L/r) - L, u3 = r (1 - cos(L/r)) for any
@@ -217,6 +219,40 @@ static void work_is_bounded(void **state) {
     spar_session_destroy(&s);
 }
 
+static char warned[1024];
+
+static void hear(const spar_session *s, int level, const char *text, void *context) {
+    (void)s, (void)context;
+    if (level == SPAR_LOG_WARNING) {
+        snprintf(warned, sizeof warned, "%s", text);
+    }
+}
+
+static int roll(int nodes, double turns) {
+    double K[36], load[6] = {0, 0, 0, 0, 0, 2 * 3.14159265358979323846 * turns * 100};
+    scene_diagonal(K, 1e7, 1e7, 1e7, 100, 100, 100);
+    spar_session *s = scene_session();
+    spar_member *b = scene_beam(s, "roll", 1, nodes, 1, K, NULL);
+    OK(s, spar_session_set_log(s, hear, NULL));
+    OK(s, spar_member_commit(b));
+    OK(s, spar_member_set_load(b, nodes - 1, SPAR_LOAD_DEAD, load));
+    warned[0] = '\0';
+    int status = spar_member_solve_static(b, 20), blames = strstr(spar_session_message(s), "more nodes") != NULL;
+    spar_session_destroy(&s);
+    return status == SPAR_OK ? SPAR_OK : blames ? status : -1;
+}
+
+/* Rolled up tighter than its nodes can follow: where Newton fails it is the nodes that are blamed, and where it finds
+   an equilibrium that is none of the beam (10 turns on 24 nodes) a log is warned; not for a circle. */
+static void test_too_few_nodes_are_blamed(void **state) {
+    (void)state;
+    assert_int_equal(roll(10, 10), SPAR_ERR_NUMERIC);
+    assert_int_equal(roll(24, 10), SPAR_OK);
+    assert_non_null(strstr(warned, "'roll'"));
+    assert_int_equal(roll(10, 1), SPAR_OK);
+    assert_string_equal(warned, "");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_roll_up),
@@ -227,6 +263,7 @@ int main(void) {
         cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_placement_turns_the_answer),
         cmocka_unit_test(work_is_bounded),
+        cmocka_unit_test(test_too_few_nodes_are_blamed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

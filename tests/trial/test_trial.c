@@ -1,8 +1,8 @@
 /* Trial runs go back to the bit, and say what theory says. */
 #include "scene.h"
 
-#include "math/basis.h"
 #include "exchange/session_private.h"
+#include "math/basis.h"
 #include "tune/apply.h"
 #include "tune/settings_trial.h"
 
@@ -1067,6 +1067,60 @@ static void test_progress_meddles(void **state) {
     spar_session_destroy(&c.s);
 }
 
+static spar_member *light_beam(spar_session *s, int fidelity, int effects, int root) {
+    double K[36], M[36];
+    scene_box(K, M);
+    spar_member *b = scene_beam(s, "beam", 2, 4, 10, K, M);
+    OK(s, spar_member_set_fidelity(b, fidelity, 4));
+    OK(s, spar_member_set_effects(b, effects));
+    OK(s, spar_member_set_root(b, root));
+    OK(s, spar_member_commit(b));
+    return b;
+}
+
+static int press_tip(spar_session *s, double t, double dt, int iteration, void *context) {
+    const double f[3] = {0, 0, 0.5};
+    (void)s, (void)t, (void)dt, (void)iteration;
+    return spar_fluid_push_forces(context, f, NULL);
+}
+
+/* Members without inertia: advice tries rigid and modal ones, and a report leaves inertia out. */
+static void test_trials_without_inertia(void **state) {
+    (void)state;
+    const int effects[] = {SPAR_EFFECT_LARGE_ROTATION, SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_INERTIA,
+                           SPAR_EFFECT_LARGE_ROTATION | SPAR_EFFECT_GRAVITY};
+    for (int k = 0; k < 3; k++) {
+        double advice[SPAR_ADVICE_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+        const double tip[3] = {10, 0, 0}, g[3] = {0, 0, -1};
+        spar_session *s = scene_session();
+        spar_fluid *f = NULL;
+        OK(s, spar_session_set_gravity(s, g));
+        spar_member *b = light_beam(s, k == 0 ? SPAR_FIDELITY_EXACT : SPAR_FIDELITY_RIGID, effects[k], SPAR_ROOT_FIXED);
+        OK(s, spar_fluid_create(b, "tip", &f));
+        OK(s, spar_fluid_set_force_nodes(f, 1, tip));
+        OK(s, spar_fluid_map(f));
+        OK(s, spar_session_report_effects(s, 0.01, 8, NULL, press_tip, f, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
+        if (k == 0) {
+            OK(s, spar_session_advise(s, 0.1, 0.01, 8, 8 * 0.01, NULL, press_tip, f, SPAR_ADVICE_COUNT, advice));
+        }
+        spar_session_destroy(&s);
+    }
+}
+
+/* A run kept for comparison is refused once the session has other members. */
+static void test_comparison_of_other_members(void **state) {
+    (void)state;
+    double report[SPAR_TRY_COUNT];
+    spar_session *s = scene_session();
+    scene_body(s, "one", (double[3]){0}, 2, (double[]){1, 1, 1});
+    OK(s, spar_session_try(s, 0.1, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report));
+    scene_body(s, "two", (double[3]){0}, 2, (double[]){1, 1, 1});
+    assert_int_equal(spar_session_try(s, 0.1, 8, NULL, NULL, NULL, 1, SPAR_TRY_COUNT, report), SPAR_ERR_STATE);
+    OK(s, spar_session_try(s, 0.1, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report));
+    OK(s, spar_session_try(s, 0.1, 8, NULL, NULL, NULL, 1, SPAR_TRY_COUNT, report));
+    spar_session_destroy(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_goes_back_to_the_bit),
@@ -1095,6 +1149,8 @@ int main(void) {
         cmocka_unit_test(test_progress),
         cmocka_unit_test(test_stopped_at_each_call),
         cmocka_unit_test(test_progress_meddles),
+        cmocka_unit_test(test_trials_without_inertia),
+        cmocka_unit_test(test_comparison_of_other_members),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
