@@ -1,5 +1,5 @@
 /* What threads gain (spar_session_set_threads): wall time of one thread over that of `threads`, the two taking turns,
-   the median of the turns (the bits are the same: tests/test_threads.c). threads [THREADS, default 2]
+   the median of the turns (the bits are the same: tests/session/test_threads.c). threads [THREADS, default 2]
    And whether the cost of a step stays linear: of an element of 4 nodes in beams of 1000 m, of a member among others,
    one thread, median of so many steps from rest and the least. threads linear
    threads linear MEMBERS ELEMENTS NODES STEPS: one of these, for valgrind --tool=callgrind */

@@ -1,4 +1,5 @@
-# The tests: every file is a program, found by name. Labels: unit, mpi, fortran, verification, stability, package, count,
+# The tests: every file is a program, found by name. tests/<room>/ has the tests of the room src/<room>, tests/examples
+# those of examples. Labels: unit, mpi, fortran, verification, stability, package, count,
 # torture, house, hosts.
 find_package(PkgConfig QUIET)
 if(NOT SPAR_CMOCKA_INCLUDE OR NOT SPAR_CMOCKA_LIBRARY)
@@ -73,7 +74,7 @@ function(spar_add_ranks target label timeout)
   endforeach()
 endfunction()
 
-file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/test_*.c")
+file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/*/test_*.c")
 foreach(file IN LISTS files)
   spar_add_test("${file}" unit 120)
 endforeach()
@@ -85,13 +86,14 @@ target_sources(test_error_scenes PRIVATE "${PROJECT_SOURCE_DIR}/benchmarks/world
 target_include_directories(test_error_scenes PRIVATE "${PROJECT_SOURCE_DIR}/benchmarks")
 foreach(kind IN ITEMS verification stability)
   file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/${kind}/*.c")
+  list(FILTER files EXCLUDE REGEX "/(test|mpi)_[^/]*$") # the tests of the room of that name
   foreach(file IN LISTS files)
     spar_add_test("${file}" ${kind} 300)
   endforeach()
 endforeach()
 
 if(SPAR_MPI)
-  file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/mpi_*.c")
+  file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/*/mpi_*.c")
   foreach(file IN LISTS files)
     get_filename_component(name "${file}" NAME_WE)
     add_executable(${name} "${file}")

@@ -39,7 +39,7 @@ if(NOT SPAR_BUILD_TESTS)
   return()
 endif()
 
-# tests/test_rotor.c runs the rotor as a user does, alone and on several ranks.
+# tests/examples/test_rotor.c runs the rotor as a user does, alone and on several ranks.
 if(TARGET test_rotor AND TARGET examples_rotor)
   add_dependencies(test_rotor examples_rotor)
   add_dependencies(test_rotor examples_spar-effects)

@@ -1,5 +1,5 @@
 # The house: rooms on their floors (tests/rooms), and that the test would see an arrow up, a circle, a long function, a
-# name given twice.
+# name or a macro given twice.
 find_program(SPAR_AWK awk)
 mark_as_advanced(SPAR_AWK)
 add_test(NAME setup COMMAND sh "${PROJECT_SOURCE_DIR}/tests/setup" "${PROJECT_BINARY_DIR}/tests/setup")

@@ -82,8 +82,7 @@
    stack of 128 kB is enough. (Built by another compiler than GCC or Clang, the library leaves all of this as it is.)
 
    Adding to the library (docs/adding.md):
-   - a public call: header, cmake/make-map.sh, cmake/make-bindings.sh, tests/contract.c, the tables of
-     tests/torture;
+   - a public call: header, cmake/make-map.sh, cmake/make-bindings.sh, the tables of tests/torture;
    - a setting: a field of the session (src/base/session.h) and a row of the table in src/session/settings.c;
    - a fidelity: a file with a row of operations in src/solve, its name in SPARI_FIDELITIES of src/time/fidelity.h;
    - a coupling scheme: its SPAR_COUPLING_*, its row in src/coupling/accelerator.c, its name in accelerate.h;

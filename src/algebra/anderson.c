@@ -1,39 +1,13 @@
-/* Anderson acceleration of Newton's corrections: see anderson.h. */
-#include "anderson.h"
+/* Newton's corrections mixed with those before them: see anderson.h. */
+#include "anderson_kernels.h"
 
 #include "../base/status.h"
-#include "../math/lanes.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { STRIPE = SPARI_MIXED_STRIPE, SPAN = 256 * 6, VECTORS = 6 };
-
-#define SPARI_KERNELS "../algebra/anderson_lanes.h"
-#include "../math/widths.h"
-
-typedef struct mixing_kernels {
-    void (*look)(const spari_mixing *m, const double *x, int64_t from, int64_t to, double *sums);
-    void (*mix)(const spari_mixing *m, const double *by, double *x, int64_t from, int64_t to);
-} mixing_kernels;
-
-static const mixing_kernels *mixing_here(int lanes) {
-    static const mixing_kernels plain = {look_plain, mix_plain};
-#ifdef SPARI_X86
-    static const mixing_kernels avx2 = {look_avx2, mix_avx2}, avx512 = {look_avx512, mix_avx512};
-    switch (spari_lanes_here(lanes ? lanes : 8)) {
-    case 8:
-        return &avx512;
-    case 4:
-        return &avx2;
-    default:
-        break;
-    }
-#endif
-    (void)lanes;
-    return &plain;
-}
+enum { SPAN = 256 * 6, VECTORS = 6 };
 
 static int64_t spans_of(int64_t unknowns) {
     return (unknowns + SPAN - 1) / SPAN;
@@ -65,7 +39,7 @@ void spari_mixing_free(spari_mixing *m) {
 
 typedef struct mixing_pass {
     const spari_mixing *m;
-    const mixing_kernels *kernels;
+    const spari_mixing_kernels *kernels;
     double *x, by[2];
 } mixing_pass;
 
@@ -143,7 +117,7 @@ static void find_parts(const spari_mixing *m, double by[2]) {
 }
 
 void spari_mixing_take(spari_mixing *m, spari_crew *crew, int lanes, double length, double *x) {
-    for (int i = 0; i < STRIPE; i++) {
+    for (int i = 0; i < SPARI_MIXED_STRIPE; i++) {
         m->weight[i] = i % 6 < 3 ? 1 / (length * length) : 1;
     }
     mixing_pass t = {.m = m, .x = x};
@@ -153,7 +127,7 @@ void spari_mixing_take(spari_mixing *m, spari_crew *crew, int lanes, double leng
         m->seen++;
         return;
     }
-    t.kernels = mixing_here(lanes);
+    t.kernels = spari_mixing_kernels_for(lanes ? lanes : 8);
     spari_crew_spread(crew, m->unknowns, SPAN, look_at_span, &t);
     exchange(m->d);
     exchange(m->w);

@@ -1,10 +1,10 @@
 /* Dense and banded linear systems, with general entries or assembled along a chain of elements: see linear.h. */
 #include "linear.h"
+#include "linear_kernels.h"
 
 #include "../base/blas.h"
 #include "../base/status.h"
 #include "../base/thread_pool.h"
-#include "../math/lanes.h"
 
 #include <gsl/gsl_cblas.h>
 #include <gsl/gsl_errno.h>
@@ -14,13 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Number of columns of a dense matrix that are solved at a time. */
-enum { SPARI_CORNER = 8, SPARI_CORNERS = 4 };
-
-#define SPARI_KERNELS "../algebra/linear_lanes.h"
-#include "../math/widths.h"
-
-/* Chains of at least LONG elements are split in the middle. ELEMENTS are processed at a time. */
+/* Chains of so many elements and more are cut in the middle; elements are worked on so many at a time. */
 enum { LONG = 64, ELEMENTS = 16, GATHERED = 128 };
 
 /* At most this many constrained first unknowns of an element are removed from a dense matrix. */
@@ -236,45 +230,8 @@ static void elements_of(const spari_linear *s, size_t i, size_t *first, size_t *
     *first = e > 0 && i - e * step < (size_t)s->overlap ? e - 1 : *last;
 }
 
-typedef struct linear_kernels {
-    void (*add)(int64_t m, const double *S, int64_t step, double *A);
-    int (*factor_dense)(int64_t n, int64_t inner, double least, double *A, int64_t step, int *swap, double *corners);
-    int (*factor_band)(int64_t n, int64_t inner, int64_t band, double least, double *columns, int64_t step,
-                       unsigned *swap);
-    void (*corner)(int64_t n, int64_t j, int loaded, const double *A, int64_t step, double *corner);
-    int (*dense)(int64_t n, const double *A, int64_t step, const double *corners, double *y);
-    void (*forth_dense)(int64_t n, int64_t inner, const double *A, double *x);
-    void (*back_dense)(int64_t n, int64_t inner, const double *A, double *x);
-    void (*forth)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step, const unsigned *swap,
-                  double *x);
-    void (*back)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step, double *x);
-    void (*columns)(int64_t n, int64_t count, const double *columns, const double *by, double *x);
-    void (*rows)(int64_t n, int64_t count, const double *rows, double by, const double *x, double *y);
-} linear_kernels;
-
-#define LINEAR_KERNELS(width)                                                                                          \
-    {                                                                                                                  \
-        add_by_columns_##width, factor_dense_##width, factor_band_##width, invert_corner_##width, solve_dense_##width, \
-            forth_dense_##width, back_dense_##width, forth_band_##width, back_band_##width, take_columns_##width,      \
-            add_rows_##width                                                                                           \
-    }
-static const linear_kernels plain_linear = LINEAR_KERNELS(plain);
-#ifdef SPARI_X86
-static const linear_kernels avx2_linear = LINEAR_KERNELS(avx2), avx512_linear = LINEAR_KERNELS(avx512);
-#endif
-
-static const linear_kernels *kernels_here(void) {
-#ifdef SPARI_X86
-    switch (spari_lanes_here(8)) {
-    case 8:
-        return &avx512_linear;
-    case 4:
-        return &avx2_linear;
-    default:
-        break;
-    }
-#endif
-    return &plain_linear;
+static const spari_linear_kernels *kernels_here(void) {
+    return spari_linear_kernels_for(8);
 }
 
 static void add_to_element(spari_linear *s, int element, const double *S) {
@@ -693,7 +650,7 @@ static int solve_halves(spari_linear *s, double *x) {
 typedef struct linear_elements {
     spari_linear *s;
     double *x;
-    const linear_kernels *kernels;
+    const spari_linear_kernels *kernels;
 } linear_elements;
 
 /* Eliminates the interior unknowns of each element; z: the remaining right-hand side of its ends. */

@@ -5,7 +5,7 @@
 
 #include <gsl/gsl_errno.h>
 #include <pthread.h>
-#ifdef SPARI_X86
+#ifdef SPARI_MXCSR
 #include <xmmintrin.h>
 #endif
 
@@ -64,7 +64,7 @@ static void make_ready(void) {
     (void)pthread_atfork(before_fork, after_fork, in_child);
 }
 
-#ifdef SPARI_X86
+#ifdef SPARI_MXCSR
 /* Intel 64 and IA-32 Architectures Software Developer's Manual, volume 1, 8.1.3, 8.1.5, 10.2.3. */
 enum { FLAGS = 0x3f, SSE_MASKED = 0x1f80, SSE_ROUNDING = 0x6000, X87_MASKED = 0x3f, X87_ROUNDING = 0x0c00 };
 

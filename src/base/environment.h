@@ -16,7 +16,7 @@
 /* Modes, traps and flags of a thread. <fenv.h> saves and loads the whole x87 state, which takes 100 ns a call. On
    x86-64 with GCC and glibc only the relevant words are read, and loaded only if they differ. */
 #if defined(__x86_64__) && defined(__GNUC__) && defined(__GLIBC__)
-#define SPARI_X86 1
+#define SPARI_MXCSR 1 /* its registers are read and written directly */
 typedef struct spari_environment {
     uint32_t sse;             /* MXCSR */
     uint16_t control, status; /* of the x87 unit, used by long double */

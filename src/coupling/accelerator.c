@@ -250,9 +250,9 @@ static void measure(spari_accelerator *a, const double *x, const double *g, cons
 
 /* A residual that rises twice after it was nearly converged is dominated by columns below the fluid's scatter. */
 static void suspect(spari_accelerator *a) {
-    if (a->secants && a->imaged && a->memory.scatter <= SPARI_LOUD && a->rises >= 2 &&
+    if (a->secants && a->imaged && a->memory.scatter <= SPARI_SCATTER_AVERAGED && a->rises >= 2 &&
         a->residual_least < 0.03 * a->residual_first) {
-        a->memory.scatter = 2 * SPARI_LOUD;
+        a->memory.scatter = 2 * SPARI_SCATTER_AVERAGED;
     }
 }
 

@@ -9,7 +9,7 @@
 /* ---- memory of the fluid ---- */
 
 int spari_accelerator_contradicted(const spari_accelerator *a) {
-    return a->imaged && a->slots > 0 && a->memory.contradiction > SPARI_QUIET;
+    return a->imaged && a->slots > 0 && a->memory.contradiction > SPARI_CONTRADICTION_SEEN;
 }
 
 /* change, image := the change in slot s without the fluid's memory, from v or w and its image */
@@ -123,8 +123,8 @@ void spari_columns_factor(spari_accelerator *a) {
         int full = a->used == a->set.columns;
         if (!spari_columns_append(a, s, least_new(a))) {
             a->dropped += !full;
-            /* columns filtered out below SPARI_QUIET are dropped; above, they are averaged with the others */
-            if (a->memory.scatter <= SPARI_QUIET && !is_unled(a, s)) {
+            /* those taken out below SPARI_CONTRADICTION_SEEN have nothing to say; above, they are averaged with */
+            if (a->memory.scatter <= SPARI_CONTRADICTION_SEEN && !is_unled(a, s)) {
                 spari_columns_drop(a, s);
             }
         }
@@ -217,7 +217,7 @@ static void weigh_answers(spari_accelerator *a, int newest) {
     spari_recollection *m = &a->memory;
     double defect = defect_of(a, newest, 0), was = m->rho, left = 1;
     m->contradiction = faded(m->contradiction, defect);
-    if (m->contradiction > SPARI_QUIET) {
+    if (m->contradiction > SPARI_CONTRADICTION_SEEN) {
         left = recall(a);
     } else {
         m->rho = 0;
@@ -376,7 +376,7 @@ static int step_by_average(spari_accelerator *a, const double *x, const double *
 }
 
 int spari_columns_next(spari_accelerator *a, const double *x, const double *g, double *next) {
-    return (a->imaged && a->memory.scatter > SPARI_LOUD && step_by_average(a, x, g, next)) ||
+    return (a->imaged && a->memory.scatter > SPARI_SCATTER_AVERAGED && step_by_average(a, x, g, next)) ||
            (a->used > 0 && quasi_newton(a, x, g, next));
 }
 

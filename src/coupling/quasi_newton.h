@@ -160,8 +160,9 @@ void spari_columns_accept(spari_accelerator *a);
 double spari_columns_residual(const spari_accelerator *a, const double *x, const double *g, const double *image,
                               double *r);
 
-/* Contradiction (spari_recollection) above SPARI_QUIET is evaluated; scatter above SPARI_LOUD is averaged. */
-static const double SPARI_QUIET = 1e-3, SPARI_LOUD = 0.05;
+/* Limits of spari_recollection. The scheme acts on a contradiction of the fluid's responses above the first. It
+   averages difference columns whose scatter is above the second. */
+static const double SPARI_CONTRADICTION_SEEN = 1e-3, SPARI_SCATTER_AVERAGED = 0.05;
 
 /* Fraction of a change of the fluid's result that recurs in the next; 0: none, or unknown. */
 static inline double spari_rho_of(const spari_accelerator *a) {

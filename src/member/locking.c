@@ -1,7 +1,7 @@
 /* Warns about elements with too few nodes for their stiffness (membrane and shear locking). A bent element with few
    nodes cannot keep its length, or its sections perpendicular to its line, and becomes as stiff as its axial and
    shear stiffness. Checked once, at commit. The limits are those at which a cantilever of one element deflects 10 %
-   too little (tests/test_beam.c). */
+   too little (tests/member/test_beam.c). */
 #include "beam.h"
 
 #include "../base/session.h"

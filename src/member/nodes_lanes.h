@@ -1,5 +1,5 @@
 /* Nodes of an element, W at once: converts nodal motion to fields, and field forces to nodal forces. Included by
-   element_lanes.h once per width with the macros of math/width.h. No include guard: this is a body, not an
+   element_lanes.c once per width with the macros of math/width.h. No include guard: this is a body, not an
    interface.
    Nodal arrays store the numbers of a node contiguously; the rows z [ROW][SPARI_MAX_NODES] and g
      [BACK][SPARI_MAX_NODES] store nodes contiguously. Nothing is fused: the same bits at every width. */

@@ -8,7 +8,7 @@
 #include <math.h>
 
 /* Of the error of the scheme, and of roots that turn freely, whose energy and momentum nothing brings back to what they
-   are: a body that tumbles for 10^5 steps (tests/test_newton.c) loses 4e-4 of its energy by a thousandth, of which the
+   are: a body that tumbles for 10^5 steps (tests/time/test_newton.c) loses 4e-4 of its energy by a thousandth, of which the
    scheme itself has 1e-4. Of the way of a step. What estimates keep from step to step, as an acceleration that turns
    round stands still. */
 static const double part = 1e-3, part_if_free = 1e-4, most = 1e-7, keeps = 0.85;

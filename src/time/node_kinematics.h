@@ -1,4 +1,4 @@
-/* What generalised-alpha does node by node, several nodes at once (node_kinematics_lanes.h): turns into the axes of the kept
+/* What generalised-alpha does node by node, several nodes at once (node_kinematics_lanes.c): turns into the axes of the kept
    tangent and out of them, corrections, places, and how it all looks from a driven root and from outside. Numbers have
    the same bits however many nodes go at once. */
 #ifndef SPARI_ALPHA_NODES_H

@@ -1,36 +1,15 @@
-/* Transfer between lines and fluid nodes: choice of the kernels for this processor, tiles, and sums over threads.
-   See transfer.h. */
-#include "transfer.h"
+/* Between lines and nodes: which kernels serve, and what they are given. */
+#include "transfer_kernels.h"
 
 #include "../base/status.h"
 #include "../base/thread_pool.h"
-#include "../math/lanes.h"
 #include "../math/rotation.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#if defined(__has_builtin) /* in Clang, and in GCC from 12 on; older GCC has its own shuffle */
-#if __has_builtin(__builtin_shufflevector)
-#define SPARI_SHUFFLEVECTOR 1
-#endif
-#endif
-
-/* s[0] + s[1] += x with the rounding error in s[1] (Knuth's two-sum): the sum over tiles loses nothing significant. */
-static inline void spari_add(double *s, double x) {
-    double a = s[0], t = a + x, b = t - a;
-    s[0] = t;
-    s[1] += (a - (t - b)) + (x - b);
-}
-
-/* Motion of nodes attached to a point or rigid body: position + R arm. */
-typedef struct carrier {
-    double place[3], rate[3], q[4], turn[9], omega[3], accel[3], alpha[3];
-    double square; /* |q|^2 */
-} carrier;
-
-static carrier carrier_of(const double *c) {
+carrier spari_carrier_of(const double *c) {
     carrier m;
     double unit[4];
     memcpy(m.place, c + SPARI_F_PLACE, sizeof m.place);
@@ -46,57 +25,8 @@ static carrier carrier_of(const double *c) {
     return m;
 }
 
-/* Loads of a tile's nodes, as rows; a run of one element begins at `at`.
-   next: the host's forces of the next tile's nodes, numbers of `size` bytes; NULL: useless, or not triples
-   held: sums of the runs of one element per lane, whose lanes are added once for several tiles; begin, end: whether
-     this run begins or ends them */
-typedef struct tile_loads {
-    double (*row)[SPARI_ROW];
-    int at, size;
-    const char *next;
-    double *held;
-    int begin, end, nodes; /* nodes: in the sums so far */
-} tile_loads;
-
-#define SPARI_KERNELS "../transfer/kernel.h"
-#include "../math/widths.h"
-
-/* The kernels of one instruction set. */
-typedef struct kernels {
-    double (*motion)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int what,
-                     double (*buf)[SPARI_ROW], int at);
-    double (*loads)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int has_moment,
-                    const tile_loads *f, int audited, double (*rows)[SPARI_ROW], double *modal, double *sums,
-                    double *tops);
-    int (*bins)(const spari_nodes *s, int64_t first, int count, const double *modal, const double *q, int consistent,
-                int has_moment, double (*f)[SPARI_ROW], int at, double (*rows)[SPARI_ROW], double *least,
-                spari_bin_cut *cut, spari_bins *load);
-    void (*carry)(const spari_nodes *s, const carrier *m, double *x, double *v);
-    double (*move_to)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent, int single,
-                      void *x, void *v, int past);
-    void (*give)(double (*row)[SPARI_ROW], int count, double *out, int past);
-    void (*give_singles)(double (*row)[SPARI_ROW], int count, float *out, int past);
-    void (*load)(const double *in, int count, double (*row)[SPARI_ROW]);
-    void (*load_singles)(const float *in, int count, double (*row)[SPARI_ROW]);
-} kernels;
-
-static kernels choose_kernels(const spari_nodes *s) {
-#ifdef SPARI_X86
-    switch (spari_lanes_here(s->lanes ? s->lanes : SPARI_LANES_MAX)) {
-    case 8:
-        return (kernels){motion_avx512,       loads_avx512,        bins_avx512,
-                         carry_to_avx512,     move_to_avx512,      give_triples_avx512,
-                         give_singles_avx512, load_triples_avx512, load_singles_avx512};
-    case 4:
-        return (kernels){motion_avx2,       loads_avx2,        bins_avx2,         carry_to_avx2,    move_to_avx2,
-                         give_triples_avx2, give_singles_avx2, load_triples_avx2, load_singles_avx2};
-    default:
-        break;
-    }
-#endif
-    (void)s;
-    return (kernels){motion_plain,       loads_plain,        bins_plain,         carry_to_plain,    move_to_plain,
-                     give_triples_plain, give_singles_plain, load_triples_plain, load_singles_plain};
+static const spari_transfer_kernels *choose_kernels(const spari_nodes *s) {
+    return spari_transfer_kernels_for(s->lanes ? s->lanes : SPARI_LANES_MAX);
 }
 
 /* ---- node sets ---- */
@@ -277,14 +207,14 @@ static int run_length(const spari_nodes *s, int64_t p, int count) {
 
 double spari_tile_motion(const spari_nodes *s, int64_t first, const double *c, int consistent, int what,
                          double (*buf)[SPARI_ROW]) {
-    const kernels kernel = choose_kernels(s);
+    const spari_transfer_kernels *kernel = choose_kernels(s);
     double least = HUGE_VAL;
     int count = spari_tile_count(s, first);
     ptrdiff_t block = (ptrdiff_t)s->per_element * SPARI_FIELDS;
     for (int at = 0; at < count;) {
         int run = run_length(s, first + at, count - at);
-        double d = kernel.motion(s, first + at, run, c + spari_nodes_element(s, first + at) * block, consistent, what,
-                                 buf, at);
+        double d = kernel->motion(s, first + at, run, c + spari_nodes_element(s, first + at) * block, consistent, what,
+                                  buf, at);
         least = d < least ? d : least;
         at += run;
     }
@@ -303,15 +233,15 @@ int spari_can_move_to(const spari_nodes *s, int single) {
 
 double spari_move_to(const spari_nodes *s, int64_t first, int64_t count, const double *c, int consistent, int single,
                      void *x, void *v) {
-    const kernels kernel = choose_kernels(s);
+    const spari_transfer_kernels *kernel = choose_kernels(s);
     const size_t triple = 3 * (single ? sizeof(float) : sizeof(double));
     const ptrdiff_t block = (ptrdiff_t)s->per_element * SPARI_FIELDS;
     double least = HUGE_VAL;
     for (int64_t at = first; at < first + count;) {
         const size_t skip = (size_t)at * triple;
         int run = run_length(s, at, (int)(first + count - at));
-        double d = kernel.move_to(s, at, run, c + spari_nodes_element(s, at) * block, consistent, single,
-                                  x ? (char *)x + skip : NULL, v ? (char *)v + skip : NULL, is_past(s));
+        double d = kernel->move_to(s, at, run, c + spari_nodes_element(s, at) * block, consistent, single,
+                                   x ? (char *)x + skip : NULL, v ? (char *)v + skip : NULL, is_past(s));
         least = d < least ? d : least;
         at += run;
     }
@@ -319,8 +249,8 @@ double spari_move_to(const spari_nodes *s, int64_t first, int64_t count, const d
 }
 
 double spari_carry(const spari_nodes *s, const double *c, double *x, double *v) {
-    const carrier m = carrier_of(c);
-    choose_kernels(s).carry(s, &m, x, v);
+    const carrier m = spari_carrier_of(c);
+    choose_kernels(s)->carry(s, &m, x, v);
     return m.square;
 }
 
@@ -349,9 +279,9 @@ static void fetch_placed(const spari_nodes *s, int64_t first, int count, spari_s
     }
 }
 
-/* The host's triples to rows in storage order, and back. */
-static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t first, int count, spari_source x,
-                       double (*f)[SPARI_ROW]) {
+/* Triples of the host's as rows in storage order, and back. */
+static void fetch_rows(const spari_transfer_kernels *kernel, const spari_nodes *s, int64_t first, int count,
+                       spari_source x, double (*f)[SPARI_ROW]) {
     if (x.layout) {
         fetch_at(s, first, count, x, f);
     } else if (s->place) {
@@ -366,7 +296,7 @@ static void fetch_rows(const kernels *kernel, const spari_nodes *s, int64_t firs
 void spari_tile_store(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], double *x) {
     int count = spari_tile_count(s, first);
     if (!s->place) {
-        choose_kernels(s).give(row, count, x + 3 * first, is_past(s));
+        choose_kernels(s)->give(row, count, x + 3 * first, is_past(s));
         return;
     }
     for (int i = 0; i < count; i++) {
@@ -378,7 +308,7 @@ void spari_tile_store(const spari_nodes *s, int64_t first, double (*row)[SPARI_R
 void spari_tile_store_f32(const spari_nodes *s, int64_t first, double (*row)[SPARI_ROW], float *x) {
     int count = spari_tile_count(s, first);
     if (!s->place) {
-        choose_kernels(s).give_singles(row, count, x + 3 * first, is_past(s));
+        choose_kernels(s)->give_singles(row, count, x + 3 * first, is_past(s));
         return;
     }
     for (int i = 0; i < count; i++) {
@@ -456,7 +386,7 @@ static load_sums sums_at(double *block, int64_t nodes) {
 /* Arguments of the sum of loads. */
 typedef struct gathering {
     const spari_nodes *s;
-    kernels kernel;
+    const spari_transfer_kernels *kernel;
     const double *c;
     int consistent, has_moment, audited;
     spari_source force, moment;
@@ -487,8 +417,8 @@ static void add_run(const gathering *g, int64_t p, int run, int64_t end, tile_lo
     const ptrdiff_t node = (ptrdiff_t)element * s->per_element;
     loads->nodes += run;
     loads->end = after >= end || spari_nodes_element(s, after) != element || loads->nodes >= SPARI_HELD;
-    double d = g->kernel.loads(s, p, run, g->c + node * SPARI_FIELDS, g->consistent, g->has_moment, loads, g->audited,
-                               f, to->modal + node * 14, to->audit, to->tops);
+    double d = g->kernel->loads(s, p, run, g->c + node * SPARI_FIELDS, g->consistent, g->has_moment, loads, g->audited,
+                                f, to->modal + node * 14, to->audit, to->tops);
     *to->least = d < *to->least ? d : *to->least;
     loads->begin = loads->end;
     loads->nodes = loads->end ? 0 : loads->nodes;
@@ -500,9 +430,9 @@ static void add_tile(const gathering *g, int64_t first, int64_t end, tile_loads 
     const spari_nodes *s = g->s;
     double(*f)[SPARI_ROW] = loads->row;
     int count = spari_tile_count(s, first);
-    fetch_rows(&g->kernel, s, first, count, g->force, f);
+    fetch_rows(g->kernel, s, first, count, g->force, f);
     if (g->has_moment) {
-        fetch_rows(&g->kernel, s, first, count, g->moment, f + 3);
+        fetch_rows(g->kernel, s, first, count, g->moment, f + 3);
     }
     for (int i = count; i < SPARI_ROW; i++) { /* lanes past the end are multiplied by zeros */
         f[0][i] = f[1][i] = f[2][i] = 0;
@@ -611,7 +541,7 @@ double spari_gather_loads(const spari_nodes *s, const double *modal, const doubl
 
 double spari_bin_loads(const spari_nodes *s, const double *modal, int consistent, const double *q, spari_source force,
                        spari_source moment, double *work, spari_bins *load, int *finite) {
-    const kernels kernel = choose_kernels(s);
+    const spari_transfer_kernels *kernel = choose_kernels(s);
     const int has_moment = moment.d || moment.f, P = s->per_element;
     double(*f)[SPARI_ROW] = (double(*)[SPARI_ROW])work, chained[4 * SPARI_MAX_NODES], least = HUGE_VAL;
     spari_bin_cut cut;
@@ -621,16 +551,16 @@ double spari_bin_loads(const spari_nodes *s, const double *modal, int consistent
     *finite = 1;
     for (int64_t first = 0; first < s->n; first += SPARI_TILE) {
         int count = spari_tile_count(s, first);
-        fetch_rows(&kernel, s, first, count, force, f);
+        fetch_rows(kernel, s, first, count, force, f);
         if (has_moment) {
-            fetch_rows(&kernel, s, first, count, moment, f + 3);
+            fetch_rows(kernel, s, first, count, moment, f + 3);
         }
         for (int at = 0; at < count;) {
             int run = run_length(s, first + at, count - at);
             ptrdiff_t node = (ptrdiff_t)spari_nodes_element(s, first + at) * P;
             spari_chain(P, q + 7 * node + 3, 7, chained);
-            *finite = kernel.bins(s, first + at, run, modal, chained, consistent && P > 1, has_moment, f, at, f + 6,
-                                  &least, &cut, load + 6 * node) &&
+            *finite = kernel->bins(s, first + at, run, modal, chained, consistent && P > 1, has_moment, f, at, f + 6,
+                                   &least, &cut, load + 6 * node) &&
                       *finite;
             at += run;
         }

@@ -10,6 +10,9 @@ if(CMAKE_C_COMPILER_ID STREQUAL "GNU" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GN
   set_target_properties(fortran_types PROPERTIES LINKER_LANGUAGE Fortran
     RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests"
     Fortran_MODULE_DIRECTORY "${PROJECT_BINARY_DIR}/tests/modules_types")
+  foreach(width IN ITEMS 2 4 8)
+    target_sources(fortran_types PRIVATE $<TARGET_OBJECTS:spar_kernels_${width}>)
+  endforeach()
   get_target_property(definitions spar_objects COMPILE_DEFINITIONS)
   target_compile_definitions(fortran_types PRIVATE ${definitions})
   target_include_directories(fortran_types PRIVATE "${PROJECT_SOURCE_DIR}/include")

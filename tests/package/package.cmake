@@ -16,8 +16,6 @@ set_tests_properties(package_install PROPERTIES FIXTURES_SETUP spar_installed)
 
 spar_package_test(symbols sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${prefix}/${CMAKE_INSTALL_LIBDIR}/libspar.so")
 spar_package_test(soname sh "${here}/soname.sh" "${prefix}/${CMAKE_INSTALL_LIBDIR}/libspar.so" "${PROJECT_VERSION}")
-spar_package_test(contract "${CMAKE_C_COMPILER}" -std=c11 -Wall -Wextra -Werror "-I${prefix}/${CMAKE_INSTALL_INCLUDEDIR}" -c
-  "${PROJECT_SOURCE_DIR}/tests/contract.c" -o "${work}/contract.o")
 
 # what hosts were compiled with is still there, and the check would see it go
 find_program(SPAR_AWK awk)

@@ -561,7 +561,7 @@ static int is_refused(const struct call *call) {
 }
 
 /* These scenes are in no equilibrium, which each rank finds for itself: its failure stands beside that of the rank
-   under test, and the fluid is never called. tests/mpi_eigenvalues.c has both from a state of rest. */
+   under test, and the fluid is never called. tests/stability/mpi_eigenvalues.c has both from a state of rest. */
 static int wants_rest(const struct call *call) {
     return call->make == make_eigenvalues;
 }
