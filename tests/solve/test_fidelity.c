@@ -535,7 +535,7 @@ static spar_member *light_beam(spar_session *s, int fidelity, int effects, int r
    same in every step, for no inertia keeps anything. */
 static void test_no_inertia_no_weight(void **state) {
     (void)state;
-    const int none = SPAR_EFFECT_LARGE_ROTATION, roots[] = {SPAR_ROOT_FIXED, SPAR_ROOT_DRIVEN};
+    const int none = 0, roots[] = {SPAR_ROOT_FIXED, SPAR_ROOT_DRIVEN};
     const double load[6] = {0, 0, 3, 0, 0, 0};
     for (int k = 0; k < 4; k++) {
         spar_session *s = scene_session();
