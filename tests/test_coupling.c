@@ -762,7 +762,7 @@ static void settings_are_checked(void **state) {
                                          {"coupling.filter", "0.7"},     {"coupling.filter", "nan"},
                                          {"coupling.filter", ""},        {"coupling.target", "0"},
                                          {"coupling.motion_atol", "-1"}, {"coupling.motion_rtol", "1e-3 m"},
-                                         {"coupling.nothing", "1"}};
+                                         {"coupling.nothing", "1"},      {"ranks.state", "all"}};
     const double r = 1;
     pistons p;
     pistons_create(&p, 1, &r);

@@ -83,7 +83,6 @@ struct spar_session {
     double advise_limit;                                   /* option advise.limit */
     double fluid_cost;                                     /* option advise.fluid_cost */
     int audit_off;                                         /* option fluid.audit = on (default) | off */
-    int touched;                                           /* option ranks.state = all (default) | touched */
     struct spari_crew *crew; /* spar_session_set_threads (base/crew.h); NULL: the calling thread alone */
     spari_room room;         /* work space of the calling thread, for one call; its content is nobody's */
     int coupling_stale;      /* settings of the coupling have changed since it was made */
@@ -109,9 +108,7 @@ struct spar_session {
 
     const spari_setting *settings;
     int setting_count;
-    int apart;  /* ranks.state = touched, and the clock runs: ranks know different parts of the state, */
-    int aside;  /* and this one solves nothing: of members it knows what `away` of each leaves */
-    int parted; /* the ranks were found to be at different things: nothing more is to be agreed on */
+    int calls_differ; /* the ranks were found in different calls: nothing more can be agreed on */
 
     spari_own *own; /* what is the session's alone (session/own.h) */
 };

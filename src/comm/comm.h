@@ -78,26 +78,6 @@ int spari_comm_sum_bins(spari_comm *comm, spari_bins *x, int64_t n, int status, 
    carries its status (so every block has at least one). Returns as spari_comm_agree. */
 int spari_comm_share(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size);
 
-/* Some of the ranks, as a communicator of their own; `root`, which is among them, is rank 0 there, the others keep
-   their order. in: whether this rank is one of them; *part NULL: it is not, or is alone there. Destroyed without a word
-   to the others. Collective over comm, all ranks or none. */
-int spari_comm_split(spari_comm *comm, int in, int root, spari_comm **part, char *message, size_t size);
-
-/* What goes on in parts at the same time: x[n] over the ranks of a part. All ranks of comm make the call, each with the
-   pieces of the parts it is in, in an order that is the same on all of them. */
-typedef struct spari_piece {
-    spari_comm *part;
-    void *x; /* doubles, or spari_bins */
-    int64_t n;
-} spari_piece;
-
-/* x becomes its sum over the part on its rank 0, and is lost on the others. bins: they are sums that are the same in
-   any order (spari_comm_prepare_bins of comm). */
-int spari_comm_collect(spari_comm *comm, const spari_piece *pieces, int count, int bins, char *message, size_t size);
-/* The doubles of each part's rank 0 go to the others of it, while all ranks of comm agree on a status. Returns as
-   spari_comm_agree; after a failure x is whatever it was to become. */
-int spari_comm_spread(spari_comm *comm, const spari_piece *pieces, int count, int status, char *message, size_t size);
-
 /* Rank 0's data[bytes] goes to all the others. */
 int spari_comm_broadcast(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size);
 /* data[bytes] goes from one rank to another; these two make the call, and for others it is none. */

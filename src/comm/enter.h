@@ -1,5 +1,5 @@
-/* The entry of a collective call of a session: what is compared there, and where it is remembered that the ranks have
-   parted. */
+/* The entry of a collective call of a session: compares what the ranks call, and records in session->calls_differ that
+   their calls differ. */
 #ifndef SPARI_ENTER_H
 #define SPARI_ENTER_H
 

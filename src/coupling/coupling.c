@@ -2,11 +2,11 @@
 #include "coupling.h"
 #include "../base/environment.h"
 
+#include "../exchange/session_private.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/body.h"
 #include "../member/structure.h"
-#include "../exchange/session_private.h"
 #include "motion_norm.h"
 
 #include <float.h>
@@ -246,11 +246,8 @@ static void record(spari_coupling *c, double residual, double size) {
     }
 }
 
-void spari_coupling_record(spar_session *s, double residual, double size) {
-    record(s->own->coupling, residual, size);
-}
-
-void spari_coupling_last(const spar_session *s, double *residual, double *size) {
+/* Residual and size of the last iteration. */
+static void last_iteration(const spar_session *s, double *residual, double *size) {
     const spari_coupling *c = s->own->coupling;
     int last = c->iterations - 1;
     *residual = last >= 0 ? c->residual[last] : 0;
@@ -259,7 +256,7 @@ void spari_coupling_last(const spar_session *s, double *residual, double *size) 
 
 int spari_coupling_is_rough(const spar_session *s) {
     double residual, size;
-    spari_coupling_last(s, &residual, &size);
+    last_iteration(s, &residual, &size);
     return s->iteration > 0 && residual > 0.1 * size;
 }
 
@@ -722,7 +719,7 @@ int spar_session_get_residual(const spar_session *session, double *residual, dou
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     double last[2] = {0, 0};
     if (session->own->coupling) {
-        spari_coupling_last(session, &last[0], &last[1]);
+        last_iteration(session, &last[0], &last[1]);
     }
     if (residual) {
         *residual = last[0];
@@ -737,9 +734,6 @@ int spar_session_get_report(const spar_session *session, int64_t capacity, doubl
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_need_capacity(session, __func__, capacity));
-    SPARI_REQUIRE(session, !session->aside, SPAR_ERR_STATE,
-                  "%s: this rank solves no member and knows no loads (option ranks.state = touched); ask rank 0",
-                  __func__);
     const spari_coupling *c = session->own->coupling;
     spari_fill(capacity, report, c ? SPAR_REPORT_COUNT : 0, c ? c->report : NULL);
     return SPAR_OK;

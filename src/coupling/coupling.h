@@ -70,9 +70,6 @@ int spari_coupling_check(spar_session *session, const char *call, int *done);
 int spari_coupling_solve_failed(spar_session *session, const char *call, int status);
 /* Whether the last check has found loads that are far from those used: what they do in a step tells nothing. */
 int spari_coupling_is_rough(const spar_session *session);
-/* Residual and size of the last iteration; and where another rank has found them. */
-void spari_coupling_last(const spar_session *session, double *residual, double *size);
-void spari_coupling_record(spar_session *session, double residual, double size);
 /* Before the histories shift. */
 void spari_coupling_accept(spar_session *session);
 /* What the equations of motion are has changed: differences of earlier steps say nothing of the next ones. */

@@ -32,10 +32,9 @@ struct spari_own {
     int64_t unit_room;
     spar_member **member; /* all members, of a step that several threads work on, `listed` of them; room likewise */
     int64_t listed;
-    struct spari_spread *spread; /* option ranks.state = touched, while the clock runs (spread.h); else NULL */
-    spari_coupling *coupling;    /* from the first step on */
-    spari_coupling *aside; /* that of the steps, while a solution is under way that is none; NULL: there was none */
-    spari_pace pace;       /* of steps to a tolerance */
+    spari_coupling *coupling; /* from the first step on */
+    spari_coupling *aside;    /* that of the steps, while a solution is under way that is none; NULL: there was none */
+    spari_pace pace;          /* of steps to a tolerance */
     double number[SPARI_MOST_NUMBERS]; /* spar_session_push_numbers, this rank's; 0: not pushed */
     spari_record *kept;                /* of a trial that others are compared with; NULL: none */
     void (*free_kept)(spari_record *kept);

@@ -9,8 +9,6 @@
 
 /* Doubles of work space that each thread takes for it (base/workspace.h, base/thread_pool.h). */
 int64_t spari_fluid_room(const spar_fluid *fluid);
-/* Whether it has nodes here, or loads of a file. */
-int spari_fluid_touches(const spar_fluid *fluid);
 /* Adds the fluid's nodal loads, as last pushed, to load [nodes][6]. */
 void spari_fluid_add_loads(const spar_fluid *fluid, double *load);
 /* The same to reproducible sums. */

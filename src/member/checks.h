@@ -10,8 +10,6 @@ int spari_need_member(const spar_member *member, const char *call);
 /* Not committed yet. */
 int spari_need_open(spar_member *member, const char *call);
 int spari_need_committed(const spar_member *member, const char *call);
-/* Committed, and this rank knows enough of it: less than `away` (SPARI_*_AWAY) is missing. */
-int spari_need_here(const spar_member *member, const char *call, int away);
 /* A beam, committed or not. */
 int spari_need_any_beam(const spar_member *member, const char *call);
 /* A beam, not committed yet. */

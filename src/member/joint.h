@@ -3,8 +3,8 @@
 #ifndef SPARI_JOINT_H
 #define SPARI_JOINT_H
 
-#include "structure.h"
 #include "joint_kinematics.h"
+#include "structure.h"
 
 /* Relative motion at one time: coordinates (angles of a hinge or universal joint count their turns), rates, and the
    load on a, in the joint's axes on its six motions: of what is held the constraint's, of what is free the spring's,
@@ -54,8 +54,6 @@ struct spar_joint {
 int spari_member_unique(const spar_member *member, int64_t node);
 /* Whether a joint ties it to something. */
 int spari_member_is_tied(const spar_member *member);
-/* Whether this rank knows the members that it ties; as spari_need_here. */
-int spari_joint_need_here(const spar_joint *joint, const char *call, int away);
 /* The description as one number: all that is said of it before the first step. */
 uint64_t spari_joint_hash(const spar_joint *joint);
 /* What may be given of it at any time, as one number: springs, load, drive. And of all joints, which the ranks compare

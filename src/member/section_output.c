@@ -4,9 +4,9 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "section_forces.h"
 #include "checks.h"
 #include "pose.h"
+#include "section_forces.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -218,9 +218,6 @@ int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta,
     SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST && (eta || n == 0), SPAR_ERR_ARGUMENT,
                   "%s: '%s': %lld places%s; give 0 to 2^40, and n etas", __func__, beam->name, (long long)n,
                   eta ? "" : " without eta");
-    if (force) { /* of its loads */
-        SPARI_TRY(spari_need_here(beam, __func__, SPARI_LOADS_AWAY));
-    }
     SPARI_REQUIRE(session, !force || beam->beam->stiffness, SPAR_ERR_UNSUPPORTED,
                   "%s: '%s' has no sections, its forces are not known", __func__, beam->name);
     for (int64_t i = 0; i < n; i++) {

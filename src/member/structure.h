@@ -3,8 +3,8 @@
 #ifndef SPARI_STRUCTURE_H
 #define SPARI_STRUCTURE_H
 
-#include "../base/thread_pool.h"
 #include "../base/session.h"
+#include "../base/thread_pool.h"
 #include "../math/resample.h"
 
 #include <string.h>
@@ -121,9 +121,7 @@ struct spar_member {
     spari_cuts cuts;          /* of the step under way; of members that joints tie, the first one's */
     spari_means *means;       /* accelerations as fluids see them, where there are substeps; NULL: the motion's own */
     spari_remake *advice;     /* of spar_session_advise; NULL: none */
-    int away;                 /* what this rank does not know of it (ranks.state = touched): SPARI_*_AWAY; 0: nothing */
 };
-enum { SPARI_LOADS_AWAY = 1, SPARI_ALL_AWAY = 2 }; /* loads, and what is made of them; motion and joints as well */
 
 /* The arrays over the nodes, in one table: all that makes, frees, saves, loads or carries over a member walks it. */
 typedef enum spari_nodal_kind { SPARI_NODAL_REFERENCE, SPARI_NODAL_MOTION, SPARI_NODAL_LOAD } spari_nodal_kind;
@@ -176,7 +174,8 @@ static inline void spari_member_arm(const spar_member *member, int unique, doubl
 }
 /* Loads of the nodes summed onto the unknowns' nodes. */
 void spari_member_gather(const spar_member *m, const double *nodal, double *unique);
-/* What is done of numbers 0 to n - 1 of this member, in spans, by whoever there is to work on them (base/thread_pool.h). */
+/* What is done of numbers 0 to n - 1 of this member, in spans, by whoever there is to work on them
+ * (base/thread_pool.h). */
 enum { SPARI_MEMBER_SPAN = 512 };
 static inline void spari_member_spread(const spar_member *m, int64_t n, spari_span work, void *context) {
     spari_crew_spread(m->session->crew, n, SPARI_MEMBER_SPAN, work, context);

@@ -2,15 +2,14 @@
    checks and gets memory, and only when all ranks can load does the second change the session. Members and fluids may
    live on other ranks than before. No rank has the file in memory: what is alike on all ranks goes to all; of what was
    one rank's own rank 0 tells where it lies, and it then goes piece by piece to those who want it. */
-#include "../base/saved_file.h"
-#include "../base/environment.h"
-#include "../comm/enter.h"
-#include "../fluid/fluid.h"
 #include "../assembly/assembly.h"
-#include "../time/fidelity.h"
+#include "../base/environment.h"
+#include "../base/saved_file.h"
+#include "../comm/enter.h"
 #include "../exchange/exchange.h"
+#include "../fluid/fluid.h"
+#include "../time/fidelity.h"
 #include "saved.h"
-#include "../exchange/sparse.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -700,7 +699,6 @@ static int load_fluids(spar_session *s, reading *l) {
 
 static void put_in_force(spar_session *s, reading *l) {
     int64_t k = 0;
-    spari_spread_end(s);
     spari_saved_load(s, &l->common);
     for (spar_member *m = s->members; m; m = m->next, k++) {
         if (spari_fidelity_state_size(m) > 0) {

@@ -18,13 +18,13 @@ int spari_lend(spar_session *s, const char *lender, spar_fluid_solver solve, dou
     }
     int64_t failures = s->failures;
     spari_host host;
-    s->parted = 0;
+    s->calls_differ = 0;
     spari_host_begin(&host);
     s->lent = lender;
     int answer = solve(s, s->time, dt, s->iteration, context);
     s->lent = NULL;
     spari_host_end(&host);
-    if (s->parted) { /* this rank alone called the others from here: they met it, and know */
+    if (s->calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
     if (answer == 0) {
@@ -40,12 +40,12 @@ int spari_lend_before(spar_session *s, spar_before_step before, double dt, void 
         return SPAR_OK;
     }
     int64_t failures = s->failures;
-    s->parted = 0;
+    s->calls_differ = 0;
     spari_host host;
     spari_host_begin(&host);
     int answer = before(s, s->time, dt, context), status = SPAR_OK;
     spari_host_end(&host);
-    if (s->parted) { /* this rank alone called the others from here: they met it, and know */
+    if (s->calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
     if (answer != 0 && s->failures == failures) {

@@ -11,13 +11,13 @@ spari_progress spari_progress_of(const spar_session *s, const char *call) {
 /* Between trials the session stands as the host left it; what would try or save it is refused as within one. */
 static int ask_host(spar_session *s, const spari_progress *p, double done, double expected) {
     spari_host host;
-    s->parted = 0;
+    s->calls_differ = 0;
     spari_host_begin(&host);
     s->trial = 1;
     int answer = p->tell(s, done, expected, p->context);
     s->trial = 0;
     spari_host_end(&host);
-    if (s->parted) { /* this rank alone called the others from here: they met it, and know */
+    if (s->calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
     int status = answer == 0 ? SPAR_OK

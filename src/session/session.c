@@ -2,15 +2,14 @@
 #include "../coupling/coupling.h"
 #include "../exchange/session_private.h"
 #include "settings.h"
-#include "../exchange/sparse.h"
 #include "work_shares.h"
 
+#include "../assembly/assembly.h"
 #include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
 #include "../member/joint.h"
 #include "../member/structure.h"
-#include "../assembly/assembly.h"
 #include "../solve/life.h"
 
 #include <stdio.h>
@@ -67,7 +66,6 @@ void spar_session_destroy(spar_session **session) {
         return;
     }
     spar_session *s = *session;
-    spari_spread_end(s);
     for (spar_fluid *f = s->fluids, *next; f; f = next) {
         next = spari_fluid_next(f);
         spari_fluid_free(f);

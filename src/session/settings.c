@@ -4,12 +4,12 @@
 
 #include "../base/environment.h"
 #include "../comm/comm.h"
+#include "../coupling/schemes.h"
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"
 #include "../member/mean_acceleration.h"
 #include "../member/structure.h"
 #include "../solve/life.h"
-#include "../coupling/schemes.h"
 
 #include <assert.h>
 #include <float.h>
@@ -100,7 +100,6 @@ static const spari_setting settings[] = {
     OPTION_WORD("fluid.theta", theta_on_group, "average", "group", SPARI_ALIKE),
     OPTION_WORD("fluid.far", far_refuse, "take", "refuse", 0),
     OPTION_WORD("fluid.audit", audit_off, "on", "off", 0),
-    OPTION_WORD("ranks.state", touched, "all", "touched", SPARI_ALIKE),
     OPTION_WORD("advise.dt", keep_dt, "vary", "keep", SPARI_ALIKE),
     OPTION_WORD("advise.nodes", keep_nodes, "vary", "keep", SPARI_ALIKE),
     OPTION_WORD("advise.fidelity", keep_fidelity, "vary", "keep", SPARI_ALIKE),

@@ -1,24 +1,23 @@
 /* One coupling step: predict, solve, check, accept or reject. */
 #include "step.h"
-#include "../base/environment.h"
-#include "../fluid/fluid.h"
-#include "../member/added_mass.h"
-#include "../member/checks.h"
-#include "../member/joint.h"
-#include "../member/added_mass_fit.h"
-#include "../member/mean_acceleration.h"
 #include "../assembly/assembly.h"
-#include "../time/fidelity.h"
-#include "../solve/life.h"
-#include "../time/scheme.h"
-#include "../solve/work.h"
+#include "../base/environment.h"
 #include "../coupling/coupling.h"
 #include "../exchange/exchange.h"
-#include "callbacks.h"
 #include "../exchange/session_private.h"
-#include "step_control.h"
-#include "../exchange/sparse.h"
+#include "../fluid/fluid.h"
+#include "../member/added_mass.h"
+#include "../member/added_mass_fit.h"
+#include "../member/checks.h"
+#include "../member/joint.h"
+#include "../member/mean_acceleration.h"
+#include "../solve/life.h"
+#include "../solve/work.h"
+#include "../time/fidelity.h"
+#include "../time/scheme.h"
+#include "callbacks.h"
 #include "initial_accelerations.h"
+#include "step_control.h"
 #include "work_shares.h"
 
 #include "../comm/enter.h"
@@ -38,22 +37,9 @@ static int wrong_phase(spar_session *s, const char *call, const char *cure) {
 
 /* ---- begin ---- */
 
-/* Where fluids see mean accelerations they see others once a mass is known, and ranks that solve nothing learn none. */
-static int check_learning(spar_session *s, const char *call) {
-    for (const spar_member *m = s->members; m; m = m->next) {
-        SPARI_REQUIRE(s, !m->learned || m->guess_count > 0, SPAR_ERR_UNSUPPORTED,
-                      "%s: member '%s' learns the fluid's added mass, in substeps or steps of several lengths, and "
-                      "ranks that solve nothing do not know when it is known (option ranks.state = touched): take one "
-                      "substep and steps of one length, give a first guess by spar_member_set_added_mass, or keep "
-                      "ranks.state = all",
-                      call, m->name);
-    }
-    return SPAR_OK;
-}
-
 /* Whether fluids are to see mean accelerations from the step dt on (member/mean_acceleration.h). */
 static int is_uneven(const spar_session *s, double dt) {
-    return s->uneven[0] || !spari_steps_even(s, dt) || (!s->touched && spari_scheme_turns(s, dt));
+    return s->uneven[0] || !spari_steps_even(s, dt) || spari_scheme_turns(s, dt);
 }
 
 /* uneven: of is_uneven. */
@@ -68,16 +54,7 @@ static int check_begin(spar_session *s, const char *call, double dt, int uneven)
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
                       "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
     }
-    SPARI_REQUIRE(
-        s, !s->apart || s->touched, SPAR_ERR_STATE,
-        "%s: option ranks.state was set to all after the first step, and no rank knows all of it any more; set "
-        "it to touched again, or save, and load into a session with ranks.state = all",
-        call);
-    SPARI_TRY(spari_pace_check(s, call));
     const int mean = s->substeps > 1 || uneven;
-    if (s->touched && mean && spari_comm_size(s->comm) > 1) {
-        SPARI_TRY(check_learning(s, call));
-    }
     for (spar_member *m = s->members; m && mean; m = m->next) {
         SPARI_TRY(spari_named(s, call, spari_means_make(m)));
     }
@@ -132,19 +109,9 @@ typedef struct step_begun {
 static void begin_member(spar_member *m, const void *context) {
     const step_begun *t = context;
     hold_root(m);
-    if (!t->s->aside) {
-        predict_loads(m, t->order, t->dt, t->s->dt_last);
-    }
+    predict_loads(m, t->order, t->dt, t->s->dt_last);
     spari_learned_begin(m);
     spari_member_begin(m);
-}
-
-/* Memory for what the ranks exchange in the steps to come. In trials each rank has all of the state. */
-static int prepare_exchange(spar_session *s) {
-    if (s->apart || (s->touched && !s->trial && spari_comm_size(s->comm) > 1)) {
-        return s->apart ? spari_spread_prepare(s) : spari_spread_begin(s);
-    }
-    return s->started && spari_session_is_sealed(s) ? SPAR_OK : spari_session_seal(s, SPAR_OK);
 }
 
 /* Loads pushed before the clock runs are those at t^0. */
@@ -152,7 +119,7 @@ static int begin_loads(spar_session *s) {
     int pushed = 0;
     SPARI_TRY(spari_session_exchange_loads(s, &pushed));
     s->past = pushed ? s->past : -1; /* zeros that nobody has pushed are nothing to extrapolate from */
-    for (spar_member *m = s->members; m && !s->aside; m = m->next) {
+    for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load_history[0]);
         memcpy(m->load_before, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
         if (m->work) {
@@ -178,7 +145,9 @@ int spar_step_begin(spar_session *session, double dt) {
         SPARI_TRY(spari_named(s, __func__, spari_enter(s, "coupling", spari_coupling_prepare(s))));
         s->coupling_stale = 0;
     }
-    SPARI_TRY(spari_named(s, __func__, prepare_exchange(s)));
+    if (!s->started || !spari_session_is_sealed(s)) {
+        SPARI_TRY(spari_named(s, __func__, spari_session_seal(s, SPAR_OK)));
+    }
     if (!s->started) {
         SPARI_TRY(begin_loads(s));
     }
@@ -260,31 +229,13 @@ int spar_step_solve(spar_session *session) {
         s->phase = SPARI_BEGUN;
         return spari_coupling_solve_failed(s, __func__, spari_named(s, __func__, status));
     }
-    if (!s->aside) {
-        spari_threads_each(s, solved_member, NULL);
-    }
+    spari_threads_each(s, solved_member, NULL);
     s->failed = 0;
     s->phase = SPARI_SOLVED;
     return SPAR_OK;
 }
 
 /* ---- check ---- */
-
-/* The ranks that know the loads compare them, all are told what they have found. */
-static int check_apart(spar_session *s, const char *call, int *ended) {
-    spari_found found = {.ended = 1};
-    int status = SPAR_OK;
-    if (!s->aside) {
-        status = spari_coupling_check(s, call, &found.ended);
-        spari_coupling_last(s, &found.residual, &found.size);
-    }
-    status = spari_spread_found(s, status, &found);
-    if (s->aside) {
-        spari_coupling_record(s, found.residual, found.size);
-    }
-    *ended = found.ended;
-    return status;
-}
 
 /* status: of what this rank's host has done since the solution */
 static int check_iteration(spar_session *s, const char *call, int status, int *done) {
@@ -303,7 +254,7 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     }
     s->failed = 1; /* until all below has gone well */
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
-    for (spar_member *m = s->members; m && !s->aside; m = m->next) {
+    for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load_pushed);
         if (!s->standing) {
             spari_learned_note(m, s->iteration + 1);
@@ -314,7 +265,7 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     }
     s->iteration++;
     s->phase = SPARI_CHECKED;
-    SPARI_TRY(s->apart ? check_apart(s, call, &ended) : spari_coupling_check(s, call, &ended));
+    SPARI_TRY(spari_coupling_check(s, call, &ended));
     s->failed = 0;
     s->iterating = !ended;
     *done = ended;
@@ -353,15 +304,6 @@ static void shift_history(spar_member *m, const void *session) {
         spari_added_accept(m);
     }
     spari_history_shift(m->load_history, 6 * m->nodes, s->predictor, m->load_pushed);
-}
-
-/* What is made of the loads. */
-static void accept_loads(spar_session *s) {
-    spari_coupling_accept(s);
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        spari_work_of_joint(j);
-    }
-    spari_threads_each(s, shift_history, s);
 }
 
 static void accept_member(spar_member *m, const void *unused) {
@@ -406,9 +348,11 @@ int spar_step_accept(spar_session *session) {
         spari_start_accept(s);
         return SPAR_OK;
     }
-    if (!s->aside) {
-        accept_loads(s);
+    spari_coupling_accept(s);
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        spari_work_of_joint(j);
     }
+    spari_threads_each(s, shift_history, s);
     spari_pace_accept(s);
     spari_threads_each(s, accept_member, NULL);
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
@@ -438,9 +382,7 @@ static void reject(spar_session *s) {
         spari_start_reject(s);
         return;
     }
-    if (!s->aside) {
-        spari_coupling_reject(s);
-    }
+    spari_coupling_reject(s);
     spari_pace_reject(s);
     s->uneven[1] = s->uneven[0];
     for (spar_member *m = s->members; m; m = m->next) {
@@ -456,9 +398,6 @@ static void reject(spar_session *s) {
     s->phase = SPARI_IDLE;
     s->started = s->step > 0;
     s->past = s->past > 0 ? s->past : 0;
-    if (!s->started) { /* as all ranks know it */
-        spari_spread_end(s);
-    }
 }
 
 int spar_step_reject(spar_session *session) {
@@ -512,7 +451,7 @@ int spari_step_run(spar_session *s, const char *call, spar_fluid_solver solve, v
     if (status != SPAR_OK && status != SPAR_ERR_COMM && spar_step_reject(s) != SPAR_OK) {
         status = SPAR_ERR_COMM; /* a step under way can be rejected wherever the ranks are together */
     }
-    if (status == SPAR_ERR_COMM) { /* the ranks have parted, and must not wait for each other once more */
+    if (status == SPAR_ERR_COMM) { /* the ranks are in different calls, and must not wait for each other again */
         reject(s);
     }
     return status;

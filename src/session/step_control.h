@@ -8,8 +8,6 @@
 static inline int spari_pace_is_set(const spar_session *session) {
     return session->tolerance_drift > 0;
 }
-/* Steps to a tolerance need all of the state on every rank. Local. */
-int spari_pace_check(const spar_session *session, const char *call);
 /* The step under way, whose motion has been found, becomes the last one; or it is given up. Local. */
 void spari_pace_accept(spar_session *session);
 void spari_pace_reject(spar_session *session);

@@ -274,7 +274,6 @@ static void settings(spar_session *s) {
                                             {"fluid.theta", "group"},
                                             {"fluid.far", "take"},
                                             {"fluid.audit", "on"},
-                                            {"ranks.state", "all"},
                                             {"advise.fluid_cost", "0"},
                                             {"advise.limit", "0"},
                                             {"advise.coupling", "vary"}};
