@@ -155,16 +155,13 @@ enum {
     SPAR_REPORT_COLUMNS = 2,     /* IQN-ILS: columns in the last least-squares problem */
     SPAR_REPORT_DROPPED = 3,     /* IQN-ILS: nearly dependent columns filtered out in this step */
     SPAR_REPORT_ERROR = 4,       /* last accepted step: |final loads - predicted loads| / |final loads| */
-    SPAR_REPORT_ADVISED_DT = 5,  /* dt, within 0.1 to 2 of this step's, with which that error stays below option
-                                    coupling.target in 95 % of the steps: a run that follows it keeps it so, once it has
-                                    some tens of steps behind it; it says nothing of a single step */
-    SPAR_REPORT_WORK_DEFECT = 6, /* last accepted step: work the fluid gave less the work the structure took, [J] */
-    SPAR_REPORT_UNCONVERGED = 7, /* steps so far whose iteration ended at its limit (coupling.unconverged = accept) */
-    SPAR_REPORT_ADDED_MASS_SPREAD = 8, /* standard deviation of a single difference from that */
-    SPAR_REPORT_MOTION_ERROR = 9, /* explicit, option coupling.estimate: how far the loads pushed, in place of those
+    SPAR_REPORT_WORK_DEFECT = 5, /* last accepted step: work the fluid gave less the work the structure took, [J] */
+    SPAR_REPORT_UNCONVERGED = 6, /* steps so far whose iteration ended at its limit (coupling.unconverged = accept) */
+    SPAR_REPORT_ADDED_MASS_SPREAD = 7, /* standard deviation of SPAR_REPORT_ADDED_MASS, of a single difference */
+    SPAR_REPORT_MOTION_ERROR = 8, /* explicit, option coupling.estimate: how far the loads pushed, in place of those
                                      predicted, would have moved the farthest node in this step, [m]; nodes that the
                                      host moves count 0 */
-    SPAR_REPORT_COUNT = 10
+    SPAR_REPORT_COUNT = 9
 };
 
 /* A session of this process alone. session: out. Local. */
@@ -278,7 +275,6 @@ SPAR_API int spar_session_get_threads(const spar_session *session, int *threads)
      coupling.motion_rtol   0 to 1, default 0: if one is set, the iteration also goes on until the nodes move from one
                             iteration to the next by no more than atol + rtol times their way since t^n (root of the
                             sum of squares; turns count times the member's length)
-     coupling.target        1e-15 to 1, default 0.01: the error that the advised dt keeps
      fluid.theta            average (default) | group: pull at 0 < theta < 1 gives the average of the two states,
                             (T12), or the node motion interpolated on the group (does not cut corners)
      fluid.added_mass       acceleration (default) | velocity: what the fluids' added mass answers to, for loads that

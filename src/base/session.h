@@ -70,7 +70,6 @@ struct spar_session {
     int coupling_columns, coupling_reuse; /* of IQN-ILS */
     double coupling_filter;
     double tolerance_drift, tolerance_rtol; /* of a step, m/s and relative; 0: none */
-    double coupling_target;                 /* error the advised dt aims at */
     int coupling_patience;                  /* option coupling.patience */
     int norm_of_loads;                      /* option coupling.norm = motion (default) | loads */
     int added_by_velocity;                  /* option fluid.added_mass = acceleration (default) | velocity */

@@ -532,31 +532,12 @@ int spari_coupling_check(spar_session *s, const char *call, int *done) {
 
 /* ---- what an accepted step shows ---- */
 
-/* The error over dt^(order + 1) comes and goes with the loads; what dt is to be chosen by is a bound that few steps
-   pass. It is found by its crossings: a step above it raises it by so much more than one below lowers it that in the
-   long run so few are above, whatever the errors are like (Robbins & Monro; Gibbs & Candes, NeurIPS 2021). */
-static void advise_dt(spar_session *s, double error) {
-    static const double above = 0.04;
-    spari_coupling *c = s->own->coupling;
-    double rate = pow(s->dt, s->order + 1), scale = error / rate;
-    if (c->bound_order != s->order + 1 || c->bound == 0) { /* of no other order */
-        c->bound = scale;
-        c->bound_order = s->past < 0 ? 0 : s->order + 1; /* a step from loads that nobody has given says nothing */
-    } else {
-        c->bound *= exp(scale > c->bound ? 1 - above : -above);
-    }
-    double factor = c->bound > 0 ? pow(s->coupling_target / (c->bound * rate), 1.0 / (s->order + 1)) : 2;
-    c->report[SPAR_REPORT_ADVISED_DT] = s->dt * fmin(fmax(factor, 0.1), 2);
-}
-
-/* The predicted loads against the final ones tell the error of the coupling; it goes with dt^(order + 1). */
+/* The difference of the predicted from the final loads is the error of the coupling, of order dt^(order + 1). */
 static void estimate_error(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     double change, size;
     load_norms(s, c->accelerator ? c->predicted : NULL, &change, &size);
-    double error = size > 0 ? change / size : 0;
-    c->report[SPAR_REPORT_ERROR] = error;
-    advise_dt(s, error);
+    c->report[SPAR_REPORT_ERROR] = size > 0 ? change / size : 0;
 }
 
 /* Work over the step that the fluid holds it has given less what the structure has taken, [J]; *whole: of all loads,

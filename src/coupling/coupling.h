@@ -29,8 +29,6 @@ typedef struct spari_coupling {
     double *residual, *size; /* change of the loads and the loads, [N], by iteration */
     double moved, travelled; /* motion test: change of the motion in the iteration, and since t^n, [m] */
     double report[SPAR_REPORT_COUNT];
-    double bound; /* of the error of the prediction over dt^bound_order, which few steps pass; 0: none has been */
-    int bound_order;
     double defect;                  /* of the last accepted step */
     int grown;                      /* steps in which it has grown without a break */
     int warned, calm;               /* has been told; steps since there was anything to tell */

@@ -2,16 +2,16 @@
 #include "saved.h"
 
 #include "../comm/comm.h"
-#include "../fluid/fluid.h"
-#include "../member/added_mass.h"
-#include "../member/applied.h"
-#include "../member/joint.h"
-#include "../member/added_mass_fit.h"
-#include "../member/mean_acceleration.h"
-#include "../solve/life.h"
 #include "../coupling/coupling.h"
 #include "../exchange/session_private.h"
+#include "../fluid/fluid.h"
+#include "../member/added_mass.h"
+#include "../member/added_mass_fit.h"
+#include "../member/applied.h"
+#include "../member/joint.h"
+#include "../member/mean_acceleration.h"
 #include "../session/settings.h"
+#include "../solve/life.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -318,8 +318,6 @@ static void pass_coupling(passage *t, spari_coupling *c) {
     pass_count(t, &c->in_row);
     pass(t, &c->log_growth, 1);
     pass(t, &c->log_growth2, 1);
-    pass(t, &c->bound, 1);
-    pass_int(t, &c->bound_order);
     pass(t, c->missed, c->missed ? c->n : 0);
 }
 

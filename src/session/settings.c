@@ -93,7 +93,6 @@ static const spari_setting settings[] = {
                  SPARI_ALIKE | SPARI_OF_COUPLING),
     OPTION_REAL("coupling.filter", coupling_filter, 0, 0.5, "a number from 0 to 0.5", 1e-4,
                 SPARI_ALIKE | SPARI_OF_COUPLING),
-    OPTION_REAL("coupling.target", coupling_target, 1e-15, 1, "a number from 1e-15 to 1", 0.01, SPARI_ALIKE),
     OPTION_REAL("coupling.motion_atol", motion_atol, 0, 1e300, "a number >= 0 (metres)", 0,
                 SPARI_ALIKE | SPARI_OF_COUPLING),
     OPTION_REAL("coupling.motion_rtol", motion_rtol, 0, 1, "a number from 0 to 1", 0, SPARI_ALIKE | SPARI_OF_COUPLING),

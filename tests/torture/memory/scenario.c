@@ -269,7 +269,6 @@ static void settings(spar_session *s) {
                                             {"coupling.columns", "10"},
                                             {"coupling.reuse", "2"},
                                             {"coupling.filter", "1e-5"},
-                                            {"coupling.target", "0.02"},
                                             {"coupling.motion_rtol", "1e-3"},
                                             {"fluid.theta", "group"},
                                             {"fluid.far", "take"},

@@ -772,7 +772,6 @@ static const struct setting {
     {"coupling.columns", "coupling.columns", "7", "30"},
     {"coupling.reuse", "coupling.reuse", "2", "5"},
     {"coupling.filter", "coupling.filter", "0.1", "1e-4"},
-    {"coupling.target", "coupling.target", "0.1", "0.01"},
     {"coupling.motion_atol", "coupling.motion_atol", "1", "0"},
     {"coupling.motion_rtol", "coupling.motion_rtol", "1", "0"},
     {"fluid.theta", "fluid.theta", "group", "average"},
