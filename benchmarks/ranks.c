@@ -2,18 +2,17 @@
    collective calls (the profiling interface of MPI). No times: there may be more ranks than processors.
 
        mpiexec -np R ranks [--members M] [--nodes P] [--touch K] [--fluid F] [--scheme 0..3] [--reproducible]
-   [--touched]
                        [--steps S] [--header]
        mpiexec -np 2 ranks --ping
 
    M beams (default 1) of P nodes (default 10), each with F fluid nodes (default 1) on each of K ranks (default: all),
-   from rank i K on for member i; the scheme a SPAR_COUPLING_*; --touched: option ranks.state. One line of figures per
-   iteration, each as its mean over the ranks and the most of any: collective calls; those of more than 64 bytes, which
-   carry data and not a status alone; rounds, the sum of log2 of the ranks in each call, rounded up: the messages one
-   after the other where a call is a tree; payload, bytes: what a rank gives to or takes from the calls. At the end the
-   median of an iteration's seconds on rank 0, over S steps (default 3; times want more, and processors to themselves).
-   Under callgrind the instructions of these steps are dumped, of each rank; run-ranks leaves out those within MPI,
-   where ranks wait in a loop.
+   from rank i K on for member i; the scheme a SPAR_COUPLING_*. One line of figures per iteration, each as its mean over
+   the ranks and the most of any: collective calls; those of more than 64 bytes, which carry data and not a status
+   alone; rounds, the sum of log2 of the ranks in each call, rounded up: the messages one after the other where a call
+   is a tree; payload, bytes: what a rank gives to or takes from the calls. At the end the median of an iteration's
+   seconds on rank 0, over S steps (default 3; times want more, and processors to themselves). Under callgrind the
+   instructions of these steps are dumped, of each rank; run-ranks leaves out those within MPI, where ranks wait in a
+   loop.
 
    --ping: seconds of a message of 8 bytes between ranks 0 and 1, and bytes a second of one of 4 MB: half of there and
    back, the least and the median of many. */
@@ -87,20 +86,11 @@ COUNTED(Allgatherv, total(counts, comm),
         (const void *from, int n, MPI_Datatype of, void *to, const int counts[], const int offsets[], MPI_Datatype type,
          MPI_Comm comm),
         (from, n, of, to, counts, offsets, type, comm))
-COUNTED(Ireduce, n,
-        (const void *from, void *to, int n, MPI_Datatype type, MPI_Op op, int root, MPI_Comm comm,
-         MPI_Request *request),
-        (from, to, n, type, op, root, comm, request))
-COUNTED(Iallreduce, n,
-        (const void *from, void *to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm, MPI_Request *request),
-        (from, to, n, type, op, comm, request))
-COUNTED(Ibcast, n, (void *x, int n, MPI_Datatype type, int root, MPI_Comm comm, MPI_Request *request),
-        (x, n, type, root, comm, request))
 
 /* ---- the scene ---- */
 
 typedef struct options {
-    int members, nodes, touch, fluid, scheme, steps, reproducible, touched, header, ping;
+    int members, nodes, touch, fluid, scheme, steps, reproducible, header, ping;
 } options;
 
 /* A fluid and its nodes here: along the outer half of the beam. */
@@ -258,11 +248,10 @@ static void ping(int rank) {
 
 static void print(const options *o, int size, const double *sum, const double *most, double seconds) {
     if (o->header) {
-        printf("ranks,members,nodes,touch,fluid,scheme,reproducible,state,calls,calls most,data calls,data calls most,"
+        printf("ranks,members,nodes,touch,fluid,scheme,reproducible,calls,calls most,data calls,data calls most,"
                "rounds,rounds most,payload,payload most,seconds\n");
     }
-    printf("%d,%d,%d,%d,%d,%d,%d,%s", size, o->members, o->nodes, o->touch, o->fluid, o->scheme, o->reproducible,
-           o->touched ? "touched" : "all");
+    printf("%d,%d,%d,%d,%d,%d,%d", size, o->members, o->nodes, o->touch, o->fluid, o->scheme, o->reproducible);
     for (int k = 0; k < KINDS; k++) {
         printf(",%.8g,%.8g", sum[k] / size, most[k]);
     }
@@ -282,10 +271,7 @@ static int read_options(int argc, char **argv, int size, options *o) {
     const struct {
         const char *name;
         int *value;
-    } flags[] = {{"--reproducible", &o->reproducible},
-                 {"--touched", &o->touched},
-                 {"--header", &o->header},
-                 {"--ping", &o->ping}};
+    } flags[] = {{"--reproducible", &o->reproducible}, {"--header", &o->header}, {"--ping", &o->ping}};
     *o = (options){.members = 1, .nodes = 10, .touch = size, .fluid = 1, .scheme = SPAR_COUPLING_IQN_ILS, .steps = 3};
     for (int i = 1; i < argc; i++) {
         int known = 0;
@@ -316,7 +302,6 @@ static void play(const options *o, int rank, int size) {
     check(s, spar_session_set_coupling(s, o->scheme, 0, 0, ITERATIONS));
     check(s, spar_session_set_option(s, "coupling.unconverged", "accept"));
     check(s, spar_session_set_option(s, "coupling.patience", "1000000"));
-    check(s, spar_session_set_option(s, "ranks.state", o->touched ? "touched" : "all"));
     check(s, spar_session_set_reproducible(s, o->reproducible));
     build(s, o, rank, size, all);
     double seconds = measure(s, o, all, mine);
@@ -342,7 +327,7 @@ int main(int argc, char **argv) {
     if (!known && rank == 0) {
         fprintf(stderr,
                 "usage: ranks [--members 1..%d] [--nodes 2..64] [--touch 1..ranks] [--fluid 1..%d] [--scheme 0..3] "
-                "[--reproducible] [--touched] [--steps 1..%d] [--header]; or, on 2 ranks: --ping\n",
+                "[--reproducible] [--steps 1..%d] [--header]; or, on 2 ranks: --ping\n",
                 MOST_MEMBERS, MOST_FLUID, MOST_STEPS);
     } else if (known && o.ping) {
         ping(rank);

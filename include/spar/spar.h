@@ -154,16 +154,13 @@ enum {
     SPAR_REPORT_COLUMNS = 2,     /* IQN-ILS: columns in the last least-squares problem */
     SPAR_REPORT_DROPPED = 3,     /* IQN-ILS: nearly dependent columns filtered out in this step */
     SPAR_REPORT_ERROR = 4,       /* last accepted step: |final loads - predicted loads| / |final loads| */
-    SPAR_REPORT_ADVISED_DT = 5,  /* dt, within 0.1 to 2 of this step's, with which that error stays below option
-                                    coupling.target in 95 % of the steps: a run that follows it keeps it so, once it has
-                                    some tens of steps behind it; it says nothing of a single step */
-    SPAR_REPORT_WORK_DEFECT = 6, /* last accepted step: work the fluid gave less the work the structure took, [J] */
-    SPAR_REPORT_UNCONVERGED = 7, /* steps so far whose iteration ended at its limit (coupling.unconverged = accept) */
-    SPAR_REPORT_ADDED_MASS_SPREAD = 8, /* standard deviation of a single difference from that */
-    SPAR_REPORT_MOTION_ERROR = 9, /* explicit, option coupling.estimate: how far the loads pushed, in place of those
+    SPAR_REPORT_WORK_DEFECT = 5, /* last accepted step: work the fluid gave less the work the structure took, [J] */
+    SPAR_REPORT_UNCONVERGED = 6, /* steps so far whose iteration ended at its limit (coupling.unconverged = accept) */
+    SPAR_REPORT_ADDED_MASS_SPREAD = 7, /* standard deviation of SPAR_REPORT_ADDED_MASS, of a single difference */
+    SPAR_REPORT_MOTION_ERROR = 8, /* explicit, option coupling.estimate: how far the loads pushed, in place of those
                                      predicted, would have moved the farthest node in this step, [m]; nodes that the
                                      host moves count 0 */
-    SPAR_REPORT_COUNT = 10
+    SPAR_REPORT_COUNT = 9
 };
 
 /* A session of this process alone. session: out. Local. */
@@ -277,7 +274,6 @@ SPAR_API int spar_session_get_threads(const spar_session *session, int *threads)
      coupling.motion_rtol   0 to 1, default 0: if one is set, the iteration also goes on until the nodes move from one
                             iteration to the next by no more than atol + rtol times their way since t^n (root of the
                             sum of squares; turns count times the member's length)
-     coupling.target        1e-15 to 1, default 0.01: the error that the advised dt keeps
      fluid.theta            average (default) | group: pull at 0 < theta < 1 gives the average of the two states,
                             (T12), or the node motion interpolated on the group (does not cut corners)
      fluid.added_mass       acceleration (default) | velocity: what the fluids' added mass answers to, for loads that
@@ -287,15 +283,6 @@ SPAR_API int spar_session_get_threads(const spar_session *session, int *threads)
                             substep
      fluid.far              take (default) | refuse: fluid nodes beyond max_distance are flagged, or SPAR_ERR_MAPPING
      fluid.audit            on (default) | off: whether push keeps the figures of spar_fluid_get_audit
-     ranks.state            all (default) | touched: what ranks know between and in the steps, on several ranks.
-                            All: all of it, each of them. Touched: a rank that solves no member
-                            (spar_member_get_owner), other than rank 0, knows the motion of the members that its
-                            fluids have nodes on, and of those that joints tie to them; loads and motion go between
-                            these and their owners, who iterate the coupling; the others get no message but of the
-                            status. Loads, reaction, work, the report and members that it does not touch are
-                            SPAR_ERR_STATE on such a rank, as is a map with nodes on another member after the first
-                            step; and so are statics, trials and advice on all ranks. A file of spar_session_save
-                            has everything. Set before the first step
      advise.dt, advise.nodes, advise.fidelity, advise.coupling
                             vary (default) | keep: what spar_session_advise may propose to change; with nodes go
                             elements
@@ -618,7 +605,7 @@ SPAR_API int spar_member_get_added_mass(const spar_member *member, int64_t *n, i
    SPAR_ERR_UNSUPPORTED: as spar_member_set_added_mass. */
 SPAR_API int spar_member_learn_added_mass(spar_member *member, int64_t n, const double *eta);
 /* What has been learned, of steps accepted; a host may give it as the guess at the start of the next run. Local, and
-   the same on every rank; with ranks.state = touched SPAR_ERR_STATE on those that solve nothing.
+   the same on every rank.
      used: out, whether it stands in the equations (from the next step on)
      spread: out, the part of a change of the loads that it has left, of differences before it knew them, root of the
              mean of the squares: iterations will contract by about as much. Used below 1/4, and not any more beyond
@@ -717,8 +704,8 @@ SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6])
    first step or static solution has found a balance. The strains of a linear or modal member are those of linear
    theory, as in its strain energy: of the displacement and rotation vector seen from the root where that is fixed or
    driven or joints tie the beam, else from the reference; of a rigid or prescribed one 0. Its forces have the arms and
-   axes of the reference where its equations stand there: fixed, pinned or free roots, without pretension. SPAR_ERR_UNSUPPORTED: force of a beam without sections. SPAR_ERR_STATE: force where the loads are
-   another rank's (option ranks.state). */
+   axes of the reference where its equations stand there: fixed, pinned or free roots, without pretension. SPAR_ERR_UNSUPPORTED: force of a beam without
+   sections. */
 SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                                    double *x, double *q);
 /* Energies of a member, J. */
@@ -1248,8 +1235,7 @@ typedef int (*spar_before_step)(spar_session *session, double t, double dt, void
    driven root), is to be at most
            drift + rtol * (the largest speed of its nodes so far, likewise),
    where rtol is about the part of the amplitude that is lost in a radian of the motion. Members whose motion the host
-   gives, and those without inertia, have none. Ranks need all of the state (option ranks.state = all).
-   Alike on all ranks; between steps.
+   gives, and those without inertia, have none. Alike on all ranks; between steps.
      drift: in, m/s, >= 0; 0 with rtol 0 (default): no tolerance, nothing is found or kept; out
      rtol: in, 0 to 1, > 0 only with a drift > 0, as what begins at rest has no speed; out */
 SPAR_API int spar_session_set_tolerance(spar_session *session, double drift, double rtol);

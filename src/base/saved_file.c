@@ -11,8 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Layout: heading, words, check sum of everything before it. */
-enum { VERSION = 16, HEAD_WORDS = 3, HEAD_BYTES = 8 * HEAD_WORDS, CHECK_BYTES = 8 };
+/* A file is the heading, the words, and their check sum, which is of all before it. */
+enum { VERSION = 17, HEAD_WORDS = 3, HEAD_BYTES = 8 * HEAD_WORDS, CHECK_BYTES = 8 };
 
 static const char magic[8] = {'s', 'p', 'a', 'r', '-', 'r', 'u', 'n'};
 

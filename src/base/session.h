@@ -64,8 +64,7 @@ struct spar_session {
     int accept_unconverged;               /* option coupling.unconverged = accept */
     int coupling_columns, coupling_reuse; /* of IQN-ILS */
     double coupling_filter;
-    double tolerance_drift, tolerance_rtol; /* tolerances per step, m/s and relative; 0: none */
-    double coupling_target;                 /* error that the advised dt aims at */
+    double tolerance_drift, tolerance_rtol; /* of a step, m/s and relative; 0: none */
     int coupling_patience;                  /* option coupling.patience */
     int norm_of_loads;                      /* option coupling.norm = motion (default) | loads */
     int added_by_velocity;                  /* option fluid.added_mass = acceleration (default) | velocity */
@@ -78,10 +77,9 @@ struct spar_session {
     double advise_limit;                                   /* option advise.limit */
     double fluid_cost;                                     /* option advise.fluid_cost */
     int audit_off;                                         /* option fluid.audit = on (default) | off */
-    int touched;                                           /* option ranks.state = all (default) | touched */
-    struct spari_crew *crew; /* spar_session_set_threads (base/thread_pool.h); NULL: the calling thread alone */
-    spari_room room;         /* workspace of the calling thread, valid for one call */
-    int coupling_stale;      /* settings of the coupling have changed since it was created */
+    struct spari_crew *crew; /* spar_session_set_threads (base/crew.h); NULL: the calling thread alone */
+    spari_room room;         /* work space of the calling thread, for one call; its content is nobody's */
+    int coupling_stale;      /* settings of the coupling have changed since it was made */
 
     double time, time_rest; /* time_rest: rounding error of the clock, carried to the next steps */
     double dt, dt_last[2];  /* dt of the current step, and of the two accepted before */
@@ -103,9 +101,7 @@ struct spar_session {
 
     const spari_setting *settings;
     int setting_count;
-    int apart;  /* ranks.state = touched and the clock runs: ranks know different parts of the state */
-    int aside;  /* this rank solves nothing and knows only part of each member's state */
-    int parted; /* the ranks were found in different calls: no further communication */
+    int calls_differ; /* the ranks were found in different calls: nothing more can be agreed on */
 
     spari_own *own; /* private data (exchange/session_private.h) */
 };

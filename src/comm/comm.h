@@ -80,28 +80,7 @@ int spari_comm_sum_bins(spari_comm *comm, spari_bins *x, int64_t n, int status, 
    block carries its rank's status, so every block has at least one. Returns as spari_comm_agree. */
 int spari_comm_share(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size);
 
-/* Creates a communicator of some ranks. Collective over all ranks of comm.
-   in: whether this rank belongs to it
-   root: becomes rank 0; the others keep their order
-   part: NULL if this rank does not belong to it, or is alone in it */
-int spari_comm_split(spari_comm *comm, int in, int root, spari_comm **part, char *message, size_t size);
-
-/* x[n] of one part, for operations on several parts at once. All ranks of comm call, each with the pieces of its own
-   parts, in the same order on all ranks. */
-typedef struct spari_piece {
-    spari_comm *part;
-    void *x; /* double or spari_bins */
-    int64_t n;
-} spari_piece;
-
-/* Sums x over each part on its rank 0; x is lost on the others. bins: reproducible sums (after
-   spari_comm_prepare_bins of comm). */
-int spari_comm_collect(spari_comm *comm, const spari_piece *pieces, int count, int bins, char *message, size_t size);
-/* Sends x from rank 0 of each part to its other ranks, while all ranks of comm agree on a status. Returns as
-   spari_comm_agree; after a failure x is undefined. */
-int spari_comm_spread(spari_comm *comm, const spari_piece *pieces, int count, int status, char *message, size_t size);
-
-/* Sends rank 0's data[bytes] to all others. */
+/* Rank 0's data[bytes] goes to all the others. */
 int spari_comm_broadcast(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size);
 /* Sends data[bytes] from one rank to another. Only these two make the call; for other ranks it does nothing. */
 int spari_comm_move(spari_comm *comm, int from, int to, void *data, int64_t bytes, char *message, size_t size);

@@ -6,8 +6,8 @@
 static int enter(spar_session *s, const char *call, const spari_alike *alike, int count, int status) {
     int answer = spari_comm_enter(s->comm, call, alike, count, status, s->message, sizeof s->message);
     if (answer == SPAR_ERR_COMM) {
-        s->parted = 1;
-        (void)spari_fail(s, answer, "%s", s->message); /* passes the message to the log */
+        s->calls_differ = 1;
+        (void)spari_fail(s, answer, "%s", s->message); /* for the log */
     }
     return answer;
 }

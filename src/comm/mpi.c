@@ -16,8 +16,7 @@ typedef struct mpi_comm {
     int has_bins; /* the next two are set up */
     MPI_Datatype bins;
     MPI_Op merge;
-    int gone; /* another rank has destroyed its session: no communication any more */
-    int part; /* part of another communicator, which handles failures */
+    int gone; /* another rank has destroyed its session: there is nobody to talk to any more */
 } mpi_comm;
 
 /* ---- failures of MPI itself ---- */
@@ -184,7 +183,7 @@ static void mpi_destroy(spari_comm *comm) {
     mpi_comm *c = (mpi_comm *)comm;
     if (mpi_is_up()) {
         int64_t mine[WORDS] = {LEAVING}, all[WORDS];
-        if (!c->gone && !c->part) {
+        if (!c->gone) {
             (void)MPI_Allreduce(mine, all, WORDS, MPI_INT64_T, MPI_MIN, c->handle);
         }
         if (c->has_bins) {
@@ -315,77 +314,8 @@ static int mpi_move(spari_comm *comm, int from, int to, void *data, int64_t byte
     return SPAR_OK;
 }
 
-/* ---- communicators of some ranks ---- */
-
-/* Pending requests. All ranks post them in one order, so waiting for the first ones before posting the last cannot
-   deadlock. */
-enum { POSTED = 64 };
-typedef struct posted {
-    MPI_Request request[POSTED];
-    int n;
-} posted;
-
-static int await(posted *p, char *message, size_t size) {
-    MPI_Status status[POSTED]; /* unused; with MPICH's MPI_STATUSES_IGNORE gcc 12 warns of a write */
-    int n = p->n;
-    p->n = 0;
-    TRY_MPI(MPI_Waitall(n, p->request, status));
-    return SPAR_OK;
-}
-
-/* Slot of the next request. */
-static int next_posted(posted *p, MPI_Request **request, char *message, size_t size) {
-    if (p->n == POSTED) {
-        SPARI_TRY(await(p, message, size));
-    }
-    *request = p->request + p->n++;
-    **request = MPI_REQUEST_NULL;
-    return SPAR_OK;
-}
-
-static int mpi_collect(spari_comm *comm, const spari_piece *pieces, int count, int bins, char *message, size_t size) {
-    mpi_comm *c = (mpi_comm *)comm;
-    posted p = {.n = 0};
-    SPARI_TRY(check_up(c, message, size));
-    size_t width = bins ? sizeof(spari_bins) : sizeof(double);
-    for (int i = 0; i < count; i++) {
-        const mpi_comm *part = (const mpi_comm *)pieces[i].part;
-        int root = part->base.rank == 0;
-        for (int64_t at = 0; at < pieces[i].n; at += comm->most) {
-            MPI_Request *request;
-            void *x = (char *)pieces[i].x + (size_t)at * width;
-            SPARI_TRY(next_posted(&p, &request, message, size));
-            TRY_MPI(MPI_Ireduce(root ? MPI_IN_PLACE : x, x, upto_most(comm, pieces[i].n - at),
-                                bins ? c->bins : MPI_DOUBLE, bins ? c->merge : MPI_SUM, 0, part->handle, request));
-        }
-    }
-    return await(&p, message, size);
-}
-
-static int mpi_spread(spari_comm *comm, const spari_piece *pieces, int count, int status, char *message, size_t size) {
-    mpi_comm *c = (mpi_comm *)comm;
-    posted p = {.n = 0};
-    MPI_Request *request;
-    SPARI_TRY(check_up(c, message, size));
-    int64_t mine = status == SPAR_OK ? NOBODY : comm->rank, failed = NOBODY;
-    SPARI_TRY(next_posted(&p, &request, message, size));
-    TRY_MPI(MPI_Iallreduce(&mine, &failed, 1, MPI_INT64_T, MPI_MIN, c->handle, request));
-    for (int i = 0; i < count; i++) {
-        const mpi_comm *part = (const mpi_comm *)pieces[i].part;
-        for (int64_t at = 0; at < pieces[i].n; at += comm->most) {
-            SPARI_TRY(next_posted(&p, &request, message, size));
-            TRY_MPI(MPI_Ibcast((double *)pieces[i].x + at, upto_most(comm, pieces[i].n - at), MPI_DOUBLE, 0,
-                               part->handle, request));
-        }
-    }
-    SPARI_TRY(await(&p, message, size));
-    return failed == NOBODY ? SPAR_OK : tell_all(c, (int)failed, status, message, size);
-}
-
-static int mpi_split(spari_comm *comm, int in, int root, spari_comm **part, char *message, size_t size);
-
-static const spari_comm_ops mpi_ops = {mpi_destroy, mpi_agree,     mpi_enter, mpi_sum,   mpi_prepare_bins, mpi_sum_bins,
-                                       mpi_share,   mpi_broadcast, mpi_move,  mpi_split, mpi_collect,      mpi_spread};
+static const spari_comm_ops mpi_ops = {mpi_destroy,  mpi_agree, mpi_enter,     mpi_sum, mpi_prepare_bins,
+                                       mpi_sum_bins, mpi_share, mpi_broadcast, mpi_move};
 
 /* ---- create ---- */
 
@@ -458,33 +388,6 @@ int spari_comm_create_fortran(int handle, spari_comm **comm, int status, char *m
     }
     *made = c;
     *comm = &made->base;
-    return SPAR_OK;
-}
-
-static void drop_part(mpi_comm *c, mpi_comm *made) {
-    if (c->handle != MPI_COMM_NULL) {
-        (void)MPI_Comm_free(&c->handle);
-    }
-    free(c->counts);
-    free(c->offsets);
-    free(made);
-}
-
-/* Steps that may fail on one rank alone are agreed on over the whole communicator after the split. */
-static int mpi_split(spari_comm *comm, int in, int root, spari_comm **part, char *message, size_t size) {
-    mpi_comm *whole = (mpi_comm *)comm, *made = NULL;
-    mpi_comm c = {.base.ops = &mpi_ops, .part = 1, .handle = MPI_COMM_NULL};
-    SPARI_TRY(check_up(whole, message, size));
-    TRY_MPI(MPI_Comm_split(whole->handle, in ? 0 : MPI_UNDEFINED, comm->rank == root ? 0 : 1 + comm->rank, &c.handle));
-    int status = c.handle == MPI_COMM_NULL ? SPAR_OK : set_up(&c, SPAR_OK, &made, message, size);
-    c.base.most = comm->most;
-    status = mpi_agree(comm, status, message, size);
-    if (status != SPAR_OK || c.base.size < 2 || !made) {
-        drop_part(&c, made);
-        return status;
-    }
-    *made = c;
-    *part = &made->base;
     return SPAR_OK;
 }
 

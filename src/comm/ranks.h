@@ -15,9 +15,6 @@ typedef struct spari_comm_ops {
     int (*share)(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size);
     int (*broadcast)(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size);
     int (*move)(spari_comm *comm, int from, int to, void *data, int64_t bytes, char *message, size_t size);
-    int (*split)(spari_comm *comm, int in, int root, spari_comm **part, char *message, size_t size);
-    int (*collect)(spari_comm *comm, const spari_piece *pieces, int count, int bins, char *message, size_t size);
-    int (*spread)(spari_comm *comm, const spari_piece *pieces, int count, int status, char *message, size_t size);
 } spari_comm_ops;
 
 struct spari_comm {

@@ -69,19 +69,6 @@ int spari_comm_share(spari_comm *comm, double *x, const int64_t *first, int stat
     return comm->ops ? comm->ops->share(comm, x, first, status, message, size) : status;
 }
 
-int spari_comm_split(spari_comm *comm, int in, int root, spari_comm **part, char *message, size_t size) {
-    *part = NULL;
-    return comm->ops ? comm->ops->split(comm, in, root, part, message, size) : SPAR_OK;
-}
-
-int spari_comm_collect(spari_comm *comm, const spari_piece *pieces, int count, int bins, char *message, size_t size) {
-    return comm->ops ? comm->ops->collect(comm, pieces, count, bins, message, size) : SPAR_OK;
-}
-
-int spari_comm_spread(spari_comm *comm, const spari_piece *pieces, int count, int status, char *message, size_t size) {
-    return comm->ops ? comm->ops->spread(comm, pieces, count, status, message, size) : status;
-}
-
 int spari_comm_broadcast(spari_comm *comm, void *data, int64_t bytes, char *message, size_t size) {
     return comm->ops ? comm->ops->broadcast(comm, data, bytes, message, size) : SPAR_OK;
 }

@@ -247,11 +247,8 @@ static void record(spari_coupling *c, double residual, double size) {
     }
 }
 
-void spari_coupling_record(spar_session *s, double residual, double size) {
-    record(s->own->coupling, residual, size);
-}
-
-void spari_coupling_last(const spar_session *s, double *residual, double *size) {
+/* Residual and size of the last iteration. */
+static void last_iteration(const spar_session *s, double *residual, double *size) {
     const spari_coupling *c = s->own->coupling;
     int last = c->iterations - 1;
     *residual = last >= 0 ? c->residual[last] : 0;
@@ -260,7 +257,7 @@ void spari_coupling_last(const spar_session *s, double *residual, double *size) 
 
 int spari_coupling_is_rough(const spar_session *s) {
     double residual, size;
-    spari_coupling_last(s, &residual, &size);
+    last_iteration(s, &residual, &size);
     return s->iteration > 0 && residual > 0.1 * size;
 }
 
@@ -538,31 +535,12 @@ int spari_coupling_check(spar_session *s, const char *call, int *done) {
 
 /* ---- report of an accepted step ---- */
 
-/* The error over dt^(order + 1) varies with the loads. dt is chosen by a bound that few steps exceed. The bound is
-   found by its crossings. A step above raises it much more than a step below lowers it, so that in the long run few
-   steps are above, for any errors (Robbins & Monro; Gibbs & Candes, NeurIPS 2021). */
-static void advise_dt(spar_session *s, double error) {
-    static const double above = 0.04;
-    spari_coupling *c = s->own->coupling;
-    double rate = pow(s->dt, s->order + 1), scale = error / rate;
-    if (c->bound_order != s->order + 1 || c->bound == 0) { /* a bound of the same order */
-        c->bound = scale;
-        c->bound_order = s->past < 0 ? 0 : s->order + 1; /* a step from unknown loads gives no information */
-    } else {
-        c->bound *= exp(scale > c->bound ? 1 - above : -above);
-    }
-    double factor = c->bound > 0 ? pow(s->coupling_target / (c->bound * rate), 1.0 / (s->order + 1)) : 2;
-    c->report[SPAR_REPORT_ADVISED_DT] = s->dt * fmin(fmax(factor, 0.1), 2);
-}
-
-/* The difference between predicted and final loads is the error of the coupling, proportional to dt^(order + 1). */
+/* The difference of the predicted from the final loads is the error of the coupling, of order dt^(order + 1). */
 static void estimate_error(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     double change, size;
     load_norms(s, c->accelerator ? c->predicted : NULL, &change, &size);
-    double error = size > 0 ? change / size : 0;
-    c->report[SPAR_REPORT_ERROR] = error;
-    advise_dt(s, error);
+    c->report[SPAR_REPORT_ERROR] = size > 0 ? change / size : 0;
 }
 
 /* Work of the fluid over the step minus work on the structure, [J]; *whole: of all loads, each counted positive. */
@@ -724,7 +702,7 @@ int spar_session_get_residual(const spar_session *session, double *residual, dou
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     double last[2] = {0, 0};
     if (session->own->coupling) {
-        spari_coupling_last(session, &last[0], &last[1]);
+        last_iteration(session, &last[0], &last[1]);
     }
     if (residual) {
         *residual = last[0];
@@ -739,9 +717,6 @@ int spar_session_get_report(const spar_session *session, int64_t capacity, doubl
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_need_capacity(session, __func__, capacity));
-    SPARI_REQUIRE(session, !session->aside, SPAR_ERR_STATE,
-                  "%s: this rank solves no member and knows no loads (option ranks.state = touched); ask rank 0",
-                  __func__);
     const spari_coupling *c = session->own->coupling;
     spari_fill(capacity, report, c ? SPAR_REPORT_COUNT : 0, c ? c->report : NULL);
     return SPAR_OK;

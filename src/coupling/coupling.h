@@ -29,8 +29,6 @@ typedef struct spari_coupling {
     double *residual, *size; /* change of the loads, and the loads, [N], by iteration */
     double moved, travelled; /* motion test: change of the motion in the iteration, and since t^n, [m] */
     double report[SPAR_REPORT_COUNT];
-    double bound; /* bound of the prediction error over dt^bound_order that few steps exceed; 0: none yet */
-    int bound_order;
     double defect;                  /* of the last accepted step */
     int grown;                      /* consecutive steps in which it has grown */
     int warned, calm;               /* a warning was given; steps since the last reason for one */
@@ -70,10 +68,7 @@ int spari_coupling_check(spar_session *session, const char *call, int *done);
 int spari_coupling_solve_failed(spar_session *session, const char *call, int status);
 /* Whether the last check found loads far from those used, so that their effects in a step give no information. */
 int spari_coupling_is_rough(const spar_session *session);
-/* Residual and size of the last iteration; and sets them as found by another rank. */
-void spari_coupling_last(const spar_session *session, double *residual, double *size);
-void spari_coupling_record(spar_session *session, double residual, double size);
-/* Call before the histories shift. */
+/* Before the histories shift. */
 void spari_coupling_accept(spar_session *session);
 /* The equations of motion have changed: discards differences of earlier steps. */
 void spari_coupling_forget(spar_session *session);

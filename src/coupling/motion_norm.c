@@ -6,7 +6,6 @@
 
 #include "../assembly/assembly.h"
 #include "../comm/comm.h"
-#include "../exchange/sparse.h"
 #include "../member/structure.h"
 #include "../time/fidelity.h"
 
@@ -124,7 +123,7 @@ int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, doubl
     if (singular) { /* its numbers would make the sums NaN, on every rank */
         c->image[0] = NAN;
     }
-    SPARI_TRY(spari_comm_sum(spari_spread_core(s), c->image, images, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(s->comm, c->image, images, SPAR_OK, s->message, sizeof s->message));
     double works = 0, sizes = 0, work = sum_products(c->g, answer, c->x, c->n, &works),
            all = sum_products(c->g, bare, c->shift, c->n, &sizes);
     double both = c->shift ? fmax(all, sum_products(c->g, whole, NULL, c->n, &sizes)) : all;
@@ -158,7 +157,7 @@ int spari_weigh_images(spar_session *s, const spari_weighed *c, int64_t count, c
     if (answer_tied(s, c, count, loads, c->n, NULL, image)) {
         image[0] = NAN;
     }
-    return spari_comm_sum(spari_spread_core(s), image, count * c->n, SPAR_OK, s->message, sizeof s->message);
+    return spari_comm_sum(s->comm, image, count * c->n, SPAR_OK, s->message, sizeof s->message);
 }
 
 /* The part of the loads x - g that member m responds to, into off, stacked. */
@@ -189,7 +188,7 @@ int spari_weigh_felt(spar_session *s, const spari_weighed *c, double *off, doubl
     if (status != SPAR_OK) {
         (void)spari_fail(s, status, "no memory for the loads that modes feel");
     }
-    SPARI_TRY(asked ? spari_comm_sum(spari_spread_core(s), off, c->n, status, s->message, sizeof s->message) : status);
+    SPARI_TRY(asked ? spari_comm_sum(s->comm, off, c->n, status, s->message, sizeof s->message) : status);
     for (int64_t i = 0; i < c->n; i++) {
         x[i] = c->g[i] + off[i];
     }
@@ -222,7 +221,7 @@ int spari_weigh_miss(spar_session *s, int64_t n, double *image, double *room, do
     if (answer_miss(s, image, room)) {
         image[0] = NAN;
     }
-    SPARI_TRY(spari_comm_sum(spari_spread_core(s), image, n, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(s->comm, image, n, SPAR_OK, s->message, sizeof s->message));
     for (int64_t i = 0; i < n; i += 6) {
         double way = image[i] * image[i] + image[i + 1] * image[i + 1] + image[i + 2] * image[i + 2];
         square = isfinite(way) ? fmax(square, way) : INFINITY;

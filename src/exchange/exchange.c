@@ -4,19 +4,58 @@
 #include "../assembly/assembly.h"
 #include "../comm/comm.h"
 #include "../fluid/fluid.h"
-#include "../member/structure.h"
-#include "motion_block.h"
+#include "../member/body.h"
 #include "session_private.h"
-#include "sparse.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Numbers that a rank sends to the others, with its status. */
+/* ---- a member's motion in a message ---- */
+
+/* The dissipated energy of a damped member goes with its motion. */
+static int is_damped(const spar_member *m) {
+    return (m->effects & SPAR_EFFECT_DAMPING) != 0;
+}
+
+/* Doubles that a member's message has: position, velocity and acceleration of its unknowns' nodes, and the energy
+   dissipated in the step. 0: all ranks move the member by themselves. */
+static int64_t motion_size(const spar_member *m) {
+    return m->body ? 19 * (int64_t)m->body->unique + is_damped(m) : 0;
+}
+
+/* From the motion after the step. Returns motion_size. */
+static int64_t pack_motion(const spar_member *m, double *to) {
+    int64_t n = m->body ? m->body->unique : 0;
+    if (n > 0) {
+        spari_member_to_unique(m, 7, m->after.q, to);
+        spari_member_to_unique(m, 6, m->after.v, to + 7 * n);
+        spari_member_to_unique(m, 6, m->after.a, to + 13 * n);
+        if (is_damped(m)) {
+            to[19 * n] = m->dissipated_step;
+        }
+    }
+    return motion_size(m);
+}
+
+/* Into the motion after the step. Returns motion_size. */
+static int64_t unpack_motion(spar_member *m, const double *from) {
+    int64_t n = m->body ? m->body->unique : 0;
+    if (n > 0) {
+        spari_member_from_unique(m, 7, from, m->after.q);
+        spari_member_from_unique(m, 6, from + 7 * n, m->after.v);
+        spari_member_from_unique(m, 6, from + 13 * n, m->after.a);
+        m->dissipated_step = is_damped(m) ? from[19 * n] : 0;
+    }
+    return motion_size(m);
+}
+
+/* ---- memory ---- */
+
+/* Doubles that a rank sends to the others, with its status. */
 static int64_t block_of_rank(const spar_session *s, int rank) {
     int64_t n = 1;
     for (const spar_member *m = s->members; m; m = m->next) {
-        n += m->owner == rank ? spari_block_size(m) : 0;
+        n += m->owner == rank ? motion_size(m) : 0;
     }
     for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         n += spari_assembly_owner(a) == rank ? spari_assembly_share_size(a) : 0;
@@ -94,6 +133,8 @@ int spari_session_is_sealed(const spar_session *s) {
     return !s->reproducible || s->own->bins_room >= s->own->pack_count + 2;
 }
 
+/* ---- loads ---- */
+
 int spari_session_pushes(spar_session *s, const char *call) {
     const char *why;
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
@@ -121,23 +162,7 @@ static int sum_bins(spar_session *s, int64_t count, double pushes) {
     return SPAR_OK;
 }
 
-/* If ranks know different parts: asks all of them whether anything was pushed. */
-static int exchange_apart(spar_session *s, int *pushed) {
-    double pushes[2] = {0, 0};
-    for (const spar_fluid *f = s->fluids; f && pushed; f = spari_fluid_next(f)) {
-        pushes[0] += spari_fluid_has_loads(f);
-    }
-    if (pushed) {
-        SPARI_TRY(spari_comm_sum(s->comm, pushes, 1, SPAR_OK, s->message, sizeof s->message));
-        *pushed = pushes[0] > 0;
-    }
-    return spari_spread_loads(s);
-}
-
 int spari_session_exchange_loads(spar_session *s, int *pushed) {
-    if (s->apart) {
-        return exchange_apart(s, pushed);
-    }
     double *pushes = s->own->pack + s->own->pack_count;
     memset(s->own->pack, 0, (size_t)(s->own->pack_count + 2) * sizeof *s->own->pack);
     int64_t at = 0;
@@ -175,15 +200,14 @@ int spari_session_moved(spar_session *s, int *moved) {
 }
 
 void spari_session_take_loads(const spar_session *s, const spar_member *m, double *load) {
-    memcpy(load, s->apart ? spari_spread_loads_of(s, m) : s->own->pack + m->pack_at,
-           (size_t)(6 * m->nodes) * sizeof *load);
+    memcpy(load, s->own->pack + m->pack_at, (size_t)(6 * m->nodes) * sizeof *load);
     spari_joints_on_external(m, load);
 }
 
 /* Writes this rank's results into its block. */
 static void pack_own(spar_session *s, int rank, double *at) {
     for (spar_member *m = s->members; m; m = m->next) {
-        at += m->owner == rank ? spari_block_pack(m, at) : 0;
+        at += m->owner == rank ? pack_motion(m, at) : 0;
     }
     for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         if (spari_assembly_owner(a) == rank) {
@@ -195,7 +219,7 @@ static void pack_own(spar_session *s, int rank, double *at) {
 
 static void unpack_peer(spar_session *s, int peer, const double *at) {
     for (spar_member *m = s->members; m; m = m->next) {
-        at += m->owner == peer ? spari_block_unpack(m, at) : 0;
+        at += m->owner == peer ? unpack_motion(m, at) : 0;
     }
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         if (spari_assembly_owner(a) == peer) {
@@ -209,9 +233,6 @@ int spari_session_share_motion(spar_session *s, int status) {
     int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
     if (ranks == 1) {
         return status;
-    }
-    if (s->apart) {
-        return spari_spread_motion(s, status);
     }
     if (status == SPAR_OK) {
         pack_own(s, rank, s->own->motion + s->own->first[rank]);

@@ -32,12 +32,11 @@ struct spari_own {
     int64_t unit_room;
     spar_member **member; /* all members, for a step with several threads, `listed` of them; same capacity */
     int64_t listed;
-    struct spari_spread *spread; /* option ranks.state = touched, while the clock runs (sparse.h); else NULL */
-    spari_coupling *coupling;    /* from the first step on */
-    spari_coupling *aside;       /* coupling of the steps during a solution that is not a step; NULL: there was none */
-    spari_pace pace;             /* step-size control */
-    double number[SPARI_MOST_NUMBERS]; /* spar_session_push_numbers on this rank; 0: not pushed */
-    spari_record *kept;                /* of the trial with which others are compared; NULL: none */
+    spari_coupling *coupling; /* from the first step on */
+    spari_coupling *aside;    /* that of the steps, while a solution is under way that is none; NULL: there was none */
+    spari_pace pace;          /* of steps to a tolerance */
+    double number[SPARI_MOST_NUMBERS]; /* spar_session_push_numbers, this rank's; 0: not pushed */
+    spari_record *kept;                /* of a trial that others are compared with; NULL: none */
     void (*free_kept)(spari_record *kept);
     spari_advised *advised; /* of spar_session_advise; NULL: none */
 };

@@ -11,9 +11,7 @@
 
 /* Workspace per thread, in doubles (base/workspace.h, base/thread_pool.h). */
 int64_t spari_fluid_room(const spar_fluid *fluid);
-/* Whether it has nodes on this rank, or loads from a file. */
-int spari_fluid_touches(const spar_fluid *fluid);
-/* Adds the nodal loads of the last push to load [nodes][6]. */
+/* Adds the fluid's nodal loads, as last pushed, to load [nodes][6]. */
 void spari_fluid_add_loads(const spar_fluid *fluid, double *load);
 /* The same for reproducible sums. */
 void spari_fluid_add_bins(const spar_fluid *fluid, spari_bins *load);

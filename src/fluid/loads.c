@@ -73,14 +73,6 @@ void spari_fluid_revert_loads(spar_fluid *fluid) {
     copy_loads_of(fluid, fluid->load, fluid->load_accepted, SPARI_OF_PUSHED, SPARI_OF_ACCEPTED);
 }
 
-int spari_fluid_touches(const spar_fluid *fluid) {
-    int touches = fluid->set[SPAR_NODES_MOTION].n > 0 || fluid->set[SPAR_NODES_FORCE].n > 0;
-    for (size_t i = 0; i < count_loads(fluid) && !touches; i++) {
-        touches = fluid->load[i] != 0;
-    }
-    return touches;
-}
-
 void spari_fluid_add_loads(const spar_fluid *fluid, double *load) {
     for (int64_t i = 0; fluid->load && i < 6 * fluid->member->nodes; i++) {
         load[i] += fluid->load[i];

@@ -261,9 +261,6 @@ int spar_fluid_map(spar_fluid *fluid) {
     SPARI_FLUID_REQUIRE(fluid, m->committed, SPAR_ERR_STATE,
                         "the member is not committed; call spar_member_commit first");
     SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
-    SPARI_FLUID_REQUIRE(fluid, m->away != SPARI_ALL_AWAY || !spari_fluid_touches(fluid), SPAR_ERR_STATE,
-                        "this rank had no nodes on the member at the first step and does not know its motion (option "
-                        "ranks.state = touched); map before the first step, or keep ranks.state = all");
     SPARI_FLUID_REQUIRE(fluid, prepare_member(fluid) == SPAR_OK, SPAR_ERR_MEMORY, "no memory to map");
     spari_line *line = spari_line_create(m->elements, m->per_element, m->xr);
     SPARI_FLUID_REQUIRE(fluid, line, SPAR_ERR_MEMORY, "no memory to map");

@@ -117,7 +117,6 @@ int spar_member_get_learned_added_mass(const spar_member *member, int *used, dou
                                        int64_t capacity, double *eta, double *mass) {
     SPARI_QUIET;
     SPARI_TRY(spari_need_member(member, __func__));
-    SPARI_TRY(member->committed ? spari_need_here(member, __func__, SPARI_LOADS_AWAY) : SPAR_OK);
     SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
     const spari_learned *l = member->learned;
     if (used) {

@@ -26,17 +26,6 @@ int spari_need_committed(const spar_member *member, const char *call) {
     return SPAR_OK;
 }
 
-int spari_need_here(const spar_member *member, const char *call, int away) {
-    SPARI_TRY(spari_need_committed(member, call));
-    SPARI_REQUIRE(
-        member->session, member->away < away, SPAR_ERR_STATE,
-        "%s: rank %d does not know %s of '%s' (option ranks.state = touched); ask rank %d, which solves it, or "
-        "keep ranks.state = all",
-        call, spari_comm_rank(member->session->comm), away == SPARI_ALL_AWAY ? "the motion" : "the loads", member->name,
-        member->owner);
-    return SPAR_OK;
-}
-
 int spari_need_any_beam(const spar_member *member, const char *call) {
     SPARI_TRY(spari_need_member(member, call));
     SPARI_REQUIRE(member->session, member->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call,

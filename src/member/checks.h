@@ -10,9 +10,7 @@ int spari_need_member(const spar_member *member, const char *call);
 /* The member must not be committed. */
 int spari_need_open(spar_member *member, const char *call);
 int spari_need_committed(const spar_member *member, const char *call);
-/* The member must be committed, and this rank must know it well enough: less than `away` (SPARI_*_AWAY) is missing. */
-int spari_need_here(const spar_member *member, const char *call, int away);
-/* The member must be a beam, committed or not. */
+/* A beam, committed or not. */
 int spari_need_any_beam(const spar_member *member, const char *call);
 /* The member must be an uncommitted beam. */
 int spari_need_beam(spar_member *member, const char *call);

@@ -323,18 +323,8 @@ static void give_six(double *to, const double from[6]) {
     }
 }
 
-int spari_joint_need_here(const spar_joint *joint, const char *call, int away) {
-    for (int side = 0; side < 2; side++) {
-        if (joint->member[side] && joint->member[side]->assembly) { /* the motion of others is known on all ranks */
-            SPARI_TRY(spari_need_here(joint->member[side], call, away));
-        }
-    }
-    return SPAR_OK;
-}
-
 int spar_joint_get_motion(const spar_joint *joint, double motion[6], double rate[6], double acceleration[6]) {
     SPARI_TRY(need_joint(joint, __func__));
-    SPARI_TRY(joint->session->apart ? spari_joint_need_here(joint, __func__, SPARI_ALL_AWAY) : SPAR_OK);
     give_six(motion, joint->after.z);
     give_six(rate, joint->after.rate);
     if (acceleration) {
@@ -345,7 +335,6 @@ int spar_joint_get_motion(const spar_joint *joint, double motion[6], double rate
 
 int spar_joint_get_load(const spar_joint *joint, double load[6]) {
     SPARI_TRY(need_joint(joint, __func__));
-    SPARI_TRY(joint->session->apart ? spari_joint_need_here(joint, __func__, SPARI_ALL_AWAY) : SPAR_OK);
     give_six(load, joint->after.load);
     return SPAR_OK;
 }

@@ -53,9 +53,7 @@ struct spar_joint {
 int spari_member_unique(const spar_member *member, int64_t node);
 /* Whether a joint connects the member. */
 int spari_member_is_tied(const spar_member *member);
-/* Whether this rank knows the joint's members; as spari_need_here. */
-int spari_joint_need_here(const spar_joint *joint, const char *call, int away);
-/* Hash of the description before the first step. */
+/* The description as one number: all that is said of it before the first step. */
 uint64_t spari_joint_hash(const spar_joint *joint);
 /* Hash of what may change at any time: springs, load, drive. And that of all joints, which the ranks compare before
    a solution; 0 on one rank, and while joints are described. */

@@ -69,7 +69,7 @@ int spar_member_get_reference(const spar_member *member, double *x, double *q) {
 
 int spar_member_get_motion(const spar_member *member, double *q, double *v, double *a) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_here(member, __func__, SPARI_ALL_AWAY));
+    SPARI_TRY(spari_need_committed(member, __func__));
     give(q, member->after.q, 7 * member->nodes);
     give(v, member->after.v, 6 * member->nodes);
     give(a, member->after.a, 6 * member->nodes);
@@ -78,7 +78,7 @@ int spar_member_get_motion(const spar_member *member, double *q, double *v, doub
 
 int spar_member_get_loads(const spar_member *member, double *load) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_here(member, __func__, SPARI_LOADS_AWAY));
+    SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "%s: '%s': load is NULL", __func__, member->name);
     const spar_session *s = member->session;
     int used = s->phase == SPARI_BEGUN || s->phase == SPARI_SOLVED || (s->phase == SPARI_CHECKED && s->iterating);

@@ -207,9 +207,6 @@ int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta,
     SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST && (eta || n == 0), SPAR_ERR_ARGUMENT,
                   "%s: '%s': %lld places%s; give 0 to 2^40, and n etas", __func__, beam->name, (long long)n,
                   eta ? "" : " without eta");
-    if (force) { /* forces need the loads */
-        SPARI_TRY(spari_need_here(beam, __func__, SPARI_LOADS_AWAY));
-    }
     SPARI_REQUIRE(session, !force || beam->beam->stiffness, SPAR_ERR_UNSUPPORTED,
                   "%s: '%s' has no sections, its forces are not known", __func__, beam->name);
     for (int64_t i = 0; i < n; i++) {

@@ -127,9 +127,7 @@ struct spar_member {
     spari_cuts cuts;          /* of this step; for connected members, those of the first one */
     spari_means *means;       /* accelerations for fluids with substeps; NULL: those of the motion */
     spari_remake *advice;     /* of spar_session_advise; NULL: none */
-    int away;                 /* what this rank does not know of it (ranks.state = touched): SPARI_*_AWAY; 0: nothing */
 };
-enum { SPARI_LOADS_AWAY = 1, SPARI_ALL_AWAY = 2 }; /* loads and their results; motion and joints too */
 
 /* Table of the nodal arrays, used by everything that allocates, frees, saves, loads or copies a member. */
 typedef enum spari_nodal_kind { SPARI_NODAL_REFERENCE, SPARI_NODAL_MOTION, SPARI_NODAL_LOAD } spari_nodal_kind;

@@ -7,7 +7,6 @@
 #include "../base/saved_file.h"
 #include "../comm/enter.h"
 #include "../exchange/exchange.h"
-#include "../exchange/sparse.h"
 #include "../fluid/fluid.h"
 #include "../time/fidelity.h"
 #include "saved.h"
@@ -698,7 +697,6 @@ static int load_fluids(spar_session *s, reading *l) {
 
 static void put_in_force(spar_session *s, reading *l) {
     int64_t k = 0;
-    spari_spread_end(s);
     spari_saved_load(s, &l->common);
     for (spar_member *m = s->members; m; m = m->next, k++) {
         if (spari_fidelity_state_size(m) > 0) {

@@ -318,8 +318,6 @@ static void pass_coupling(passage *t, spari_coupling *c) {
     pass_count(t, &c->in_row);
     pass(t, &c->log_growth, 1);
     pass(t, &c->log_growth2, 1);
-    pass(t, &c->bound, 1);
-    pass_int(t, &c->bound_order);
     pass(t, c->missed, c->missed ? c->n : 0);
 }
 

@@ -18,13 +18,13 @@ int spari_lend(spar_session *s, const char *lender, spar_fluid_solver solve, dou
     }
     int64_t failures = s->failures;
     spari_host host;
-    s->parted = 0;
+    s->calls_differ = 0;
     spari_host_begin(&host);
     s->lent = lender;
     int answer = solve(s, s->time, dt, s->iteration, context);
     s->lent = NULL;
     spari_host_end(&host);
-    if (s->parted) { /* this rank alone called the others from the callback: they noticed */
+    if (s->calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
     if (answer == 0) {
@@ -40,12 +40,12 @@ int spari_lend_before(spar_session *s, spar_before_step before, double dt, void 
         return SPAR_OK;
     }
     int64_t failures = s->failures;
-    s->parted = 0;
+    s->calls_differ = 0;
     spari_host host;
     spari_host_begin(&host);
     int answer = before(s, s->time, dt, context), status = SPAR_OK;
     spari_host_end(&host);
-    if (s->parted) { /* this rank alone called the others from the callback: they noticed */
+    if (s->calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
     if (answer != 0 && s->failures == failures) {
@@ -65,13 +65,13 @@ spari_progress spari_progress_of(const spar_session *s, const char *call) {
 /* Between trials the session stands as the host left it; what would try or save it is refused as within one. */
 static int ask_host(spar_session *s, const spari_progress *p, double done, double expected) {
     spari_host host;
-    s->parted = 0;
+    s->calls_differ = 0;
     spari_host_begin(&host);
     s->trial = 1;
     int answer = p->tell(s, done, expected, p->context);
     s->trial = 0;
     spari_host_end(&host);
-    if (s->parted) { /* this rank alone called the others from here: they met it, and know */
+    if (s->calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
     int status = answer == 0 ? SPAR_OK

@@ -1,7 +1,6 @@
 /* Creates and destroys a session, and returns its time. */
 #include "../coupling/coupling.h"
 #include "../exchange/session_private.h"
-#include "../exchange/sparse.h"
 #include "settings.h"
 #include "work_shares.h"
 
@@ -67,7 +66,6 @@ void spar_session_destroy(spar_session **session) {
         return;
     }
     spar_session *s = *session;
-    spari_spread_end(s);
     for (spar_fluid *f = s->fluids, *next; f; f = next) {
         next = spari_fluid_next(f);
         spari_fluid_free(f);

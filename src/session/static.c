@@ -6,7 +6,6 @@
 #include "../coupling/schemes.h"
 #include "../exchange/exchange.h"
 #include "../exchange/session_private.h"
-#include "../exchange/sparse.h"
 #include "../fluid/fluid.h"
 #include "../member/body.h"
 #include "../member/checks.h"
@@ -45,7 +44,6 @@ static int check_member_static(const spar_member *m, const char *call, int load_
     SPARI_REQUIRE(s, m->row->rest, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)",
                   call, m->name);
     SPARI_TRY(check_held(m, call));
-    SPARI_TRY(spari_spread_refuse(s, call));
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
@@ -228,7 +226,6 @@ static int check_session_static(spar_session *s, const char *call, int load_step
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_TRY(check_held(m, call));
     }
-    SPARI_TRY(spari_spread_refuse(s, call));
     return s->started ? SPAR_OK : spari_session_pushes(s, call);
 }
 

@@ -5,7 +5,6 @@
 #include "../coupling/coupling.h"
 #include "../exchange/exchange.h"
 #include "../exchange/session_private.h"
-#include "../exchange/sparse.h"
 #include "../fluid/fluid.h"
 #include "../member/added_mass.h"
 #include "../member/added_mass_fit.h"
@@ -38,22 +37,9 @@ static int wrong_phase(spar_session *s, const char *call, const char *cure) {
 
 /* ---- begin ---- */
 
-/* A learned added mass changes the accelerations for fluids, which ranks that solve nothing do not know. */
-static int check_learning(spar_session *s, const char *call) {
-    for (const spar_member *m = s->members; m; m = m->next) {
-        SPARI_REQUIRE(s, !m->learned || m->guess_count > 0, SPAR_ERR_UNSUPPORTED,
-                      "%s: member '%s' learns the fluid's added mass, in substeps or steps of several lengths, and "
-                      "ranks that solve nothing do not know when it is known (option ranks.state = touched): take one "
-                      "substep and steps of one length, give a first guess by spar_member_set_added_mass, or keep "
-                      "ranks.state = all",
-                      call, m->name);
-    }
-    return SPAR_OK;
-}
-
-/* Whether fluids need mean accelerations from the step dt on (member/mean_acceleration.h). */
+/* Whether fluids are to see mean accelerations from the step dt on (member/mean_acceleration.h). */
 static int is_uneven(const spar_session *s, double dt) {
-    return s->uneven[0] || !spari_steps_even(s, dt) || (!s->touched && spari_scheme_turns(s, dt));
+    return s->uneven[0] || !spari_steps_even(s, dt) || spari_scheme_turns(s, dt);
 }
 
 /* uneven: result of is_uneven. */
@@ -68,16 +54,7 @@ static int check_begin(spar_session *s, const char *call, double dt, int uneven)
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
                       "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
     }
-    SPARI_REQUIRE(
-        s, !s->apart || s->touched, SPAR_ERR_STATE,
-        "%s: option ranks.state was set to all after the first step, and no rank knows all of it any more; set "
-        "it to touched again, or save, and load into a session with ranks.state = all",
-        call);
-    SPARI_TRY(spari_pace_check(s, call));
     const int mean = s->substeps > 1 || uneven;
-    if (s->touched && mean && spari_comm_size(s->comm) > 1) {
-        SPARI_TRY(check_learning(s, call));
-    }
     for (spar_member *m = s->members; m && mean; m = m->next) {
         SPARI_TRY(spari_named(s, call, spari_means_make(m)));
     }
@@ -127,27 +104,17 @@ static void begin_member(spar_member *m, const void *context) {
         const double rest[6] = {0};
         m->drive[1] = spari_pose_of(m->drive[0].q, rest, rest);
     }
-    if (!t->s->aside) {
-        predict_loads(m, t->order, t->dt, t->s->dt_last);
-    }
+    predict_loads(m, t->order, t->dt, t->s->dt_last);
     spari_learned_begin(m);
     spari_member_begin(m);
 }
 
-/* Allocates the exchange between ranks for the next steps. In trials each rank has the whole state. */
-static int prepare_exchange(spar_session *s) {
-    if (s->apart || (s->touched && !s->trial && spari_comm_size(s->comm) > 1)) {
-        return s->apart ? spari_spread_prepare(s) : spari_spread_begin(s);
-    }
-    return s->started && spari_session_is_sealed(s) ? SPAR_OK : spari_session_seal(s, SPAR_OK);
-}
-
-/* Loads pushed before the first step are those at t^0. */
+/* Loads pushed before the clock runs are those at t^0. */
 static int begin_loads(spar_session *s) {
     int pushed = 0;
     SPARI_TRY(spari_session_exchange_loads(s, &pushed));
-    s->past = pushed ? s->past : -1; /* zeros that nobody pushed are no basis for extrapolation */
-    for (spar_member *m = s->members; m && !s->aside; m = m->next) {
+    s->past = pushed ? s->past : -1; /* zeros that nobody has pushed are nothing to extrapolate from */
+    for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load_history[0]);
         memcpy(m->load_before, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
         if (m->work) {
@@ -173,7 +140,9 @@ int spar_step_begin(spar_session *session, double dt) {
         SPARI_TRY(spari_named(s, __func__, spari_enter(s, "coupling", spari_coupling_prepare(s))));
         s->coupling_stale = 0;
     }
-    SPARI_TRY(spari_named(s, __func__, prepare_exchange(s)));
+    if (!s->started || !spari_session_is_sealed(s)) {
+        SPARI_TRY(spari_named(s, __func__, spari_session_seal(s, SPAR_OK)));
+    }
     if (!s->started) {
         SPARI_TRY(begin_loads(s));
     }
@@ -255,9 +224,7 @@ int spar_step_solve(spar_session *session) {
         s->phase = SPARI_BEGUN;
         return spari_coupling_solve_failed(s, __func__, spari_named(s, __func__, status));
     }
-    if (!s->aside) {
-        spari_threads_each(s, solved_member, NULL);
-    }
+    spari_threads_each(s, solved_member, NULL);
     s->failed = 0;
     s->phase = SPARI_SOLVED;
     return SPAR_OK;
@@ -265,23 +232,7 @@ int spar_step_solve(spar_session *session) {
 
 /* ---- check ---- */
 
-/* Ranks that know the loads compare them; the result is sent to all. */
-static int check_apart(spar_session *s, const char *call, int *ended) {
-    spari_found found = {.ended = 1};
-    int status = SPAR_OK;
-    if (!s->aside) {
-        status = spari_coupling_check(s, call, &found.ended);
-        spari_coupling_last(s, &found.residual, &found.size);
-    }
-    status = spari_spread_found(s, status, &found);
-    if (s->aside) {
-        spari_coupling_record(s, found.residual, found.size);
-    }
-    *ended = found.ended;
-    return status;
-}
-
-/* status: of the host's actions on this rank since the solution */
+/* status: of what this rank's host has done since the solution */
 static int check_iteration(spar_session *s, const char *call, int status, int *done) {
     int ended = 0, solved = s->phase == SPARI_SOLVED;
     if (s->phase != SPARI_SOLVED) {
@@ -299,7 +250,7 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     }
     s->failed = 1; /* until everything below has succeeded */
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
-    for (spar_member *m = s->members; m && !s->aside; m = m->next) {
+    for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load_pushed);
         if (!s->standing) {
             spari_learned_note(m, s->iteration + 1);
@@ -310,7 +261,7 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     }
     s->iteration++;
     s->phase = SPARI_CHECKED;
-    SPARI_TRY(s->apart ? check_apart(s, call, &ended) : spari_coupling_check(s, call, &ended));
+    SPARI_TRY(spari_coupling_check(s, call, &ended));
     s->failed = 0;
     s->iterating = !ended;
     *done = ended;
@@ -393,13 +344,11 @@ int spar_step_accept(spar_session *session) {
         spari_start_accept(s);
         return SPAR_OK;
     }
-    if (!s->aside) {
-        spari_coupling_accept(s);
-        for (spar_joint *j = s->joints; j; j = j->next) {
-            spari_work_of_joint(j);
-        }
-        spari_threads_each(s, shift_history, s);
+    spari_coupling_accept(s);
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        spari_work_of_joint(j);
     }
+    spari_threads_each(s, shift_history, s);
     spari_pace_accept(s);
     spari_threads_each(s, accept_member, NULL);
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
@@ -429,9 +378,7 @@ static void reject(spar_session *s) {
         spari_start_reject(s);
         return;
     }
-    if (!s->aside) {
-        spari_coupling_reject(s);
-    }
+    spari_coupling_reject(s);
     spari_pace_reject(s);
     s->uneven[1] = s->uneven[0];
     for (spar_member *m = s->members; m; m = m->next) {
@@ -447,9 +394,6 @@ static void reject(spar_session *s) {
     s->phase = SPARI_IDLE;
     s->started = s->step > 0;
     s->past = s->past > 0 ? s->past : 0;
-    if (!s->started) { /* as known on all ranks */
-        spari_spread_end(s);
-    }
 }
 
 int spar_step_reject(spar_session *session) {

@@ -69,15 +69,6 @@ double spari_pace_judge(const spar_session *s) {
     return ratio;
 }
 
-int spari_pace_check(const spar_session *s, const char *call) {
-    SPARI_REQUIRE(
-        s, !spari_pace_is_set(s) || !(s->touched && spari_comm_size(s->comm) > 1), SPAR_ERR_STATE,
-        "%s: a tolerance (drift of spar_session_set_tolerance) needs the motion of all members on every rank: "
-        "leave the option ranks.state at all, or set no tolerance",
-        call);
-    return SPAR_OK;
-}
-
 void spari_pace_accept(spar_session *s) {
     if (!spari_pace_is_set(s) || s->trial) {
         return;

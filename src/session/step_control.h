@@ -8,9 +8,7 @@
 static inline int spari_pace_is_set(const spar_session *session) {
     return session->tolerance_drift > 0;
 }
-/* Checks that every rank has the whole state, which step-size control needs. Local. */
-int spari_pace_check(const spar_session *session, const char *call);
-/* Accepts the current step as the last one; or rejects it. Local. */
+/* The step under way, whose motion has been found, becomes the last one; or it is given up. Local. */
 void spari_pace_accept(spar_session *session);
 void spari_pace_reject(spar_session *session);
 /* Error of the current step relative to the tolerance. Local. */

@@ -14,7 +14,7 @@
 
 int spar_member_get_reaction(const spar_member *member, double load[6]) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_here(member, __func__, SPARI_LOADS_AWAY));
+    SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "%s: '%s': load is NULL", __func__, member->name);
     return spari_named(member->session, __func__, spari_member_reaction(member, load));
 }
@@ -145,7 +145,7 @@ int spari_energy_of_body(const spar_member *m, double energy[4]) {
 
 int spar_member_get_energy(const spar_member *member, int64_t capacity, double *energy) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_here(member, __func__, SPARI_ALL_AWAY));
+    SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
     double found[SPAR_ENERGY_COUNT] = {0};
     int status = member->row->energy ? member->row->energy(member, found) : SPAR_OK;

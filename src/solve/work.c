@@ -195,7 +195,6 @@ static double spring_energy(const spar_joint *j) {
 int spar_joint_get_energy(const spar_joint *joint, int64_t capacity, double *energy) {
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, joint, SPAR_ERR_ARGUMENT, "%s: the joint is NULL; create it first", __func__);
-    SPARI_TRY(joint->session->apart ? spari_joint_need_here(joint, __func__, SPARI_LOADS_AWAY) : SPAR_OK);
     SPARI_TRY(spari_need_capacity(joint->session, __func__, capacity));
     SPARI_REQUIRE(joint->session, keeps_account(joint), SPAR_ERR_STATE,
                   "%s: no account is kept of '%s'; ask for SPAR_EFFECT_WORK of a member that it ties, with "
@@ -247,7 +246,7 @@ void spari_work_carry(const spar_member *from, spar_member *m) {
 
 int spar_member_get_work(const spar_member *member, int64_t capacity, double *work) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_here(member, __func__, SPARI_LOADS_AWAY));
+    SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
     SPARI_REQUIRE(member->session, member->work, SPAR_ERR_STATE,
                   "%s: no account is kept of '%s'; ask for SPAR_EFFECT_WORK with spar_member_set_effects before it is "

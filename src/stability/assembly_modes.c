@@ -347,7 +347,7 @@ static int modes_of_assembly(spar_member *m, int64_t n, double *frequency, doubl
 
 int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_here(member, __func__, SPARI_ALL_AWAY));
+    SPARI_TRY(spari_need_committed(member, __func__));
     spar_session *s = member->session;
     SPARI_TRY(spari_named(s, __func__, spari_modes_need_mass(member)));
     SPARI_REQUIRE(s, n >= 0, SPAR_ERR_ARGUMENT, "%s: '%s': %lld modes", __func__, member->name, (long long)n);

@@ -290,7 +290,7 @@ static int eigenvalues_of(spar_member *m, int64_t n, double complex shift, doubl
 int spar_member_solve_eigenvalues(spar_member *member, int64_t n, const double shift[2], double *eigenvalue,
                                   double *shapes, double frame[3]) {
     SPARI_QUIET;
-    SPARI_TRY(spari_need_here(member, __func__, SPARI_ALL_AWAY));
+    SPARI_TRY(spari_need_committed(member, __func__));
     spar_session *s = member->session;
     SPARI_TRY(spari_named(s, __func__, spari_modes_need_mass(member)));
     SPARI_REQUIRE(s, n >= 0, SPAR_ERR_ARGUMENT, "%s: '%s': %lld eigenvalues", __func__, member->name, (long long)n);

@@ -10,9 +10,9 @@
 #include "../coupling/coupling.h"
 #include "../exchange/exchange.h"
 #include "../exchange/session_private.h"
-#include "../exchange/sparse.h"
 #include "../fluid/fluid.h"
 #include "../member/checks.h"
+#include "../session/callbacks.h"
 #include "../session/initial_accelerations.h"
 #include "../solve/life.h"
 
@@ -50,12 +50,13 @@ void spari_wish_free(spari_wish *wish) {
     { offsetof(spar_session, field), sizeof((spar_session *)NULL)->field }
 static const struct {
     size_t at, size;
-} saved[] = {SPARI_SAVED(failures), SPARI_SAVED(log),           SPARI_SAVED(log_context), SPARI_SAVED(coupling_stale),
-             SPARI_SAVED(time),     SPARI_SAVED(time_rest),     SPARI_SAVED(dt),          SPARI_SAVED(dt_last),
-             SPARI_SAVED(uneven),   SPARI_SAVED(step),          SPARI_SAVED(iteration),   SPARI_SAVED(phase),
-             SPARI_SAVED(past),     SPARI_SAVED(order),         SPARI_SAVED(iterating),   SPARI_SAVED(started),
-             SPARI_SAVED(failed),   SPARI_SAVED(lent),          SPARI_SAVED(standing),    SPARI_SAVED(trial),
-             SPARI_SAVED(parted),   SPARI_SAVED(gravity_before)};
+} saved[] = {
+    SPARI_SAVED(failures),     SPARI_SAVED(log),           SPARI_SAVED(log_context), SPARI_SAVED(coupling_stale),
+    SPARI_SAVED(time),         SPARI_SAVED(time_rest),     SPARI_SAVED(dt),          SPARI_SAVED(dt_last),
+    SPARI_SAVED(uneven),       SPARI_SAVED(step),          SPARI_SAVED(iteration),   SPARI_SAVED(phase),
+    SPARI_SAVED(past),         SPARI_SAVED(order),         SPARI_SAVED(iterating),   SPARI_SAVED(started),
+    SPARI_SAVED(failed),       SPARI_SAVED(lent),          SPARI_SAVED(standing),    SPARI_SAVED(trial),
+    SPARI_SAVED(calls_differ), SPARI_SAVED(gravity_before)};
 
 static void copy_field(spar_session *to, const spar_session *from, size_t at, size_t size) {
     memcpy((char *)to + at, (const char *)from + at, size);
@@ -402,7 +403,6 @@ int spari_trial_enter(spar_session *s, const char *call, const spari_run *run, d
 
 int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
     SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
-    SPARI_TRY(spari_spread_refuse(s, call));
     SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
                   call);
     for (const spar_member *m = s->members; m; m = m->next) {

@@ -6,7 +6,6 @@
 #include "../comm/enter.h"
 #include "../exchange/exchange.h"
 #include "../exchange/session_private.h"
-#include "../exchange/sparse.h"
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"
 #include "../member/beam.h"
@@ -184,7 +183,6 @@ static void confirm(spar_session *s, change *c) {
 static int check_apply(spar_session *s, const char *call) {
     const spari_advised *a = s->own->advised;
     SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
-    SPARI_TRY(spari_spread_refuse(s, call));
     SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
                   call);
     SPARI_REQUIRE(s, a && a->given, SPAR_ERR_STATE, "%s: there is no advice yet; call %s first", call,

@@ -179,8 +179,6 @@ int spar_member_get_error(spar_member *member, double *step, double *nodes) {
                   "%s: a static solution, a start or a trial is under way; ask between steps", __func__);
     SPARI_REQUIRE(s, !nodes || s->phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is under way; the error of the nodes is found between steps", __func__);
-    SPARI_REQUIRE(s, !m->away, SPAR_ERR_STATE, "%s: this rank does not know the motion of '%s' (ranks.state = touched)",
-                  __func__, m->name);
     if (step) {
         found[0] = s->phase >= SPARI_SOLVED ? spari_pace_error(m) : m->step_error;
     }

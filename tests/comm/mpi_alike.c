@@ -93,9 +93,10 @@ static void trials(void **state) {
 
 static void advice(void **state) {
     (void)state;
-    static const char *const option[][2] = {
-        {"advise.dt", "keep"},      {"advise.nodes", "keep"}, {"advise.fidelity", "keep"}, {"advise.coupling", "keep"},
-        {"advise.fluid_cost", "7"}, {"advise.limit", "7"},    {"coupling.target", "0.5"}};
+    static const char *const option[][2] = {{"advise.dt", "keep"},          {"advise.nodes", "keep"},
+                                            {"advise.fidelity", "keep"},    {"advise.coupling", "keep"},
+                                            {"advise.fluid_cost", "7"},     {"advise.limit", "7"},
+                                            {"coupling.motion_rtol", "0.5"}};
     enum { OPTIONS = sizeof option / sizeof *option };
     double a[SPAR_ADVICE_COUNT];
     for (int k = 0; k < OPTIONS + 3 && size > 1; k++) {

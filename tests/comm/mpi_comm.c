@@ -52,6 +52,16 @@ static void sums(void **state) {
     for (int i = 0; i < 5; i++) {
         assert_true(x[i] == expected * (i + 1));
     }
+    spari_bins bins[6];
+    memset(bins, 0, sizeof bins);
+    for (int i = 0; i < 5; i++) {
+        spari_bins_add(bins + i, (rank + 1) * (i + 1));
+    }
+    assert_int_equal(spari_comm_prepare_bins(ranks, text, sizeof text), SPAR_OK);
+    assert_int_equal(spari_comm_sum_bins(ranks, bins, 5, SPAR_OK, text, sizeof text), SPAR_OK);
+    for (int i = 0; i < 5; i++) {
+        assert_true(spari_bins_value(bins + i) == expected * (i + 1));
+    }
     assert_int_equal(spari_comm_sum(ranks, x, 0, SPAR_OK, text, sizeof text), SPAR_OK); /* nothing but the status */
 }
 
@@ -172,68 +182,6 @@ static void shares(void **state) {
     free(x);
 }
 
-/* Parts of ranks p to size - 1, whose root is the last rank: sums of (r + 1)(i + 1) over them come to the root, and go
-   from there to all of a part, as doubles and as bins, in messages of `most` numbers. More parts than there are calls
-   under way at a time. A status that a rank fails with is told to all, whatever part it is in. */
-static void parts_of(int most) {
-    enum { MOST = 70, LONG = 11 };
-    spari_comm *part[MOST];
-    spari_piece piece[2][MOST];
-    static double x[MOST][LONG];
-    static spari_bins b[MOST][LONG];
-    char text[SPARI_MESSAGE_SIZE] = "";
-    int pieces = 0, root = size - 1;
-    ranks->most = most;
-    assert_int_equal(spari_comm_prepare_bins(ranks, text, sizeof text), SPAR_OK);
-    memset(b, 0, sizeof b);
-    for (int k = 0; k < MOST; k++) {
-        int in = rank >= k % size;
-        assert_int_equal(spari_comm_split(ranks, in, root, &part[k], text, sizeof text), SPAR_OK);
-        assert_true((part[k] != NULL) == (in && k % size < size - 1));
-        if (part[k]) {
-            assert_int_equal(spari_comm_size(part[k]), size - k % size);
-            assert_true((spari_comm_rank(part[k]) == 0) == (rank == root));
-            piece[0][pieces] = (spari_piece){part[k], x[k], LONG};
-            piece[1][pieces++] = (spari_piece){part[k], b[k], LONG};
-        }
-        for (int i = 0; i < LONG; i++) {
-            x[k][i] = (rank + 1) * (i + 1);
-            spari_bins_add(&b[k][i], x[k][i]);
-        }
-    }
-    assert_int_equal(spari_comm_collect(ranks, piece[0], pieces, 0, text, sizeof text), SPAR_OK);
-    assert_int_equal(spari_comm_collect(ranks, piece[1], pieces, 1, text, sizeof text), SPAR_OK);
-    for (int k = 0; k < MOST && rank == root; k++) {
-        int first = k % size;
-        double sum = 0.5 * (size * (size + 1) - first * (first + 1));
-        for (int i = 0; i < LONG; i++) {
-            assert_true(x[k][i] == sum * (i + 1) && spari_bins_value(&b[k][i]) == sum * (i + 1));
-        }
-    }
-    assert_int_equal(spari_comm_spread(ranks, piece[0], pieces, SPAR_OK, text, sizeof text), SPAR_OK);
-    for (int k = 0; k < MOST; k++) {
-        int first = k % size;
-        for (int i = 0; i < LONG && part[k]; i++) {
-            assert_true(x[k][i] == 0.5 * (size * (size + 1) - first * (first + 1)) * (i + 1));
-        }
-    }
-    for (int failing = 0; failing < size; failing++) {
-        (void)snprintf(text, sizeof text, "wings fell off at %d", rank);
-        int status = rank == failing ? SPAR_ERR_NUMERIC : SPAR_OK;
-        check_told(failing, spari_comm_spread(ranks, piece[0], pieces, status, text, sizeof text), text);
-    }
-    for (int k = 0; k < MOST; k++) {
-        spari_comm_destroy(&part[k]);
-    }
-    ranks->most = INT_MAX;
-}
-
-static void parts(void **state) {
-    (void)state;
-    parts_of(INT_MAX);
-    parts_of(4);
-}
-
 /* Sums, shares and broadcasts in messages of 3 numbers, as where they are more than 2^31: the same. */
 static void pieces(void **state) {
     ranks->most = 3;
@@ -314,8 +262,8 @@ int main(int argc, char **argv) {
         cmocka_unit_test(failures),  cmocka_unit_test(all_fail),
         cmocka_unit_test(shares),    cmocka_unit_test(different_calls),
         cmocka_unit_test(arguments), cmocka_unit_test(refused_on_one_rank),
-        cmocka_unit_test(gone),      cmocka_unit_test(parts),
-        cmocka_unit_test(pieces),    cmocka_unit_test(moves),
+        cmocka_unit_test(gone),      cmocka_unit_test(pieces),
+        cmocka_unit_test(moves),
     };
     char text[SPARI_MESSAGE_SIZE] = "";
     int failed, worst = 0;

@@ -74,7 +74,7 @@ static const char everything[] =
     "[session]  # of all hosts\r\n"
     "gravity 0 0.5 -9.81\nrho_inf 0.7\nsubsteps 2\nnewton 1e-14 1e-11 40\nscheme aitken\natol 1e-8\nrtol 1e-5\n"
     "max_iterations 33\nrelaxation 0.6\npredictor 2\nreproducible on\noption coupling.reuse 7\n"
-    "option coupling.target 0.02\n"
+    "option coupling.filter 0.02\n"
     "[session mine]\nrho_inf 0.8\nmax_iterations 44\n[session other]\nrho_inf 0\n"
     "[beam wing]\nelements 2\nnodes 5\nquadrature lobatto 6\n"
     "axis 0 0 0 0 0\naxis 0.5 1 0 0.1 5\naxis 1 2 0.25 0.125 10\ntwist_scale -0.017453292519943295\n"
@@ -219,12 +219,12 @@ static void settings_by_hand(spar_session *s) {
     OK(s, spar_session_set_predictor(s, 2));
     OK(s, spar_session_set_reproducible(s, 1));
     OK(s, spar_session_set_option(s, "coupling.reuse", "7"));
-    OK(s, spar_session_set_option(s, "coupling.target", "0.02"));
+    OK(s, spar_session_set_option(s, "coupling.filter", "0.02"));
 }
 
 /* What a session is set to, as a text: two that are alike give one text. */
 static void settings_text(const spar_session *s, char *to, size_t size) {
-    static const char *const option[] = {"coupling.reuse", "coupling.target", "coupling.filter"};
+    static const char *const option[] = {"coupling.reuse", "coupling.columns", "coupling.filter"};
     double g[3], rho, newton[2], tolerance[2], omega;
     int sub, most, scheme, limit, order, bins;
     char text[3][32];

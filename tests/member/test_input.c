@@ -242,7 +242,6 @@ static void test_read_back(void **state) {
                                             {"coupling.filter", "0.0001", "0.12345678901234566"},
                                             {"coupling.motion_atol", "0", "1e-09"},
                                             {"coupling.motion_rtol", "0", "0.1"},
-                                            {"coupling.target", "0.01", "1e-15"},
                                             {"fluid.theta", "average", "group"},
                                             {"fluid.far", "take", "refuse"},
                                             {"fluid.audit", "on", "off"},

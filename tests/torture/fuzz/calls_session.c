@@ -224,14 +224,13 @@ void do_spar_session_set_threads(call *c) {
 }
 
 void do_spar_session_set_option(call *c) {
-    static const char *const keys[] = {"coupling.unconverged", "fluid.theta",     "fluid.far",
-                                       "fluid.audit",          "advise.dt",       "advise.nodes",
-                                       "advise.fidelity",      "advise.coupling", "coupling.columns",
-                                       "coupling.reuse",       "coupling.filter", "coupling.motion_atol",
-                                       "coupling.motion_rtol", "coupling.target", "advise.fluid_cost",
-                                       "advise.limit",         "coupling.norm",   "coupling.patience",
-                                       "coupling.estimate",    "ranks.state",     "fluid.added_mass",
-                                       "newton.stop"};
+    static const char *const keys[] = {"coupling.unconverged", "fluid.theta",       "fluid.far",
+                                       "fluid.audit",          "advise.dt",         "advise.nodes",
+                                       "advise.fidelity",      "advise.coupling",   "coupling.columns",
+                                       "coupling.reuse",       "coupling.filter",   "coupling.motion_atol",
+                                       "coupling.motion_rtol", "advise.fluid_cost", "advise.limit",
+                                       "coupling.norm",        "coupling.patience", "coupling.estimate",
+                                       "fluid.added_mass",     "newton.stop"};
     static const char *const values[][3] = {{"error", "accept", "accept"},
                                             {"average", "group", "group"},
                                             {"take", "refuse", "refuse"},
@@ -245,14 +244,11 @@ void do_spar_session_set_option(call *c) {
                                             {"0", "1e-4", "0.5"},
                                             {"0", "1e-12", "1e-3"},
                                             {"0", "1e-6", "0.1"},
-                                            {"0.01", "1", "1e-15"},
                                             {"0", "1", "1e-6"},
                                             {"0", "1000", "0.5"},
                                             {"motion", "loads", "loads"},
                                             {"1", "3", "1000000"},
                                             {"off", "on", "on"},
-                                            {"all", "touched", "touched"},
-
                                             {"acceleration", "velocity", "velocity"},
                                             {"tied", "strict", "tied"}};
     static const char *const strange[] = {"",   "nan",   "inf",    "-1", "1e999",  "1,5",  "0x10",  " 1",   "1 ",

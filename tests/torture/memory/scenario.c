@@ -269,12 +269,10 @@ static void settings(spar_session *s) {
                                             {"coupling.columns", "10"},
                                             {"coupling.reuse", "2"},
                                             {"coupling.filter", "1e-5"},
-                                            {"coupling.target", "0.02"},
                                             {"coupling.motion_rtol", "1e-3"},
                                             {"fluid.theta", "group"},
                                             {"fluid.far", "take"},
                                             {"fluid.audit", "on"},
-                                            {"ranks.state", "all"},
                                             {"advise.fluid_cost", "0"},
                                             {"advise.limit", "0"},
                                             {"advise.coupling", "vary"}};

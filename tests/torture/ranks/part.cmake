@@ -1,5 +1,5 @@
 # The short form: on 2 ranks what comes first in some seconds, on 3 what chance takes, by a seed that is new with every
-# change of the sources; on 3 with ranks that know what they touch; and on 2 with sums that go over to other nodes.
+# change of the sources; and on 2 with sums that go over to other nodes.
 if(SPAR_MPI)
   add_executable(torture_ranks "${spar_torture_dir}/ranks.c")
   set_target_properties(torture_ranks PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
@@ -7,9 +7,8 @@ if(SPAR_MPI)
   target_link_options(torture_ranks PRIVATE "LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc")
   set(case_np2 2 8 all)
   set(case_np3 3 6 all)
-  set(case_touched_np3 3 6 touched)
   set(case_binned_np2 2 6 binned spar_session_advise)
-  foreach(case IN ITEMS np2 np3 touched_np3 binned_np2)
+  foreach(case IN ITEMS np2 np3 binned_np2)
     list(GET case_${case} 0 ranks)
     list(GET case_${case} 1 seconds)
     list(SUBLIST case_${case} 2 2 state)

@@ -3,14 +3,12 @@
    turn: all ranks answer what they should, nobody waits (a case of more than LIMIT seconds ends the program), and the
    next steps have the bits of a session beside it to which nothing has happened.
 
-       mpiexec -np 2 ranks [seconds] [seed] [all|touched|binned] [call]
+       mpiexec -np 2 ranks [seconds] [seed] [all|binned] [call]
 
    The short form takes a part of the cases, chosen by the seed, until the seconds are over; without seconds all of them
-   are taken. touched: with the option ranks.state = touched, where rank 0 solves, the last one
-   has the fluid, and others touch nothing. binned: with reproducible sums, and advice that
-   varies the nodes, so that the sums go over to other nodes. call:
-   of the collective ones this alone. Library and tests are linked with --wrap=malloc,calloc,realloc, which is how an
-   allocation fails here. */
+   are taken. binned: with reproducible sums, and advice that varies the nodes, so that the sums go over to other nodes.
+   call: of the collective ones this alone. Library and tests are linked with --wrap=malloc,calloc,realloc, which is how
+   an allocation fails here. */
 #include "scene.h"
 
 #include <mpi.h>
@@ -24,8 +22,8 @@
 enum { LIMIT = 20, NODES = 4, STATE = 25 * NODES + 25 + 18 + 2, FAILURES = 20 };
 
 static const double dt = 0.02;
-static int rank, size, wet; /* wet: the rank that has the fluid's nodes */
-static int touched, binned;
+static int rank, size; /* rank 0 has the fluid's nodes */
+static int binned;
 static const char *asked;             /* the call under test; NULL: all */
 static char name[256];                /* of the case, for who has to look for it */
 static char saved[64], elsewhere[64]; /* files: of all ranks, and never written */
@@ -86,7 +84,6 @@ static void describe(scene *c) {
     scene_box(K, M);
     MUST(s, spar_session_set_gravity(s, gravity));
     MUST(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 0, 1e-8, 60));
-    MUST(s, spar_session_set_option(s, "ranks.state", touched ? "touched" : "all"));
     MUST(s, spar_session_set_reproducible(s, binned));
     MUST(s, spar_session_set_option(s, "advise.nodes", binned ? "vary" : "keep"));
     MUST(s, spar_session_set_option(s, "advise.fidelity", "keep"));
@@ -105,8 +102,8 @@ static void ready(scene *c) {
     MUST(s, spar_line_create(s, "rope", c->beam, NODES - 1, tip, c->body, 0, (double[]){0, 5, 0}, &c->rope));
     MUST(s, spar_line_set_spring(c->rope, 2, 0.1, 9, 0));
     MUST(s, spar_fluid_create(c->beam, "tip", &c->fluid));
-    MUST(s, spar_fluid_set_motion_nodes(c->fluid, rank == wet, rank == wet ? tip : NULL));
-    MUST(s, spar_fluid_set_force_nodes(c->fluid, rank == wet, rank == wet ? tip : NULL));
+    MUST(s, spar_fluid_set_motion_nodes(c->fluid, rank == 0, rank == 0 ? tip : NULL));
+    MUST(s, spar_fluid_set_force_nodes(c->fluid, rank == 0, rank == 0 ? tip : NULL));
     MUST(s, spar_fluid_map(c->fluid));
     MUST(s, spar_aero_create(0, NULL, &c->aero));
 }
@@ -136,14 +133,14 @@ static int solve(spar_session *s, double t, double step, int iteration, void *co
     if (c->calls == c->user_at) {
         return 77;
     }
-    if (spar_fluid_pull_motion(c->fluid, 1, NULL, rank == wet ? v : NULL) != SPAR_OK) {
+    if (spar_fluid_pull_motion(c->fluid, 1, NULL, rank == 0 ? v : NULL) != SPAR_OK) {
         return 1;
     }
     for (int k = 0; k < 3; k++) {
         force[k] = -0.5 * v[k] + (k == 1 ? sin(3 * (t + step)) : 0);
     }
     force[0] = c->calls == c->nan_at ? NAN : force[0];
-    (void)spar_fluid_push_forces(c->fluid, rank == wet ? force : NULL, NULL);
+    (void)spar_fluid_push_forces(c->fluid, rank == 0 ? force : NULL, NULL);
     (void)s;
     return 0;
 }
@@ -154,24 +151,16 @@ static int before(spar_session *s, double t, double step, void *context) {
     return c->inner > 100 ? (void)inner_call(c), 0 : 0;
 }
 
-/* What this rank knows: with the option touched not all of it, and then it says so. */
-static void see(const scene *c, int status, const char *what) {
-    if (!(touched && status == SPAR_ERR_STATE && strstr(spar_session_message(c->session), "ranks.state"))) {
-        must(status, what, c->session);
-    }
-}
-#define SEE(c, call) see(c, call, #call)
-
 static void look(const scene *c, double *out) {
     int64_t steps = 0;
     memset(out, 0, STATE * sizeof *out);
-    SEE(c, spar_member_get_motion(c->beam, out, out + 7 * NODES, out + 13 * NODES));
-    SEE(c, spar_member_get_loads(c->beam, out + 19 * NODES));
+    MUST(c->session, spar_member_get_motion(c->beam, out, out + 7 * NODES, out + 13 * NODES));
+    MUST(c->session, spar_member_get_loads(c->beam, out + 19 * NODES));
     out += 25 * NODES;
-    SEE(c, spar_member_get_motion(c->body, out, out + 7, out + 13));
-    SEE(c, spar_member_get_loads(c->body, out + 19));
-    SEE(c, spar_joint_get_motion(c->rope, out + 25, out + 31, NULL));
-    SEE(c, spar_joint_get_load(c->rope, out + 37));
+    MUST(c->session, spar_member_get_motion(c->body, out, out + 7, out + 13));
+    MUST(c->session, spar_member_get_loads(c->body, out + 19));
+    MUST(c->session, spar_joint_get_motion(c->rope, out + 25, out + 31, NULL));
+    MUST(c->session, spar_joint_get_load(c->rope, out + 37));
     MUST(c->session, spar_session_get_time(c->session, out + 43, &steps, NULL));
     out[44] = (double)steps;
 }
@@ -542,22 +531,15 @@ static void begin_both(scene *hit, scene *calm, enum stage stage) {
             MUST(calm->session, make_step(calm, &a));
         }
         MUST(hit->session, make_save(hit, &a));
-        if (!touched) {
-            MUST(hit->session, make_try(hit, &a));
-            MUST(hit->session, make_advise(hit, &a));
-            MUST(calm->session, make_advise(calm, &a));
-        }
+        MUST(hit->session, make_try(hit, &a));
+        MUST(hit->session, make_advise(hit, &a));
+        MUST(calm->session, make_advise(calm, &a));
     }
 }
 
 static void end_both(scene *hit, scene *calm) {
     end(hit);
     end(calm);
-}
-
-/* Trials, and the advice they give, want a whole state on each rank; that they are refused is a case of its own. */
-static int is_refused(const struct call *call) {
-    return touched && (call->has & CALLBACKS || call->make == make_apply || call->make == make_within);
 }
 
 /* These scenes are in no equilibrium, which each rank finds for itself: its failure stands beside that of the rank
@@ -567,24 +549,7 @@ static int wants_rest(const struct call *call) {
 }
 
 static int is_left_out(const struct call *call) {
-    return is_refused(call) || (asked && strcmp(call->name, asked) != 0);
-}
-
-static void refused(void) {
-    scene hit, calm;
-    if (!touched) {
-        return;
-    }
-    begin_both(&hit, &calm, IDLE);
-    for (int i = COMMIT; i < CALLS; i++) {
-        if (is_refused(calls + i)) {
-            const arguments a = good();
-            start(UNEQUAL, "%s with %s on rank %d", calls[i].name, "half a state", 0);
-            expect(&hit, calls[i].make(&hit, &a), SPAR_ERR_STATE, calls[i].name);
-            goes_on(&hit, &calm, IDLE);
-        }
-    }
-    end_both(&hit, &calm);
+    return asked && strcmp(call->name, asked) != 0;
 }
 
 /* ---- unequal arguments ---- */
@@ -807,11 +772,9 @@ static const struct setting {
     {"coupling.columns", "coupling.columns", "7", "30"},
     {"coupling.reuse", "coupling.reuse", "2", "5"},
     {"coupling.filter", "coupling.filter", "0.1", "1e-4"},
-    {"coupling.target", "coupling.target", "0.1", "0.01"},
     {"coupling.motion_atol", "coupling.motion_atol", "1", "0"},
     {"coupling.motion_rtol", "coupling.motion_rtol", "1", "0"},
     {"fluid.theta", "fluid.theta", "group", "average"},
-    {"ranks.state", "ranks.state", "touched", "all"},
     {"advise.dt", "advise.dt", "keep", "vary"},
     {"advise.nodes", "advise.nodes", "vary", "keep"},
     {"advise.fidelity", "advise.fidelity", "vary", "keep"},
@@ -857,7 +820,7 @@ static int apply_number(spar_session *s, int k, int other) {
 }
 
 static void apply(scene *c, int k, int other) {
-    const char *turned = touched ? "ranks.state" : binned ? "advise.nodes" : ""; /* as it was, and the other way */
+    const char *turned = binned ? "advise.nodes" : ""; /* as it was, and the other way */
     int value = set[k].key && strcmp(set[k].key, turned) == 0 ? !other : other;
     MUST(c->session, set[k].key ? set_option(c->session, set[k].key, value ? set[k].value : set[k].as_it_was)
                                 : apply_number(c->session, k, other));
@@ -869,12 +832,7 @@ static void unequal_setting(const struct call *call, int k, int bad, scene *hit,
     if (rank == bad) {
         apply(hit, k, 1);
     }
-    /* to want all of the state again is refused by itself, where it was not kept */
-    int state = strcmp(set[k].word, "ranks.state") == 0;
-    int refuses = touched && (state || strncmp(set[k].word, "drift", 5) == 0) &&
-                  (call->make == make_begin || call->make == make_step);
-    refuses |= state && call->make == make_within; /* a tolerance needs all of the state */
-    expect(hit, call->make(hit, &a), refuses ? of_one(bad, SPAR_ERR_STATE) : SPAR_ERR_COMM, set[k].word);
+    expect(hit, call->make(hit, &a), SPAR_ERR_COMM, set[k].word);
     apply(hit, k, 1); /* as all ranks would have to do to be alike again: setting it may have an effect of its own */
     apply(hit, k, 0);
     apply(calm, k, 1);
@@ -984,7 +942,7 @@ static void other_calls(void) {
         for (int i = COMMIT; i < CALLS; i++) {
             for (int k = COMMIT; k < CALLS; k++) {
                 int begins = i * k == BEGIN * STEP; /* spar_step begins with the same call */
-                int skip = is_left_out(calls + i) || is_refused(calls + k);
+                int skip = is_left_out(calls + i);
                 for (int bad = 0; bad < size && i != k && !begins && !skip; bad++) {
                     if (taken(12)) {
                         other_call(calls + i, calls + k, bad, stage, &hit, &calm);
@@ -1028,7 +986,7 @@ static void inner_calls(void) {
             for (int bad = 0; bad < size; bad++) {
                 for (int where = 1; where <= 101; where += 100) {
                     const arguments a = good();
-                    int one = outer == STEP || (outer == STATIC && !touched); /* solve, and no other callback */
+                    int one = outer == STEP || outer == STATIC; /* solve, and no other callback */
                     if (!(calls[outer].has & CALLBACKS || one) || (where == 101 && one) || is_left_out(calls + outer) ||
                         wants_rest(calls + outer) || !taken(4)) {
                         continue;
@@ -1064,8 +1022,8 @@ static void failing_callbacks(void) {
             for (int at = 1; at < 40; at += 1 + at / 2) {
                 for (int nan = 0; nan < 2; nan++) {
                     const arguments a = good();
-                    if (!(calls[i].has & CALLBACKS || i == STEP || i == STATIC) || (nan && bad != wet) ||
-                        is_left_out(calls + i) || (touched && i == STATIC) || !taken(2)) {
+                    if (!(calls[i].has & CALLBACKS || i == STEP || i == STATIC) || (nan && bad != 0) ||
+                        is_left_out(calls + i) || !taken(2)) {
                         continue;
                     }
                     start(FAILING, "%s with %s on rank %d", calls[i].name, nan ? "NaN pushed" : "a callback that fails",
@@ -1320,9 +1278,7 @@ int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &size);
-    touched = argc > 3 && strcmp(argv[3], "touched") == 0;
     binned = argc > 3 && strcmp(argv[3], "binned") == 0;
-    wet = touched ? size - 1 : 0;
     asked = argc > 4 ? argv[4] : NULL;
     (void)signal(SIGALRM, too_long);
     double seconds = argc > 1 ? strtod(argv[1], NULL) : 0;
@@ -1336,9 +1292,9 @@ int main(int argc, char **argv) {
     dice = dice * UINT64_C(0x9E3779B97F4A7C15) | 1;
     (void)snprintf(saved, sizeof saved, "torture_ranks_%d.spar", size);
     (void)snprintf(elsewhere, sizeof elsewhere, "no/such/folder/%d", rank);
-    static void (*const parts[])(void) = {no_place,          failed_create,       other_members, gone,
-                                          refused,           failing_allocations, inner_calls,   failing_callbacks,
-                                          unequal_arguments, unequal_settings,    other_calls};
+    static void (*const parts[])(void) = {
+        no_place,          failed_create,     other_members,    gone,       failing_allocations, inner_calls,
+        failing_callbacks, unequal_arguments, unequal_settings, other_calls};
     enum { PARTS = sizeof parts / sizeof *parts };
     all_calls();
     for (int k = 0; k < PARTS; k++) {
