@@ -1,17 +1,17 @@
 /* Linear and modal beams: their frame created and freed, and their rows of the table. */
 #include "frame.h"
 
+#include "../algebra/pencil.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/joint.h"
-#include "floating_root.h"
-#include "../time/fidelity.h"
-#include "../time/component.h"
-#include "../algebra/pencil.h"
 #include "../solve/reaction.h"
+#include "../time/component.h"
+#include "../time/fidelity.h"
+#include "floating_root.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -120,11 +120,8 @@ static double *arms_of(const spar_member *m) {
 /* The matrices, of the nodes or of m->modes modes. */
 static int fill_frame(spari_frame *f, const spar_member *m) {
     double *arm = arms_of(m);
-    int cols = (int)m->modes + spari_member_held(m);
-    if (f->carriage) {
-        int most = 6 * (f->nodes - 1 - f->carriage->ends);
-        cols = 6 + 6 * f->carriage->ends + (cols - 6 < most ? cols - 6 : most);
-    }
+    int more = (int)m->modes + spari_member_held(m) - 6, most = 6 * (f->nodes - 1 - f->carriage->ends);
+    int cols = 6 + 6 * f->carriage->ends + (more < most ? more : most);
     int status = arm && allocate_matrices(f, m) == 0 ? spari_frame_form(f, m->body, arm) : SPAR_ERR_MEMORY;
     if (status == SPAR_OK && f->A) {
         for (int e = 0; e < f->elements; e++) {
@@ -134,7 +131,7 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
     for (int e = 0; e < f->elements && status == SPAR_OK && m->foundation; e++) {
         spari_foundation_tangent(m, e, 1, f->K + (int64_t)f->block * f->block * e);
     }
-    if (status == SPAR_OK && f->carriage) {
+    if (status == SPAR_OK && f->floats) {
         status = spari_carriage_keep_pushes(f);
     }
     if (status == SPAR_OK && m->modes > 0) {
@@ -143,7 +140,7 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
     }
     free(arm);
     status = status == SPAR_OK && allocate_work(f, m) ? SPAR_ERR_MEMORY : status;
-    return status == SPAR_OK && f->carriage ? spari_carriage_finish(f, m) : status;
+    return status == SPAR_OK ? spari_carriage_finish(f, m) : status;
 }
 
 static int frame_create(spar_member *m) {
@@ -166,11 +163,12 @@ static int frame_create(spar_member *m) {
     if (!f) {
         return SPAR_ERR_MEMORY;
     }
-    f->held = m->floats ? 6 : spari_member_held(m);
+    f->floats = m->floats;
+    f->held = f->floats ? 6 : spari_member_held(m);
     f->nodes = m->body->unique;
     f->elements = m->elements, f->block = 6 * m->per_element, f->overlap = 6, f->n = 6 * f->nodes;
     f->size = (int64_t)f->elements * f->block * f->block;
-    int status = spari_member_is_tied(m) ? spari_carriage_create(f, m) : SPAR_OK;
+    int status = spari_carriage_create(f, m);
     status = status == SPAR_OK ? fill_frame(f, m) : status;
     f->factors = 0; /* those of the set-up do not count */
     SPARI_REQUIRE(m->session, status == SPAR_OK || status == SPAR_ERR_MEMORY, status,
@@ -211,12 +209,30 @@ static void frame_restart(spar_member *m) {
     spari_frame_restart(m->solution, m);
 }
 
+static void frame_publish(spar_member *m) {
+    spari_frame *f = m->solution;
+    spari_frame_publish(f, m, &f->to);
+}
+
+/* It alone, as a component. */
+static spari_limb frame_component(spar_member *m) {
+    spari_limb p = {.member = m, .row = &spari_limb_frame};
+    (void)p.row->make(&p);
+    return p;
+}
+
 static int frame_advance(spar_member *m, double dt) {
-    return spari_frame_advance(m->solution, m, dt);
+    spari_limb p = frame_component(m);
+    SPARI_TRY(spari_component_advance(&p, dt));
+    frame_publish(m);
+    return SPAR_OK;
 }
 
 static int frame_balance(spar_member *m, double dt) {
-    return spari_frame_balance(m->solution, m, dt);
+    spari_limb p = frame_component(m);
+    SPARI_TRY(spari_component_balance(&p, dt));
+    frame_publish(m);
+    return SPAR_OK;
 }
 
 static void frame_begin(spar_member *m) {
@@ -232,8 +248,18 @@ static void frame_reject(spar_member *m) {
 }
 
 static int frame_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
+    const spari_frame *f = m->solution;
     (void)load_steps, (void)onward; /* the equations are linear */
-    return spari_frame_static(m->solution, m, fluid);
+    SPARI_REQUIRE(m->session, f->held == 6, SPAR_ERR_STATE,
+                  "member '%s': nothing holds a linear member that its root leaves free to turn; fix or drive its root",
+                  m->name);
+    spari_limb p = frame_component(m);
+    int failed = spari_component_static(&p, fluid) || spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 ||
+                 spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0;
+    SPARI_REQUIRE(m->session, !failed, SPAR_ERR_NUMERIC,
+                  "member '%s': the linear member has no equilibrium under these loads; the state is as it was",
+                  m->name);
+    return SPAR_OK;
 }
 
 static int frame_energy(const spar_member *m, double energy[4]) {
@@ -270,7 +296,8 @@ static void frame_shape(const spar_member *m, const double *x, double *room, dou
 }
 
 static int frame_answer(spar_member *m, const double *load, double *motion) {
-    return spari_frame_answer(m->solution, m, load, motion);
+    spari_limb p = frame_component(m);
+    return spari_component_answer(&p, load, motion);
 }
 
 static int frame_felt(spar_member *m, double *load) {
@@ -312,7 +339,7 @@ static void frame_load(spar_member *m, const double *state) {
 /* Joints have come, or have changed: it is made anew for them. */
 static int frame_retie(spar_member *m) {
     const spari_frame *f = m->solution;
-    int had = f->carriage != NULL;
+    int had = f->carriage->condensed->ends > 0;
     if (!had && !spari_member_is_tied(m)) {
         return SPAR_OK;
     }
@@ -334,11 +361,6 @@ static int frame_retie(spar_member *m) {
 
 static int frame_end_of(const spar_member *m, int node) {
     return spari_carriage_end_of(m->solution, node);
-}
-
-static void frame_publish(spar_member *m) {
-    spari_frame *f = m->solution;
-    spari_frame_publish(f, m, &f->to);
 }
 
 /* What the two rows share. */

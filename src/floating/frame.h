@@ -12,8 +12,11 @@
    the reference, so that the answer is its limit for small deformation. Neglected: terms of second order in x, and the
    geometric stiffness of weight, of fluid loads and of the root's acceleration.
 
-   Where joints tie the member (floating_root.h) the frame goes with its root whatever holds that: the root's motion is
-   unknown too, and the six equations of force and moment of the whole go with it.
+   Where joints tie a member whose root is free or pinned (floating_root.h), the frame goes with the root: the root's
+   motion is unknown too, and the six equations of force and moment of the whole go with it. In all other cases the
+   motion of the frame is prescribed.
+
+   The time integration and the equilibrium are those of a component (time/component.h), alone or in an assembly.
 
    The same equations in modes of M, K are the modal member. Its unknowns are amplitudes of the six rigid motions about
    the root, of which those stay zero that the root holds, and of modes: with all six the lowest of the beam held at its
@@ -21,9 +24,9 @@
 #ifndef SPARI_FRAME_H
 #define SPARI_FRAME_H
 
+#include "../algebra/linear.h"
 #include "../member/body.h"
 #include "../member/structure.h"
-#include "../algebra/linear.h"
 #include "../time/scheme.h"
 #include "../time/tangent_snapshot.h"
 
@@ -40,7 +43,8 @@ typedef struct spari_frame_state {
 typedef struct spari_frame {
     int nodes;                       /* unique nodes */
     int held;                        /* of the root's six unknowns, the first that stay zero */
-    struct spari_carriage *carriage; /* joints tie it; NULL: they do not */
+    int floats;                      /* joints move the root; else the motion of the frame is prescribed */
+    struct spari_carriage *carriage; /* the root, and the nodes that joints tie */
     int elements, block, overlap;    /* of the matrices */
     int n;                           /* unknowns, the root's six first */
     int64_t size;                    /* doubles of one matrix: elements * block * block */
@@ -75,11 +79,7 @@ typedef struct spari_frame {
 
 /* Takes the motion at t^n from member->now. */
 void spari_frame_restart(spari_frame *frame, const spar_member *member);
-int spari_frame_advance(spari_frame *frame, spar_member *member, double dt);
-/* Accelerations at t^0 under load_history[0], for steps dt; writes m->after. */
-int spari_frame_balance(spari_frame *frame, spar_member *member, double dt);
 /* As the row's. */
-int spari_frame_answer(spari_frame *frame, const spar_member *member, const double *load, double *motion);
 int spari_frame_felt(spari_frame *frame, const spar_member *member, double *load);
 void spari_frame_begin(spari_frame *frame);
 void spari_frame_accept(spari_frame *frame);
@@ -88,7 +88,6 @@ void spari_frame_reject(spari_frame *frame);
 void spari_frame_poison(spari_frame *frame);
 /* Before the factors are overwritten. */
 void spari_frame_keep_factors(spari_frame *frame);
-int spari_frame_static(spari_frame *frame, spar_member *member, const double *fluid);
 /* K + N of the turn that the root of member->after has, and M, over the unknowns that are free, dense, symmetric
    parts; and a vector of those unknowns as a field of the unique nodes, global axes. */
 void spari_frame_modal(const spari_frame *frame, const spar_member *member, double *K, double *M);
@@ -115,9 +114,6 @@ extern const int spari_frame_pair[SPARI_TURNS][2];
 int spari_frame_form(spari_frame *f, const spari_body *body, const double *arm);
 /* y [n] += factor * X x for a matrix of the frame */
 void spari_frame_add_times(const spari_frame *f, const double *X, const double *x, double factor, double *y);
-/* Factors ck K + cv C + cm (M + A) with the held unknowns out; S: room for an element. C, A may be NULL. */
-void spari_frame_factor(spari_frame *f, const double *K, double ck, const double *C, double cv, const double *A,
-                        double cm, double *S, int *singular);
 
 /* A anew, of what m->added holds now. */
 void spari_frame_remass(spari_frame *f, const spar_member *m);
@@ -139,13 +135,7 @@ void spari_frame_stage(spari_frame *f, const spar_member *m, const spari_scheme 
                        const spari_pose *root);
 /* The rates of the state become those of the published motion at t^n. */
 void spari_frame_take_velocities(spari_frame *f, const spar_member *m, spari_frame_state *state);
-/* After a substep: what generalised-alpha would go on with. */
-void spari_frame_restart_scheme(spari_frame *f, const spari_scheme *c);
 double spari_frame_damped_power(spari_frame *f, const spari_frame_state *s);
-/* Where a driven root jumps: the state loses the jump. */
-void spari_frame_take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
-                           const spari_frame_state *to);
-
 /* Columns of the basis: the six rigid motions about the root, of which the first `held` stay zero, then the shapes of
    tied nodes, then the lowest modes; those that are free are orthonormal in the norm of the mass, tied nodes' and where
    those are the rigid ones apart. arm [nodes][3] from the root. */

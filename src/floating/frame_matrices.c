@@ -20,24 +20,6 @@ void spari_frame_add_times(const spari_frame *f, const double *X, const double *
     }
 }
 
-void spari_frame_factor(spari_frame *f, const double *K, double ck, const double *C, double cv, const double *A,
-                        double cm, double *S, int *singular) {
-    int64_t mm = (int64_t)f->block * f->block;
-    spari_linear_zero(f->linear);
-    for (int e = 0; e < f->elements; e++) {
-        for (int64_t i = 0; i < mm; i++) {
-            int64_t at = mm * e + i;
-            S[i] = ck * K[at] + (C ? cv * C[at] : 0) + (f->M ? cm * f->M[at] : 0) + (A ? cm * A[at] : 0);
-        }
-        spari_linear_add(f->linear, e, S);
-    }
-    for (int i = 0; i < f->held; i++) {
-        spari_linear_fix(f->linear, i);
-    }
-    f->factors++;
-    *singular = spari_linear_factor(f->linear);
-}
-
 /* ---- matrices from the exact member's tangents at the reference ---- */
 
 static void product3(const double a[9], const double b[9], double c[9]) {

@@ -1,14 +1,14 @@
 /* The modes of a frame: the basis that makes a modal member of a linear one, and the modes about a turning state. */
 #include "frame.h"
 
+#include "../algebra/eigen.h"
+#include "../algebra/pencil.h"
 #include "../base/blas.h"
 #include "../base/status.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/pose.h"
 #include "floating_root.h"
-#include "../algebra/eigen.h"
-#include "../algebra/pencil.h"
 
 #include <float.h>
 #include <gsl/gsl_blas.h> /* the declarations; the linked CBLAS is the fast one */
@@ -69,7 +69,7 @@ static int orthonormalise(spari_frame *f, int cols, int first, int from, int end
 
 static int is_tied(const spari_frame *f, int node) {
     int found = 0;
-    for (int e = 0; f->carriage && e < f->carriage->ends; e++) {
+    for (int e = 0; e < f->carriage->ends; e++) {
         found = found || f->carriage->node[e] == node;
     }
     return found;
@@ -79,7 +79,7 @@ static int is_tied(const spari_frame *f, int node) {
    memory. */
 static size_t leave_out_tied(const spari_frame *f, gsl_matrix **K, gsl_matrix **M) {
     gsl_matrix **both[2] = {K, M};
-    size_t all = (size_t)(6 * f->nodes - 6), n = all - (f->carriage ? (size_t)(6 * f->carriage->ends) : 0);
+    size_t all = (size_t)(6 * f->nodes - 6), n = all - (size_t)(6 * f->carriage->ends);
     for (int side = 0; side < 2 && n < all; side++) {
         gsl_matrix *from = *both[side], *to = n > 0 ? gsl_matrix_alloc(n, n) : NULL;
         size_t r = 0;
@@ -138,7 +138,7 @@ static int elastic_columns(spari_frame *f, int cols, int first, double *work) {
 
 /* The shapes of the tied nodes: each moves by one in a direction, the root and the others do not, K x = 0 between. */
 static int tied_columns(spari_frame *f, int cols, double *work) {
-    int ends = f->carriage ? f->carriage->ends : 0, n = 6 * f->nodes;
+    int ends = f->carriage->ends, n = 6 * f->nodes;
     double *column = spari_zalloc((int64_t)6 * ends * n, sizeof *column);
     if (!column) {
         return SPAR_ERR_MEMORY;
@@ -171,7 +171,7 @@ static int tied_columns(spari_frame *f, int cols, double *work) {
 
 int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols) {
     double *work = spari_zalloc(12 * (int64_t)f->nodes, sizeof *work);
-    int first = f->carriage ? 6 + 6 * f->carriage->ends : 6, alone = f->carriage ? first : f->held;
+    int first = 6 + 6 * f->carriage->ends, alone = f->held < 6 ? f->held : first;
     f->basis = spari_zalloc((int64_t)6 * f->nodes * cols, sizeof *f->basis);
     int status = work && f->basis ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
