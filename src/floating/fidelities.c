@@ -1,9 +1,7 @@
 /* Linear and modal beams: their frame created and freed, and their rows of the table. */
 #include "frame.h"
 
-#include "../algebra/pencil.h"
 #include "../base/session.h"
-#include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
@@ -13,7 +11,6 @@
 #include "../time/fidelity.h"
 #include "floating_root.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -201,19 +198,6 @@ static int frame_effects(const spar_member *m, int effects) {
 
 /* ---- the rest of the rows ---- */
 
-static void frame_remass(spar_member *m) {
-    spari_frame_remass(m->solution, m);
-}
-
-static void frame_restart(spar_member *m) {
-    spari_frame_restart(m->solution, m);
-}
-
-static void frame_publish(spar_member *m) {
-    spari_frame *f = m->solution;
-    spari_frame_publish(f, m, &f->to);
-}
-
 /* It alone, as a component. */
 static spari_limb frame_component(spar_member *m) {
     spari_limb p = {.member = m, .row = &spari_limb_frame};
@@ -224,27 +208,15 @@ static spari_limb frame_component(spar_member *m) {
 static int frame_advance(spar_member *m, double dt) {
     spari_limb p = frame_component(m);
     SPARI_TRY(spari_component_advance(&p, dt));
-    frame_publish(m);
+    spari_frame_publish(m);
     return SPAR_OK;
 }
 
 static int frame_balance(spar_member *m, double dt) {
     spari_limb p = frame_component(m);
     SPARI_TRY(spari_component_balance(&p, dt));
-    frame_publish(m);
+    spari_frame_publish(m);
     return SPAR_OK;
-}
-
-static void frame_begin(spar_member *m) {
-    spari_frame_begin(m->solution);
-}
-
-static void frame_accept(spar_member *m) {
-    spari_frame_accept(m->solution);
-}
-
-static void frame_reject(spar_member *m) {
-    spari_frame_reject(m->solution);
 }
 
 static int frame_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
@@ -262,51 +234,14 @@ static int frame_rest(spar_member *m, const double *fluid, int load_steps, int o
     return SPAR_OK;
 }
 
-static int frame_energy(const spar_member *m, double energy[4]) {
-    SPARI_TRY(spari_energy_of_body(m, energy));
-    return spari_frame_energy(m->solution, m, energy);
-}
-
 static int64_t frame_unknowns(const spar_member *m) {
     const spari_frame *f = m->solution;
     return f->n - spari_member_held(m);
 }
 
-static int frame_problem(const spar_member *m, double *K, double *M) {
-    spari_frame_modal(m->solution, m, K, M);
-    return SPAR_OK;
-}
-
-/* Small deformation is seen from the root, which must turn as the frame does. */
-static int frame_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
-    double apart[3], own = spari_norm(m->after.v + 3);
-    for (int k = 0; k < 3; k++) {
-        apart[k] = m->after.v[3 + k] - w[k];
-    }
-    if (spari_norm(apart) > 1e-4 * fmax(own, spari_norm(w))) {
-        return SPAR_ERR_UNSUPPORTED;
-    }
-    spari_frame_linearise(m->solution, m, to);
-    return SPAR_OK;
-}
-
-static void frame_shape(const spar_member *m, const double *x, double *room, double *nodes) {
-    spari_frame_shape(m->solution, m, x, room);
-    spari_member_from_unique(m, 6, room, nodes);
-}
-
 static int frame_answer(spar_member *m, const double *load, double *motion) {
     spari_limb p = frame_component(m);
     return spari_component_answer(&p, load, motion);
-}
-
-static int frame_felt(spar_member *m, double *load) {
-    spari_frame *f = m->solution;
-    if (!f->basis) {
-        spari_member_even_loads(m, load);
-        return SPAR_OK;
-    }
-    return spari_frame_felt(f, m, load);
 }
 
 static void frame_effort(const spar_member *m, spari_effort *e) {
@@ -318,22 +253,6 @@ static void frame_effort(const spar_member *m, spari_effort *e) {
                         .per_element = m->per_element,
                         .unknowns = f->n,
                         .band = spari_effort_band(f->n, f->block)};
-}
-
-static int64_t frame_state_size(const spar_member *m) {
-    return spari_frame_state_size(m->solution);
-}
-
-static void frame_save(const spar_member *m, double *state) {
-    spari_frame_save(m->solution, state);
-}
-
-static int frame_is_state(const spar_member *m, const double *state, int64_t count) {
-    return spari_frame_is_state(m->solution, state, count);
-}
-
-static void frame_load(spar_member *m, const double *state) {
-    spari_frame_load(m->solution, state);
 }
 
 /* Joints have come, or have changed: it is made anew for them. */
@@ -354,25 +273,22 @@ static int frame_retie(spar_member *m) {
     }
     frame_free(before);
     if (spari_fidelity_is_here(m)) {
-        frame_restart(m);
+        spari_frame_restart(m);
     }
     return SPAR_OK;
-}
-
-static int frame_end_of(const spar_member *m, int node) {
-    return spari_carriage_end_of(m->solution, node);
 }
 
 /* What the two rows share. */
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .effects = frame_effects, .create = frame_create,              \
-    .free = frame_free, .remass = frame_remass, .restart = frame_restart, .advance = frame_advance,                    \
-    .balance = frame_balance, .answer = frame_answer, .felt = frame_felt, .accept = frame_accept,                      \
-    .begin = frame_begin, .reject = frame_reject, .effort = frame_effort, .rest = frame_rest,                          \
-    .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole, .energy = frame_energy,        \
-    .unknowns = frame_unknowns, .problem = frame_problem, .shape = frame_shape, .linearise = frame_linearise,          \
-    .state_size = frame_state_size, .save = frame_save, .is_state = frame_is_state, .load = frame_load,                \
-    .limb = &spari_limb_frame, .retie = frame_retie, .end_of = frame_end_of, .publish = frame_publish
+    .free = frame_free, .remass = spari_frame_remass, .restart = spari_frame_restart, .advance = frame_advance,        \
+    .balance = frame_balance, .answer = frame_answer, .felt = spari_frame_felt, .accept = spari_frame_accept,          \
+    .begin = spari_frame_begin, .reject = spari_frame_reject, .effort = frame_effort, .rest = frame_rest,              \
+    .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole, .energy = spari_frame_energy,  \
+    .unknowns = frame_unknowns, .problem = spari_frame_problem, .shape = spari_frame_shape,                            \
+    .linearise = spari_frame_linearise, .state_size = spari_frame_state_size, .save = spari_frame_save,                \
+    .is_state = spari_frame_is_state, .load = spari_frame_load, .limb = &spari_limb_frame, .retie = frame_retie,       \
+    .end_of = spari_carriage_end_of, .publish = spari_frame_publish
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
 const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .felt_here = 1, .massive = 1, .takes_modes = 1,

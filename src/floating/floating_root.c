@@ -165,7 +165,8 @@ void spari_carriage_free(spari_carriage *c) {
     free(c);
 }
 
-int spari_carriage_end_of(const spari_frame *f, int node) {
+int spari_carriage_end_of(const spar_member *m, int node) {
+    const spari_frame *f = m->solution;
     int e = 0;
     while (node > 0 && e < f->carriage->ends && f->carriage->node[e] != node) {
         e++;

@@ -71,8 +71,8 @@ int spari_carriage_keep_pushes(spari_frame *f);
 /* The rest, when the unknowns are known. */
 int spari_carriage_finish(spari_frame *f, const spar_member *m);
 void spari_carriage_free(spari_carriage *c);
-/* Which of the root and the tied nodes a node is; 0: the root. */
-int spari_carriage_end_of(const spari_frame *f, int node);
+/* Of the row: which of the root and the tied nodes a node is; 0: the root. */
+int spari_carriage_end_of(const spar_member *m, int node);
 /* Where the six unknowns of tied node e (from 1) are. */
 int spari_carriage_at(const spari_frame *f, int e);
 /* Modal: takes the shapes of the tied nodes out of a deformation x [6 nodes] and gives their amplitudes into y; the

@@ -77,32 +77,30 @@ typedef struct spari_frame {
     int64_t factors, solves;
 } spari_frame;
 
-/* Takes the motion at t^n from member->now. */
-void spari_frame_restart(spari_frame *frame, const spar_member *member);
-/* As the row's. */
-int spari_frame_felt(spari_frame *frame, const spar_member *member, double *load);
-void spari_frame_begin(spari_frame *frame);
-void spari_frame_accept(spari_frame *frame);
-void spari_frame_reject(spari_frame *frame);
+/* ---- operations of the two rows (time/fidelity.h) ---- */
+
+void spari_frame_remass(spar_member *member);
+void spari_frame_restart(spar_member *member);
+void spari_frame_begin(spar_member *member);
+void spari_frame_accept(spar_member *member);
+void spari_frame_reject(spar_member *member);
+int spari_frame_felt(spar_member *member, double *load);
+void spari_frame_publish(spar_member *member);
+/* Strain x^T K x / 2 of the frame's own equations; of a frame that stands also their kinetic energy and potential. */
+int spari_frame_energy(const spar_member *member, double energy[4]);
+/* K + N of the turn that the root of member->after has, and M. */
+int spari_frame_problem(const spar_member *member, double *K, double *M);
+int spari_frame_linearise(const spar_member *member, const double w[3], struct spari_pencil *to);
+void spari_frame_shape(const spar_member *member, const double *x, double *room, double *nodes);
+int64_t spari_frame_state_size(const spar_member *member);
+void spari_frame_save(const spar_member *member, double *state);
+int spari_frame_is_state(const spar_member *member, const double *state, int64_t count);
+void spari_frame_load(spar_member *member, const double *state);
+
 /* A solution begins: nothing that its work space has is to be used (base/poison.h). */
 void spari_frame_poison(spari_frame *frame);
 /* Before the factors are overwritten. */
 void spari_frame_keep_factors(spari_frame *frame);
-/* K + N of the turn that the root of member->after has, and M, over the unknowns that are free, dense, symmetric
-   parts; and a vector of those unknowns as a field of the unique nodes, global axes. */
-void spari_frame_modal(const spari_frame *frame, const spar_member *member, double *K, double *M);
-/* The same unsymmetric and with rates, D + G, as entries of a pencil. */
-void spari_frame_linearise(const spari_frame *frame, const spar_member *member, struct spari_pencil *to);
-void spari_frame_shape(const spari_frame *frame, const spar_member *member, const double *x, double *nodes);
-/* As spari_solver_state_size and its fellows, between steps. */
-int64_t spari_frame_state_size(const spari_frame *frame);
-void spari_frame_save(const spari_frame *frame, double *state);
-int spari_frame_is_state(const spari_frame *frame, const double *state, int64_t count);
-void spari_frame_load(spari_frame *frame, const double *state);
-/* Puts what the frame's own equations say in place of the body's energies in member->after: strain x^T K x / 2; of a
-   frame that stands also the kinetic one and the potential of the linear equations, else those two are left as they
-   are. 0, or SPAR_ERR_MEMORY. */
-int spari_frame_energy(spari_frame *frame, const spar_member *member, double energy[4]);
 
 /* ---- what matrices, modes and time share ---- */
 
@@ -115,17 +113,12 @@ int spari_frame_form(spari_frame *f, const spari_body *body, const double *arm);
 /* y [n] += factor * X x for a matrix of the frame */
 void spari_frame_add_times(const spari_frame *f, const double *X, const double *x, double factor, double *y);
 
-/* A anew, of what m->added holds now. */
-void spari_frame_remass(spari_frame *f, const spar_member *m);
-
 /* K + N + E, D + G and f of an angular velocity and acceleration in the frame's axes; formed anew only when these have
    changed. */
 void spari_frame_combine(spari_frame *f, const double turn[6]);
 /* Motion of a node of the unknowns of which the deformation is x, its rates xd and xdd. */
 void spari_frame_node(const spar_member *m, const spari_pose *root, int node, const double x[6], const double xd[6],
                       const double xdd[6], double q[7], double v[6], double a[6]);
-/* The state's motion into m->after. */
-void spari_frame_publish(spari_frame *f, spar_member *m, const spari_frame_state *s);
 /* x [6 nodes] := those of the unknowns y; or y itself, where they are the same. */
 const double *spari_frame_nodal(const spari_frame *f, const double *y, double *x);
 /* out [n] := nodal loads x [6 nodes], in the frame's axes, on the unknowns. */

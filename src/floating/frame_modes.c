@@ -259,7 +259,8 @@ int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
     return bad || !f->linear;
 }
 
-void spari_frame_remass(spari_frame *f, const spar_member *m) {
+void spari_frame_remass(spar_member *m) {
+    spari_frame *f = m->solution;
     int block = 6 * m->per_element, cols = f->n;
     double *X = f->room_A, *half = X + (int64_t)block * block;
     memset(f->A, 0, (size_t)f->size * sizeof *f->A);
@@ -280,7 +281,8 @@ void spari_frame_remass(spari_frame *f, const spar_member *m) {
 
 /* ---- about a state ---- */
 
-void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, double *M) {
+int spari_frame_problem(const spar_member *m, double *K, double *M) {
+    const spari_frame *f = m->solution;
     const spari_pose pose = spari_member_pose(m, &m->after);
     double omega[3];
     spari_rotate_back(pose.q + 3, pose.v + 3, omega);
@@ -294,9 +296,19 @@ void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, do
             assemble_dense(f, f->S[k], c, held, K);
         }
     }
+    return SPAR_OK;
 }
 
-void spari_frame_linearise(const spari_frame *f, const spar_member *m, spari_pencil *to) {
+/* Small deformation is seen from the root, which must turn as the frame does. */
+int spari_frame_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
+    const spari_frame *f = m->solution;
+    double apart[3], own = spari_norm(m->after.v + 3);
+    for (int k = 0; k < 3; k++) {
+        apart[k] = m->after.v[3 + k] - w[k];
+    }
+    if (spari_norm(apart) > 1e-4 * fmax(own, spari_norm(w))) {
+        return SPAR_ERR_UNSUPPORTED;
+    }
     const spari_pose pose = spari_member_pose(m, &m->after);
     int held = spari_member_held(m), step = f->block - f->overlap;
     int64_t mm = (int64_t)f->block * f->block;
@@ -321,19 +333,22 @@ void spari_frame_linearise(const spari_frame *f, const spar_member *m, spari_pen
             }
         }
     }
+    return SPAR_OK;
 }
 
-void spari_frame_shape(const spari_frame *f, const spar_member *m, const double *x, double *nodes) {
+void spari_frame_shape(const spar_member *m, const double *x, double *room, double *nodes) {
+    const spari_frame *f = m->solution;
     const spari_pose pose = spari_member_pose(m, &m->after);
     int held = spari_member_held(m);
-    memset(nodes, 0, (size_t)(6 * f->nodes) * sizeof *nodes);
+    memset(room, 0, (size_t)(6 * f->nodes) * sizeof *room);
     if (f->basis) {
         SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - held, 1, f->basis + held, f->n, x, 1,
-                               0, nodes, 1));
+                               0, room, 1));
     } else {
-        memcpy(nodes + held, x, (size_t)(f->n - held) * sizeof *nodes);
+        memcpy(room + held, x, (size_t)(f->n - held) * sizeof *room);
     }
     for (int i = 0; i < 6 * f->nodes; i += 3) {
-        spari_rotate(pose.q + 3, nodes + i, nodes + i);
+        spari_rotate(pose.q + 3, room + i, room + i);
     }
+    spari_member_from_unique(m, 6, room, nodes);
 }

@@ -5,12 +5,11 @@
 #include "../base/poison.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
-#include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "../member/body.h"
 #include "../member/pose.h"
+#include "../solve/reaction.h"
 #include "../time/driven_root.h"
-#include "../time/steady_rotation.h"
 #include "floating_root.h"
 
 #include <gsl/gsl_cblas.h>
@@ -122,7 +121,9 @@ static void to_nodes(spari_frame *f, const spar_member *m, const spari_frame_sta
     }
 }
 
-void spari_frame_publish(spari_frame *f, spar_member *m, const spari_frame_state *s) {
+void spari_frame_publish(spar_member *m) {
+    spari_frame *f = m->solution;
+    const spari_frame_state *s = &f->to;
     int64_t n = f->nodes;
     double *q = f->turned, *v = q + 7 * n, *a = v + 6 * n;
     to_nodes(f, m, s, q, v, a);
@@ -287,9 +288,14 @@ static int factor_gram(spari_frame *f) {
 }
 
 /* With phi the basis, phi (phi^T phi)^-1 phi^T load: of all loads that do the same to the modes the smallest. */
-int spari_frame_felt(spari_frame *f, const spar_member *m, double *load) {
+int spari_frame_felt(spar_member *m, double *load) {
+    spari_frame *f = m->solution;
     const double *root = f->to.root.q;
     int n = f->n;
+    if (!f->basis) {
+        spari_member_even_loads(m, load);
+        return SPAR_OK;
+    }
     SPARI_TRY(factor_gram(f));
     if (!f->gram) {
         return SPAR_OK;
@@ -329,7 +335,8 @@ void spari_frame_keep_factors(spari_frame *f) {
     }
 }
 
-void spari_frame_begin(spari_frame *f) {
+void spari_frame_begin(spar_member *m) {
+    spari_frame *f = m->solution;
     f->begun.factored = f->factored;
     f->begun.cm = f->kept_cm, f->begun.cv = f->kept_cv;
     memcpy(f->begun.turn, f->kept_turn, sizeof f->kept_turn);
@@ -337,7 +344,8 @@ void spari_frame_begin(spari_frame *f) {
     spari_solver_begin(f->carriage->root);
 }
 
-void spari_frame_reject(spari_frame *f) {
+void spari_frame_reject(spar_member *m) {
+    spari_frame *f = m->solution;
     spari_condensed *d = f->carriage->condensed;
     if (!f->before.open) {
         return;
@@ -354,14 +362,16 @@ void spari_frame_reject(spari_frame *f) {
     }
 }
 
-void spari_frame_accept(spari_frame *f) {
+void spari_frame_accept(spar_member *m) {
+    spari_frame *f = m->solution;
     spari_snapshot_close(&f->before);
     const spari_frame_state begin = f->to;
     f->to = f->begin, f->begin = begin;
     spari_solver_accept(f->carriage->root);
 }
 
-void spari_frame_restart(spari_frame *f, const spar_member *m) {
+void spari_frame_restart(spar_member *m) {
+    spari_frame *f = m->solution;
     spari_solver *root = f->carriage->root;
     memcpy(root->begin.q, m->now.q, 7 * sizeof(double));
     memcpy(root->begin.v, m->now.v, 6 * sizeof(double));
@@ -386,12 +396,14 @@ static int64_t ends_size(const spari_frame *f) {
 }
 
 /* Then what the step began with, the root, and the factors if there are any. */
-int64_t spari_frame_state_size(const spari_frame *f) {
+int64_t spari_frame_state_size(const spar_member *m) {
+    const spari_frame *f = m->solution;
     return ends_size(f) + spari_snapshot_size(&f->before) + spari_solver_state_size(f->carriage->root) +
            (f->factored ? spari_linear_state_size(f->linear) : 0);
 }
 
-void spari_frame_save(const spari_frame *f, double *state) {
+void spari_frame_save(const spar_member *m, double *state) {
+    const spari_frame *f = m->solution;
     const double head[STATE_TURN] = {f->n, f->factored, f->kept_cm, f->kept_cv, f->steps.started, f->combined},
                  begun[3] = {f->begun.factored, f->begun.cm, f->begun.cv};
     const spari_frame_state *const ends[2] = {&f->begin, &f->to};
@@ -414,7 +426,8 @@ void spari_frame_save(const spari_frame *f, double *state) {
     }
 }
 
-int spari_frame_is_state(const spari_frame *f, const double *state, int64_t count) {
+int spari_frame_is_state(const spar_member *m, const double *state, int64_t count) {
+    const spari_frame *f = m->solution;
     const spari_solver *root = f->carriage->root;
     const int64_t at = ends_size(f), expected = factors_size(f), own = spari_solver_state_size(root);
     if (count < at + SPARI_SNAPSHOT_HEAD || state[0] != f->n) {
@@ -429,7 +442,8 @@ int spari_frame_is_state(const spari_frame *f, const double *state, int64_t coun
 }
 
 /* The sums are those of the turn that they were formed for, to the last bit. */
-void spari_frame_load(spari_frame *f, const double *state) {
+void spari_frame_load(spar_member *m, const double *state) {
+    spari_frame *f = m->solution;
     spari_solver *root = f->carriage->root;
     spari_frame_state *const ends[2] = {&f->begin, &f->to};
     f->factored = state[1] != 0;
@@ -463,7 +477,9 @@ static double half_form(spari_frame *f, const double *X, const double *x) {
     return cblas_ddot(f->n, x, 1, f->r, 1);
 }
 
-int spari_frame_energy(spari_frame *f, const spar_member *m, double energy[4]) {
+int spari_frame_energy(const spar_member *m, double energy[4]) {
+    spari_frame *f = m->solution;
+    SPARI_TRY(spari_energy_of_body(m, energy));
     double *y = spari_zalloc(2 * (int64_t)f->n, sizeof *y), *rate = y + f->n;
     if (!y) {
         return SPAR_ERR_MEMORY;
