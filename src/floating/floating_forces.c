@@ -175,32 +175,6 @@ static void gather_euler(spari_frame *f, int k, const spari_frame_state *s) {
     c->seconds.aEy[k] = cblas_ddot(f->n - 6, s->a + 6, 1, part, 1);
 }
 
-/* Momentum and forces of the unknowns are those of the kinetic energy by rotation vectors, on which a moment m works as
-   m + m x theta / 2; E and N are of moments, with m of a rigid motion. To y' . X y that adds m . (theta x theta') / 2.
-   */
-static double half_moments(const spari_frame *f, const double *moments, const double *rate) {
-    const double *x = f->carriage->x;
-    double sum = 0;
-    for (int i = 0; i < f->nodes; i++) {
-        double turn[3];
-        spari_cross(x + 6 * i + 3, rate + 6 * i + 3, turn);
-        sum += 0.5 * spari_dot(moments + 6 * i + 3, turn);
-    }
-    return sum;
-}
-
-static void correct_seconds(spari_frame *f, const spari_frame_state *s) {
-    spari_carriage *c = f->carriage;
-    const double *v = spari_frame_nodal(f, s->v, f->nodal), *a = spari_frame_nodal(f, s->a, f->nodal + 6 * f->nodes);
-    for (int k = 0; k < 3; k++) {
-        c->seconds.vEy[k] += half_moments(f, c->push[3 + k], v);
-        c->seconds.aEy[k] += half_moments(f, c->push[3 + k], a);
-    }
-    for (int k = 0; k < SPARI_TURNS && c->spin[k]; k++) {
-        c->seconds.vNy[k] += half_moments(f, c->spin[k], v);
-    }
-}
-
 /* What does not depend on how the root moves. */
 static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
     spari_carriage *c = f->carriage;
@@ -227,9 +201,6 @@ static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
         spari_frame_add_times(f, f->D, s->v, 1, c->elastic);
     }
     look_at_iterate(f, s);
-    if (f->S[0] && !c->still) {
-        correct_seconds(f, s);
-    }
 }
 
 /* out += what turning of the frame adds */
@@ -297,31 +268,28 @@ static void gather_whole(const spari_frame *f, const spar_member *m, double *out
     }
 }
 
-/* And to the forces on the unknowns, not to those of the whole, m x theta / 2 (see half_moments). */
-static void add_half_moments(spari_frame *f, const spari_pose *root, double *out) {
+/* The whole has moments as they are: less m x theta / 2, which N and E have on the unknowns. */
+static void take_half_moments_off(const spari_frame *f, const spari_pose *root, double moment[3]) {
     const spari_carriage *c = f->carriage;
-    double omega[3], alpha[3], by[SPARI_TURNS], *half = f->turned;
+    double omega[3], alpha[3], by[SPARI_TURNS];
     spari_rotate_back(root->q + 3, root->v + 3, omega);
     spari_rotate_back(root->q + 3, root->a + 3, alpha);
     for (int t = 0; t < SPARI_TURNS; t++) {
         by[t] = omega[spari_frame_pair[t][0]] * omega[spari_frame_pair[t][1]];
     }
-    memset(half, 0, (size_t)(6 * f->nodes) * sizeof *half);
     for (int i = 3; i < 6 * f->nodes; i += 6) {
-        double m[3];
+        double m[3], turn[3];
         for (int k = 0; k < 3; k++) {
-            m[k] = 0;
-            for (int n = 0; n < 3; n++) {
-                m[k] += 0.5 * alpha[n] * c->push[3 + n][i + k];
-            }
-            for (int t = 0; t < SPARI_TURNS && c->spin[t]; t++) {
-                m[k] += 0.5 * by[t] * c->spin[t][i + k];
+            m[k] = alpha[0] * c->push[3][i + k] + alpha[1] * c->push[4][i + k] + alpha[2] * c->push[5][i + k];
+            for (int t = 0; t < SPARI_TURNS; t++) {
+                m[k] += by[t] * c->spin[t][i + k];
             }
         }
-        spari_cross(m, c->x + i, half + i);
+        spari_cross(m, c->x + i, turn);
+        for (int k = 0; k < 3; k++) {
+            moment[k] -= 0.5 * turn[k];
+        }
     }
-    spari_frame_gather(f, half, f->dx);
-    cblas_daxpy(f->n - 6, 1, f->dx + 6, 1, out + 6, 1);
 }
 
 /* Of second order in the deformation, the moment that goes with N and E: the motion's Lagrangian has
@@ -361,7 +329,7 @@ static void forces_at(spari_frame *f, const spar_member *m, const spari_pose *ro
     gather_whole(f, m, out);
     if (!f->carriage->still && f->S[0]) {
         add_seconds(f, root, out + 3);
-        add_half_moments(f, root, out);
+        take_half_moments_off(f, root, out + 3);
     }
 }
 

@@ -9,7 +9,8 @@
    where G holds the Coriolis and gyroscopic terms, E those of the root's angular acceleration, N what turning with
    omega adds to the stiffness: centrifugal softening, the turned inertia of the sections, and the geometric stiffness S
    of the axial forces that hold the centrifugal ones. All matrices are taken from the exact member's own tangents at
-   the reference, so that the answer is its limit for small deformation. Neglected: terms of second order in x, and the
+   the reference, so that the answer is its limit for small deformation. N and E are those of rotation vectors: N is
+   symmetric. Neglected: terms of second order in x, and the
    geometric stiffness of weight, of fluid loads and of the root's acceleration.
 
    Where joints tie a member whose root is free or pinned (floating_root.h), the frame goes with the root: the root's
