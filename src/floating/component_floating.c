@@ -1,13 +1,14 @@
-/* Members of an assembly that are linear, or modal, in a frame that goes with their root: the root moves as a body of
-   one node, and the deformation as generalised-alpha has it of vectors. See component.h and floating_root.h. */
+/* Components that are linear, or modal, in a frame that goes with their root. The deformation moves as
+   generalised-alpha has it of vectors. The root moves as a body of one node where joints move it; else its motion is
+   prescribed. See component.h and floating_root.h. */
 #include "../base/blas.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../time/body_newton.h"
-#include "floating_root.h"
+#include "../time/component.h"
 #include "../time/driven_root.h"
 #include "../time/fidelity.h"
-#include "../time/component.h"
+#include "floating_root.h"
 
 #include <gsl/gsl_cblas.h>
 #include <math.h>
@@ -28,39 +29,43 @@ static const double *turn_of_frame(const spari_limb *p, int node) {
     return p->solver->turn;
 }
 
-static spari_rates deformation_rates(const spari_frame_state *s) {
-    return (spari_rates){s->v + 6, s->a + 6, s->b + 6, NULL};
+static spari_rates deformation_rates(const spari_frame *f, const spari_frame_state *s) {
+    return (spari_rates){s->v + f->held, s->a + f->held, s->b + f->held, NULL};
 }
 
-/* The root of the state and what links see of it. */
-static void see_from_root(spari_limb *p, const spari_state *root, spari_frame_state *s) {
+/* The root at the end of the step, and what links see of it and of the tied nodes. A prescribed root is there already.
+ */
+static void look_at_end_of_step(spari_limb *p) {
     spari_frame *f = p->frame;
     spari_carriage *c = f->carriage;
-    s->root = spari_pose_of(root->q, root->v, root->a);
-    memcpy(c->seen.q, root->q, 7 * sizeof(double));
-    memcpy(c->seen.v, root->v, 6 * sizeof(double));
-    memcpy(c->seen.a, root->a, 6 * sizeof(double));
+    spari_frame_state *s = &f->to;
+    const spari_state *root = &p->stage.ends.seen;
+    p->state = &c->seen;
+    if (f->floats) {
+        s->root = spari_pose_of(root->q, root->v, root->a);
+    }
+    if (c->condensed->ends == 0) {
+        return;
+    }
+    memcpy(c->seen.q, s->root.q, 7 * sizeof(double));
+    memcpy(c->seen.v, s->root.v, 6 * sizeof(double));
+    memcpy(c->seen.a, s->root.a, 6 * sizeof(double));
     for (int e = 1; e <= c->ends; e++) {
         int at = spari_carriage_at(f, e);
         spari_frame_node(p->member, &s->root, c->node[e - 1], s->y + at, s->v + at, s->a + at, c->seen.q + 7 * e,
                          c->seen.v + 6 * e, c->seen.a + 6 * e);
     }
-    p->state = &c->seen;
-}
-
-static void look_at_end_of_step(spari_limb *p) {
-    see_from_root(p, &p->stage.ends.seen, &p->frame->to);
 }
 
 /* What the forces r leave on the ends, in global axes. */
 static void show_forces(spari_limb *p, const spari_frame_state *s) {
     spari_frame *f = p->frame;
     spari_carriage *c = f->carriage;
-    for (int e = 0; e <= c->ends; e++) {
+    for (int e = 0; e < c->condensed->ends; e++) {
         memcpy(c->force + 6 * e, f->r + spari_carriage_at(f, e), 6 * sizeof(double));
     }
     spari_carriage_push(f, p->member, s->y, c->force);
-    for (int k = 0; k < 6 * (1 + c->ends); k += 3) {
+    for (int k = 0; k < 6 * c->condensed->ends; k += 3) {
         spari_rotate(s->root.q + 3, c->force + k, c->force + k);
     }
 }
@@ -94,15 +99,37 @@ static void begin_frame_limb(spari_limb *p) {
 static void enter_frame(spari_limb *p) {
     spari_frame *f = p->frame;
     const spari_frame_state y = f->from;
-    spari_stage_enter(p->solver);
+    if (f->floats) {
+        spari_stage_enter(p->solver);
+    }
     f->from = f->to, f->to = y;
+}
+
+/* Where a driven root is at the end of the stage, and how far it takes the member along. */
+static void prescribe_root(spari_limb *p, const spari_part *part) {
+    spari_stage *g = &p->stage;
+    double turn[4], psi[3], way[3];
+    g->root = spari_drive_at(p->member, part->to, part->dt);
+    if (p->scheme.rule == SPARI_TRAPEZOIDAL) {
+        g->root = spari_drive_stage(&g->before, &g->root, p->scheme.h, p->scheme.span);
+    }
+    spari_quat_between(g->before.q + 3, g->root.q + 3, turn);
+    spari_quat_log(turn, psi);
+    for (int k = 0; k < 3; k++) {
+        way[k] = g->root.q[k] - g->before.q[k];
+    }
+    g->ends.carried = spari_norm(way) / p->solver->body->length + spari_norm(psi);
 }
 
 static int stage_of_frame(spari_limb *p, const spari_part *part) {
     const spar_member *m = p->member;
     spari_frame *f = p->frame;
     spari_scheme_mix_loads(m, &f->steps, 6 * f->nodes, part->end);
-    SPARI_TRY(spari_stage_root(p->solver, m, &p->scheme, part, &p->stage));
+    if (f->floats) {
+        SPARI_TRY(spari_stage_root(p->solver, m, &p->scheme, part, &p->stage));
+    } else {
+        prescribe_root(p, part);
+    }
     spari_frame_stage(f, m, &p->scheme, part, &p->stage.root);
     spari_carriage_turn(f, &f->from, p->scheme.span);
     p->state = &f->carriage->seen;
@@ -111,14 +138,20 @@ static int stage_of_frame(spari_limb *p, const spari_part *part) {
 
 static void take_velocities_of_frame(spari_limb *p) {
     spari_frame *f = p->frame;
-    memcpy(p->solver->from.v, p->member->now.v, 6 * sizeof(double));
+    if (f->floats) {
+        memcpy(p->solver->from.v, p->member->now.v, 6 * sizeof(double));
+    }
     spari_frame_take_velocities(f, p->member, &f->from);
 }
 
 static void end_frame_limb(spari_limb *p) {
     spari_frame *f = p->frame;
-    spari_stage_restart(p->solver, p->member, &p->scheme, &p->stage);
-    spari_frame_restart_scheme(f, &p->scheme);
+    if (f->floats) {
+        spari_stage_restart(p->solver, p->member, &p->scheme, &p->stage);
+    }
+    if (p->scheme.rule == SPARI_BACKWARD) {
+        spari_scheme_restart(&p->scheme, f->n, f->from.a, f->to.a, f->to.b);
+    }
     p->stage.before = p->stage.root;
     spari_scheme_dissipate(p->member, &p->scheme, &p->stage.power, spari_frame_damped_power(f, &f->to));
 }
@@ -126,9 +159,11 @@ static void end_frame_limb(spari_limb *p) {
 static void keep_rates_of_frame(spari_limb *p, int back) {
     spari_frame *f = p->frame;
     double *kept = f->carriage->kept, *root = p->stage.ends.to.v, *v = f->to.v;
-    memcpy(back ? root : p->solver->best, back ? p->solver->best : root, 6 * sizeof *v);
     memcpy(back ? v : kept, back ? kept : v, (size_t)f->n * sizeof *v);
-    if (back) {
+    if (f->floats) {
+        memcpy(back ? root : p->solver->best, back ? p->solver->best : root, 6 * sizeof *v);
+    }
+    if (back && f->floats) {
         spari_root_show(p->solver, p->member, &p->stage.ends);
         look_at_end_of_step(p);
     }
@@ -139,22 +174,25 @@ static void keep_rates_of_frame(spari_limb *p, int back) {
 static int predict_frame(spari_limb *p, spari_guess stays) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
-    double *x = f->dx + 6;
-    int n = f->n - 6;
+    double *x = f->dx + f->held;
+    int n = f->n - f->held;
     if (stays == SPARI_KEEP_SHAPE) { /* the deformation is linear: nothing leads astray */
         return 0;
     }
-    if (p->scheme.still) {
+    if (f->floats && p->scheme.still) {
         spari_alpha_carry(s, p->member, &p->scheme, &p->stage.root, p->stage.turn, &p->stage.ends, s->increment);
+    } else if (f->floats) {
+        (void)spari_alpha_predict(s, p->member, &p->scheme, stays, &p->stage.ends, s->increment);
+    }
+    if (p->scheme.still) {
         memset(x, 0, (size_t)n * sizeof *x);
         memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof *x);
     } else {
-        (void)spari_alpha_predict(s, p->member, &p->scheme, stays, &p->stage.ends, s->increment);
-        spari_rates from = deformation_rates(&f->from);
-        from.stage = f->stage_v + 6;
-        spari_scheme_predict(&p->scheme, stays, n, from, x, deformation_rates(&f->to));
+        spari_rates from = deformation_rates(f, &f->from);
+        from.stage = f->stage_v + f->held;
+        spari_scheme_predict(&p->scheme, stays, n, from, x, deformation_rates(f, &f->to));
     }
-    for (int k = 6; k < f->n; k++) {
+    for (int k = f->held; k < f->n; k++) {
         f->to.y[k] = f->from.y[k] + f->dx[k];
     }
     look_at_end_of_step(p);
@@ -163,7 +201,9 @@ static int predict_frame(spari_limb *p, spari_guess stays) {
 
 static double balance_frame(spari_limb *p) {
     spari_frame *f = p->frame;
-    spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, p->solver->increment);
+    if (f->floats) {
+        spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, p->solver->increment);
+    }
     look_at_end_of_step(p);
     double scale = spari_carriage_forces(f, p->member, &f->to, p->scheme.still, 1, f->r);
     show_forces(p, &f->to);
@@ -174,7 +214,7 @@ static double noise_of_frame(const spari_limb *p) {
     const spari_frame *f = p->frame;
     const spari_condensed *d = p->condensed;
     double most = 0, poison = 0;
-    for (int i = 6; i < f->n; i++) {
+    for (int i = f->held; i < f->n; i++) {
         int at_end = 0;
         for (int e = 1; e < d->ends; e++) {
             at_end = at_end || i / 6 == d->node[e];
@@ -191,7 +231,9 @@ static double noise_of_frame(const spari_limb *p) {
 
 static int tangent_of_frame(spari_limb *p) {
     spari_frame *f = p->frame;
-    spari_alpha_operators(p->solver, &p->scheme, &p->stage.ends, p->solver->increment);
+    if (f->floats) {
+        spari_alpha_operators(p->solver, &p->scheme, &p->stage.ends, p->solver->increment);
+    }
     return spari_carriage_tangent(f, p->member, &f->to, p->scheme.cm, p->scheme.cv, p->solver->tinv, f->r);
 }
 
@@ -200,14 +242,20 @@ static int frame_serves(const spari_limb *p) {
     return f->factored && spari_alpha_close(p->scheme.cm, f->kept_cm) && spari_alpha_close(p->scheme.cv, f->kept_cv);
 }
 
+static int frame_is_solved(const spari_limb *p) {
+    const spari_frame *f = p->frame;
+    return !f->floats && spari_carriage_is_linear(f, p->member) && f->kept_cm == p->scheme.cm &&
+           f->kept_cv == p->scheme.cv && memcmp(f->kept_turn, f->turn, sizeof f->turn) == 0;
+}
+
 static void see_turn_of_frame(const spari_limb *p) {
     const spari_solver *s = p->solver;
-    spari_quat_between(s->kept_q, p->state->q + 3, s->turn);
+    spari_quat_between(s->kept_q, p->frame->to.root.q + 3, s->turn);
 }
 
 static int reduce_frame(spari_limb *p, double *x) {
     spari_frame *f = p->frame;
-    const double *y = f->to.y, *root = p->state->q + 3;
+    const double *y = f->to.y, *root = f->to.root.q + 3;
     int M = 6 * p->condensed->ends;
     see_turn_of_frame(p);
     memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
@@ -231,9 +279,11 @@ static int reduce_frame(spari_limb *p, double *x) {
 static void expand_frame(spari_limb *p, double *x) {
     spari_frame *f = p->frame;
     int M = 6 * p->condensed->ends;
-    memcpy(p->solver->dx, x, 6 * sizeof *x);
+    if (f->floats) {
+        memcpy(p->solver->dx, x, 6 * sizeof *x);
+    }
     for (int k = 0; k < M; k += 3) {
-        spari_rotate_back(p->state->q + 3, x + k, x + k);
+        spari_rotate_back(f->to.root.q + 3, x + k, x + k);
     }
     spari_carriage_see(f, p->member, f->to.y, x);
     for (int k = 0; k < M; k++) {
@@ -249,7 +299,7 @@ static double size_of_deformation(const spari_limb *p, const double *x) {
     double largest = 0, *own = f->carriage->x;
     double *y = f->nodal;
     memcpy(y, x, (size_t)f->n * sizeof *y);
-    memset(y, 0, 6 * sizeof *y);
+    memset(y, 0, (size_t)f->held * sizeof *y);
     const double *w = spari_frame_nodal(f, y, own);
     for (int i = 0; i < f->nodes; i++) {
         largest = fmax(largest, fmax(spari_norm(w + 6 * i) / p->solver->body->length, spari_norm(w + 6 * i + 3)));
@@ -258,7 +308,8 @@ static double size_of_deformation(const spari_limb *p, const double *x) {
 }
 
 static double change_of_frame(const spari_limb *p) {
-    return fmax(spari_alpha_size(p->solver, p->solver->dx), size_of_deformation(p, p->frame->dx));
+    double root = p->frame->floats ? spari_alpha_size(p->solver, p->solver->dx) : 0;
+    return fmax(root, size_of_deformation(p, p->frame->dx));
 }
 
 static void correct_frame(spari_limb *p, double cut) {
@@ -267,8 +318,11 @@ static void correct_frame(spari_limb *p, double cut) {
     for (int k = 0; k < 6 && cut < 1; k++) {
         s->dx[k] *= cut;
     }
-    (void)spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, INFINITY, s->increment, s->dx);
-    spari_scheme_correct(&p->scheme, cut, f->n - 6, f->dx + 6, f->to.y + 6, deformation_rates(&f->to));
+    if (f->floats) {
+        (void)spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, INFINITY, s->increment, s->dx);
+    }
+    spari_scheme_correct(&p->scheme, cut, f->n - f->held, f->dx + f->held, f->to.y + f->held,
+                         deformation_rates(f, &f->to));
     look_at_end_of_step(p);
 }
 
@@ -278,8 +332,8 @@ static double way_of_frame(const spari_limb *p) {
     for (int k = 0; k < f->n; k++) {
         step[k] = f->to.y[k] - f->from.y[k];
     }
-    return fmax(spari_alpha_size(p->solver, p->solver->increment) + p->stage.ends.carried,
-                size_of_deformation(p, step));
+    double root = f->floats ? spari_alpha_size(p->solver, p->solver->increment) : 0;
+    return fmax(root + p->stage.ends.carried, size_of_deformation(p, step));
 }
 
 static void clear_frame(spari_limb *p) {
@@ -290,72 +344,88 @@ static void clear_frame(spari_limb *p) {
 static void shift_rates_of_frame(spari_limb *p, double v, double a, double b) {
     spari_frame *f = p->frame;
     double *dx = p->solver->dx;
-    for (int k = 0; k < 6 && p->stage.ends.root; k += 3) {
+    for (int k = 0; k < 6 && f->floats && p->stage.ends.root; k += 3) {
         spari_rotate_back(p->stage.ends.root->q + 3, dx + k, dx + k);
     }
-    spari_alpha_shift_rates(p->solver, &p->scheme, &p->stage.ends, v, a, b);
-    for (int k = 6; k < f->n; k++) {
+    for (int k = f->held; k < f->n; k++) {
         f->to.v[k] -= v * f->dx[k];
         f->to.a[k] -= a * f->dx[k];
         f->to.b[k] -= b * f->dx[k];
     }
-    spari_root_show(p->solver, p->member, &p->stage.ends);
+    if (f->floats) {
+        spari_alpha_shift_rates(p->solver, &p->scheme, &p->stage.ends, v, a, b);
+        spari_root_show(p->solver, p->member, &p->stage.ends);
+    }
     look_at_end_of_step(p);
 }
 
 /* ---- its answer ---- */
 
-/* As forces r and on the ends. The first six are force and moment of the whole about the root, arms deformed: modal
-   unknowns have those of the reference already. */
+/* Force and moment of loads [6 nodes] of the whole about the root, arms deformed: modal unknowns have those of the
+   reference already. */
+static void sum_about_root(const spari_limb *p, const double *load, double sum[6]) {
+    const spari_frame *f = p->frame;
+    const double *x = spari_frame_nodal(f, f->to.y, f->carriage->x);
+    memset(sum, 0, 6 * sizeof *sum);
+    for (int i = 0; i < f->nodes; i++) {
+        double arm[3], turn[3];
+        spari_member_arm(p->member, i, arm);
+        for (int k = 0; k < 3; k++) {
+            sum[k] += load[6 * i + k];
+            sum[3 + k] += load[6 * i + 3 + k];
+            arm[k] += x[6 * i + k];
+        }
+        spari_cross(arm, load + 6 * i, turn);
+        for (int k = 0; k < 3; k++) {
+            sum[3 + k] += turn[k];
+        }
+    }
+}
+
+/* As forces r and on the ends. */
 static void take_more_of_frame(spari_limb *p, const double *load) {
     spari_frame *f = p->frame;
-    spari_carriage *c = f->carriage;
-    double sum[6] = {0}, *own = f->turned;
-    const double *x = spari_frame_nodal(f, f->to.y, c->x);
+    double *own = f->turned;
     spari_member_gather(p->member, load, own);
     for (int i = 0; i < 6 * f->nodes; i += 3) {
         spari_rotate_back(f->to.root.q + 3, own + i, own + i);
     }
     spari_frame_gather(f, own, f->r);
-    for (int i = 0; i < f->nodes; i++) {
-        double arm[3], turn[3];
-        spari_member_arm(p->member, i, arm);
-        for (int k = 0; k < 3; k++) {
-            sum[k] += own[6 * i + k];
-            sum[3 + k] += own[6 * i + 3 + k];
-            arm[k] += x[6 * i + k];
-        }
-        spari_cross(arm, own + 6 * i, turn);
-        for (int k = 0; k < 3; k++) {
-            sum[3 + k] += turn[k];
-        }
+    if (f->floats) {
+        sum_about_root(p, own, f->r);
     }
-    memcpy(f->r, sum, sizeof sum);
-    memset(f->r, 0, (size_t)spari_member_held(p->member) * sizeof *f->r);
+    memset(f->r, 0, (size_t)(f->floats ? spari_member_held(p->member) : f->held) * sizeof *f->r);
     show_forces(p, &f->to);
 }
 
-/* The root carries the nodes where they are, and the deformation changes. */
-static void show_more_of_frame(spari_limb *p, double *motion) {
-    spari_frame *f = p->frame;
-    spari_carriage *c = f->carriage;
-    const double *root = p->solver->dx, *q = f->to.root.q + 3, *x = spari_frame_nodal(f, f->to.y, c->x);
-    memset(f->dx, 0, 6 * sizeof *f->dx);
-    const double *change = spari_frame_nodal(f, f->dx, f->nodal);
+/* motion [6 nodes] += that of a root which carries the nodes where they are */
+static void add_motion_of_root(const spari_limb *p, const double *root, double *motion) {
+    const spari_frame *f = p->frame;
+    const double *q = f->to.root.q + 3, *x = spari_frame_nodal(f, f->to.y, f->carriage->x);
     for (int i = 0; i < f->nodes; i++) {
-        double arm[3], turn[3], *out = f->turned + 6 * i;
+        double arm[3], turn[3], *out = motion + 6 * i;
         spari_member_arm(p->member, i, arm);
         for (int k = 0; k < 3; k++) {
             arm[k] += x[6 * i + k];
         }
         spari_rotate(q, arm, arm);
         spari_cross(root + 3, arm, turn);
-        spari_rotate(q, change + 6 * i, out);
-        spari_rotate(q, change + 6 * i + 3, out + 3);
         for (int k = 0; k < 3; k++) {
             out[k] += root[k] + turn[k];
             out[3 + k] += root[3 + k];
         }
+    }
+}
+
+static void show_more_of_frame(spari_limb *p, double *motion) {
+    spari_frame *f = p->frame;
+    memset(f->dx, 0, (size_t)f->held * sizeof *f->dx);
+    const double *change = spari_frame_nodal(f, f->dx, f->nodal);
+    for (int i = 0; i < 6 * f->nodes; i += 3) {
+        spari_rotate(f->to.root.q + 3, change + i, f->turned + i);
+    }
+    if (f->floats) {
+        add_motion_of_root(p, p->solver->dx, f->turned);
     }
     spari_member_from_unique(p->member, 6, f->turned, motion);
 }
@@ -399,10 +469,10 @@ static void unbalance_frame(spari_limb *p) {
 static void correct_start_of_frame(spari_limb *p) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 6 && f->floats; k++) {
         s->begin.a[k] -= p->scheme.cm * s->dx[k];
     }
-    for (int k = 6; k < f->n; k++) {
+    for (int k = f->held; k < f->n; k++) {
         f->to.a[k] -= p->scheme.cm * f->dx[k];
     }
     look_at_end_of_step(p);
@@ -411,7 +481,9 @@ static void correct_start_of_frame(spari_limb *p) {
 static void end_start_of_frame(spari_limb *p) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
-    spari_stage_remember(s, p->member, &p->scheme);
+    if (f->floats) {
+        spari_stage_remember(s, p->member, &p->scheme);
+    }
     memcpy(f->to.b, f->to.a, (size_t)f->n * sizeof *f->to.b);
     memcpy(f->begin.y, f->to.y, (size_t)(4 * f->n) * sizeof *f->to.y);
     f->begin.root = f->to.root;
@@ -436,6 +508,10 @@ static void rest_frame(spari_limb *p, const double *fluid, int onward) {
         memcpy(s->to.q, s->begin.q, 7 * sizeof *s->to.q);
         memcpy(f->to.y, f->begin.y, (size_t)f->n * sizeof *f->to.y);
     }
+    if (!f->floats) {
+        const double zero[6] = {0};
+        f->to.root = spari_pose_of(f->begin.root.q, zero, zero);
+    }
     memset(s->to.v, 0, 18 * sizeof *s->to.v);
     memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof *f->to.v);
     p->stage.ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
@@ -445,12 +521,18 @@ static void rest_frame(spari_limb *p, const double *fluid, int onward) {
 /* The root turns with the whole, and with it the frame and what rests in that. */
 static void turn_root(spari_limb *p, double factor) {
     const spar_member *m = p->member;
+    spari_frame *f = p->frame;
     spari_state *to = &p->solver->to;
+    const double *q = f->floats ? to->q : f->to.root.q;
     double x[3];
     for (int k = 0; k < 3; k++) {
-        x[k] = m->xr[k] + to->q[k];
+        x[k] = m->xr[k] + q[k];
     }
-    spari_turning_rates(p->turning, factor, x, to->v, to->a);
+    if (f->floats) {
+        spari_turning_rates(p->turning, factor, x, to->v, to->a);
+    } else {
+        spari_turning_rates(p->turning, factor, x, f->to.root.v, f->to.root.a);
+    }
     look_at_end_of_step(p);
 }
 
@@ -482,8 +564,10 @@ static int tangent_of_frame_at_rest(spari_limb *p, double factor) {
 
 static void shift_frame(spari_limb *p, double cut) {
     spari_frame *f = p->frame;
-    spari_static_shift(1, cut, p->solver->dx, p->solver->to.q);
-    for (int k = 6; k < f->n; k++) {
+    if (f->floats) {
+        spari_static_shift(1, cut, p->solver->dx, p->solver->to.q);
+    }
+    for (int k = f->held; k < f->n; k++) {
         f->to.y[k] -= cut * f->dx[k];
     }
     look_at_end_of_step(p);
@@ -528,6 +612,7 @@ const spari_limb_row spari_limb_frame = {
     .noise = noise_of_frame,
     .tangent = tangent_of_frame,
     .serves = frame_serves,
+    .solved = frame_is_solved,
     .reduce = reduce_frame,
     .expand = expand_frame,
     .change = change_of_frame,

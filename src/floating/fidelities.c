@@ -3,7 +3,6 @@
 
 #include "../algebra/pencil.h"
 #include "../base/session.h"
-#include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
@@ -13,7 +12,6 @@
 #include "../time/fidelity.h"
 #include "floating_root.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -120,11 +118,8 @@ static double *arms_of(const spar_member *m) {
 /* The matrices, of the nodes or of m->modes modes. */
 static int fill_frame(spari_frame *f, const spar_member *m) {
     double *arm = arms_of(m);
-    int cols = (int)m->modes + spari_member_held(m);
-    if (f->carriage) {
-        int most = 6 * (f->nodes - 1 - f->carriage->ends);
-        cols = 6 + 6 * f->carriage->ends + (cols - 6 < most ? cols - 6 : most);
-    }
+    int more = (int)m->modes + spari_member_held(m) - 6, most = 6 * (f->nodes - 1 - f->carriage->ends);
+    int cols = 6 + 6 * f->carriage->ends + (more < most ? more : most);
     int status = arm && allocate_matrices(f, m) == 0 ? spari_frame_form(f, m->body, arm) : SPAR_ERR_MEMORY;
     if (status == SPAR_OK && f->A) {
         for (int e = 0; e < f->elements; e++) {
@@ -134,7 +129,7 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
     for (int e = 0; e < f->elements && status == SPAR_OK && m->foundation; e++) {
         spari_foundation_tangent(m, e, 1, f->K + (int64_t)f->block * f->block * e);
     }
-    if (status == SPAR_OK && f->carriage) {
+    if (status == SPAR_OK && f->floats) {
         status = spari_carriage_keep_pushes(f);
     }
     if (status == SPAR_OK && m->modes > 0) {
@@ -143,7 +138,7 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
     }
     free(arm);
     status = status == SPAR_OK && allocate_work(f, m) ? SPAR_ERR_MEMORY : status;
-    return status == SPAR_OK && f->carriage ? spari_carriage_finish(f, m) : status;
+    return status == SPAR_OK ? spari_carriage_finish(f, m) : status;
 }
 
 static int frame_create(spar_member *m) {
@@ -166,11 +161,12 @@ static int frame_create(spar_member *m) {
     if (!f) {
         return SPAR_ERR_MEMORY;
     }
-    f->held = m->floats ? 6 : spari_member_held(m);
+    f->floats = m->floats;
+    f->held = f->floats ? 6 : spari_member_held(m);
     f->nodes = m->body->unique;
     f->elements = m->elements, f->block = 6 * m->per_element, f->overlap = 6, f->n = 6 * f->nodes;
     f->size = (int64_t)f->elements * f->block * f->block;
-    int status = spari_member_is_tied(m) ? spari_carriage_create(f, m) : SPAR_OK;
+    int status = spari_carriage_create(f, m);
     status = status == SPAR_OK ? fill_frame(f, m) : status;
     f->factors = 0; /* those of the set-up do not count */
     SPARI_REQUIRE(m->session, status == SPAR_OK || status == SPAR_ERR_MEMORY, status,
@@ -198,42 +194,40 @@ static int modal_check(const spar_member *m) {
 
 /* ---- the rest of the rows ---- */
 
-static void frame_remass(spar_member *m) {
-    spari_frame_remass(m->solution, m);
-}
-
-static void frame_restart(spar_member *m) {
-    spari_frame_restart(m->solution, m);
+/* It alone, as a component. */
+static spari_limb frame_component(spar_member *m) {
+    spari_limb p = {.member = m, .row = &spari_limb_frame};
+    (void)p.row->make(&p);
+    return p;
 }
 
 static int frame_advance(spar_member *m, double dt) {
-    return spari_frame_advance(m->solution, m, dt);
+    spari_limb p = frame_component(m);
+    SPARI_TRY(spari_component_advance(&p, dt));
+    spari_frame_publish(m);
+    return SPAR_OK;
 }
 
 static int frame_balance(spar_member *m, double dt) {
-    return spari_frame_balance(m->solution, m, dt);
-}
-
-static void frame_begin(spar_member *m) {
-    spari_frame_begin(m->solution);
-}
-
-static void frame_accept(spar_member *m) {
-    spari_frame_accept(m->solution);
-}
-
-static void frame_reject(spar_member *m) {
-    spari_frame_reject(m->solution);
+    spari_limb p = frame_component(m);
+    SPARI_TRY(spari_component_balance(&p, dt));
+    spari_frame_publish(m);
+    return SPAR_OK;
 }
 
 static int frame_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
+    const spari_frame *f = m->solution;
     (void)load_steps, (void)onward; /* the equations are linear */
-    return spari_frame_static(m->solution, m, fluid);
-}
-
-static int frame_energy(const spar_member *m, double energy[4]) {
-    SPARI_TRY(spari_energy_of_body(m, energy));
-    return spari_frame_energy(m->solution, m, energy);
+    SPARI_REQUIRE(m->session, f->held == 6, SPAR_ERR_STATE,
+                  "member '%s': nothing holds a linear member that its root leaves free to turn; fix or drive its root",
+                  m->name);
+    spari_limb p = frame_component(m);
+    int failed = spari_component_static(&p, fluid) || spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 ||
+                 spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0;
+    SPARI_REQUIRE(m->session, !failed, SPAR_ERR_NUMERIC,
+                  "member '%s': the linear member has no equilibrium under these loads; the state is as it was",
+                  m->name);
+    return SPAR_OK;
 }
 
 static int64_t frame_unknowns(const spar_member *m) {
@@ -241,40 +235,9 @@ static int64_t frame_unknowns(const spar_member *m) {
     return f->n - spari_member_held(m);
 }
 
-static int frame_problem(const spar_member *m, double *K, double *M) {
-    spari_frame_modal(m->solution, m, K, M);
-    return SPAR_OK;
-}
-
-/* Small deformation is seen from the root, which must turn as the frame does. */
-static int frame_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
-    double apart[3], own = spari_norm(m->after.v + 3);
-    for (int k = 0; k < 3; k++) {
-        apart[k] = m->after.v[3 + k] - w[k];
-    }
-    if (spari_norm(apart) > 1e-4 * fmax(own, spari_norm(w))) {
-        return SPAR_ERR_UNSUPPORTED;
-    }
-    spari_frame_linearise(m->solution, m, to);
-    return SPAR_OK;
-}
-
-static void frame_shape(const spar_member *m, const double *x, double *room, double *nodes) {
-    spari_frame_shape(m->solution, m, x, room);
-    spari_member_from_unique(m, 6, room, nodes);
-}
-
 static int frame_answer(spar_member *m, const double *load, double *motion) {
-    return spari_frame_answer(m->solution, m, load, motion);
-}
-
-static int frame_felt(spar_member *m, double *load) {
-    spari_frame *f = m->solution;
-    if (!f->basis) {
-        spari_member_even_loads(m, load);
-        return SPAR_OK;
-    }
-    return spari_frame_felt(f, m, load);
+    spari_limb p = frame_component(m);
+    return spari_component_answer(&p, load, motion);
 }
 
 static void frame_effort(const spar_member *m, spari_effort *e) {
@@ -288,26 +251,10 @@ static void frame_effort(const spar_member *m, spari_effort *e) {
                         .band = spari_effort_band(f->n, f->block)};
 }
 
-static int64_t frame_state_size(const spar_member *m) {
-    return spari_frame_state_size(m->solution);
-}
-
-static void frame_save(const spar_member *m, double *state) {
-    spari_frame_save(m->solution, state);
-}
-
-static int frame_is_state(const spar_member *m, const double *state, int64_t count) {
-    return spari_frame_is_state(m->solution, state, count);
-}
-
-static void frame_load(spar_member *m, const double *state) {
-    spari_frame_load(m->solution, state);
-}
-
 /* Joints have come, or have changed: it is made anew for them. */
 static int frame_retie(spar_member *m) {
     const spari_frame *f = m->solution;
-    int had = f->carriage != NULL;
+    int had = f->carriage->condensed->ends > 0;
     if (!had && !spari_member_is_tied(m)) {
         return SPAR_OK;
     }
@@ -322,30 +269,22 @@ static int frame_retie(spar_member *m) {
     }
     frame_free(before);
     if (spari_fidelity_is_here(m)) {
-        frame_restart(m);
+        spari_frame_restart(m);
     }
     return SPAR_OK;
-}
-
-static int frame_end_of(const spar_member *m, int node) {
-    return spari_carriage_end_of(m->solution, node);
-}
-
-static void frame_publish(spar_member *m) {
-    spari_frame *f = m->solution;
-    spari_frame_publish(f, m, &f->to);
 }
 
 /* What the two rows share. */
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .create = frame_create, .free = frame_free,                    \
-    .remass = frame_remass, .restart = frame_restart, .advance = frame_advance, .balance = frame_balance,              \
-    .answer = frame_answer, .felt = frame_felt, .accept = frame_accept, .begin = frame_begin, .reject = frame_reject,  \
-    .effort = frame_effort, .rest = frame_rest, .reaction_room = spari_reaction_of_whole_room,                         \
-    .reaction = spari_reaction_of_whole, .energy = frame_energy, .unknowns = frame_unknowns, .problem = frame_problem, \
-    .shape = frame_shape, .linearise = frame_linearise, .state_size = frame_state_size, .save = frame_save,            \
-    .is_state = frame_is_state, .load = frame_load, .limb = &spari_limb_frame, .retie = frame_retie,                   \
-    .end_of = frame_end_of, .publish = frame_publish
+    .remass = spari_frame_remass, .restart = spari_frame_restart, .advance = frame_advance, .balance = frame_balance,  \
+    .answer = frame_answer, .felt = spari_frame_felt, .accept = spari_frame_accept, .begin = spari_frame_begin,        \
+    .reject = spari_frame_reject, .effort = frame_effort, .rest = frame_rest,                                          \
+    .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole, .energy = spari_frame_energy,  \
+    .unknowns = frame_unknowns, .problem = spari_frame_problem, .shape = spari_frame_shape,                            \
+    .linearise = spari_frame_linearise, .state_size = spari_frame_state_size, .save = spari_frame_save,                \
+    .is_state = spari_frame_is_state, .load = spari_frame_load, .limb = &spari_limb_frame, .retie = frame_retie,       \
+    .end_of = spari_carriage_end_of, .publish = spari_frame_publish
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
 const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .felt_here = 1, .massive = 1, .takes_modes = 1,

@@ -1,4 +1,4 @@
-/* Forces of a frame whose root joints hold, and their tangent: see floating_root.h. */
+/* Forces of a frame and their tangent: see floating_root.h. */
 #include "../base/blas.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
@@ -11,7 +11,121 @@
 
 enum { TURN_PARTS = 1, GYRO_PARTS = 7, EULER_PARTS = 10, ALL_PARTS = 13 };
 
-/* ---- forces ---- */
+/* ---- loads ---- */
+
+/* Whether the forces are those of a step: at rest, and in what begins at t^0, the guess has no part. */
+static int steps_on(const spari_frame *f) {
+    return !f->carriage->still && !f->carriage->steady && f->steps.started;
+}
+
+int spari_carriage_is_linear(const spari_frame *f, const spar_member *m) {
+    return !m->applied && !(m->added && steps_on(f));
+}
+
+/* The latest iterate, for loads that depend on it. */
+static void look_at_iterate(spari_frame *f, const spari_frame_state *s) {
+    spari_carriage *c = f->carriage;
+    const double *x = spari_frame_nodal(f, s->y, c->x);
+    c->speeds = s->v, c->rates = s->a;
+    if (x != c->x) {
+        memcpy(c->x, x, (size_t)(6 * f->nodes) * sizeof *x);
+    }
+}
+
+/* Nodal loads, global axes; those that follow where the state has put the nodes, and with a root that moves so what the
+   guess of the fluid's added mass takes of their accelerations. */
+static void gather_loads_of(spari_frame *f, const spar_member *m, const spari_pose *root) {
+    spari_carriage *c = f->carriage;
+    int n = f->nodes, n6 = 6 * n, guessed = m->added && steps_on(f);
+    double *q = f->turned, *v = q + 7 * n, *a = v + n6;
+    memset(c->loads, 0, (size_t)n6 * sizeof *c->loads);
+    if (m->applied || guessed) {
+        const double *xd = spari_frame_nodal(f, c->speeds, f->nodal),
+                     *xdd = spari_frame_nodal(f, c->rates, f->nodal + n6);
+        for (int i = 0; i < n; i++) {
+            spari_frame_node(m, root, i, c->x + 6 * i, xd + 6 * i, xdd + 6 * i, q + 7 * i, v + 6 * i, a + 6 * i);
+        }
+    }
+    if (m->applied) {
+        spari_applied_residual(m, q, c->factor, c->loads);
+    }
+    if (guessed) {
+        (void)spari_added_times(m, SPARI_UNKNOWNS, SPARI_UNKNOWNS, a, 1, c->loads);
+    }
+    for (int i = 0; i < n6; i++) {
+        c->loads[i] = c->factor * f->steps.load[i] - c->loads[i];
+    }
+}
+
+/* out += M R (a - g, alpha) - loads, of the unknowns, in the axes of the frame. rate: what turns and accelerates the
+   frame there; load [6 nodes]: the loads there. */
+static void add_weight_and_loads(spari_frame *f, const spar_member *m, const spari_pose *root, double rate[6],
+                                 double *load, double *out) {
+    const spari_carriage *c = f->carriage;
+    for (int k = 0; k < 6; k++) {
+        rate[k] = (c->still ? 0 : root->a[k]) - (k < 3 ? c->factor * m->body->gravity[k] : 0);
+    }
+    spari_rotate_back(root->q + 3, rate, rate);
+    spari_rotate_back(root->q + 3, rate + 3, rate + 3);
+    for (int i = 0; i < 6 * f->nodes; i += 3) {
+        spari_rotate_back(root->q + 3, c->loads + i, load + i);
+    }
+    spari_frame_gather(f, load, f->dx);
+    cblas_daxpy(f->n, -1, f->dx, 1, out, 1);
+    for (int k = 0; k < 6 && f->rigid[0]; k++) {
+        if (rate[k] != 0) {
+            cblas_daxpy(f->n, rate[k], f->rigid[k], 1, out, 1);
+        }
+    }
+}
+
+/* ---- forces where the motion of the root is prescribed ---- */
+
+static double largest_force(int n, const double *x) {
+    double most = 0;
+    for (int i = 0; i < n; i++) {
+        double size = fabs(x[i]);
+        most = size > most ? size : most;
+    }
+    return most;
+}
+
+/* One sum of the matrices for the turn of the root. */
+static double forces_of_prescribed(spari_frame *f, const spar_member *m, const spari_frame_state *s, double *r) {
+    spari_carriage *c = f->carriage;
+    double rate[6], turn[6] = {0};
+    const size_t size = (size_t)f->n * sizeof *r;
+    spari_rotate_back(s->root.q + 3, s->root.v + 3, turn);
+    if (!c->still) {
+        spari_rotate_back(s->root.q + 3, s->root.a + 3, turn + 3);
+    }
+    spari_frame_combine(f, turn);
+    if (!spari_carriage_is_linear(f, m)) {
+        look_at_iterate(f, s);
+    }
+    gather_loads_of(f, m, &s->root);
+    if (f->sumf) {
+        memcpy(r, f->sumf, size);
+    } else {
+        memset(r, 0, size);
+    }
+    add_weight_and_loads(f, m, &s->root, rate, f->turned, r);
+    cblas_daxpy(f->pull ? f->n : 0, c->factor, f->pull, 1, r, 1);
+    memset(c->elastic, 0, size);
+    spari_frame_add_times(f, f->sumK ? f->sumK : f->K, s->y, 1, c->elastic);
+    double scale = fmax(largest_force(f->n, r), largest_force(f->n, c->elastic));
+    cblas_daxpy(f->n, 1, c->elastic, 1, r, 1);
+    if (f->sumC) {
+        spari_frame_add_times(f, f->sumC, s->v, 1, r);
+    }
+    if (f->M && !c->still) {
+        spari_frame_add_times(f, f->M, s->a, 1, r);
+    }
+    memset(r, 0, (size_t)f->held * sizeof *r);
+    return scale;
+}
+
+/* ---- forces where joints move the root ---- */
 
 /* parts[k] := X y */
 static void product_into(spari_frame *f, int k, const double *X, const double *y) {
@@ -61,32 +175,6 @@ static void gather_euler(spari_frame *f, int k, const spari_frame_state *s) {
     c->seconds.aEy[k] = cblas_ddot(f->n - 6, s->a + 6, 1, part, 1);
 }
 
-/* Momentum and forces of the unknowns are those of the kinetic energy by rotation vectors, on which a moment m works as
-   m + m x theta / 2; E and N are of moments, with m of a rigid motion. To y' . X y that adds m . (theta x theta') / 2.
-   */
-static double half_moments(const spari_frame *f, const double *moments, const double *rate) {
-    const double *x = f->carriage->x;
-    double sum = 0;
-    for (int i = 0; i < f->nodes; i++) {
-        double turn[3];
-        spari_cross(x + 6 * i + 3, rate + 6 * i + 3, turn);
-        sum += 0.5 * spari_dot(moments + 6 * i + 3, turn);
-    }
-    return sum;
-}
-
-static void correct_seconds(spari_frame *f, const spari_frame_state *s) {
-    spari_carriage *c = f->carriage;
-    const double *v = spari_frame_nodal(f, s->v, f->nodal), *a = spari_frame_nodal(f, s->a, f->nodal + 6 * f->nodes);
-    for (int k = 0; k < 3; k++) {
-        c->seconds.vEy[k] += half_moments(f, c->push[3 + k], v);
-        c->seconds.aEy[k] += half_moments(f, c->push[3 + k], a);
-    }
-    for (int k = 0; k < SPARI_TURNS && c->spin[k]; k++) {
-        c->seconds.vNy[k] += half_moments(f, c->spin[k], v);
-    }
-}
-
 /* What does not depend on how the root moves. */
 static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
     spari_carriage *c = f->carriage;
@@ -105,7 +193,6 @@ static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
         product_into(f, GYRO_PARTS + k, f->G[k], s->v);
         gather_euler(f, k, s);
     }
-    c->speeds = s->v, c->rates = s->a;
     const int stretched = f->S[0] && !c->still;
     memset(c->elastic, 0, (size_t)f->n * sizeof *c->elastic);
     spari_frame_add_times(f, stretched ? c->stiff : f->K, s->y, 1, c->elastic);
@@ -113,43 +200,7 @@ static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
     if (f->D) {
         spari_frame_add_times(f, f->D, s->v, 1, c->elastic);
     }
-    const double *x = spari_frame_nodal(f, s->y, c->x);
-    if (x != c->x) {
-        memcpy(c->x, x, (size_t)(6 * f->nodes) * sizeof *x);
-    }
-    if (f->S[0] && !c->still) {
-        correct_seconds(f, s);
-    }
-}
-
-/* Whether the forces are those of a step: at rest, and in what begins at t^0, the guess has no part. */
-static int steps_on(const spari_frame *f) {
-    return !f->carriage->still && !f->carriage->steady && f->steps.started;
-}
-
-/* Nodal loads, global axes; those that follow where the state has put the nodes, and with a root that moves so what the
-   guess of the fluid's added mass takes of their accelerations. */
-static void gather_loads_of(spari_frame *f, const spar_member *m, const spari_pose *root) {
-    spari_carriage *c = f->carriage;
-    int n = f->nodes, n6 = 6 * n, guessed = m->added && steps_on(f);
-    double *q = f->turned, *v = q + 7 * n, *a = v + n6;
-    memset(c->loads, 0, (size_t)n6 * sizeof *c->loads);
-    if (m->applied || guessed) {
-        const double *xd = spari_frame_nodal(f, c->speeds, f->nodal),
-                     *xdd = spari_frame_nodal(f, c->rates, f->nodal + n6);
-        for (int i = 0; i < n; i++) {
-            spari_frame_node(m, root, i, c->x + 6 * i, xd + 6 * i, xdd + 6 * i, q + 7 * i, v + 6 * i, a + 6 * i);
-        }
-    }
-    if (m->applied) {
-        spari_applied_residual(m, q, c->factor, c->loads);
-    }
-    if (guessed) {
-        (void)spari_added_times(m, SPARI_UNKNOWNS, SPARI_UNKNOWNS, a, 1, c->loads);
-    }
-    for (int i = 0; i < n6; i++) {
-        c->loads[i] = c->factor * f->steps.load[i] - c->loads[i];
-    }
+    look_at_iterate(f, s);
 }
 
 /* out += what turning of the frame adds */
@@ -175,20 +226,9 @@ static void add_heavy(spari_frame *f, const spar_member *m, const spari_pose *ro
     spari_carriage *c = f->carriage;
     int n6 = 6 * f->nodes;
     double rate[6], omega[3], *load = f->turned;
-    for (int k = 0; k < 6; k++) {
-        rate[k] = (c->still ? 0 : root->a[k]) - (k < 3 ? c->factor * m->body->gravity[k] : 0);
-    }
-    spari_rotate_back(root->q + 3, rate, rate);
-    spari_rotate_back(root->q + 3, rate + 3, rate + 3);
-    for (int i = 0; i < n6; i += 3) {
-        spari_rotate_back(root->q + 3, c->loads + i, load + i);
-    }
+    add_weight_and_loads(f, m, root, rate, load, out);
     for (int i = 0; i < n6; i++) {
         c->heavy[i] = -load[i];
-    }
-    spari_frame_gather(f, c->heavy, f->dx);
-    for (int i = 0; i < f->n; i++) {
-        out[i] += f->dx[i];
     }
     spari_rotate_back(root->q + 3, root->v + 3, omega);
     for (int k = 0; k < SPARI_TURNS && f->S[0] && !c->still; k++) { /* of those on the unknowns it is among the parts */
@@ -196,7 +236,6 @@ static void add_heavy(spari_frame *f, const spar_member *m, const spari_pose *ro
     }
     for (int k = 0; k < 6 && f->rigid[0]; k++) {
         cblas_daxpy(n6, rate[k], c->push[k], 1, c->heavy, 1);
-        cblas_daxpy(f->n, rate[k], f->rigid[k], 1, out, 1);
     }
 }
 
@@ -229,31 +268,28 @@ static void gather_whole(const spari_frame *f, const spar_member *m, double *out
     }
 }
 
-/* And to the forces on the unknowns, not to those of the whole, m x theta / 2 (see half_moments). */
-static void add_half_moments(spari_frame *f, const spari_pose *root, double *out) {
+/* The whole has moments as they are: less m x theta / 2, which N and E have on the unknowns. */
+static void take_half_moments_off(const spari_frame *f, const spari_pose *root, double moment[3]) {
     const spari_carriage *c = f->carriage;
-    double omega[3], alpha[3], by[SPARI_TURNS], *half = f->turned;
+    double omega[3], alpha[3], by[SPARI_TURNS];
     spari_rotate_back(root->q + 3, root->v + 3, omega);
     spari_rotate_back(root->q + 3, root->a + 3, alpha);
     for (int t = 0; t < SPARI_TURNS; t++) {
         by[t] = omega[spari_frame_pair[t][0]] * omega[spari_frame_pair[t][1]];
     }
-    memset(half, 0, (size_t)(6 * f->nodes) * sizeof *half);
     for (int i = 3; i < 6 * f->nodes; i += 6) {
-        double m[3];
+        double m[3], turn[3];
         for (int k = 0; k < 3; k++) {
-            m[k] = 0;
-            for (int n = 0; n < 3; n++) {
-                m[k] += 0.5 * alpha[n] * c->push[3 + n][i + k];
-            }
-            for (int t = 0; t < SPARI_TURNS && c->spin[t]; t++) {
-                m[k] += 0.5 * by[t] * c->spin[t][i + k];
+            m[k] = alpha[0] * c->push[3][i + k] + alpha[1] * c->push[4][i + k] + alpha[2] * c->push[5][i + k];
+            for (int t = 0; t < SPARI_TURNS; t++) {
+                m[k] += by[t] * c->spin[t][i + k];
             }
         }
-        spari_cross(m, c->x + i, half + i);
+        spari_cross(m, c->x + i, turn);
+        for (int k = 0; k < 3; k++) {
+            moment[k] -= 0.5 * turn[k];
+        }
     }
-    spari_frame_gather(f, half, f->dx);
-    cblas_daxpy(f->n - 6, 1, f->dx + 6, 1, out + 6, 1);
 }
 
 /* Of second order in the deformation, the moment that goes with N and E: the motion's Lagrangian has
@@ -293,7 +329,7 @@ static void forces_at(spari_frame *f, const spar_member *m, const spari_pose *ro
     gather_whole(f, m, out);
     if (!f->carriage->still && f->S[0]) {
         add_seconds(f, root, out + 3);
-        add_half_moments(f, root, out);
+        take_half_moments_off(f, root, out + 3);
     }
 }
 
@@ -302,6 +338,9 @@ double spari_carriage_forces(spari_frame *f, const spar_member *m, const spari_f
     spari_carriage *c = f->carriage;
     double scale = 0;
     c->still = still, c->factor = factor;
+    if (!f->floats) {
+        return forces_of_prescribed(f, m, s, r);
+    }
     gather_parts_of(f, s);
     gather_loads_of(f, m, &s->root);
     forces_at(f, m, &s->root, r);
@@ -439,18 +478,23 @@ static void add_arms_to_rows(const spari_frame *f) {
     }
 }
 
-/* The tangent of element e, internal forces of the stretch apart. */
-static void form_element(spari_frame *f, int e, const double alpha[3], double cm, double cv) {
-    const double *K = f->sumK ? f->sumK : f->K;
-    int64_t mm = (int64_t)f->block * f->block;
-    int moving = f->E[0] && !f->carriage->still, guessed = f->A && steps_on(f);
+/* The tangent of element e, of the sums that there are. */
+static void form_element(spari_frame *f, int e, double cm, double cv) {
+    const int64_t mm = (int64_t)f->block * f->block, at = mm * e;
+    const double *K = (f->sumK ? f->sumK : f->K) + at, *C = f->sumC ? f->sumC + at : NULL, *M = f->M ? f->M + at : NULL,
+                 *A = f->A && steps_on(f) ? f->A + at : NULL;
+    double *S = f->element;
     for (int64_t i = 0; i < mm; i++) {
-        int64_t at = mm * e + i;
-        f->element[i] =
-            K[at] + (f->sumC ? cv * f->sumC[at] : 0) + (f->M ? cm * f->M[at] : 0) + (guessed ? cm * f->A[at] : 0);
-        for (int k = 0; k < 3 && moving; k++) {
-            f->element[i] += alpha[k] * f->E[k][at];
-        }
+        S[i] = K[i] + (C ? cv * C[i] : 0) + (M ? cm * M[i] : 0) + (A ? cm * A[i] : 0);
+    }
+}
+
+/* The tangent where the motion of the root is prescribed: with the sums of the forces. */
+static void form_prescribed(spari_frame *f, double cm, double cv) {
+    spari_linear_zero(f->linear);
+    for (int e = 0; e < f->elements; e++) {
+        form_element(f, e, cm, cv);
+        spari_linear_add(f->linear, e, f->element);
     }
 }
 
@@ -481,7 +525,10 @@ static void form_chain(spari_frame *f, const spar_member *m, const spari_pose *r
     spari_linear_zero(f->linear);
     memset(c->border, 0, (size_t)(6 * f->n) * sizeof *c->border);
     for (int e = 0; e < f->elements; e++) {
-        form_element(f, e, alpha, cm, cv);
+        form_element(f, e, cm, cv);
+        for (int k = 0; k < 3 && f->E[0] && !c->still; k++) { /* internal forces of the stretch apart */
+            cblas_daxpy((int)mm, alpha[k], f->E[k] + mm * e, 1, f->element, 1);
+        }
         /* pretension's stiffness is not blind to rigid motions: the whole has it by the arms of the ends */
         cblas_daxpy(f->pull ? (int)mm : 0, -1, f->K + mm * e, 1, f->element, 1);
         add_rows(f, m, e, f->element);
@@ -493,9 +540,6 @@ static void form_chain(spari_frame *f, const spar_member *m, const spari_pose *r
     }
     add_euler_to_rows(f, cm);
     add_arms_to_rows(f);
-    for (int i = 0; i < 6; i++) {
-        spari_linear_fix(f->linear, i);
-    }
 }
 
 /* Puts the root's rows and columns where the chain had none. */
@@ -593,20 +637,30 @@ int spari_carriage_tangent(spari_frame *f, const spar_member *m, const spari_fra
     spari_condensed *d = c->condensed;
     spari_frame_keep_factors(f);
     f->factored = 0;
-    if (spari_member_held(m) < 6) {
+    if (f->floats) {
         form_columns(f, m, &s->root, cm, cv, tinv);
+        form_chain(f, m, &s->root, cm, cv);
+    } else {
+        form_prescribed(f, cm, cv);
     }
-    form_chain(f, m, &s->root, cm, cv);
+    for (int i = 0; i < f->held; i++) {
+        spari_linear_fix(f->linear, i);
+    }
     spari_condensed_take(d, f->linear, spari_member_held(m));
-    put_border(f, m);
+    if (f->floats) {
+        put_border(f, m);
+    }
     f->factors++;
     if (spari_linear_factor(f->linear) || spari_condensed_form(d, f->linear)) {
         return 1;
     }
-    take_ends_out(f, m, s, r, c->room);
-    turn_ends(s->root.q + 3, 6 * d->ends, d->K);
+    if (d->ends > 0) {
+        take_ends_out(f, m, s, r, c->room);
+        turn_ends(s->root.q + 3, 6 * d->ends, d->K);
+    }
     f->factored = 1;
     f->kept_cm = cm, f->kept_cv = cv;
+    memcpy(f->kept_turn, f->turn, sizeof f->kept_turn);
     memcpy(c->root->kept_q, s->root.q + 3, 4 * sizeof(double));
     return 0;
 }

@@ -1,8 +1,9 @@
-/* What a frame has besides where joints tie its member: made, freed, saved; see carriage.h. */
+/* The root of a frame and the nodes that joints tie: made, freed; see floating_root.h. */
 #include "floating_root.h"
 
 #include "../base/blas.h"
 #include "../math/rotation.h"
+#include "../member/joint.h"
 #include "../time/component.h"
 
 #include <gsl/gsl_cblas.h>
@@ -114,13 +115,13 @@ int spari_carriage_at(const spari_frame *f, int e) {
 
 int spari_carriage_finish(spari_frame *f, const spar_member *m) {
     spari_carriage *c = f->carriage;
-    int64_t n = f->n, n6 = 6 * (int64_t)f->nodes, ends = 1 + c->ends;
-    double **rooms[] = {&c->loads, &c->x,   &c->heavy,  &c->kept, &c->elastic,
-                        &c->parts, &c->out, &c->border, &c->room, &c->stiff};
-    const int64_t size = f->S[0] ? f->size : 0;
-    const int64_t sizes[] = {n6, n6, n6, 2 * n, n, 13 * n, 2 * n, 12 * n, 36 * ends * ends + 18 * ends, size};
+    const int64_t n = f->n, n6 = 6 * (int64_t)f->nodes, ends = 1 + c->ends, size = f->S[0] ? f->size : 0;
+    double **rooms[] = {&c->loads, &c->x,     &c->kept, &c->elastic, &c->room,
+                        &c->heavy, &c->parts, &c->out,  &c->border,  &c->stiff};
+    const int64_t sizes[] = {n6, n6, 2 * n, n, 36 * ends * ends + 18 * ends, n6, 13 * n, 2 * n, 12 * n, size};
+    const size_t wanted = f->floats ? sizeof rooms / sizeof *rooms : 5;
     int ok = 1, *at = spari_zalloc(ends, sizeof *at);
-    for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) {
+    for (size_t k = 0; k < wanted; k++) {
         ok = ok && (*rooms[k] = spari_zalloc(sizes[k], sizeof(double)));
     }
     ok = ok && (c->block = spari_zalloc(31 * ends, sizeof *c->block));
@@ -129,7 +130,7 @@ int spari_carriage_finish(spari_frame *f, const spar_member *m) {
         c->order[e] = e;
         at[e] = spari_carriage_at(f, e) / 6;
     }
-    c->condensed = at ? spari_condensed_create((int)ends, at, f->n) : NULL;
+    c->condensed = at ? spari_condensed_create(spari_member_is_tied(m) ? (int)ends : 0, at, f->n) : NULL;
     free(at);
     if (!ok || !c->order || !c->condensed) {
         return SPAR_ERR_MEMORY;
@@ -164,7 +165,8 @@ void spari_carriage_free(spari_carriage *c) {
     free(c);
 }
 
-int spari_carriage_end_of(const spari_frame *f, int node) {
+int spari_carriage_end_of(const spar_member *m, int node) {
+    const spari_frame *f = m->solution;
     int e = 0;
     while (node > 0 && e < f->carriage->ends && f->carriage->node[e] != node) {
         e++;
@@ -183,7 +185,7 @@ int spari_carriage_split(const spari_frame *f, double *x, double *y) {
     for (int k = 0; k < 6 * c->ends; k++) {
         cblas_daxpy(n6, -y[6 + k], f->basis + 6 + k, f->n, x, 1);
     }
-    return 6 + 6 * c->ends;
+    return c->ends > 0 ? 6 + 6 * c->ends : f->held;
 }
 
 void spari_carriage_take(const spari_frame *f, const spar_member *m, const double J[6], double *y) {
@@ -209,41 +211,5 @@ void spari_carriage_take(const spari_frame *f, const spar_member *m, const doubl
             y[6 + 6 * e + i] -= J[i] + turn[i];
             y[9 + 6 * e + i] -= J[3 + i];
         }
-    }
-}
-
-/* ---- life ---- */
-
-void spari_carriage_restart(spari_frame *f, const spar_member *m) {
-    spari_solver *s = f->carriage->root;
-    memcpy(s->begin.q, m->now.q, 7 * sizeof(double));
-    memcpy(s->begin.v, m->now.v, 6 * sizeof(double));
-    memcpy(s->begin.a, m->now.a, 6 * sizeof(double));
-    spari_solver_restart(s);
-}
-
-int64_t spari_carriage_state_size(const spari_frame *f, int factored) {
-    return spari_solver_state_size(f->carriage->root) + (factored ? spari_linear_state_size(f->linear) : 0);
-}
-
-void spari_carriage_save(const spari_frame *f, double *state) {
-    const spari_solver *s = f->carriage->root;
-    spari_solver_save(s, state);
-    if (f->factored) {
-        spari_linear_save(f->linear, state + spari_solver_state_size(s));
-    }
-}
-
-int spari_carriage_is_state(const spari_frame *f, const double *state, int64_t count, int factored) {
-    int64_t own = spari_solver_state_size(f->carriage->root);
-    return count == spari_carriage_state_size(f, factored) && spari_solver_is_state(f->carriage->root, state, own) &&
-           (!factored || spari_linear_is_state(f->linear, state + own));
-}
-
-void spari_carriage_load(spari_frame *f, const double *state) {
-    spari_solver *s = f->carriage->root;
-    spari_solver_load(s, state);
-    if (f->factored) {
-        spari_linear_load(f->linear, state + spari_solver_state_size(s));
     }
 }

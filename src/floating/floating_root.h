@@ -1,5 +1,8 @@
-/* What a frame has besides where joints tie its member: its root, which is integrated as a body of one node without
-   mass, the nodes that joints tie, and the forces with the motion of the root as an unknown.
+/* The root of a frame, the nodes that joints tie, and the forces and tangent of the frame's equations.
+
+   A root that is fixed or driven, and the frame of a member that no joint ties, have a prescribed motion. The equations
+   are then those of frame.h, with one sum of the matrices for the present turn. Where joints move the root, it is
+   integrated as a body of one node without mass, and the forces have the motion of the root as an unknown.
 
    With y the deformation and its rates in the axes of the frame, a, alpha and omega the root's there, g gravity, s the
    loads, R the six rigid motions of the member about its root,
@@ -16,8 +19,8 @@
 #ifndef SPARI_CARRIAGE_H
 #define SPARI_CARRIAGE_H
 
-#include "frame.h"
 #include "../time/body_solver.h"
+#include "frame.h"
 
 /* Products of the deformation and its rates: y . N y and y' . N y of each product of turns, y' . E y', y' . E y, y'' .
  * E y.
@@ -27,64 +30,65 @@ typedef struct spari_seconds {
 } spari_seconds;
 
 typedef struct spari_carriage {
-    int *order;       /* [1 + ends] 0, 1, ...: as links know them */
-    int ends, *node;  /* nodes that are tied beside the root, of the unknowns' nodes */
-    spari_body *body; /* the root: one node, no mass */
-    spari_solver *root;
+    int *order;         /* [1 + ends] 0, 1, ...: as links know them */
+    int ends, *node;    /* nodes that are tied beside the root, of the unknowns' nodes */
+    spari_body *body;   /* the root: one node, no mass */
+    spari_solver *root; /* its state is used where joints move it; the lengths of the steps in any case */
+    /* where joints move the root: */
     double *push[6];           /* [6 nodes] M R, of the nodes; NULL: no mass */
     double *spin[SPARI_TURNS]; /* [6 nodes] f likewise; NULL: none */
     double *mean;              /* [3][n] (R^T M R)^-1 R^T M, of the turns */
-    double *block;             /* the memory of the two that follow */
-    spari_state seen;          /* [1 + ends] the root and the tied nodes, as links see them */
-    double *force;             /* [1 + ends][6] what is left on them, global axes */
-    double *kept;              /* [2 n] rates, or places, to go back to */
-    spari_condensed *condensed;
+    /* in any case: */
+    double *block;              /* the memory of the two that follow */
+    spari_state seen;           /* [1 + ends] the root and the tied nodes, as links see them */
+    double *force;              /* [1 + ends][6] what is left on them, global axes */
+    double *kept;               /* [2 n] rates, or places, to go back to */
+    spari_condensed *condensed; /* of the root and the tied nodes; of no nodes where no joint ties the member */
     /* of the forces at the latest iterate, in the axes of the frame */
     double *loads;                /* [6 nodes] global axes */
     double *elastic;              /* [n] of internal forces */
-    double *parts;                /* [13][n]: M y'', N_k y + f_k, G_k y', E_k y */
-    const double *speeds, *rates; /* [n] y', y'' of the state */
-    double *x, *heavy;            /* [6 nodes] deformation of the nodes; M R (a - g, alpha) - s */
-    double *out;                  /* [2 n] forces at a root that is moved a little */
+    double *x;                    /* [6 nodes] deformation of the nodes; a prescribed root: where loads depend on it */
+    const double *speeds, *rates; /* [n] y', y'' of the state, likewise */
     double *room;                 /* of a tangent of the ends, and three vectors of them */
-    double *border;               /* [12][n] rows and columns of the root in the tangent */
+    int still;                    /* the forces are those without inertia, under */
+    double factor;                /* so much of loads and gravity */
+    int steady;                   /* the whole turns steadily with steady_turn, the root where it is put: no step */
+    double steady_turn[3];
+    /* likewise, where joints move the root: */
+    double *parts;  /* [13][n]: M y'', N_k y + f_k, G_k y', E_k y */
+    double *heavy;  /* [6 nodes] M R (a - g, alpha) - s */
+    double *out;    /* [2 n] forces at a root that is moved a little */
+    double *border; /* [12][n] rows and columns of the root in the tangent */
     spari_seconds seconds;
     double turns[3]; /* w, */
     double *stiff;   /* and of it K + S(w, w), as the matrices */
-    int still;       /* the forces are those without inertia, under */
-    double factor;   /* so much of loads and gravity */
-    int steady;      /* the whole turns steadily with steady_turn, the root where it is put: no step */
-    double steady_turn[3];
 } spari_carriage;
 
-/* Finds the nodes that joints tie; before the matrices are there. SPAR_OK or SPAR_ERR_MEMORY. */
+/* Makes the root and finds the nodes that joints tie; before the matrices are there. SPAR_OK or SPAR_ERR_MEMORY. */
 int spari_carriage_create(spari_frame *f, spar_member *m);
-/* Before the matrices become those of modes. */
+/* Where joints move the root: before the matrices become those of modes. */
 int spari_carriage_keep_pushes(spari_frame *f);
 /* The rest, when the unknowns are known. */
 int spari_carriage_finish(spari_frame *f, const spar_member *m);
 void spari_carriage_free(spari_carriage *c);
-/* Which of the root and the tied nodes a node is; 0: the root. */
-int spari_carriage_end_of(const spari_frame *f, int node);
+/* Of the row: which of the root and the tied nodes a node is; 0: the root. */
+int spari_carriage_end_of(const spar_member *m, int node);
 /* Where the six unknowns of tied node e (from 1) are. */
 int spari_carriage_at(const spari_frame *f, int e);
 /* Modal: takes the shapes of the tied nodes out of a deformation x [6 nodes] and gives their amplitudes into y; the
-   first unknown that is left. */
+   first free unknown that is left. */
 int spari_carriage_split(const spari_frame *f, double *x, double *y);
 /* Modal: y less the rigid motion J about the root. */
 void spari_carriage_take(const spari_frame *f, const spar_member *m, const double J[6], double *y);
-void spari_carriage_restart(spari_frame *f, const spar_member *m);
-int64_t spari_carriage_state_size(const spari_frame *f, int factored);
-void spari_carriage_save(const spari_frame *f, double *state);
-int spari_carriage_is_state(const spari_frame *f, const double *state, int64_t count, int factored);
-void spari_carriage_load(spari_frame *f, const double *state);
 
 /* The mean turning w after h beyond the state s, for the forces from now on. */
 void spari_carriage_turn(spari_frame *f, const spari_frame_state *s, double h);
-/* Forces r [n] of the state s, the first six r_0; still: without inertia; factor: of loads and gravity. What rounding
-   in them is relative to. */
+/* Forces r [n] of the state s; where joints move the root the first six are r_0; still: without inertia; factor: of
+   loads and gravity. What rounding in them is relative to. */
 double spari_carriage_forces(spari_frame *f, const spar_member *m, const spari_frame_state *s, int still, double factor,
                              double *r);
+/* Whether they are linear in the unknowns: no load depends on these, and no guess of the fluid's added mass. */
+int spari_carriage_is_linear(const spari_frame *f, const spar_member *m);
 /* Forms and factors their tangent at that state, with the root's rates as cm, cv and tinv say, and what remains at the
    ends. r: the forces there. 0 or 1. */
 int spari_carriage_tangent(spari_frame *f, const spar_member *m, const spari_frame_state *s, double cm, double cv,

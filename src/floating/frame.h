@@ -9,11 +9,15 @@
    where G holds the Coriolis and gyroscopic terms, E those of the root's angular acceleration, N what turning with
    omega adds to the stiffness: centrifugal softening, the turned inertia of the sections, and the geometric stiffness S
    of the axial forces that hold the centrifugal ones. All matrices are taken from the exact member's own tangents at
-   the reference, so that the answer is its limit for small deformation. Neglected: terms of second order in x, and the
+   the reference, so that the answer is its limit for small deformation. N and E are those of rotation vectors: N is
+   symmetric. Neglected: terms of second order in x, and the
    geometric stiffness of weight, of fluid loads and of the root's acceleration.
 
-   Where joints tie the member (floating_root.h) the frame goes with its root whatever holds that: the root's motion is
-   unknown too, and the six equations of force and moment of the whole go with it.
+   Where joints tie a member whose root is free or pinned (floating_root.h), the frame goes with the root: the root's
+   motion is unknown too, and the six equations of force and moment of the whole go with it. In all other cases the
+   motion of the frame is prescribed.
+
+   The time integration and the equilibrium are those of a component (time/component.h), alone or in an assembly.
 
    The same equations in modes of M, K are the modal member. Its unknowns are amplitudes of the six rigid motions about
    the root, of which those stay zero that the root holds, and of modes: with all six the lowest of the beam held at its
@@ -21,9 +25,9 @@
 #ifndef SPARI_FRAME_H
 #define SPARI_FRAME_H
 
+#include "../algebra/linear.h"
 #include "../member/body.h"
 #include "../member/structure.h"
-#include "../algebra/linear.h"
 #include "../time/scheme.h"
 #include "../time/tangent_snapshot.h"
 
@@ -40,7 +44,8 @@ typedef struct spari_frame_state {
 typedef struct spari_frame {
     int nodes;                       /* unique nodes */
     int held;                        /* of the root's six unknowns, the first that stay zero */
-    struct spari_carriage *carriage; /* joints tie it; NULL: they do not */
+    int floats;                      /* joints move the root; else the motion of the frame is prescribed */
+    struct spari_carriage *carriage; /* the root, and the nodes that joints tie */
     int elements, block, overlap;    /* of the matrices */
     int n;                           /* unknowns, the root's six first */
     int64_t size;                    /* doubles of one matrix: elements * block * block */
@@ -73,37 +78,30 @@ typedef struct spari_frame {
     int64_t factors, solves;
 } spari_frame;
 
-/* Takes the motion at t^n from member->now. */
-void spari_frame_restart(spari_frame *frame, const spar_member *member);
-int spari_frame_advance(spari_frame *frame, spar_member *member, double dt);
-/* Accelerations at t^0 under load_history[0], for steps dt; writes m->after. */
-int spari_frame_balance(spari_frame *frame, spar_member *member, double dt);
-/* As the row's. */
-int spari_frame_answer(spari_frame *frame, const spar_member *member, const double *load, double *motion);
-int spari_frame_felt(spari_frame *frame, const spar_member *member, double *load);
-void spari_frame_begin(spari_frame *frame);
-void spari_frame_accept(spari_frame *frame);
-void spari_frame_reject(spari_frame *frame);
+/* ---- operations of the two rows (time/fidelity.h) ---- */
+
+void spari_frame_remass(spar_member *member);
+void spari_frame_restart(spar_member *member);
+void spari_frame_begin(spar_member *member);
+void spari_frame_accept(spar_member *member);
+void spari_frame_reject(spar_member *member);
+int spari_frame_felt(spar_member *member, double *load);
+void spari_frame_publish(spar_member *member);
+/* Strain x^T K x / 2 of the frame's own equations; of a frame that stands also their kinetic energy and potential. */
+int spari_frame_energy(const spar_member *member, double energy[4]);
+/* K + N of the turn that the root of member->after has, and M. */
+int spari_frame_problem(const spar_member *member, double *K, double *M);
+int spari_frame_linearise(const spar_member *member, const double w[3], struct spari_pencil *to);
+void spari_frame_shape(const spar_member *member, const double *x, double *room, double *nodes);
+int64_t spari_frame_state_size(const spar_member *member);
+void spari_frame_save(const spar_member *member, double *state);
+int spari_frame_is_state(const spar_member *member, const double *state, int64_t count);
+void spari_frame_load(spar_member *member, const double *state);
+
 /* A solution begins: nothing that its work space has is to be used (base/poison.h). */
 void spari_frame_poison(spari_frame *frame);
 /* Before the factors are overwritten. */
 void spari_frame_keep_factors(spari_frame *frame);
-int spari_frame_static(spari_frame *frame, spar_member *member, const double *fluid);
-/* K + N of the turn that the root of member->after has, and M, over the unknowns that are free, dense, symmetric
-   parts; and a vector of those unknowns as a field of the unique nodes, global axes. */
-void spari_frame_modal(const spari_frame *frame, const spar_member *member, double *K, double *M);
-/* The same unsymmetric and with rates, D + G, as entries of a pencil. */
-void spari_frame_linearise(const spari_frame *frame, const spar_member *member, struct spari_pencil *to);
-void spari_frame_shape(const spari_frame *frame, const spar_member *member, const double *x, double *nodes);
-/* As spari_solver_state_size and its fellows, between steps. */
-int64_t spari_frame_state_size(const spari_frame *frame);
-void spari_frame_save(const spari_frame *frame, double *state);
-int spari_frame_is_state(const spari_frame *frame, const double *state, int64_t count);
-void spari_frame_load(spari_frame *frame, const double *state);
-/* Puts what the frame's own equations say in place of the body's energies in member->after: strain x^T K x / 2; of a
-   frame that stands also the kinetic one and the potential of the linear equations, else those two are left as they
-   are. 0, or SPAR_ERR_MEMORY. */
-int spari_frame_energy(spari_frame *frame, const spar_member *member, double energy[4]);
 
 /* ---- what matrices, modes and time share ---- */
 
@@ -115,12 +113,6 @@ extern const int spari_frame_pair[SPARI_TURNS][2];
 int spari_frame_form(spari_frame *f, const spari_body *body, const double *arm);
 /* y [n] += factor * X x for a matrix of the frame */
 void spari_frame_add_times(const spari_frame *f, const double *X, const double *x, double factor, double *y);
-/* Factors ck K + cv C + cm (M + A) with the held unknowns out; S: room for an element. C, A may be NULL. */
-void spari_frame_factor(spari_frame *f, const double *K, double ck, const double *C, double cv, const double *A,
-                        double cm, double *S, int *singular);
-
-/* A anew, of what m->added holds now. */
-void spari_frame_remass(spari_frame *f, const spar_member *m);
 
 /* K + N + E, D + G and f of an angular velocity and acceleration in the frame's axes; formed anew only when these have
    changed. */
@@ -128,8 +120,6 @@ void spari_frame_combine(spari_frame *f, const double turn[6]);
 /* Motion of a node of the unknowns of which the deformation is x, its rates xd and xdd. */
 void spari_frame_node(const spar_member *m, const spari_pose *root, int node, const double x[6], const double xd[6],
                       const double xdd[6], double q[7], double v[6], double a[6]);
-/* The state's motion into m->after. */
-void spari_frame_publish(spari_frame *f, spar_member *m, const spari_frame_state *s);
 /* x [6 nodes] := those of the unknowns y; or y itself, where they are the same. */
 const double *spari_frame_nodal(const spari_frame *f, const double *y, double *x);
 /* out [n] := nodal loads x [6 nodes], in the frame's axes, on the unknowns. */
@@ -139,13 +129,7 @@ void spari_frame_stage(spari_frame *f, const spar_member *m, const spari_scheme 
                        const spari_pose *root);
 /* The rates of the state become those of the published motion at t^n. */
 void spari_frame_take_velocities(spari_frame *f, const spar_member *m, spari_frame_state *state);
-/* After a substep: what generalised-alpha would go on with. */
-void spari_frame_restart_scheme(spari_frame *f, const spari_scheme *c);
 double spari_frame_damped_power(spari_frame *f, const spari_frame_state *s);
-/* Where a driven root jumps: the state loses the jump. */
-void spari_frame_take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
-                           const spari_frame_state *to);
-
 /* Columns of the basis: the six rigid motions about the root, of which the first `held` stay zero, then the shapes of
    tied nodes, then the lowest modes; those that are free are orthonormal in the norm of the mass, tied nodes' and where
    those are the rigid ones apart. arm [nodes][3] from the root. */

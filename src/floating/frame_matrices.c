@@ -20,24 +20,6 @@ void spari_frame_add_times(const spari_frame *f, const double *X, const double *
     }
 }
 
-void spari_frame_factor(spari_frame *f, const double *K, double ck, const double *C, double cv, const double *A,
-                        double cm, double *S, int *singular) {
-    int64_t mm = (int64_t)f->block * f->block;
-    spari_linear_zero(f->linear);
-    for (int e = 0; e < f->elements; e++) {
-        for (int64_t i = 0; i < mm; i++) {
-            int64_t at = mm * e + i;
-            S[i] = ck * K[at] + (C ? cv * C[at] : 0) + (f->M ? cm * f->M[at] : 0) + (A ? cm * A[at] : 0);
-        }
-        spari_linear_add(f->linear, e, S);
-    }
-    for (int i = 0; i < f->held; i++) {
-        spari_linear_fix(f->linear, i);
-    }
-    f->factors++;
-    *singular = spari_linear_factor(f->linear);
-}
-
 /* ---- matrices from the exact member's tangents at the reference ---- */
 
 static void product3(const double a[9], const double b[9], double c[9]) {
@@ -258,6 +240,22 @@ static int stretch_terms(spari_frame *f, const setup *w) {
     return SPAR_OK;
 }
 
+/* X += m x theta / 2 on the rotation theta of each node, for the moments m there: the tangents are those of moments
+   under small rotations, the equations those of rotation vectors, on which a moment m works as m + m x theta / 2. So N
+   is symmetric. */
+static void add_half_moments(const spari_frame *f, const setup *w, const double *moments, double *X) {
+    const int P = w->m / 6;
+    for (int e = 0; e < f->elements; e++) {
+        for (int l = e > 0; l < P; l++) { /* a node of two elements once */
+            double W[9];
+            spari_skew(moments + 6 * (e * (P - 1) + l) + 3, W);
+            for (int k = 0; k < 9; k++) {
+                X[((int64_t)w->m * e + 6 * l + 3 + k / 3) * w->m + 6 * l + 3 + k % 3] += 0.5 * W[k];
+            }
+        }
+    }
+}
+
 static int turn_terms(spari_frame *f, const setup *w) {
     double *none = NULL;
     for (int k = 0; k < SPARI_TURNS; k++) {
@@ -270,9 +268,13 @@ static int turn_terms(spari_frame *f, const setup *w) {
         cblas_daxpy(f->pull ? 6 * f->nodes : 0, -1, f->pull, 1, f->f[k], 1);
         if (k < 3 && f->E[k]) {
             euler_matrices(f, w, omega, f->E[k]);
+            add_half_moments(f, w, f->rigid[3 + k], f->E[k]);
         }
     }
     polarise(f);
+    for (int k = 0; k < SPARI_TURNS; k++) {
+        add_half_moments(f, w, f->f[k], f->N[k]);
+    }
     return stretch_terms(f, w);
 }
 

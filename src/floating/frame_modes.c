@@ -1,14 +1,14 @@
 /* The modes of a frame: the basis that makes a modal member of a linear one, and the modes about a turning state. */
 #include "frame.h"
 
+#include "../algebra/eigen.h"
+#include "../algebra/pencil.h"
 #include "../base/blas.h"
 #include "../base/status.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/pose.h"
 #include "floating_root.h"
-#include "../algebra/eigen.h"
-#include "../algebra/pencil.h"
 
 #include <float.h>
 #include <gsl/gsl_blas.h> /* the declarations; the linked CBLAS is the fast one */
@@ -69,7 +69,7 @@ static int orthonormalise(spari_frame *f, int cols, int first, int from, int end
 
 static int is_tied(const spari_frame *f, int node) {
     int found = 0;
-    for (int e = 0; f->carriage && e < f->carriage->ends; e++) {
+    for (int e = 0; e < f->carriage->ends; e++) {
         found = found || f->carriage->node[e] == node;
     }
     return found;
@@ -79,7 +79,7 @@ static int is_tied(const spari_frame *f, int node) {
    memory. */
 static size_t leave_out_tied(const spari_frame *f, gsl_matrix **K, gsl_matrix **M) {
     gsl_matrix **both[2] = {K, M};
-    size_t all = (size_t)(6 * f->nodes - 6), n = all - (f->carriage ? (size_t)(6 * f->carriage->ends) : 0);
+    size_t all = (size_t)(6 * f->nodes - 6), n = all - (size_t)(6 * f->carriage->ends);
     for (int side = 0; side < 2 && n < all; side++) {
         gsl_matrix *from = *both[side], *to = n > 0 ? gsl_matrix_alloc(n, n) : NULL;
         size_t r = 0;
@@ -138,7 +138,7 @@ static int elastic_columns(spari_frame *f, int cols, int first, double *work) {
 
 /* The shapes of the tied nodes: each moves by one in a direction, the root and the others do not, K x = 0 between. */
 static int tied_columns(spari_frame *f, int cols, double *work) {
-    int ends = f->carriage ? f->carriage->ends : 0, n = 6 * f->nodes;
+    int ends = f->carriage->ends, n = 6 * f->nodes;
     double *column = spari_zalloc((int64_t)6 * ends * n, sizeof *column);
     if (!column) {
         return SPAR_ERR_MEMORY;
@@ -171,7 +171,7 @@ static int tied_columns(spari_frame *f, int cols, double *work) {
 
 int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols) {
     double *work = spari_zalloc(12 * (int64_t)f->nodes, sizeof *work);
-    int first = f->carriage ? 6 + 6 * f->carriage->ends : 6, alone = f->carriage ? first : f->held;
+    int first = 6 + 6 * f->carriage->ends, alone = f->held < 6 ? f->held : first;
     f->basis = spari_zalloc((int64_t)6 * f->nodes * cols, sizeof *f->basis);
     int status = work && f->basis ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
@@ -259,7 +259,8 @@ int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
     return bad || !f->linear;
 }
 
-void spari_frame_remass(spari_frame *f, const spar_member *m) {
+void spari_frame_remass(spar_member *m) {
+    spari_frame *f = m->solution;
     int block = 6 * m->per_element, cols = f->n;
     double *X = f->room_A, *half = X + (int64_t)block * block;
     memset(f->A, 0, (size_t)f->size * sizeof *f->A);
@@ -280,7 +281,8 @@ void spari_frame_remass(spari_frame *f, const spar_member *m) {
 
 /* ---- about a state ---- */
 
-void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, double *M) {
+int spari_frame_problem(const spar_member *m, double *K, double *M) {
+    const spari_frame *f = m->solution;
     const spari_pose pose = spari_member_pose(m, &m->after);
     double omega[3];
     spari_rotate_back(pose.q + 3, pose.v + 3, omega);
@@ -294,9 +296,19 @@ void spari_frame_modal(const spari_frame *f, const spar_member *m, double *K, do
             assemble_dense(f, f->S[k], c, held, K);
         }
     }
+    return SPAR_OK;
 }
 
-void spari_frame_linearise(const spari_frame *f, const spar_member *m, spari_pencil *to) {
+/* Small deformation is seen from the root, which must turn as the frame does. */
+int spari_frame_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
+    const spari_frame *f = m->solution;
+    double apart[3], own = spari_norm(m->after.v + 3);
+    for (int k = 0; k < 3; k++) {
+        apart[k] = m->after.v[3 + k] - w[k];
+    }
+    if (spari_norm(apart) > 1e-4 * fmax(own, spari_norm(w))) {
+        return SPAR_ERR_UNSUPPORTED;
+    }
     const spari_pose pose = spari_member_pose(m, &m->after);
     int held = spari_member_held(m), step = f->block - f->overlap;
     int64_t mm = (int64_t)f->block * f->block;
@@ -321,19 +333,22 @@ void spari_frame_linearise(const spari_frame *f, const spar_member *m, spari_pen
             }
         }
     }
+    return SPAR_OK;
 }
 
-void spari_frame_shape(const spari_frame *f, const spar_member *m, const double *x, double *nodes) {
+void spari_frame_shape(const spar_member *m, const double *x, double *room, double *nodes) {
+    const spari_frame *f = m->solution;
     const spari_pose pose = spari_member_pose(m, &m->after);
     int held = spari_member_held(m);
-    memset(nodes, 0, (size_t)(6 * f->nodes) * sizeof *nodes);
+    memset(room, 0, (size_t)(6 * f->nodes) * sizeof *room);
     if (f->basis) {
         SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - held, 1, f->basis + held, f->n, x, 1,
-                               0, nodes, 1));
+                               0, room, 1));
     } else {
-        memcpy(nodes + held, x, (size_t)(f->n - held) * sizeof *nodes);
+        memcpy(room + held, x, (size_t)(f->n - held) * sizeof *room);
     }
     for (int i = 0; i < 6 * f->nodes; i += 3) {
-        spari_rotate(pose.q + 3, nodes + i, nodes + i);
+        spari_rotate(pose.q + 3, room + i, room + i);
     }
+    spari_member_from_unique(m, 6, room, nodes);
 }

@@ -1,7 +1,7 @@
 /* A member of an assembly as the assembly sees it: its ends, the nodes that joints hold, how they move and what forces
-   are left on them. What lies behind them is solved by a table of operations, one for the members whose unknowns are
-   the motions of their nodes (component_body.c) and one for those that are linear in the frame of their root
-   (component_floating.c). */
+   are left on them. A member alone has no ends (component.c). What lies behind them is solved by a table of operations,
+   one for the members whose unknowns are the motions of their nodes (component_body.c) and one for those that are
+   linear in the frame of their root (component_floating.c). */
 #ifndef SPARI_LIMB_H
 #define SPARI_LIMB_H
 
@@ -40,6 +40,8 @@ typedef struct spari_limb_row {
     int (*tangent)(struct spari_limb *p);
     /* Whether the tangent kept can serve this step. */
     int (*serves)(const struct spari_limb *p);
+    /* Whether one correction with that tangent solves the equations: they are linear, and it is their own. NULL: no. */
+    int (*solved)(const struct spari_limb *p);
     /* What is left of the forces at the ends, x [6 ends], global axes. 0 or 1. */
     int (*reduce)(struct spari_limb *p, double *x);
     /* The corrections of all, with those of the ends. */
@@ -105,6 +107,17 @@ typedef struct spari_limb {
     int moved, owner_before;      /* while it is made: the rank that had it, and what that kept of it */
     void *solution_before;
 } spari_limb;
+
+/* A component without ends, in time and at rest: what it finds is for `publish` of the member's row. */
+/* From t^n to t^n + dt in the session's substeps; leaves t^n alone. */
+int spari_component_advance(spari_limb *p, double dt);
+/* Accelerations at t^0, for steps dt. */
+int spari_component_balance(spari_limb *p, double dt);
+/* After a step: what a little more load [nodes][6] adds to the motion [nodes][6]. 0, or 1: there is no answer. */
+int spari_component_answer(spari_limb *p, const double *load, double *motion);
+/* Equilibrium under dead and `fluid` loads [nodes][6], in the frame of a root that is driven steadily. 0, or 1: there
+   is none. */
+int spari_component_static(spari_limb *p, const double *fluid);
 
 /* The nodes of a member's unknowns that joints hold, in increasing order (node has room for two a joint); how many. */
 int spari_limb_nodes_tied(const spar_member *member, int *node);
