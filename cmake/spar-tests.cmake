@@ -18,7 +18,7 @@ add_library(spar_test_base INTERFACE)
 target_include_directories(spar_test_base INTERFACE "${PROJECT_SOURCE_DIR}/src" "${PROJECT_SOURCE_DIR}/tests" "${PROJECT_SOURCE_DIR}/examples")
 target_include_directories(spar_test_base SYSTEM INTERFACE "${SPAR_CMOCKA_INCLUDE}")
 target_compile_definitions(spar_test_base INTERFACE
-  SPAR_TEST_VERSION="${PROJECT_VERSION}" SPAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data"
+  SPAR_TEST_GSL=1 SPAR_TEST_VERSION="${PROJECT_VERSION}" SPAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data"
   $<$<BOOL:${SPAR_MPI}>:SPARI_HAVE_MPI=1>)
 # cmocka.h wants these before it, and the formatter sorts includes
 target_compile_options(spar_test_base INTERFACE

@@ -14,12 +14,11 @@ struct spar_aero {
     spar_fluid **fluid;
     spari_rotor rotor, first; /* first: as it was described first */
     int rotor_given, effects_given, solved;
-    spari_section *section;   /* [n] */
-    gsl_interp_accel *accel;  /* [blades][n] */
-    gsl_root_fsolver *solver; /* NULL: no induction so far */
-    double *place;            /* reference places [blades][n][3] */
-    double *length;           /* [blades][n - 1] */
-    double *loss_radius;      /* [blades][n], of the first rotor; NULL: no loss asked for so far */
+    spari_section *section; /* [n] */
+    int64_t *row;           /* [blades][n] of the polars: where look-ups begin */
+    double *place;          /* reference places [blades][n][3] */
+    double *length;         /* [blades][n - 1] */
+    double *loss_radius;    /* [blades][n], of the first rotor; NULL: no loss asked for so far */
     double *x, *v, *q;
     double *omega;            /* NULL: no rotor, no unsteady airfoil so far */
     double *a, *omega_a;      /* NULL: no unsteady airfoil so far */

@@ -20,7 +20,6 @@
 #define SPARI_MOMENTUM_H
 
 #include "polar.h"
-#include <gsl/gsl_roots.h>
 
 typedef struct spari_annulus {
     double vx, vy;   /* free flow along p and s */
@@ -29,7 +28,7 @@ typedef struct spari_annulus {
     double tip, hub; /* B (R - r) / (2 r) and B (r - Rh) / (2 Rh) >= 0; negative: that loss is off */
     int swirl;       /* tangential induction */
     const spari_table *table;
-    gsl_interp_accel *accel;
+    int64_t *row; /* of the table: where the next look-up begins */
 } spari_annulus;
 
 /* What the equation says at an inflow angle, angles and flow turned so that vx >= 0. */
@@ -46,7 +45,7 @@ double spari_swirl_sign(double sin_phi);
 spari_balance spari_momentum_balance(const spari_annulus *annulus, double phi);
 
 /* Flow with induction: *wx along p, *wy along s. Returns 0, or 1 when no inflow angle balances: then the flow is the
-   free one. No memory is taken: solver is a Brent solver of the caller's. */
-int spari_momentum_solve(const spari_annulus *annulus, gsl_root_fsolver *solver, double *wx, double *wy);
+   free one. */
+int spari_momentum_solve(const spari_annulus *annulus, double *wx, double *wy);
 
 #endif

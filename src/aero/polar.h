@@ -3,7 +3,6 @@
 #ifndef SPARI_POLAR_H
 #define SPARI_POLAR_H
 
-#include <gsl/gsl_interp.h>
 #include <spar/spar_aero.h>
 
 typedef struct spari_table spari_table;
@@ -19,10 +18,11 @@ int spari_table_has_moment(const spari_table *table);
    end and *beyond becomes 1, else 0. */
 double spari_table_wrap(const spari_table *table, double alpha, int *beyond);
 
-/* Coefficients at a place that spari_table_wrap gave; the accelerator remembers the interval for the next look-up. */
-double spari_table_lift(const spari_table *table, double place, gsl_interp_accel *accel);
-double spari_table_drag(const spari_table *table, double place, gsl_interp_accel *accel);
-double spari_table_moment(const spari_table *table, double place, gsl_interp_accel *accel);
+/* Coefficients at a place that spari_table_wrap gave; *row is where the search begins and where it ended, 0 at first.
+ */
+double spari_table_lift(const spari_table *table, double place, int64_t *row);
+double spari_table_drag(const spari_table *table, double place, int64_t *row);
+double spari_table_moment(const spari_table *table, double place, int64_t *row);
 
 /* The line that lift lies on where the flow is attached: the angle without lift nearest to 0 that lift rises through,
    and the steepest way from there to a row within half a right angle. *slope is 0 where there is none. */

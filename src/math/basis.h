@@ -6,8 +6,8 @@ enum { SPARI_MAX_NODES = 24 }; /* nodes per element at most */
 
 /* GLL nodes, weights and barycentric weights of n >= 2 points; any output may be NULL. n = 1: node 0, weight 2. */
 void spari_gll(int n, double *x, double *w, double *bary);
-/* Gauss-Legendre points and weights, n >= 1. Returns 0, or 1 when there is no memory. */
-int spari_gauss(int n, double *x, double *w);
+/* Gauss-Legendre points and weights, n >= 1. */
+void spari_gauss(int n, double *x, double *w);
 /* phi[n] and d phi / d xi [n] (NULL: not wanted) at xi, by the barycentric formula; exact at a node. */
 void spari_lagrange(int n, const double *x, const double *bary, double xi, double *phi, double *dphi);
 /* share[n]: how much of a load that is spread along the element, and given as consistent nodal loads, acts beyond xi,

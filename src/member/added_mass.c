@@ -115,7 +115,8 @@ static int make_strips_of_beam(const spar_member *m, spari_strips *p) {
     double xi[SPARI_MAX_NODES + 1], w[SPARI_MAX_NODES + 1];
     SPARI_TRY(allocate_strips(p, m->elements, P, points));
     spari_station *s = spari_zalloc(p->count, sizeof *s);
-    int ok = s && spari_gauss(points, xi, w) == 0;
+    int ok = s != NULL;
+    spari_gauss(points, xi, w);
     for (int64_t k = 0; k < p->count && ok; k++) {
         s[k].element = (int)(k / points);
         s[k].xi = xi[k % points];

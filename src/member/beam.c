@@ -5,10 +5,10 @@
 #include "../base/session.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
+#include "../math/spline.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
-#include <gsl/gsl_spline.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -150,17 +150,20 @@ static int fit_axis(const spar_member *member, const double *gll, const double *
     size_t n = (size_t)beam->axis_count;
     double *column = spari_zalloc(beam->axis_count, sizeof *column),
            *spline_x = spari_zalloc(3 * member->nodes, sizeof *spline_x);
-    gsl_spline *spline = gsl_spline_alloc(gsl_interp_cspline, n);
-    int bad = !column || !spline || !spline_x;
+    int bad = !column || !spline_x;
     for (int d = 0; d < 3 && !bad; d++) {
         for (size_t i = 0; i < n; i++) {
             column[i] = beam->xyz[3 * i + (size_t)d];
         }
-        bad = gsl_spline_init(spline, beam->eta, column, n) != GSL_SUCCESS; /* it solves for the curvatures in memory */
+        spari_spline spline;
+        int64_t interval = 0;
+        bad = spari_spline_create(&spline, SPARI_SPLINE_CUBIC, beam->axis_count, beam->eta, column);
         for (int64_t i = 0; i < member->nodes && !bad; i++) {
             double eta = 0.5 * (1 + spari_member_xi(member, (int)(i / P), gll[i % P]));
-            spline_x[3 * i + d] = gsl_spline_eval(spline, fmin(fmax(eta, beam->eta[0]), beam->eta[n - 1]), NULL);
+            eta = fmin(fmax(eta, beam->eta[0]), beam->eta[n - 1]);
+            spline_x[3 * i + d] = spari_spline_at(&spline, eta, &interval, NULL);
         }
+        spari_spline_free(&spline);
     }
     for (int e = 0; e < E && !bad; e++) {
         double *xe = x + 3 * (int64_t)e * P, *se = spline_x + 3 * (int64_t)e * P;
@@ -168,7 +171,6 @@ static int fit_axis(const spar_member *member, const double *gll, const double *
         memcpy(xe + 3 * (P - 1), e == E - 1 ? beam->xyz + 3 * (n - 1) : se + 3 * (P - 1), 3 * sizeof *xe);
         bad = P > 2 && fit_element(beam, E, e, P, gll, bary, se, xe);
     }
-    gsl_spline_free(spline);
     free(column);
     free(spline_x);
     return bad ? no_memory_for(member, "the fit of its axis") : SPAR_OK;
@@ -541,7 +543,8 @@ static int element_points(const spari_beam *beam, int elements, int e, int P, do
             spari_gll(n, xi, w, NULL);
             return n;
         }
-        return spari_gauss(n, xi, w) ? -1 : n;
+        spari_gauss(n, xi, w);
+        return n;
     }
     double from = -1;
     int count = 0;
@@ -554,9 +557,7 @@ static int element_points(const spari_beam *beam, int elements, int e, int P, do
         double half = 0.5 * (to - from);
         int n = beam->points > 0 ? beam->points : 1 + (int)ceil(half * P);
         if (xi) {
-            if (spari_gauss(n, xi + count, w + count)) {
-                return -1;
-            }
+            spari_gauss(n, xi + count, w + count);
             for (int k = count; k < count + n; k++) {
                 xi[k] = from + half * (1 + xi[k]);
                 w[k] *= half;
@@ -712,10 +713,6 @@ static int fill_body(const spar_member *member, int most, const double mu[6], sp
     }
     for (int e = 0; e < E && status == SPAR_OK; e++) {
         int n = element_points(member->beam, E, e, P, xi, w);
-        if (n < 0) {
-            status = no_memory_for(member, "its quadrature");
-            break;
-        }
         for (int i = 0; i < n; i++) {
             double R[9];
             reference_frame(member, &f, gll, bary, x, e, xi[i], R);

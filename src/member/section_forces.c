@@ -1,7 +1,7 @@
-/* What acts on the part of a beam beyond a section: see section_forces.h. Loads are kept element by element, each element's own
-   share of the nodes it has in common with its neighbours. Spread loads (inertia, weight, along the line, of the
-   ground, of a fluid) are nodal sums that the shape functions have weighed: within an element so much of them acts
-   beyond as spari_share_beyond says. Loads at nodes, joints and point masses act where they are. */
+/* What acts on the part of a beam beyond a section: see section_forces.h. Loads are kept element by element, each
+   element's own share of the nodes it has in common with its neighbours. Spread loads (inertia, weight, along the line,
+   of the ground, of a fluid) are nodal sums that the shape functions have weighed: within an element so much of them
+   acts beyond as spari_share_beyond says. Loads at nodes, joints and point masses act where they are. */
 #include "section_forces.h"
 
 #include "../base/session.h"
@@ -26,7 +26,7 @@ struct spari_beyond {
     double *spread;    /* [nodes][6] */
     double *point;     /* [nodes][6] */
     double *sum;       /* [elements + 1][6] of all elements from e on, about the first node */
-    double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
+    double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES], gauss[SPARI_MAX_NODES], weight[SPARI_MAX_NODES];
 };
 
 int spari_beyond_is_known(const spar_member *m) {
@@ -242,6 +242,7 @@ spari_beyond *spari_beyond_create(const spar_member *m) {
         return NULL;
     }
     spari_gll(m->per_element, b->gll, NULL, b->bary);
+    spari_gauss(m->per_element, b->gauss, b->weight);
     for (int64_t i = 0; i < 3 * m->nodes; i++) {
         b->x[i] = m->xr[i] + (spari_beyond_is_undeformed(m) ? 0 : m->after.q[7 * (i / 3) + i % 3]);
     }
@@ -255,15 +256,12 @@ spari_beyond *spari_beyond_create(const spar_member *m) {
 }
 
 /* The spread loads of the station's element beyond it: forces by their shares, their moment as the integral of the
-   slope of the line times the force beyond, which Gauss' rule gives exactly. 0, or 1: no memory. */
-static int add_share(const spari_beyond *b, const spari_station *s, double force[6]) {
+   slope of the line times the force beyond, which Gauss' rule gives exactly. */
+static void add_share(const spari_beyond *b, const spari_station *s, double force[6]) {
     const int P = b->member->per_element;
     const int64_t from = (int64_t)s->element * P;
-    double xi[SPARI_MAX_NODES], w[SPARI_MAX_NODES], share[SPARI_MAX_NODES], phi[SPARI_MAX_NODES], dphi[SPARI_MAX_NODES];
+    double share[SPARI_MAX_NODES], phi[SPARI_MAX_NODES], dphi[SPARI_MAX_NODES];
     const double half = 0.5 * (1 - s->xi);
-    if (spari_gauss(P, xi, w)) {
-        return 1;
-    }
     spari_share_beyond(P, b->gll, s->xi, share);
     for (int l = 0; l < P; l++) {
         for (int k = 0; k < 6; k++) {
@@ -271,7 +269,7 @@ static int add_share(const spari_beyond *b, const spari_station *s, double force
         }
     }
     for (int g = 0; g < P; g++) {
-        const double at = s->xi + half * (1 + xi[g]);
+        const double at = s->xi + half * (1 + b->gauss[g]);
         double slope[3] = {0}, f[3] = {0}, moment[3];
         spari_lagrange(P, b->gll, b->bary, at, phi, dphi);
         spari_share_beyond(P, b->gll, at, share);
@@ -283,13 +281,12 @@ static int add_share(const spari_beyond *b, const spari_station *s, double force
         }
         spari_cross(slope, f, moment);
         for (int k = 0; k < 3; k++) {
-            force[3 + k] += half * w[g] * moment[k];
+            force[3 + k] += half * b->weight[g] * moment[k];
         }
     }
-    return 0;
 }
 
-int spari_beyond_at(const spari_beyond *b, const spari_station *s, double force[6]) {
+void spari_beyond_at(const spari_beyond *b, const spari_station *s, double force[6]) {
     const spar_member *m = b->member;
     const int P = m->per_element;
     const double *sum = b->sum + 6 * ((int64_t)s->element + 1), near = 1e-9;
@@ -317,5 +314,5 @@ int spari_beyond_at(const spari_beyond *b, const spari_station *s, double force[
             add_about(x, b->mass[k].x, b->mass[k].force, force);
         }
     }
-    return add_share(b, s, force);
+    add_share(b, s, force);
 }

@@ -13,8 +13,8 @@ int spari_beyond_is_known(const spar_member *member);
 spari_beyond *spari_beyond_create(const spar_member *member);
 void spari_beyond_free(spari_beyond *beyond);
 /* Force and moment of the part beyond the station about it, global axes. Of loads at a node there: those of the tip and
-   of nodes within the line count, those of the root do not. 0, or 1: no memory. */
-int spari_beyond_at(const spari_beyond *beyond, const spari_station *s, double force[6]);
+   of nodes within the line count, those of the root do not. */
+void spari_beyond_at(const spari_beyond *beyond, const spari_station *s, double force[6]);
 /* Whether the member's equations know no arms but those of the reference, nor sections that turn. */
 int spari_beyond_is_undeformed(const spar_member *member);
 

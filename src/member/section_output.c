@@ -4,9 +4,9 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "section_forces.h"
 #include "checks.h"
 #include "pose.h"
+#include "section_forces.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -143,18 +143,15 @@ static void forces_of_strains(const spar_member *m, double eta, const double loc
     }
 }
 
-/* And by the balance of what is beyond. 0, or 1: no memory. */
-static int forces_of_balance(const spari_beyond *beyond, const spar_member *m, const spari_station *s,
-                             const section_field *f, double force[6]) {
+/* And by the balance of what is beyond. */
+static void forces_of_balance(const spari_beyond *beyond, const spar_member *m, const spari_station *s,
+                              const section_field *f, double force[6]) {
     double global[6];
-    if (spari_beyond_at(beyond, s, global)) {
-        return 1;
-    }
+    spari_beyond_at(beyond, s, global);
     for (int k = 0; k < 6 && !spari_beyond_is_undeformed(m); k += 3) {
         spari_rotate_back(f->r, global + k, global + k);
     }
     to_local(s->R, global, force);
-    return 0;
 }
 
 /* What is asked for at each place; NULL: not wanted. */
@@ -162,8 +159,8 @@ typedef struct section_wish {
     double *strain, *force, *x, *q;
 } section_wish;
 
-static int section_output(const spar_member *m, const spari_station *s, double eta, const spari_beyond *beyond,
-                          int64_t i, const section_wish *to) {
+static void section_output(const spar_member *m, const spari_station *s, double eta, const spari_beyond *beyond,
+                           int64_t i, const section_wish *to) {
     section_field f;
     double e[6], ed[6], local[6], rate[6], q0[4];
     section_at(m, s, &f);
@@ -179,8 +176,8 @@ static int section_output(const spar_member *m, const spari_station *s, double e
     }
     if (to->force && !beyond) {
         forces_of_strains(m, eta, local, rate, to->force + 6 * i);
-    } else if (to->force && forces_of_balance(beyond, m, s, &f, to->force + 6 * i)) {
-        return SPAR_ERR_MEMORY;
+    } else if (to->force) {
+        forces_of_balance(beyond, m, s, &f, to->force + 6 * i);
     }
     for (int k = 0; k < 3 && to->x; k++) {
         to->x[3 * i + k] = s->x[k] + f.u[k];
@@ -190,7 +187,6 @@ static int section_output(const spar_member *m, const spari_station *s, double e
         spari_quat_mul(f.r, q0, to->q + 4 * i);
         spari_quat_normalise(to->q + 4 * i);
     }
-    return SPAR_OK;
 }
 
 static int section_outputs(const spar_member *m, int64_t n, const spari_station *s, const double *eta,
@@ -199,7 +195,7 @@ static int section_outputs(const spar_member *m, int64_t n, const spari_station 
     spari_beyond *beyond = balanced ? spari_beyond_create(m) : NULL;
     int status = balanced && !beyond ? SPAR_ERR_MEMORY : SPAR_OK;
     for (int64_t i = 0; i < n && status == SPAR_OK; i++) {
-        status = section_output(m, s + i, eta[i], beyond, i, to);
+        section_output(m, s + i, eta[i], beyond, i, to);
     }
     spari_beyond_free(beyond);
     SPARI_REQUIRE(m->session, status == SPAR_OK, status, "no memory for the section forces of '%s'", m->name);
