@@ -4,12 +4,11 @@
    converged is therefore kept and searched beside, from another vector, until nothing new comes. */
 #include "arnoldi.h"
 
-#include "../base/blas.h"
 #include "../base/status.h"
+#include "cblas.h"
 #include "schur.h"
 
 #include <float.h>
-#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

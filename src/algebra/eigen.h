@@ -2,14 +2,17 @@
 #ifndef SPARI_EIGEN_H
 #define SPARI_EIGEN_H
 
-#include <gsl/gsl_matrix.h>
-#include <gsl/gsl_vector.h>
+#include <complex.h>
 #include <stdint.h>
 
-/* A x = mu B x with A symmetric and B symmetric positive definite: mu descending, eigenvectors the columns of x, of
-   unit length. Destroys A and B. 0; SPAR_ERR_MEMORY; SPAR_ERR_NUMERIC: an entry, or one of B^-1 A, is not a finite
-   number, or B is not positive definite. */
-int spari_eigen(gsl_matrix *A, gsl_matrix *B, gsl_vector *mu, gsl_matrix *x);
+/* A x = mu B x with A [n][n] symmetric and B symmetric positive definite: mu [n] descending, eigenvectors the rows of x
+   [n][n], of unit length. Destroys A and B. 0; SPAR_ERR_MEMORY; SPAR_ERR_NUMERIC: an entry, or one of B^-1 A, is not a
+   finite number, or B is not positive definite. */
+int spari_eigen(int n, double *A, double *B, double *mu, double *x);
+
+/* The eigenvalues z [n] of a real matrix A [n][n], in no order; conjugate pairs and real ones are so to the bit.
+   Destroys A. 0, SPAR_ERR_MEMORY, SPAR_ERR_NUMERIC. */
+int spari_eigenvalues(int n, double *A, double complex *z);
 
 /* A [size][size] += scale times the symmetric part of X [n][n], whose first unknown is unknown `at` of A; those before
    A's first are left out. */

@@ -7,17 +7,14 @@
    P(sigma) is bordered by G and its transpose, and T takes of its argument only what G allows: what it does not comes
    out as mu = 0 too. Small problems: Schur's form of T as a matrix; large ones: Arnoldi's subspaces, restarted with
    Schur vectors (Stewart 2001). */
-#include "../base/blas.h"
 #include "../base/status.h"
-#include "band.h"
-#include "schur.h"
 #include "arnoldi.h"
+#include "band.h"
+#include "dense.h"
 #include "pencil.h"
+#include "schur.h"
 
 #include <float.h>
-#include <gsl/gsl_blas.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +38,7 @@ typedef struct spectrum {
     double highest;        /* of K_ii / M_ii, its root, rad/s */
     int rank;              /* holds that are independent: */
     int *multiplier;       /* [holds] their number, or -1 */
-    double *Q;             /* [rank][n] orthonormal rows: the motions that they take away */
+    double *Q;             /* [rank at least][n] orthonormal rows: the motions that they take away */
     spari_pencil_hold *at; /* [entries + 2 ties]: where entries of the bordered matrix stand */
     spari_band *band;
     double complex sigma;
@@ -93,45 +90,29 @@ static void scale_pencil(spectrum *a) {
 
 /* ---- holds ---- */
 
-/* G^T = Q R with pivoted columns: which rows of G are independent, and what they span. */
+/* Which rows of G are independent, and what they span. */
 static int find_holds(spectrum *a) {
     spari_pencil *p = a->p;
-    size_t n = (size_t)a->n, h = (size_t)p->holds;
+    int n = a->n, h = p->holds, most = n < h ? n : h;
     if (h == 0) {
         return SPAR_OK;
     }
-    gsl_matrix *G = gsl_matrix_calloc(n, h);
-    gsl_vector *tau = gsl_vector_alloc(n < h ? n : h), *norm = gsl_vector_alloc(h), *unit = gsl_vector_alloc(n);
-    gsl_permutation *order = gsl_permutation_alloc(h);
-    int status = G && tau && norm && unit && order ? SPAR_OK : SPAR_ERR_MEMORY, sign;
+    double *G = spari_zalloc((int64_t)n * h, sizeof *G);
+    int *order = spari_zalloc(h, sizeof *order);
+    a->Q = spari_zalloc((int64_t)most * n, sizeof *a->Q);
+    int status = G && order && a->Q ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
         for (int64_t i = 0; i < p->ties; i++) {
-            *gsl_matrix_ptr(G, (size_t)p->tie[i].column, (size_t)p->tie[i].row) += p->tie[i].g;
+            G[(int64_t)n * p->tie[i].row + p->tie[i].column] += p->tie[i].g;
         }
-        for (size_t c = 0; c < h; c++) {
-            gsl_vector_view column = gsl_matrix_column(G, c);
-            double size = gsl_blas_dnrm2(&column.vector);
-            gsl_vector_scale(&column.vector, size > 0 ? 1 / size : 0);
+        int rank = spari_independent_rows(h, n, G, dependent_hold, order, most, a->Q);
+        status = rank >= 0 ? SPAR_OK : SPAR_ERR_MEMORY;
+        for (a->rank = 0; a->rank < rank; a->rank++) {
+            a->multiplier[order[a->rank]] = a->rank;
         }
-        SPARI_BLAS(gsl_linalg_QRPT_decomp(G, tau, order, &sign, norm));
-        while ((size_t)a->rank < tau->size &&
-               fabs(gsl_matrix_get(G, (size_t)a->rank, (size_t)a->rank)) > dependent_hold) {
-            a->multiplier[gsl_permutation_get(order, (size_t)a->rank)] = a->rank;
-            a->rank++;
-        }
-        a->Q = spari_zalloc((int64_t)a->rank * a->n, sizeof *a->Q);
-        status = a->Q ? SPAR_OK : SPAR_ERR_MEMORY;
     }
-    for (int k = 0; k < a->rank && status == SPAR_OK; k++) {
-        gsl_vector_set_basis(unit, (size_t)k);
-        SPARI_BLAS(gsl_linalg_QR_Qvec(G, tau, unit));
-        memcpy(a->Q + (int64_t)k * a->n, unit->data, n * sizeof *a->Q);
-    }
-    gsl_matrix_free(G);
-    gsl_vector_free(tau);
-    gsl_vector_free(norm);
-    gsl_vector_free(unit);
-    gsl_permutation_free(order);
+    free(G);
+    free(order);
     return status;
 }
 

@@ -1,9 +1,8 @@
-/* The host's floating-point traps, rounding, locale and GSL error handler, held while the library computes. */
+/* The host's floating-point traps, rounding and locale, held while the library computes. */
 #include "environment.h"
 
 #include "blas.h"
 
-#include <gsl/gsl_errno.h>
 #include <pthread.h>
 #ifdef SPARI_X86
 #include <xmmintrin.h>
@@ -17,51 +16,10 @@ static void make_locale(void) {
     c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
 }
 
-/* GSL has one error handler for the whole process, and its default one (NULL) aborts: off while any thread is inside.
- */
-static pthread_mutex_t handler_lock = PTHREAD_MUTEX_INITIALIZER;
-static gsl_error_handler_t *host_handler;
-static int threads_inside;
-
-static void hold_handler(void) {
-    (void)pthread_mutex_lock(&handler_lock);
-    if (threads_inside++ == 0) {
-        host_handler = gsl_set_error_handler_off();
-    }
-    (void)pthread_mutex_unlock(&handler_lock);
-}
-
-static void give_handler_back(void) {
-    (void)pthread_mutex_lock(&handler_lock);
-    if (--threads_inside == 0) {
-        (void)gsl_set_error_handler(host_handler);
-    }
-    (void)pthread_mutex_unlock(&handler_lock);
-}
-
-/* fork: what other threads have locked the child would wait for, who has none of them. It is inside where the thread
-   that forked is. */
-static void before_fork(void) {
-    (void)pthread_mutex_lock(&handler_lock);
-    spari_blas_begin();
-}
-
-static void after_fork(void) {
-    spari_blas_end();
-    (void)pthread_mutex_unlock(&handler_lock);
-}
-
-static void in_child(void) {
-    if (threads_inside > 0 && host.depth == 0) {
-        (void)gsl_set_error_handler(host_handler);
-    }
-    threads_inside = host.depth > 0;
-    after_fork();
-}
-
 static void make_ready(void) {
     make_locale();
-    (void)pthread_atfork(before_fork, after_fork, in_child);
+    /* fork: the child would wait for a lock that a thread holds which it has not */
+    (void)pthread_atfork(spari_blas_begin, spari_blas_end, spari_blas_end);
 }
 
 #ifdef SPARI_X86
@@ -130,11 +88,9 @@ static void hold(void) {
     hold_environment(&host.environment);
     pthread_once(&once, make_ready);
     host.locale = uselocale(c_locale); /* without one: it stays */
-    hold_handler();
 }
 
 static void give_back(void) {
-    give_handler_back();
     (void)uselocale(host.locale);
     give_environment_back(&host.environment);
 }

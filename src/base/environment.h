@@ -2,9 +2,7 @@
    that traps invalid operations, divisions by zero and overflows (usual in Fortran) gets a status where a signal would
    end it. Results are rounded to the nearest: rounded one way, what errors leave does not cancel, an iteration stalls
    far above its tolerance, and a run's bits would be those of its host. Numbers are read and written with a point.
-   GSL's errors go to nobody: its handler may abort, is the host's outside, and being one for the process is off as long
-   as any thread is inside. The treatment of denormal numbers stays the host's; flags raised inside are not seen
-   outside. */
+   The treatment of denormal numbers stays the host's; flags raised inside are not seen outside. */
 #ifndef SPARI_QUIET_H
 #define SPARI_QUIET_H
 
@@ -44,8 +42,7 @@ static inline void spari_quiet_leave(const int *scope) {
 }
 
 /* First in a public function that computes, or looks at numbers of the host: until it returns. Other compilers than GCC
-   and Clang have no end of a scope to hang it on; their hosts must not trap, and switch GSL's handler off themselves.
- */
+   and Clang have no end of a scope to hang it on; their hosts must not trap. */
 #if defined(__GNUC__)
 #define SPARI_QUIET                                                                                                    \
     const int spari_quiet_ __attribute__((unused, cleanup(spari_quiet_leave))) = 0;                                    \

@@ -1,15 +1,14 @@
 /* Members of an assembly that are linear, or modal, in a frame that goes with their root: the root moves as a body of
    one node, and the deformation as generalised-alpha has it of vectors. See component.h and floating_root.h. */
-#include "../base/blas.h"
+#include "../algebra/cblas.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../time/body_newton.h"
-#include "floating_root.h"
+#include "../time/component.h"
 #include "../time/driven_root.h"
 #include "../time/fidelity.h"
-#include "../time/component.h"
+#include "floating_root.h"
 
-#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <string.h>
 

@@ -1,11 +1,10 @@
 /* What a frame has besides where joints tie its member: made, freed, saved; see carriage.h. */
 #include "floating_root.h"
 
-#include "../base/blas.h"
+#include "../algebra/cblas.h"
 #include "../math/rotation.h"
 #include "../time/component.h"
 
-#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,14 +1,12 @@
 /* What a described beam becomes: nodes along its line, sections at its points, quadrature over its elements. */
 #include "beam.h"
-#include "../base/blas.h"
 
+#include "../algebra/dense.h"
 #include "../base/session.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "../math/spline.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,49 +56,6 @@ static void interpolate_axis(const spari_beam *beam, double eta, double x[3]) {
     }
 }
 
-/* What a fit works with: each row's weight and basis [rows][1 + P]; the matrix, later its factors; the right side and
-   what is left of it, the factors' scales and the solution. */
-typedef struct fit {
-    size_t rows, inner;
-    int P;
-    double *basis;
-    gsl_matrix *A;
-    gsl_vector *b, *c;
-} fit;
-
-static int fit_create(fit *f) {
-    f->basis = spari_zalloc((int64_t)f->rows * (1 + f->P), sizeof *f->basis);
-    f->A = gsl_matrix_alloc(f->rows, f->inner);
-    f->b = gsl_vector_alloc(2 * f->rows);
-    f->c = gsl_vector_alloc(2 * f->inner);
-    return f->basis && f->A && f->b && f->c ? 0 : 1;
-}
-
-static void fit_free(fit *f) {
-    free(f->basis);
-    gsl_matrix_free(f->A);
-    gsl_vector_free(f->b);
-    gsl_vector_free(f->c);
-}
-
-/* Coordinate d of the inner nodes into x [P][3], from the values of all rows. Their QR needs no memory of its own, as
-   GSL's SVD does, without looking whether it got any. */
-static int fit_solve(fit *f, int d, const gsl_vector *tau, double *x) {
-    gsl_vector_view b = gsl_vector_subvector(f->b, 0, f->rows), left = gsl_vector_subvector(f->b, f->rows, f->rows),
-                    c = gsl_vector_subvector(f->c, f->inner, f->inner);
-    for (size_t i = 0; i < f->rows; i++) {
-        const double *row = f->basis + i * (size_t)(1 + f->P);
-        double ends = row[1] * x[d] + row[f->P] * x[3 * (f->P - 1) + d];
-        gsl_vector_set(&b.vector, i, row[0] * (gsl_vector_get(&b.vector, i) - ends));
-    }
-    int bad;
-    SPARI_BLAS(bad = gsl_linalg_QR_lssolve(f->A, tau, &b.vector, &c.vector, &left.vector) != GSL_SUCCESS);
-    for (size_t j = 0; j < f->inner && !bad; j++) {
-        x[3 * (j + 1) + (size_t)d] = gsl_vector_get(&c.vector, j);
-    }
-    return bad;
-}
-
 /* Least squares on one element: unknown inner nodes, ends given. Axis points count fully; a spline through all the
    points counts so little (1e-7) that it decides only what the points leave open. */
 static int fit_element(const spari_beam *beam, int elements, int e, int P, const double *gll, const double *bary,
@@ -113,33 +68,28 @@ static int fit_element(const spari_beam *beam, int elements, int e, int P, const
     while (last > first && beam->eta[last] > e1) {
         last--;
     }
-    size_t inner = (size_t)(P - 2),
-           points = beam->eta[first] <= e1 && beam->eta[last] >= e0 ? (size_t)(last - first + 1) : 0;
-    fit f = {.rows = points + inner, .inner = inner, .P = P};
-    int bad = fit_create(&f);
-    for (size_t i = 0; i < f.rows && !bad; i++) {
-        double *row = f.basis + i * (size_t)(1 + P);
-        double xi = i < points ? 2 * (beam->eta[first + (int64_t)i] - e0) / (e1 - e0) - 1 : gll[1 + i - points];
-        row[0] = i < points ? 1 : 1e-7;
-        spari_lagrange(P, gll, bary, xi, row + 1, NULL);
-        for (size_t j = 0; j < inner; j++) {
-            gsl_matrix_set(f.A, i, j, row[0] * row[2 + j]);
+    int inner = P - 2, points = beam->eta[first] <= e1 && beam->eta[last] >= e0 ? (int)(last - first + 1) : 0;
+    int rows = points + inner;
+    double *A = spari_zalloc((int64_t)rows * (inner + 3), sizeof *A), *b = A + (int64_t)rows * inner;
+    for (int i = 0; i < rows && A; i++) {
+        double phi[SPARI_MAX_NODES],
+            xi = i < points ? 2 * (beam->eta[first + i] - e0) / (e1 - e0) - 1 : gll[1 + i - points];
+        const double *data = i < points ? beam->xyz + 3 * (first + i) : spline + 3 * (1 + i - points);
+        double weight = i < points ? 1 : 1e-7;
+        spari_lagrange(P, gll, bary, xi, phi, NULL);
+        for (int j = 0; j < inner; j++) {
+            A[(int64_t)inner * i + j] = weight * phi[1 + j];
+        }
+        for (int d = 0; d < 3; d++) {
+            double ends = phi[0] * x[d] + phi[P - 1] * x[3 * (P - 1) + d];
+            b[(int64_t)rows * d + i] = weight * (data[d] - ends);
         }
     }
-    gsl_vector_view tau = {{0}};
-    if (!bad) {
-        tau = gsl_vector_subvector(f.c, 0, inner);
-        SPARI_BLAS(bad = gsl_linalg_QR_decomp(f.A, &tau.vector) != GSL_SUCCESS);
+    int bad = !A || spari_least_squares(rows, inner, A, 3, b) != SPAR_OK;
+    for (int i = 0; i < 3 * inner && !bad; i++) {
+        x[3 + i] = b[(int64_t)rows * (i % 3) + i / 3];
     }
-    for (int d = 0; d < 3 && !bad; d++) {
-        for (size_t i = 0; i < f.rows; i++) {
-            double data =
-                i < points ? beam->xyz[3 * (first + (int64_t)i) + d] : spline[3 * (1 + i - points) + (size_t)d];
-            gsl_vector_set(f.b, i, data);
-        }
-        bad = fit_solve(&f, d, &tau.vector, x);
-    }
-    fit_free(&f);
+    free(A);
     return bad;
 }
 

@@ -1,10 +1,9 @@
 /* A body that is linear about its reference: see linear_body.h. */
 #include "linear_body.h"
 
-#include "../base/blas.h"
+#include "../algebra/cblas.h"
 #include "../math/rotation.h"
 
-#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <string.h>
 
