@@ -1,8 +1,11 @@
-/* Factorisations of dense matrices by GSL. */
+/* Factorisations of dense matrices by GSL; singular values by LAPACK, where there is one. */
 #include "dense.h"
 
 #include "../base/status.h"
 #include "gsl.h"
+#ifdef SPARI_HAVE_LAPACK
+#include "lapack.h"
+#endif
 
 #include <math.h>
 #include <stdlib.h>
@@ -87,6 +90,27 @@ int spari_independent_rows(int h, int n, double *G, double least, int *order, in
     return rank;
 }
 
+#ifdef SPARI_HAVE_LAPACK
+/* By columns A is A^T = V S U^T: its left vectors are those of V, its right ones come as rows, which are U by columns.
+ */
+int spari_singular_values(int n, double *A, double *S, double *V) {
+    int size = 8 * n, bad;
+    double *room = spari_zalloc((int64_t)n * n + size, sizeof *room), *U = room + size;
+    if (!room) {
+        return SPAR_ERR_MEMORY;
+    }
+    SPARI_BLAS(dgesvd_("A", "A", &n, &n, A, &n, S, V, &n, U, &n, room, &size, &bad, 1, 1));
+    memcpy(A, U, (size_t)n * (size_t)n * sizeof *A);
+    for (int i = 0; i < n * n; i++) {
+        int j = n * (i % n) + i / n;
+        double x = V[i];
+        V[i] = i < j ? V[j] : V[i];
+        V[j] = i < j ? x : V[j];
+    }
+    free(room);
+    return bad ? SPAR_ERR_NUMERIC : SPAR_OK;
+}
+#else
 int spari_singular_values(int n, double *A, double *S, double *V) {
     gsl_matrix_view a = spari_gsl_matrix(A, n, n), v = spari_gsl_matrix(V, n, n);
     gsl_vector_view s = spari_gsl_vector(S, n);
@@ -94,3 +118,4 @@ int spari_singular_values(int n, double *A, double *S, double *V) {
     SPARI_GSL(bad = gsl_linalg_SV_decomp_jacobi(&a.matrix, &v.matrix, &s.vector)); /* the others take memory, unasked */
     return bad ? SPAR_ERR_NUMERIC : SPAR_OK;
 }
+#endif

@@ -1,13 +1,23 @@
-/* Eigenvalue problems by GSL. Its symmetric solver never ends where an entry is no finite number or its square is none:
-   all it is given is brought to the size of 1 first. */
+/* Eigenvalue problems by LAPACK, where there is one, else by GSL. What they are given is finite and brought to the size
+   of 1 first: GSL's symmetric solver never ends where an entry is no finite number or its square is none. */
 #include "eigen.h"
 
 #include "../base/status.h"
 #include "cblas.h"
 #include "dense.h"
-#include "gsl.h"
 
+#ifdef SPARI_HAVE_LAPACK
+#include "lapack.h"
+#else
+#include "gsl.h"
+#endif
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifndef CMPLX /* the system's header has it for GCC alone; here both parts are finite */
+#define CMPLX(re, im) ((double complex)((re) + (im)*_Complex_I))
+#endif
 
 /* Divides A by a power of 4 near its largest entry, which changes no digit of what roots and quotients give; *exponent:
    of 2. Returns 0 if an entry is not finite. */
@@ -30,68 +40,106 @@ static int bring_to_one(int64_t size, double *A, int *exponent) {
     return 1;
 }
 
-/* L^-1 A L^-T in A, L in B; 0, or 1: B is not positive definite. */
-static int standardise(int n, double *A, double *B) {
-    gsl_matrix_view a = spari_gsl_matrix(A, n, n), b = spari_gsl_matrix(B, n, n);
-    int bad = spari_cholesky(n, B);
-    if (!bad) {
-        SPARI_GSL(bad = gsl_eigen_gensymm_standardize(&a.matrix, &b.matrix));
-    }
+/* solve_symmetric: A x = mu x, mu ascending, the vectors as rows in place of A. solve_real: eigenvalues of A in parts.
+   Both return 0 where they converge, -1 without memory. */
+#ifdef SPARI_HAVE_LAPACK
+static int solve_symmetric(int n, double *A, double *mu, double *room) {
+    int bad, size = SPARI_SYMMETRIC_ROOM(n);
+    SPARI_BLAS(dsyev_("V", "U", &n, A, &n, mu, room, &size, &bad, 1, 1));
     return bad;
 }
 
-/* A x = mu x: mu descending, x in rows. */
-static int solve_symmetric(int n, double *A, double *mu, double *x) {
-    gsl_matrix_view a = spari_gsl_matrix(A, n, n), z = spari_gsl_matrix(x, n, n);
+static int solve_real(int n, double *A, double *re, double *im, double *room) {
+    int bad, one = 1, size = SPARI_SYMMETRIC_ROOM(n);
+    SPARI_BLAS(dgeev_("N", "N", &n, A, &n, re, im, NULL, &one, NULL, &one, room, &size, &bad, 1, 1));
+    return bad;
+}
+#else
+static int solve_symmetric(int n, double *A, double *mu, double *room) {
+    gsl_matrix_view a = spari_gsl_matrix(A, n, n), z = spari_gsl_matrix(room + 4 * n, n, n);
     gsl_vector_view value = spari_gsl_vector(mu, n);
-    gsl_eigen_symmv_workspace *w;
-    int bad = 0;
-    SPARI_GSL(w = gsl_eigen_symmv_alloc((size_t)n));
-    if (!w) {
-        return SPAR_ERR_MEMORY;
+    gsl_eigen_symmv_workspace w = {(size_t)n, room, room + n, room + 2 * n, room + 3 * n};
+    int bad;
+    SPARI_GSL(bad = gsl_eigen_symmv(&a.matrix, &value.vector, &z.matrix, &w));
+    (void)gsl_eigen_symmv_sort(&value.vector, &z.matrix, GSL_EIGEN_SORT_VAL_ASC);
+    (void)gsl_matrix_transpose_memcpy(&a.matrix, &z.matrix);
+    return bad;
+}
+
+static int solve_real(int n, double *A, double *re, double *im, double *room) {
+    gsl_matrix_view a = spari_gsl_matrix(A, n, n);
+    gsl_vector_complex_view value = gsl_vector_complex_view_array(room, (size_t)n);
+    gsl_eigen_nonsymm_workspace *w;
+    int bad = -1;
+    SPARI_GSL(w = gsl_eigen_nonsymm_alloc((size_t)n));
+    if (w) {
+        gsl_eigen_nonsymm_params(0, 1, w);
+        SPARI_GSL(bad = gsl_eigen_nonsymm(&a.matrix, &value.vector, w));
+        gsl_eigen_nonsymm_free(w);
     }
-    SPARI_GSL(bad = gsl_eigen_symmv(&a.matrix, &value.vector, &z.matrix, w));
-    gsl_eigen_symmv_free(w);
-    (void)gsl_eigen_symmv_sort(&value.vector, &z.matrix, GSL_EIGEN_SORT_VAL_DESC);
-    (void)gsl_matrix_transpose(&z.matrix);
-    return bad ? SPAR_ERR_NUMERIC : SPAR_OK;
+    for (int i = 0; i < n; i++) {
+        re[i] = room[2 * i], im[i] = room[2 * i + 1];
+    }
+    return bad;
+}
+#endif
+
+int spari_symmetric(int n, double *A, double *mu, double *room) {
+    int of_A;
+    if (!bring_to_one((int64_t)n * n, A, &of_A) || solve_symmetric(n, A, mu, room)) {
+        return SPAR_ERR_NUMERIC;
+    }
+    for (int k = 0; k < n; k++) {
+        mu[k] = ldexp(mu[k], of_A);
+    }
+    return SPAR_OK;
+}
+
+/* A := L^-1 A L^-T with B = L L^T, L in B. 0, or 1: B is not positive definite. */
+static int standardise(int n, double *A, double *B) {
+    if (spari_cholesky(n, B)) {
+        return 1;
+    }
+    SPARI_BLAS(cblas_dtrsm(CblasRowMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, n, n, 1, B, n, A, n));
+    SPARI_BLAS(cblas_dtrsm(CblasRowMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, n, n, 1, B, n, A, n));
+    return 0;
 }
 
 int spari_eigen(int n, double *A, double *B, double *mu, double *x) {
-    int64_t size = (int64_t)n * n;
-    int of_A, of_B, of_C;
+    int of_A, of_B;
     if (n < 1) {
         return SPAR_OK;
     }
-    if (!bring_to_one(size, A, &of_A) || !bring_to_one(size, B, &of_B) || standardise(n, A, B) ||
-        !bring_to_one(size, A, &of_C)) {
+    if (!bring_to_one((int64_t)n * n, A, &of_A) || !bring_to_one((int64_t)n * n, B, &of_B) || standardise(n, A, B)) {
         return SPAR_ERR_NUMERIC;
     }
-    int status = solve_symmetric(n, A, mu, x);
+    double *value = spari_zalloc(n + SPARI_SYMMETRIC_ROOM((int64_t)n), sizeof *value);
+    int status = value ? spari_symmetric(n, A, value, value + n) : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
-        SPARI_BLAS(cblas_dtrsm(CblasRowMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, n, n, 1, B, n, x, n));
+        SPARI_BLAS(cblas_dtrsm(CblasRowMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, n, n, 1, B, n, A, n));
     }
     for (int k = 0; k < n && status == SPAR_OK; k++) {
-        double *row = x + (int64_t)n * k;
-        cblas_dscal(n, 1 / cblas_dnrm2(n, row, 1), row, 1);
-        mu[k] = ldexp(mu[k], of_A + of_C - of_B);
+        double *to = x + (int64_t)n * k;
+        memcpy(to, A + (int64_t)n * (n - 1 - k), (size_t)n * sizeof *to);
+        cblas_dscal(n, 1 / cblas_dnrm2(n, to, 1), to, 1);
+        mu[k] = ldexp(value[n - 1 - k], of_A - of_B);
     }
+    free(value);
     return status;
 }
 
 int spari_eigenvalues(int n, double *A, double complex *z) {
-    gsl_matrix_view a = spari_gsl_matrix(A, n, n);
-    gsl_vector_complex_view value = gsl_vector_complex_view_array((double *)z, (size_t)n);
-    gsl_eigen_nonsymm_workspace *w;
-    int bad = 0;
-    SPARI_GSL(w = gsl_eigen_nonsymm_alloc((size_t)n));
-    if (!w) {
-        return SPAR_ERR_MEMORY;
+    double *re = spari_zalloc(2 * (int64_t)n + SPARI_SYMMETRIC_ROOM((int64_t)n), sizeof *re), *im = re + n;
+    int of_A, bad = -1;
+    if (re) {
+        bad = bring_to_one((int64_t)n * n, A, &of_A) ? solve_real(n, A, re, im, im + n) : 1;
     }
-    gsl_eigen_nonsymm_params(0, 1, w);
-    SPARI_GSL(bad = gsl_eigen_nonsymm(&a.matrix, &value.vector, w));
-    gsl_eigen_nonsymm_free(w);
-    return bad ? SPAR_ERR_NUMERIC : SPAR_OK;
+    int status = bad < 0 ? SPAR_ERR_MEMORY : bad ? SPAR_ERR_NUMERIC : SPAR_OK;
+    for (int i = 0; i < n && status == SPAR_OK; i++) {
+        z[i] = CMPLX(ldexp(re[i], of_A), ldexp(im[i], of_A));
+    }
+    free(re);
+    return status;
 }
 
 void spari_eigen_add(int at, int n, const double *X, double scale, int64_t size, double *A) {

@@ -87,7 +87,7 @@ static int hankel_create(hankel *h, int size, int64_t count) {
     *h = (hankel){.size = size, .rows = (int)rows, .m = (int)rows * size};
     int64_t square = (int64_t)h->m * h->m;
     h->at = spari_zalloc(rows, sizeof *h->at);
-    h->A = spari_zalloc(3 * states * states + states, sizeof *h->A);
+    h->A = spari_zalloc(3 * states * states + 4 * states, sizeof *h->A);
     h->Q = h->A ? h->A + states * states : NULL;
     h->room = h->Q ? h->Q + states * states : NULL;
     h->U = spari_zalloc(4 * square + h->m, sizeof *h->U);
@@ -122,18 +122,15 @@ static int find_system(hankel *h, int r, spari_decay *d) {
     for (int i = 0; i < r * r; i++) {
         h->A[i] = h->G[h->m * (i / r) + i % r] / (root_of(h, i / r) * root_of(h, i % r));
     }
-    if (spari_schur(r, h->A, h->Q, h->room)) {
+    if (spari_schur(r, h->A, h->Q, 0, h->room)) {
         return 1;
     }
-    double complex *x = h->room, *W = x + MOST_STATES; /* columns of W: eigenvectors */
+    double complex *x = h->room, *W = x + 2 * MOST_STATES; /* columns of W: eigenvectors */
     for (int k = 0; k < r; k++) {
         d->z[k] = h->A[(r + 1) * k];
-        spari_schur_vector(r, h->A, k, x);
+        spari_schur_vector(r, h->A, h->Q, k, x, x + MOST_STATES);
         for (int i = 0; i < r; i++) {
-            W[r * i + k] = 0;
-            for (int l = 0; l <= k; l++) {
-                W[r * i + k] += h->Q[r * i + l] * x[l];
-            }
+            W[r * i + k] = x[i];
         }
     }
     for (int k = 0; k < r; k++) {

@@ -309,11 +309,10 @@ typedef struct inverse_pairs {
     double complex *mu, *z;
 } inverse_pairs;
 
-/* GSL's unsymmetric solver does not converge where T has many zeros, as motions that are held give. */
 static int solve_dense(spectrum *a, inverse_pairs *found) {
     const int n = 2 * a->n;
     const int64_t size = (int64_t)n * n;
-    double complex *S = spari_zalloc(2 * size + 3 * (int64_t)n, sizeof *S), *Q = S + size, *x = Q + size;
+    double complex *S = spari_zalloc(2 * size + 4 * (int64_t)n, sizeof *S), *Q = S + size, *x = Q + size;
     int status = S ? SPAR_OK : SPAR_ERR_MEMORY;
     for (int j = 0; j < n && status == SPAR_OK; j++) {
         x[j] = 1;
@@ -323,17 +322,10 @@ static int solve_dense(spectrum *a, inverse_pairs *found) {
             S[(int64_t)n * i + j] = x[n + i];
         }
     }
-    status = status == SPAR_OK && spari_schur(n, S, Q, x) ? SPAR_ERR_NUMERIC : status;
+    status = status == SPAR_OK && spari_schur(n, S, Q, 0, x) ? SPAR_ERR_NUMERIC : status;
     for (int j = 0; j < n && status == SPAR_OK; j++) {
         found->mu[j] = S[(int64_t)(n + 1) * j];
-        spari_schur_vector(n, S, j, x);
-        for (int i = 0; i < n; i++) {
-            double complex sum = 0;
-            for (int k = 0; k <= j; k++) {
-                sum += Q[(int64_t)n * i + k] * x[k];
-            }
-            found->z[(int64_t)n * j + i] = sum;
-        }
+        spari_schur_vector(n, S, Q, j, found->z + (int64_t)n * j, x);
     }
     found->count = status == SPAR_OK ? n : 0;
     free(S);

@@ -51,6 +51,9 @@ int spar_has(const char *feature) {
 #ifdef SPARI_HAVE_OPENBLAS
         "openblas",
 #endif
+#ifdef SPARI_HAVE_LAPACK
+        "lapack",
+#endif
         "gsl",
     };
     if (!feature) {
