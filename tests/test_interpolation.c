@@ -1,13 +1,11 @@
-/* Splines, Brent's roots and Gauss's quadrature against closed forms and, where it is there, against GSL. */
+/* Splines, Brent's roots and Gauss's quadrature against closed forms and against GSL. */
 #include <cmocka.h>
 #include <float.h>
 #include <math.h>
 
-#ifdef SPAR_TEST_GSL
 #include <gsl/gsl_integration.h>
 #include <gsl/gsl_roots.h>
 #include <gsl/gsl_spline.h>
-#endif
 
 #include "math/basis.h"
 #include "math/brent.h"
@@ -188,7 +186,6 @@ static void test_gauss(void **state) {
     }
 }
 
-#ifdef SPAR_TEST_GSL
 static void test_splines_of_gsl(void **state) {
     (void)state;
     const gsl_interp_type *const theirs[] = {gsl_interp_linear,  gsl_interp_polynomial,
@@ -248,15 +245,12 @@ static void test_gauss_of_gsl(void **state) {
         gsl_integration_glfixed_table_free(g);
     }
 }
-#endif
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_exact),          cmocka_unit_test(test_order),       cmocka_unit_test(test_periodic),
         cmocka_unit_test(test_corner),         cmocka_unit_test(test_brent),       cmocka_unit_test(test_gauss),
-#ifdef SPAR_TEST_GSL
         cmocka_unit_test(test_splines_of_gsl), cmocka_unit_test(test_root_of_gsl), cmocka_unit_test(test_gauss_of_gsl),
-#endif
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

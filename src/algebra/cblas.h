@@ -4,6 +4,10 @@
 
 #include "../base/blas.h"
 
+#ifdef SPARI_WITHOUT_GSL
+#include <cblas.h>
+#else
 #include <gsl/gsl_cblas.h>
+#endif
 
 #endif

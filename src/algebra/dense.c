@@ -1,8 +1,12 @@
-/* Factorisations of dense matrices by GSL; singular values by LAPACK, where there is one. */
+/* Factorisations of dense matrices: by GSL, or by LAPACK in a library without GSL. Singular values are LAPACK's, where
+   there is one. */
 #include "dense.h"
 
 #include "../base/status.h"
+#include "cblas.h"
+#ifndef SPARI_WITHOUT_GSL
 #include "gsl.h"
+#endif
 #ifdef SPARI_HAVE_LAPACK
 #include "lapack.h"
 #endif
@@ -11,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#ifndef SPARI_WITHOUT_GSL
 int spari_cholesky(int n, double *A) {
     gsl_matrix_view a = spari_gsl_matrix(A, n, n);
     int status;
@@ -89,6 +94,64 @@ int spari_independent_rows(int h, int n, double *G, double least, int *order, in
     free(p.data);
     return rank;
 }
+#else
+/* By columns the matrices are transposed, and the lower triangle is the upper one. */
+int spari_cholesky(int n, double *A) {
+    int bad = 0;
+    if (n > 0) {
+        SPARI_BLAS(dpotrf_("U", &n, A, &n, &bad, 1));
+    }
+    return bad != 0;
+}
+
+void spari_cholesky_solve(int n, const double *L, double *x) {
+    SPARI_BLAS(cblas_dtrsv(CblasRowMajor, CblasLower, CblasNoTrans, CblasNonUnit, n, L, n, x, 1));
+    SPARI_BLAS(cblas_dtrsv(CblasRowMajor, CblasLower, CblasTrans, CblasNonUnit, n, L, n, x, 1));
+}
+
+int spari_cholesky_band(int n, int band, double *A) {
+    int bad, step = band + 1;
+    SPARI_BLAS(dpbtrf_("L", &n, &band, A, &step, &bad, 1));
+    return bad != 0;
+}
+
+int spari_least_squares(int m, int n, double *A, int columns, double *b) {
+    int bad, size = n + 32 * (n > columns ? n : columns);
+    double *room = spari_zalloc(size, sizeof *room);
+    if (!room) {
+        return SPAR_ERR_MEMORY;
+    }
+    SPARI_BLAS(dgels_("T", &n, &m, &columns, A, &n, b, &m, room, &size, &bad, 1));
+    free(room);
+    return bad ? SPAR_ERR_NUMERIC : SPAR_OK;
+}
+
+int spari_independent_rows(int h, int n, double *G, double least, int *order, int want, double *Q) {
+    int most = n < h ? n : h, taken = want < most ? want : most, size = 32 * (h + n), rank = 0, bad;
+    double *tau = spari_zalloc(most + size, sizeof *tau);
+    if (!tau) {
+        return -1;
+    }
+    memset(order, 0, (size_t)h * sizeof *order);
+    for (int64_t i = 0; i < h; i++) {
+        double length = cblas_dnrm2(n, G + n * i, 1);
+        cblas_dscal(n, length > 0 ? 1 / length : 0, G + n * i, 1);
+    }
+    SPARI_BLAS(dgeqp3_(&n, &h, G, &n, order, tau, tau + most, &size, &bad));
+    while (rank < most && fabs(G[(int64_t)(n + 1) * rank]) > least) {
+        rank++;
+    }
+    for (int i = 0; i < h; i++) {
+        order[i]--;
+    }
+    memcpy(Q, G, (size_t)taken * (size_t)n * sizeof *Q);
+    if (want > 0) {
+        SPARI_BLAS(dorgqr_(&n, &want, &taken, Q, &n, tau, tau + most, &size, &bad));
+    }
+    free(tau);
+    return rank;
+}
+#endif
 
 #ifdef SPARI_HAVE_LAPACK
 /* By columns A is A^T = V S U^T: its left vectors are those of V, its right ones come as rows, which are U by columns.

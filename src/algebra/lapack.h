@@ -23,4 +23,13 @@ void dgesvd_(const char *left, const char *right, const int *m, const int *n, do
              double *values, double *U, const int *of_U, double *VT, const int *of_VT, double *work, const int *size,
              int *info, size_t, size_t);
 
+void dpotrf_(const char *triangle, const int *n, double *A, const int *step, int *info, size_t);
+void dpbtrf_(const char *triangle, const int *n, const int *band, double *A, const int *step, int *info, size_t);
+void dgels_(const char *transposed, const int *m, const int *n, const int *columns, double *A, const int *step,
+            double *b, const int *of_b, double *work, const int *size, int *info, size_t);
+void dgeqp3_(const int *m, const int *n, double *A, const int *step, int *order, double *tau, double *work,
+             const int *size, int *info);
+void dorgqr_(const int *m, const int *n, const int *reflectors, double *A, const int *step, const double *tau,
+             double *work, const int *size, int *info);
+
 #endif
