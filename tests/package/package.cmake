@@ -52,7 +52,7 @@ if(SPAR_GSL AND SPAR_LAPACK AND NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
     -DSPAR_BUILD_TESTS=OFF -DSPAR_BUILD_EXAMPLES=OFF -DSPAR_BUILD_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=Debug
     "-DCMAKE_C_FLAGS=-O0 -g0"
     --test-command sh "${here}/without_gsl.sh" "${work}/without_gsl" "${work}/without_gsl_program" "${CMAKE_C_COMPILER}")
-  set_tests_properties(package_without_gsl PROPERTIES PROCESSORS 2)
+  set_tests_properties(package_without_gsl PROPERTIES PROCESSORS 2 TIMEOUT 600)
 endif()
 
 # spar as a part of another project (FetchContent), whose installed program runs without the build folder
