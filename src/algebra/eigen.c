@@ -1,5 +1,5 @@
-/* Eigenvalue problems by LAPACK, where there is one, else by GSL. What they are given is finite and brought to the size
-   of 1 first: GSL's symmetric solver never ends where an entry is no finite number or its square is none. */
+/* Eigenvalue problems by LAPACK, or by GSL in a build without LAPACK. Matrices are checked and scaled to the size of 1
+   first: GSL's symmetric solver does not end when an entry, or its square, is not finite. */
 #include "eigen.h"
 
 #include "../base/status.h"
@@ -86,6 +86,9 @@ static int solve_real(int n, double *A, double *re, double *im, double *room) {
 
 int spari_symmetric(int n, double *A, double *mu, double *room) {
     int of_A;
+    if (n < 1) {
+        return SPAR_OK;
+    }
     if (!bring_to_one((int64_t)n * n, A, &of_A) || solve_symmetric(n, A, mu, room)) {
         return SPAR_ERR_NUMERIC;
     }

@@ -1,11 +1,11 @@
-/* Symmetric generalised eigenvalue problems. */
+/* Eigenvalue problems of real matrices. */
 #ifndef SPARI_EIGEN_H
 #define SPARI_EIGEN_H
 
 #include <complex.h>
 #include <stdint.h>
 
-/* What spari_symmetric takes as room. */
+/* The size of the workspace of spari_symmetric. */
 #define SPARI_SYMMETRIC_ROOM(n) ((n) * ((n) + 4))
 
 /* A x = mu x with a symmetric A [n][n]: mu [n] ascending, orthonormal eigenvectors as rows in place of A. 0, or
@@ -17,8 +17,8 @@ int spari_symmetric(int n, double *A, double *mu, double *room);
    finite number, or B is not positive definite. */
 int spari_eigen(int n, double *A, double *B, double *mu, double *x);
 
-/* The eigenvalues z [n] of a real matrix A [n][n], in no order; conjugate pairs and real ones are so to the bit.
-   Destroys A. 0, SPAR_ERR_MEMORY, SPAR_ERR_NUMERIC. */
+/* The eigenvalues z [n] of a real matrix A [n][n], in no order. Conjugate pairs are exactly conjugate, real ones
+   exactly real. Destroys A. 0, SPAR_ERR_MEMORY, SPAR_ERR_NUMERIC. */
 int spari_eigenvalues(int n, double *A, double complex *z);
 
 /* A [size][size] += scale times the symmetric part of X [n][n], whose first unknown is unknown `at` of A; those before

@@ -1,6 +1,6 @@
-/* GSL as the library calls it: with the lock of BLAS (base/blas.h), which GSL's factorisations call, and with GSL's
-   error handler off. The handler is one for the process, its default one aborts, and outside of these calls it is the
-   host's: every call that may fail, for want of memory too, stands in SPARI_GSL. */
+/* Calls of GSL. SPARI_GSL holds the lock of BLAS (base/blas.h), because GSL's factorisations call BLAS. It also
+   switches GSL's error handler off for the call: the process has one handler, the default one aborts, and outside of
+   these calls it is the host's. Every call that can fail, allocations included, stands in SPARI_GSL. */
 #ifndef SPARI_GSL_H
 #define SPARI_GSL_H
 

@@ -1,6 +1,6 @@
-/* The calls of LAPACK that the library makes: Fortran's, with the lengths of texts at the end. All of them stand within
-   SPARI_BLAS, with workspaces of ours. LAPACK ends the program where an argument is wrong, a NaN among those of some
-   calls: sizes are positive, entries finite. */
+/* The functions of LAPACK that the library calls. They are Fortran's: the lengths of character arguments come last.
+   Call them within SPARI_BLAS, with workspaces that the library has allocated. LAPACK ends the program when an argument
+   is illegal, for some functions when an entry is NaN. So sizes must be positive and entries finite. */
 #ifndef SPARI_LAPACK_H
 #define SPARI_LAPACK_H
 

@@ -1,5 +1,6 @@
-/* By LAPACK; where there is none, as GSL has real matrices only, by Householder's reduction to Hessenberg's form, then
-   QR with Wilkinson's shifts by rotations of two rows: Golub and Van Loan, Matrix Computations, chapter 7. */
+/* Schur's form by LAPACK. A build without LAPACK has its own: GSL's is for real matrices. Householder's reduction to
+   Hessenberg's form, then QR with Wilkinson's shifts by rotations of two rows (Golub and Van Loan, Matrix Computations,
+   chapter 7). */
 #include "schur.h"
 
 #include "../base/status.h"
@@ -21,7 +22,7 @@ static void transpose(int n, double complex *A) {
     }
 }
 
-/* S and Q column by column; room [4 n]. */
+/* S and Q are stored column by column; room [4 n]. */
 static int find_form(int n, double complex *S, double complex *Q, double complex *room) {
     int count, bad, size = 2 * n;
     SPARI_BLAS(zgees_("V", "N", NULL, &n, S, &n, &count, room, Q, &n, room + n, &size, (double *)(room + 3 * n), NULL,
@@ -29,7 +30,7 @@ static int find_form(int n, double complex *S, double complex *Q, double complex
     return bad;
 }
 
-/* Each to its place from the back to the front, by exchanges of neighbours. */
+/* Moves the largest eigenvalue to the front, then the next. */
 static int sort_form(int n, double complex *S, double complex *Q) {
     int bad = 0;
     for (int i = 0; i < n && !bad; i++) {
@@ -218,6 +219,9 @@ static void transpose(int n, double complex *A) { /* rows and columns are as the
 #endif
 
 int spari_schur(int n, double complex *S, double complex *Q, int sorted, double complex *room) {
+    if (n < 1) {
+        return 0;
+    }
     if (spari_first_nonfinite((const double *)S, 2 * (int64_t)n * n) >= 0) {
         return 1;
     }

@@ -5,8 +5,8 @@
 
 #include <complex.h>
 
-/* S [n][n]: in A, out S; Q [n][n]: out; sorted: the eigenvalues come largest first; room [4 n]. 0, or 1 where it does
-   not converge or meets what is no number. */
+/* S [n][n]: in A, out S; Q [n][n]: out; sorted: largest eigenvalues first; room [4 n]: workspace. 0, or 1: no
+   convergence, or an entry is not finite. */
 int spari_schur(int n, double complex *S, double complex *Q, int sorted, double complex *room);
 /* x [n]: the eigenvector of A to the eigenvalue S [k][k], room [n]. */
 void spari_schur_vector(int n, const double complex *S, const double complex *Q, int k, double complex *x,

@@ -18,7 +18,7 @@ static void make_locale(void) {
 
 static void make_ready(void) {
     make_locale();
-    /* fork: the child would wait for a lock that a thread holds which it has not */
+    /* a lock that another thread holds would stay locked in the child of a fork */
     (void)pthread_atfork(spari_blas_begin, spari_blas_end, spari_blas_end);
 }
 

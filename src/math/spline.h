@@ -28,8 +28,9 @@ typedef struct spari_spline {
 int spari_spline_create(spari_spline *spline, spari_spline_kind kind, int64_t n, const double *x, const double *y);
 void spari_spline_free(spari_spline *spline);
 
-/* The value at x[0] <= at <= x[n - 1]. *interval is where the search begins and where it ended: any number >= 0 at
-   first. *slope: NULL, or the derivative there. */
+/* The value at x[0] <= at <= x[n - 1].
+     interval: in, where the search begins, any number >= 0; out, the interval of `at`
+     slope: out, the derivative; NULL: not wanted */
 double spari_spline_at(const spari_spline *spline, double at, int64_t *interval, double *slope);
 
 #endif
