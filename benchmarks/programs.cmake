@@ -18,7 +18,7 @@ endforeach()
 # The transfer benchmark beside the plain loop, compiled with the library's flags and for this machine. It measures the
 # nearest point alone, which the shared library hides.
 set_target_properties(benchmarks_transfer PROPERTIES
-  LINK_LIBRARIES "spar_flags;spar_static;spar::gsl;m;$<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>")
+  LINK_LIBRARIES "spar_flags;spar_static;spar::algebra;${GSL_LIBRARY};m;$<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>")
 target_include_directories(benchmarks_transfer PRIVATE "${PROJECT_SOURCE_DIR}/src")
 foreach(kind IN ITEMS portable native)
   add_library(benchmarks_plain_${kind} OBJECT "${PROJECT_SOURCE_DIR}/benchmarks/plain.c")

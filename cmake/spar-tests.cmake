@@ -6,6 +6,8 @@ if(NOT SPAR_CMOCKA_INCLUDE OR NOT SPAR_CMOCKA_LIBRARY)
   message(FATAL_ERROR "SPAR_BUILD_TESTS needs CMocka (Debian: libcmocka-dev); or set SPAR_BUILD_TESTS=OFF")
 endif()
 
+find_package(GSL REQUIRED) # tests compare with it, also where the library is free of it
+
 # Open MPI as root, in a container, on fewer cores than ranks, without ssh.
 set(spar_test_environment
   OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
@@ -24,7 +26,8 @@ target_compile_definitions(spar_test_base INTERFACE
 # cmocka.h wants these before it, and the formatter sorts includes
 target_compile_options(spar_test_base INTERFACE
   "$<$<COMPILE_LANGUAGE:C>:SHELL:-include stdarg.h -include stddef.h -include stdint.h -include setjmp.h>")
-target_link_libraries(spar_test_base INTERFACE spar_flags "${SPAR_CMOCKA_LIBRARY}" spar::gsl)
+target_link_libraries(spar_test_base INTERFACE spar_flags "${SPAR_CMOCKA_LIBRARY}" spar::algebra "${GSL_LIBRARY}")
+target_include_directories(spar_test_base SYSTEM INTERFACE ${GSL_INCLUDE_DIRS})
 file(GLOB spar_support CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/support/*.c")
 if(spar_support)
   add_library(spar_test_support STATIC ${spar_support})

@@ -133,7 +133,7 @@ enum {
 SPAR_API const char *spar_status_text(int status);
 /* Release, "major.minor.patch"; static storage. */
 SPAR_API const char *spar_version(void);
-/* 1 if this build has the feature, else 0 (also for NULL and unknown names): "mpi", "fortran", "openblas", "gsl". */
+/* 1 if this build has the feature, else 0 (NULL, unknown names): "mpi", "fortran", "openblas", "lapack", "gsl". */
 SPAR_API int spar_has(const char *feature);
 
 /* ---- session ----------------------------------------------------------------------------------------------------- */

@@ -23,10 +23,7 @@ static void aero_free(spar_aero *aero) {
     for (int64_t i = 0; aero->section && i < aero->n; i++) {
         spari_table_release(aero->section[i].table);
     }
-    if (aero->solver) {
-        gsl_root_fsolver_free(aero->solver);
-    }
-    void *all[] = {aero->fluid,  aero->section, aero->accel,   aero->place,  aero->length,  aero->loss_radius,
+    void *all[] = {aero->fluid,  aero->section, aero->row,     aero->place,  aero->length,  aero->loss_radius,
                    aero->x,      aero->v,       aero->q,       aero->omega,  aero->element, aero->force,
                    aero->moment, aero->wind,    aero->met,     aero->inside, aero->was,     aero->is,
                    aero->a,      aero->omega_a, aero->attached};
@@ -47,11 +44,11 @@ static int make_arrays(spar_aero *aero) {
     int64_t all = count(aero);
     aero->fluid = spari_zalloc(aero->blades, sizeof(spar_fluid *));
     aero->section = spari_zalloc(aero->n, sizeof *aero->section);
-    aero->accel = spari_zalloc(all, sizeof *aero->accel);
+    aero->row = spari_zalloc(all, sizeof *aero->row);
     aero->element = spari_zalloc(all, sizeof *aero->element);
     double **array[] = {&aero->place, &aero->length, &aero->x, &aero->v, &aero->q, &aero->force};
     static const int width[] = {3, 1, 3, 3, 4, 3};
-    int whole = aero->fluid && aero->section && aero->accel && aero->element;
+    int whole = aero->fluid && aero->section && aero->row && aero->element;
     for (size_t i = 0; i < sizeof array / sizeof array[0]; i++) {
         *array[i] = spari_zalloc(width[i] * all, sizeof(double));
         whole = whole && *array[i];
@@ -246,10 +243,6 @@ static int adopt(spar_aero *aero, int effects, const char *caller) {
         whole = whole && have(&aero->met, 3 * all) && aero->inside;
     }
     whole = whole && (!aero->rotor_given || have(&aero->omega, 3 * all));
-    if ((effects & SPAR_AERO_INDUCTION) && !aero->solver) {
-        aero->solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
-        whole = whole && aero->solver;
-    }
     if (aero->rotor_given && (effects & (SPAR_AERO_TIP_LOSS | SPAR_AERO_HUB_LOSS)) && !aero->loss_radius) {
         whole = whole && have(&aero->loss_radius, all);
         for (int64_t k = 0; whole && k < all; k++) {
@@ -291,7 +284,7 @@ int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist
     }
     spari_table_release(old.table);
     for (int b = 0; b < aero->blades; b++) {
-        aero->accel[b * aero->n + i] = (gsl_interp_accel){0, 0, 0}; /* the interval belongs to the old table */
+        aero->row[b * aero->n + i] = 0; /* the old one may be beyond the new table */
     }
     return SPAR_OK;
 }
@@ -607,8 +600,8 @@ static void solve_element(spar_aero *aero, int64_t i, int64_t k, double density,
                           const spari_past *past) {
     double loss = aero->loss_radius ? aero->loss_radius[k] : 0;
     const spari_centre station = {
-        aero->x + 3 * k, aero->q + 4 * k, aero->v + 3 * k, inflow + 3 * k, loss, aero->accel + k, past};
-    spari_element_solve(&aero->rotor, aero->section + i, &station, density, aero->solver, aero->element + k);
+        aero->x + 3 * k, aero->q + 4 * k, aero->v + 3 * k, inflow + 3 * k, loss, aero->row + k, past};
+    spari_element_solve(&aero->rotor, aero->section + i, &station, density, aero->element + k);
 }
 
 static int solve_elements(spar_aero *aero, double density, const double *inflow, double theta, const char *call) {

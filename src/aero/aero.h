@@ -14,12 +14,11 @@ struct spar_aero {
     spar_fluid **fluid;
     spari_rotor rotor, first; /* first: as described first */
     int rotor_given, effects_given, solved;
-    spari_section *section;   /* [n] */
-    gsl_interp_accel *accel;  /* [blades][n] */
-    gsl_root_fsolver *solver; /* NULL: induction was never requested */
-    double *place;            /* reference positions [blades][n][3] */
-    double *length;           /* [blades][n - 1] */
-    double *loss_radius;      /* [blades][n], of the first rotor; NULL: tip or hub losses were never requested */
+    spari_section *section; /* [n] */
+    int64_t *row;           /* [blades][n] of the polars: where look-ups begin */
+    double *place;          /* reference places [blades][n][3] */
+    double *length;         /* [blades][n - 1] */
+    double *loss_radius;    /* [blades][n], of the first rotor; NULL: no loss asked for so far */
     double *x, *v, *q;
     double *omega;            /* NULL: no rotor and no unsteady airfoil yet */
     double *a, *omega_a;      /* NULL: no unsteady airfoil yet */

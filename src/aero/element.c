@@ -1,6 +1,7 @@
 /* Loads of a blade element: relative flow, angle of attack and coefficients at one aerodynamic centre. */
 #include "element.h"
 #include "../math/rotation.h"
+#include <stddef.h>
 
 /* A section closer to the tip or hub than this fraction of its radius counts as at the end. There the loss factor is
    0 and the equation has no root. Close to it the swirl of drag-free momentum theory is unbounded. */
@@ -47,7 +48,7 @@ static int is_at_end(const spari_rotor *rotor, double radius) {
 /* Adds the induced velocity to the flow in the section's plane, flow[0] along the chord and flow[1] along the
    normal. */
 static void induce(const spari_rotor *rotor, const spari_section *section, const spari_centre *station, const frame *f,
-                   gsl_root_fsolver *solver, double flow[2], spari_element *element) {
+                   double flow[2], spari_element *element) {
     double along = spari_dot(rotor->axis, f->span), p[3], s[3];
     double sine = sqrt(fmax(0.0, 1.0 - along * along)), radius = spari_rotor_radius(rotor, station->x);
     if (sine < SPARI_SPAN_SINE || !(radius > 0.0)) {
@@ -69,7 +70,7 @@ static void induce(const spari_rotor *rotor, const spari_section *section, const
                              .hub = -1.0,
                              .swirl = (rotor->effects & SPAR_AERO_SWIRL) != 0,
                              .table = section->table,
-                             .accel = station->accel};
+                             .row = station->row};
     double wx = 0.0, wy = annulus.vy;
     if (is_at_end(rotor, loss)) {
         element->flags |= SPAR_AERO_FLAG_END;
@@ -80,7 +81,7 @@ static void induce(const spari_rotor *rotor, const spari_section *section, const
         if ((rotor->effects & SPAR_AERO_HUB_LOSS) && rotor->hub_radius > 0.0) {
             annulus.hub = half * (loss - rotor->hub_radius) / rotor->hub_radius;
         }
-        if (spari_momentum_solve(&annulus, solver, &wx, &wy)) {
+        if (spari_momentum_solve(&annulus, &wx, &wy)) {
             element->flags |= SPAR_AERO_FLAG_NO_ROOT;
         }
     }
@@ -145,14 +146,14 @@ static double lag_stall(const spari_section *section, const spari_centre *statio
 }
 
 void spari_element_solve(const spari_rotor *rotor, const spari_section *section, const spari_centre *station,
-                         double density, gsl_root_fsolver *solver, spari_element *element) {
+                         double density, spari_element *element) {
     frame f = section_frame(rotor, section, station->q);
     double wind[3] = {station->wind[0] - station->v[0], station->wind[1] - station->v[1],
                       station->wind[2] - station->v[2]};
     double flow[2] = {spari_dot(wind, f.chord), spari_dot(wind, f.normal)};
     *element = (spari_element){.flags = 0};
     if (rotor->effects & SPAR_AERO_INDUCTION) {
-        induce(rotor, section, station, &f, solver, flow, element);
+        induce(rotor, section, station, &f, flow, element);
     }
     double stream = flow[0];
     const spari_past *past = section->chord > 0.0 ? station->past : NULL;
@@ -163,15 +164,15 @@ void spari_element_solve(const spari_rotor *rotor, const spari_section *section,
     element->alpha = atan2(flow[1], flow[0]);
     double place = spari_table_wrap(section->table, element->alpha, &beyond);
     element->flags |= beyond ? SPAR_AERO_FLAG_BEYOND_POLAR : 0;
-    element->cl = spari_table_lift(section->table, place, station->accel);
-    /* lift perpendicular to the flow towards the suction side, drag along the flow */
+    element->cl = spari_table_lift(section->table, place, station->row);
+    /* lift across the flow towards the suction side, drag along it */
     double speed = hypot(flow[0], flow[1]), scale = 0.5 * density * section->chord * speed;
     if (past && (rotor->effects & SPAR_AERO_STALL) && past->attached->slope > 0.0) {
         element->cl = lag_stall(section, station, element->alpha, speed, element->cl);
     }
     double along = -element->cl * flow[1], across = element->cl * flow[0];
     if (rotor->effects & SPAR_AERO_DRAG) {
-        element->cd = spari_table_drag(section->table, place, station->accel);
+        element->cd = spari_table_drag(section->table, place, station->row);
         along += element->cd * flow[0];
         across += element->cd * flow[1];
     }
@@ -180,7 +181,7 @@ void spari_element_solve(const spari_rotor *rotor, const spari_section *section,
     }
     if (rotor->effects & SPAR_AERO_MOMENT) { /* nose up */
         double moment =
-            scale * section->chord * speed * rotor->turn * spari_table_moment(section->table, place, station->accel);
+            scale * section->chord * speed * rotor->turn * spari_table_moment(section->table, place, station->row);
         for (int i = 0; i < 3; i++) {
             element->load[3 + i] = moment * f.span[i];
         }

@@ -35,8 +35,8 @@ typedef struct spari_past {
 typedef struct spari_centre {
     const double *x, *q, *v, *wind; /* position, orientation and velocity of the aerodynamic centre; wind there */
     double loss_radius;             /* distance from the axis in the reference configuration */
-    gsl_interp_accel *accel;
-    const spari_past *past; /* NULL: no unsteady effect in force */
+    int64_t *row;                   /* of its polar: where the next look-up begins */
+    const spari_past *past;         /* NULL: no such effect in force */
 } spari_centre;
 
 typedef struct spari_element {
@@ -48,6 +48,6 @@ typedef struct spari_element {
 /* Distance of x from the shaft axis. */
 double spari_rotor_radius(const spari_rotor *rotor, const double x[3]);
 void spari_element_solve(const spari_rotor *rotor, const spari_section *section, const spari_centre *station,
-                         double density, gsl_root_fsolver *solver, spari_element *element);
+                         double density, spari_element *element);
 
 #endif

@@ -1,7 +1,6 @@
 /* Solves the blade-element momentum equation of an annulus, with Prandtl's losses: see momentum.h. */
 #include "momentum.h"
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_math.h>
+#include "../math/brent.h"
 #include <math.h>
 
 /* If cl < 0 the equation has a pole at phi = 0; brackets begin this far from it. */
@@ -38,7 +37,7 @@ spari_balance spari_momentum_balance(const spari_annulus *annulus, double phi) {
     double s = sin(phi), c = cos(phi);
     int beyond;
     double place = spari_table_wrap(annulus->table, side * phi - annulus->twist, &beyond);
-    double lift = side * annulus->sigma * spari_table_lift(annulus->table, place, annulus->accel);
+    double lift = side * annulus->sigma * spari_table_lift(annulus->table, place, annulus->row);
     spari_balance b;
     b.loss = annulus->tip < 0.0 ? 1.0 : spari_prandtl(annulus->tip, s);
     if (annulus->hub >= 0.0) {
@@ -62,34 +61,14 @@ static int is_sound(const spari_annulus *annulus, double phi, double *speed) {
     return isfinite(*speed) && *speed > 0.0;
 }
 
-/* Root between lo and hi, where the residual has opposite signs. */
-static double refine_bracket(const spari_annulus *annulus, gsl_root_fsolver *solver, double lo, double hi) {
-    gsl_function f = {residual, (void *)annulus};
-    if (gsl_root_fsolver_set(solver, &f, lo, hi)) {
-        return NAN;
-    }
-    for (int i = 0; i < SPARI_BRENT_MAX; i++) {
-        if (gsl_root_fsolver_iterate(solver)) {
-            return NAN;
-        }
-        lo = gsl_root_fsolver_x_lower(solver);
-        hi = gsl_root_fsolver_x_upper(solver);
-        if (gsl_root_test_interval(lo, hi, 1e-16, 8.0 * GSL_DBL_EPSILON) == GSL_SUCCESS) {
-            break;
-        }
-    }
-    return gsl_root_fsolver_root(solver);
-}
-
-/* Searches the range in `parts` intervals, finer towards its first end, for the first valid root. */
-static int search_bracket(const spari_annulus *annulus, gsl_root_fsolver *solver, const double range[2], int parts,
-                          double *phi, double *speed) {
+/* Tries the interval from a to b in `parts` pieces that lie closer towards a; takes the first sound root. */
+static int search_bracket(const spari_annulus *annulus, const double range[2], int parts, double *phi, double *speed) {
     double x0 = range[0], r0 = residual(x0, (void *)annulus);
     for (int i = 1; i <= parts; i++) {
         double t = (double)i / parts;
         double x1 = range[0] + (range[1] - range[0]) * t * t, r1 = residual(x1, (void *)annulus);
         if ((r0 < 0.0 && r1 >= 0.0) || (r0 > 0.0 && r1 <= 0.0)) {
-            *phi = refine_bracket(annulus, solver, fmin(x0, x1), fmax(x0, x1));
+            *phi = spari_brent(residual, (void *)annulus, fmin(x0, x1), fmax(x0, x1), 0, SPARI_BRENT_MAX);
             if (is_sound(annulus, *phi, speed)) {
                 return 1;
             }
@@ -104,13 +83,13 @@ static int search_bracket(const spari_annulus *annulus, gsl_root_fsolver *solver
 static int is_free(const spari_annulus *annulus) {
     int beyond;
     double place = spari_table_wrap(annulus->table, atan2(annulus->vx, annulus->vy) - annulus->twist, &beyond);
-    return spari_table_lift(annulus->table, place, annulus->accel) == 0.0;
+    return spari_table_lift(annulus->table, place, annulus->row) == 0.0;
 }
 
-int spari_momentum_solve(const spari_annulus *annulus, gsl_root_fsolver *solver, double *wx, double *wy) {
-    /* Search ranges in order of likelihood for vy >= 0 (Ning's: windmill, brake, then reversed tangential flow); for
-       vy < 0 the halves are exchanged. Each begins at the end where the equation changes fastest; the short ranges
-       are between two of them. */
+int spari_momentum_solve(const spari_annulus *annulus, double *wx, double *wy) {
+    /* Quadrants in the order of likelihood for vy >= 0 (Ning's: windmill, brake, then tangential flow reversed); the
+       halves change places for vy < 0. Each begins at the end where the equation changes fastest; the short pieces are
+       what lies between two. */
     static const double range[6][2] = {{SPARI_PHI_MIN, M_PI_2},         {-SPARI_PHI_MIN, -M_PI_2},
                                        {-SPARI_PHI_MIN, SPARI_PHI_MIN}, {M_PI - SPARI_PHI_MIN, M_PI_2},
                                        {SPARI_PHI_MIN - M_PI, -M_PI_2}, {M_PI - SPARI_PHI_MIN, M_PI + SPARI_PHI_MIN}};
@@ -123,7 +102,7 @@ int spari_momentum_solve(const spari_annulus *annulus, gsl_root_fsolver *solver,
     int first = annulus->vy < 0.0 ? 3 : 0;
     for (int parts = 1; parts <= SPARI_SCAN; parts += SPARI_SCAN - 1) {
         for (int i = 0; i < 6; i++) {
-            if (search_bracket(annulus, solver, range[(first + i) % 6], parts, &phi, &speed)) {
+            if (search_bracket(annulus, range[(first + i) % 6], parts, &phi, &speed)) {
                 *wx = (annulus->vx < 0.0 ? -speed : speed) * sin(phi);
                 *wy = speed * cos(phi);
                 return 0;

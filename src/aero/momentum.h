@@ -23,7 +23,6 @@
 #define SPARI_MOMENTUM_H
 
 #include "polar.h"
-#include <gsl/gsl_roots.h>
 
 typedef struct spari_annulus {
     double vx, vy;   /* free flow along p and s */
@@ -32,7 +31,7 @@ typedef struct spari_annulus {
     double tip, hub; /* B (R - r) / (2 r) and B (r - Rh) / (2 Rh) >= 0; negative: this loss is off */
     int swirl;       /* tangential induction */
     const spari_table *table;
-    gsl_interp_accel *accel;
+    int64_t *row; /* of the table: where the next look-up begins */
 } spari_annulus;
 
 /* The equation at an inflow angle, with angles and flow oriented so that vx >= 0. */
@@ -48,8 +47,8 @@ double spari_prandtl(double f, double sin_phi);
 double spari_swirl_sign(double sin_phi);
 spari_balance spari_momentum_balance(const spari_annulus *annulus, double phi);
 
-/* Flow with induction: *wx along p, *wy along s. Returns 0, or 1 if no inflow angle satisfies the equation; then the
-   flow is the free one. Allocates no memory: solver is the caller's Brent solver. */
-int spari_momentum_solve(const spari_annulus *annulus, gsl_root_fsolver *solver, double *wx, double *wy);
+/* Flow with induction: *wx along p, *wy along s. Returns 0, or 1 when no inflow angle balances: then the flow is the
+   free one. */
+int spari_momentum_solve(const spari_annulus *annulus, double *wx, double *wy);
 
 #endif

@@ -2,6 +2,7 @@
 #include "polar.h"
 #include "../base/environment.h"
 #include "../base/message.h"
+#include "../math/spline.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -20,7 +21,7 @@ struct spari_table {
     int64_t n;
     double *alpha;
     double *value[SPARI_COEFFICIENTS];
-    gsl_interp *fit[SPARI_COEFFICIENTS];
+    spari_spline fit[SPARI_COEFFICIENTS];
 };
 
 struct spar_polar {
@@ -29,9 +30,7 @@ struct spar_polar {
 
 static void table_free(spari_table *table) {
     for (int c = 0; table && c < SPARI_COEFFICIENTS; c++) {
-        if (table->fit[c]) {
-            gsl_interp_free(table->fit[c]);
-        }
+        spari_spline_free(table->fit + c);
     }
     if (table) {
         free(table->alpha);
@@ -50,14 +49,14 @@ spari_table *spari_polar_share(const spar_polar *polar) {
     return polar->table;
 }
 
-static const gsl_interp_type *fit_type(int kind, int full) {
+static spari_spline_kind fit_kind(int kind, int full) {
     switch (kind) {
     case SPAR_POLAR_AKIMA:
-        return full ? gsl_interp_akima_periodic : gsl_interp_akima;
+        return full ? SPARI_SPLINE_AKIMA_PERIODIC : SPARI_SPLINE_AKIMA;
     case SPAR_POLAR_CUBIC:
-        return full ? gsl_interp_cspline_periodic : gsl_interp_cspline;
+        return full ? SPARI_SPLINE_CUBIC_PERIODIC : SPARI_SPLINE_CUBIC;
     default:
-        return gsl_interp_linear;
+        return SPARI_SPLINE_LINEAR;
     }
 }
 
@@ -83,8 +82,7 @@ static spari_table *table_create(int64_t n, const double *alpha, const double *c
         if (table->full) {
             table->value[c][n - 1] = table->value[c][0]; /* same angle, same value to the last bit */
         }
-        table->fit[c] = gsl_interp_alloc(fit_type(kind, table->full), (size_t)n);
-        if (!table->fit[c] || gsl_interp_init(table->fit[c], table->alpha, table->value[c], (size_t)n)) {
+        if (spari_spline_create(table->fit + c, fit_kind(kind, table->full), n, table->alpha, table->value[c])) {
             table_free(table);
             return NULL;
         }
@@ -170,7 +168,7 @@ int spar_polar_set_interpolation(spar_polar *polar, int kind) {
     SPARI_REQUIRE(NULL, kind >= SPAR_POLAR_LINEAR && kind <= SPAR_POLAR_CUBIC, SPAR_ERR_ARGUMENT,
                   "%s: kind %d is not known; SPAR_POLAR_LINEAR, _AKIMA or _CUBIC", __func__, kind);
     const spari_table *old = polar->table;
-    int64_t least = (int64_t)gsl_interp_type_min_size(fit_type(kind, old->full));
+    int64_t least = spari_spline_least(fit_kind(kind, old->full));
     SPARI_REQUIRE(NULL, old->n >= least, SPAR_ERR_ARGUMENT, "%s: kind %d needs at least %lld rows, the polar has %lld",
                   __func__, kind, (long long)least, (long long)old->n);
     const double *const value[] = {old->value[SPARI_CL], old->value[SPARI_CD], old->value[SPARI_CM]};
@@ -199,31 +197,29 @@ double spari_table_wrap(const spari_table *table, double alpha, int *beyond) {
     return alpha - last <= first + SPARI_TURN - alpha ? last : first;
 }
 
-static double look_up(const spari_table *table, int c, double place, gsl_interp_accel *accel) {
-    double y;
-    gsl_interp_eval_e(table->fit[c], table->alpha, table->value[c], place, accel, &y);
-    return y;
+static double look_up(const spari_table *table, int c, double place, int64_t *row) {
+    return spari_spline_at(table->fit + c, place, row, NULL);
 }
 
-double spari_table_lift(const spari_table *table, double place, gsl_interp_accel *accel) {
-    return look_up(table, SPARI_CL, place, accel);
+double spari_table_lift(const spari_table *table, double place, int64_t *row) {
+    return look_up(table, SPARI_CL, place, row);
 }
 
-double spari_table_drag(const spari_table *table, double place, gsl_interp_accel *accel) {
-    return look_up(table, SPARI_CD, place, accel);
+double spari_table_drag(const spari_table *table, double place, int64_t *row) {
+    return look_up(table, SPARI_CD, place, row);
 }
 
-double spari_table_moment(const spari_table *table, double place, gsl_interp_accel *accel) {
-    return look_up(table, SPARI_CM, place, accel);
+double spari_table_moment(const spari_table *table, double place, int64_t *row) {
+    return look_up(table, SPARI_CM, place, row);
 }
 
 /* Zero of the lift between two rows, not positive at the first and positive at the second. */
 static double find_zero_lift(const spari_table *table, int64_t row) {
-    gsl_interp_accel accel = {0, 0, 0};
+    int64_t near = row;
     double low = table->alpha[row], high = table->alpha[row + 1];
     for (int i = 0; i < 60; i++) {
         double middle = 0.5 * (low + high);
-        if (spari_table_lift(table, middle, &accel) > 0.0) {
+        if (spari_table_lift(table, middle, &near) > 0.0) {
             high = middle;
         } else {
             low = middle;
@@ -254,13 +250,13 @@ int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, double *cl, d
     SPARI_QUIET;
     SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the polar is NULL", __func__);
     SPARI_REQUIRE(NULL, isfinite(alpha_rad), SPAR_ERR_ARGUMENT, "%s: alpha is not finite", __func__);
-    gsl_interp_accel accel = {0, 0, 0};
+    int64_t row = 0;
     int beyond;
     double place = spari_table_wrap(polar->table, alpha_rad, &beyond);
     double *out[] = {cl, cd, cm};
     for (int c = 0; c < SPARI_COEFFICIENTS; c++) {
         if (out[c]) {
-            *out[c] = look_up(polar->table, c, place, &accel);
+            *out[c] = look_up(polar->table, c, place, &row);
         }
     }
     return SPAR_OK;

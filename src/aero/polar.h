@@ -3,7 +3,6 @@
 #ifndef SPARI_POLAR_H
 #define SPARI_POLAR_H
 
-#include <gsl/gsl_interp.h>
 #include <spar/spar_aero.h>
 
 typedef struct spari_table spari_table;
@@ -19,10 +18,11 @@ int spari_table_has_moment(const spari_table *table);
  *beyond is 1, otherwise 0. */
 double spari_table_wrap(const spari_table *table, double alpha, int *beyond);
 
-/* Coefficients at an angle from spari_table_wrap; the accelerator remembers the interval. */
-double spari_table_lift(const spari_table *table, double place, gsl_interp_accel *accel);
-double spari_table_drag(const spari_table *table, double place, gsl_interp_accel *accel);
-double spari_table_moment(const spari_table *table, double place, gsl_interp_accel *accel);
+/* Coefficients at a place that spari_table_wrap gave; *row is where the search begins and where it ended, 0 at first.
+ */
+double spari_table_lift(const spari_table *table, double place, int64_t *row);
+double spari_table_drag(const spari_table *table, double place, int64_t *row);
+double spari_table_moment(const spari_table *table, double place, int64_t *row);
 
 /* Line of attached flow: *zero is the zero-lift angle nearest to 0 with rising lift; *slope is the steepest slope
    from there to a row within 45 degrees, or 0 if there is none. */

@@ -4,12 +4,11 @@
    converged vectors are locked and the search continues from another vector until nothing new is found. */
 #include "arnoldi.h"
 
-#include "../base/blas.h"
 #include "../base/status.h"
+#include "cblas.h"
 #include "schur.h"
 
 #include <float.h>
-#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +40,7 @@ static int krylov_create(krylov *k) {
     int64_t m = k->most, n = k->size;
     k->V = spari_zalloc((m + 1) * n, sizeof *k->V);
     k->H = spari_zalloc((m + 1) * m, sizeof *k->H);
-    k->S = spari_zalloc(2 * m * m + 2 * m + 2, sizeof *k->S);
+    k->S = spari_zalloc(2 * m * m + 5 * m + 2, sizeof *k->S);
     k->room = spari_zalloc(m * n, sizeof *k->room);
     k->last = spari_zalloc(m, sizeof *k->last);
     k->Q = k->S ? k->S + m * m : NULL;
@@ -113,15 +112,8 @@ static int order_subspace(krylov *k, int m) {
     for (int i = 0; i < m; i++) {
         memcpy(k->S + (int64_t)m * i, k->H + (int64_t)k->most * i, (size_t)m * sizeof *k->S);
     }
-    if (spari_schur(m, k->S, k->Q, k->h)) {
+    if (spari_schur(m, k->S, k->Q, 1, k->h)) {
         return 1;
-    }
-    for (int end = m - 1; end > 0; end--) {
-        for (int i = 0; i < end; i++) {
-            if (cabs(k->S[(int64_t)(m + 1) * i]) < cabs(k->S[(int64_t)(m + 1) * (i + 1)])) {
-                spari_schur_swap(m, k->S, k->Q, i);
-            }
-        }
     }
     for (int j = 0; j < m; j++) {
         k->b[j] = k->left * k->Q[(int64_t)m * (m - 1) + j];
@@ -206,13 +198,7 @@ static void give_vectors(krylov *k, int m, int count, double complex *mu, double
     const double complex one = 1, zero = 0;
     for (int j = 0; j < count; j++) {
         mu[j] = k->S[(int64_t)(m + 1) * j];
-        spari_schur_vector(m, k->S, j, k->b);
-        for (int i = 0; i < m; i++) {
-            k->h[i] = 0;
-            for (int l = 0; l <= j; l++) {
-                k->h[i] += k->Q[(int64_t)m * i + l] * k->b[l];
-            }
-        }
+        spari_schur_vector(m, k->S, k->Q, j, k->h, k->b);
         SPARI_BLAS(cblas_zgemv(CblasColMajor, CblasNoTrans, k->size, m, &one, k->V, k->size, k->h, 1, &zero,
                                z + (int64_t)k->size * j, 1));
     }

@@ -1,78 +1,148 @@
 /* Symmetric generalised eigenvalue problems, by Cholesky factorisation and GSL's symmetric solver. That solver does
    not terminate if an entry or its square is not finite, so all matrices are scaled to about 1 first. */
 #include "eigen.h"
-#include "../base/blas.h"
 
 #include "../base/status.h"
+#include "cblas.h"
+#include "dense.h"
 
-#include <gsl/gsl_blas.h>
-#include <gsl/gsl_eigen.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
+#ifdef SPARI_HAVE_LAPACK
+#include "lapack.h"
+#else
+#include "gsl.h"
+#endif
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
-/* Divides A by a power of 4 near its largest entry, which changes no digit of roots and quotients; *exponent: of 2.
-   Returns 0 if an entry is not finite. */
-static int bring_to_one(gsl_matrix *A, int *exponent) {
+#ifndef CMPLX /* the system's header has it for GCC alone; here both parts are finite */
+#define CMPLX(re, im) ((double complex)((re) + (im)*_Complex_I))
+#endif
+
+/* Divides A by a power of 4 near its largest entry, which changes no digit of what roots and quotients give; *exponent:
+   of 2. Returns 0 if an entry is not finite. */
+static int bring_to_one(int64_t size, double *A, int *exponent) {
     double largest = 0;
-    for (size_t i = 0; i < A->size1; i++) {
-        for (size_t j = 0; j < A->size2; j++) {
-            double size = fabs(gsl_matrix_get(A, i, j));
-            if (!isfinite(size)) {
-                return 0;
-            }
-            largest = fmax(largest, size);
+    for (int64_t i = 0; i < size; i++) {
+        if (!isfinite(A[i])) {
+            return 0;
         }
+        largest = fmax(largest, fabs(A[i]));
     }
     *exponent = 0;
     if (largest > 0) {
         (void)frexp(largest, exponent);
         *exponent &= ~1;
     }
-    for (size_t i = 0; i < A->size1 && *exponent != 0; i++) {
-        for (size_t j = 0; j < A->size2; j++) {
-            gsl_matrix_set(A, i, j, ldexp(gsl_matrix_get(A, i, j), -*exponent));
-        }
+    for (int64_t i = 0; i < size && *exponent != 0; i++) {
+        A[i] = ldexp(A[i], -*exponent);
     }
     return 1;
 }
 
-static void unit_columns(gsl_matrix *x) {
-    for (size_t k = 0; k < x->size2; k++) {
-        gsl_vector_view column = gsl_matrix_column(x, k);
-        gsl_vector_scale(&column.vector, 1 / gsl_blas_dnrm2(&column.vector));
-    }
-}
-
-/* A := L^-1 A L^-T, B := L. Returns 1 if B is not positive definite. */
-static int standardise(gsl_matrix *A, gsl_matrix *B) {
-    int bad;
-    SPARI_BLAS(bad = gsl_linalg_cholesky_decomp1(B) || gsl_eigen_gensymm_standardize(A, B));
+/* solve_symmetric: A x = mu x, mu ascending, the vectors as rows in place of A. solve_real: eigenvalues of A in parts.
+   Both return 0 where they converge, -1 without memory. */
+#ifdef SPARI_HAVE_LAPACK
+static int solve_symmetric(int n, double *A, double *mu, double *room) {
+    int bad, size = SPARI_SYMMETRIC_ROOM(n);
+    SPARI_BLAS(dsyev_("V", "U", &n, A, &n, mu, room, &size, &bad, 1, 1));
     return bad;
 }
 
-int spari_eigen(gsl_matrix *A, gsl_matrix *B, gsl_vector *mu, gsl_matrix *x) {
-    int of_A, of_B, of_C;
-    if (!bring_to_one(A, &of_A) || !bring_to_one(B, &of_B) || standardise(A, B) || !bring_to_one(A, &of_C)) {
+static int solve_real(int n, double *A, double *re, double *im, double *room) {
+    int bad, one = 1, size = SPARI_SYMMETRIC_ROOM(n);
+    SPARI_BLAS(dgeev_("N", "N", &n, A, &n, re, im, NULL, &one, NULL, &one, room, &size, &bad, 1, 1));
+    return bad;
+}
+#else
+static int solve_symmetric(int n, double *A, double *mu, double *room) {
+    gsl_matrix_view a = spari_gsl_matrix(A, n, n), z = spari_gsl_matrix(room + 4 * n, n, n);
+    gsl_vector_view value = spari_gsl_vector(mu, n);
+    gsl_eigen_symmv_workspace w = {(size_t)n, room, room + n, room + 2 * n, room + 3 * n};
+    int bad;
+    SPARI_GSL(bad = gsl_eigen_symmv(&a.matrix, &value.vector, &z.matrix, &w));
+    (void)gsl_eigen_symmv_sort(&value.vector, &z.matrix, GSL_EIGEN_SORT_VAL_ASC);
+    (void)gsl_matrix_transpose_memcpy(&a.matrix, &z.matrix);
+    return bad;
+}
+
+static int solve_real(int n, double *A, double *re, double *im, double *room) {
+    gsl_matrix_view a = spari_gsl_matrix(A, n, n);
+    gsl_vector_complex_view value = gsl_vector_complex_view_array(room, (size_t)n);
+    gsl_eigen_nonsymm_workspace *w;
+    int bad = -1;
+    SPARI_GSL(w = gsl_eigen_nonsymm_alloc((size_t)n));
+    if (w) {
+        gsl_eigen_nonsymm_params(0, 1, w);
+        SPARI_GSL(bad = gsl_eigen_nonsymm(&a.matrix, &value.vector, w));
+        gsl_eigen_nonsymm_free(w);
+    }
+    for (int i = 0; i < n; i++) {
+        re[i] = room[2 * i], im[i] = room[2 * i + 1];
+    }
+    return bad;
+}
+#endif
+
+int spari_symmetric(int n, double *A, double *mu, double *room) {
+    int of_A;
+    if (n < 1) {
+        return SPAR_OK;
+    }
+    if (!bring_to_one((int64_t)n * n, A, &of_A) || solve_symmetric(n, A, mu, room)) {
         return SPAR_ERR_NUMERIC;
     }
-    gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(A->size1);
-    if (!w) {
-        return SPAR_ERR_MEMORY;
+    for (int k = 0; k < n; k++) {
+        mu[k] = ldexp(mu[k], of_A);
     }
-    int status;
-    SPARI_BLAS(status = gsl_eigen_symmv(A, mu, x, w));
-    gsl_eigen_symmv_free(w);
-    if (status != GSL_SUCCESS) {
-        return SPAR_ERR_NUMERIC;
-    }
-    SPARI_BLAS(gsl_blas_dtrsm(CblasLeft, CblasLower, CblasTrans, CblasNonUnit, 1, B, x));
-    unit_columns(x);
-    for (size_t k = 0; k < mu->size; k++) {
-        gsl_vector_set(mu, k, ldexp(gsl_vector_get(mu, k), of_A + of_C - of_B));
-    }
-    (void)gsl_eigen_symmv_sort(mu, x, GSL_EIGEN_SORT_VAL_DESC);
     return SPAR_OK;
+}
+
+/* A := L^-1 A L^-T with B = L L^T, L in B. 0, or 1: B is not positive definite. */
+static int standardise(int n, double *A, double *B) {
+    if (spari_cholesky(n, B)) {
+        return 1;
+    }
+    SPARI_BLAS(cblas_dtrsm(CblasRowMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, n, n, 1, B, n, A, n));
+    SPARI_BLAS(cblas_dtrsm(CblasRowMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, n, n, 1, B, n, A, n));
+    return 0;
+}
+
+int spari_eigen(int n, double *A, double *B, double *mu, double *x) {
+    int of_A, of_B;
+    if (n < 1) {
+        return SPAR_OK;
+    }
+    if (!bring_to_one((int64_t)n * n, A, &of_A) || !bring_to_one((int64_t)n * n, B, &of_B) || standardise(n, A, B)) {
+        return SPAR_ERR_NUMERIC;
+    }
+    double *value = spari_zalloc(n + SPARI_SYMMETRIC_ROOM((int64_t)n), sizeof *value);
+    int status = value ? spari_symmetric(n, A, value, value + n) : SPAR_ERR_MEMORY;
+    if (status == SPAR_OK) {
+        SPARI_BLAS(cblas_dtrsm(CblasRowMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, n, n, 1, B, n, A, n));
+    }
+    for (int k = 0; k < n && status == SPAR_OK; k++) {
+        double *to = x + (int64_t)n * k;
+        memcpy(to, A + (int64_t)n * (n - 1 - k), (size_t)n * sizeof *to);
+        cblas_dscal(n, 1 / cblas_dnrm2(n, to, 1), to, 1);
+        mu[k] = ldexp(value[n - 1 - k], of_A - of_B);
+    }
+    free(value);
+    return status;
+}
+
+int spari_eigenvalues(int n, double *A, double complex *z) {
+    double *re = spari_zalloc(2 * (int64_t)n + SPARI_SYMMETRIC_ROOM((int64_t)n), sizeof *re), *im = re + n;
+    int of_A, bad = -1;
+    if (re) {
+        bad = bring_to_one((int64_t)n * n, A, &of_A) ? solve_real(n, A, re, im, im + n) : 1;
+    }
+    int status = bad < 0 ? SPAR_ERR_MEMORY : bad ? SPAR_ERR_NUMERIC : SPAR_OK;
+    for (int i = 0; i < n && status == SPAR_OK; i++) {
+        z[i] = CMPLX(ldexp(re[i], of_A), ldexp(im[i], of_A));
+    }
+    free(re);
+    return status;
 }
 
 void spari_eigen_add(int at, int n, const double *X, double scale, int64_t size, double *A) {

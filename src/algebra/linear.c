@@ -2,13 +2,11 @@
 #include "linear.h"
 #include "linear_kernels.h"
 
-#include "../base/blas.h"
 #include "../base/status.h"
 #include "../base/thread_pool.h"
+#include "../math/lanes.h"
+#include "dense.h"
 
-#include <gsl/gsl_cblas.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -20,68 +18,73 @@ enum { LONG = 64, ELEMENTS = 16, GATHERED = 128 };
 /* At most this many constrained first unknowns of an element are removed from a dense matrix. */
 enum { MOST_LEAD = 8 };
 
-/* All memory is allocated at creation: no call during a step allocates, except GSL's dense LU, which does not check.
-   Static condensation. If an element has many interior unknowns, they are eliminated element by element. The
-     remaining chain of element ends has blocks of 2 overlap. It has half the entries of a band over all unknowns,
-     and elements are independent.
-   Two-way factorisation. A long chain is split at the middle element boundary. Its first half is this system; its
-     second half, reversed, is another. Both end with the unknowns of the boundary. Each eliminates all others, which
-     leaves its contribution to the boundary's system: (S + S') x = b + b' (burning at both ends; van der Vorst,
-     Parallel Computing 5, 1987). The number of operations is unchanged, and two threads can share them. */
+/* All memory is taken at the beginning: nothing in a step allocates.
+
+   The unknowns that an element has to itself, where they are many, are taken out of its own matrix, element by element,
+   which leaves a chain of their ends with blocks of 2 overlap. Half the numbers of a band over all unknowns, and
+   elements are independent.
+
+   A long chain is cut at the joint in its middle: its first half is this system, its second half, from the far end
+   backwards, another; both end with the joint's unknowns. Each takes out all but these, and has then in their corner
+   what it adds to their own system: (S + S') x = b + b' (burning at both ends; van der Vorst, Parallel Computing 5,
+   1987). That takes no more operations than one half after the other, and two threads can do it. */
+typedef struct linear_rows {
+    double *block, *data; /* as allocated; from a cache line on */
+    size_t rows, columns, step;
+} linear_rows;
+
 struct spari_linear {
     int elements, block, overlap; /* of a chain; otherwise 0 */
     size_t n, band;               /* unknowns; half bandwidth (banded storage) */
-    size_t size, inner;           /* unknowns in A, and those eliminated in it: all n, unless the chain is split */
-    gsl_matrix *A;   /* dense n x n, column by column, or banded size x (3 band + 1) as gsl_linalg_LU_band has it */
-    int *swap;       /* dense, else NULL: row i was exchanged with row swap[i] - 1, in sequence, as in LAPACK */
-    int *order;      /* dense: original row of row i after all exchanges */
-    unsigned fixed;  /* dense, one element: bit mask of its first unknowns that are constrained */
-    size_t lead;     /* dense: how many of them are not in A */
-    size_t order_of; /* dense: order of A when it was factored */
-    double *corners; /* dense: [n / 8, rounded up][4][8][8]: see solve_dense */
-    double *y;       /* dense: [n, rounded up to eights] workspace */
-    double *room;    /* memory of the last two */
-    gsl_vector_uint *band_swap; /* banded */
-    gsl_matrix *symmetric;      /* spari_linear_watch; NULL: not requested */
-    spari_linear *far, *joint;  /* of a split chain: unknown i is n - 1 - i of `far`; otherwise NULL */
-    double *x;                  /* of a second half: [size] workspace */
-    /* of a chain whose elements have interior unknowns; otherwise NULL, 0 */
-    spari_linear *ends;      /* the chain without the interior unknowns */
-    size_t own;              /* interior unknowns per element */
-    double *parts;           /* [elements][block][block] column by column, interior first, then the ends */
+    size_t size, inner;           /* those that stand in A, and those that are taken out in it: all n, unless cut */
+    linear_rows A;   /* dense n x n, column by column, or banded size x (3 band + 1): column by column, rows apart */
+    int *swap;       /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
+    int *order;      /* dense: where row i came from by all of these */
+    unsigned fixed;  /* dense, of one element: which of its first unknowns are taken out */
+    size_t lead;     /* dense: so many of them that stand in A no longer */
+    size_t order_of; /* dense: unknowns in A when it is factored */
+    double *corners; /* dense: [n / 8, rounded up][4][8][8]: solve_dense */
+    double *y;       /* dense: [n, rounded up to eights] room */
+    double *room;    /* of the last two */
+    unsigned *band_swap;       /* banded */
+    double *symmetric;         /* spari_linear_watch; NULL: not asked for */
+    spari_linear *far, *joint; /* of a chain that is cut: unknown i is n - 1 - i of `far`; else NULL */
+    double *x;                 /* of a far half: [size] room */
+    /* of a chain whose elements have unknowns to themselves; else NULL, 0 */
+    spari_linear *ends;      /* the chain without these */
+    size_t own;              /* how many in each */
+    double *parts;           /* [elements][block][block] column by column, first those, then the ends */
     int *part_swap;          /* [elements][own] */
     double *z, *ends_x;      /* [elements][block], the ends of one at least; [ends->n] workspace */
     unsigned char *bad;      /* [elements / ELEMENTS, rounded up] workspace */
     spari_crew *const *crew; /* spari_linear_share; NULL: no threads */
 };
 
-/* Allocates n columns, `step` apart, aligned to cache lines. */
-static gsl_matrix *make_aligned(size_t n, size_t step) {
-    gsl_block *block = gsl_block_calloc(n * step + SPARI_CORNER);
-    gsl_matrix *m = block ? gsl_matrix_alloc_from_block(block, (size_t)spari_to_line(block->data), n, n, step) : NULL;
-    if (!m) {
-        gsl_block_free(block);
-        return NULL;
+/* rows of `columns` numbers that are `step` apart, from a cache line on. */
+static int alloc_rows(linear_rows *A, size_t rows, size_t columns, size_t step) {
+    A->block = spari_zalloc((int64_t)(rows * step) + SPARI_CORNER, sizeof *A->block);
+    if (A->block) {
+        A->rows = rows, A->columns = columns, A->step = step;
+        A->data = A->block + spari_to_line(A->block);
     }
-    m->owner = 1;
-    return m;
+    return A->block != NULL;
 }
 
 /* Allocates the matrix, whose size is known. */
 static spari_linear *with_room(spari_linear *s, int dense) {
     if (dense) {
         int64_t n = (int64_t)s->n, eights = (n + SPARI_CORNER - 1) / SPARI_CORNER * SPARI_CORNER;
-        s->A = make_aligned(s->n, (size_t)eights);
+        (void)alloc_rows(&s->A, s->n, s->n, (size_t)eights);
         s->swap = spari_zalloc(2 * n, sizeof *s->swap);
         s->order = s->swap ? s->swap + n : NULL;
         s->room = spari_zalloc((SPARI_CORNERS * SPARI_CORNER + 1) * eights + SPARI_CORNER, sizeof *s->room);
         s->corners = s->room ? s->room + spari_to_line(s->room) : NULL;
         s->y = s->room ? s->corners + SPARI_CORNERS * SPARI_CORNER * eights : NULL;
     } else {
-        s->A = gsl_matrix_calloc(s->size, 3 * s->band + 1);
-        s->band_swap = gsl_vector_uint_alloc(s->size);
+        (void)alloc_rows(&s->A, s->size, 3 * s->band + 1, 3 * s->band + 1);
+        s->band_swap = spari_zalloc((int64_t)s->size, sizeof *s->band_swap);
     }
-    if (!s->A || (dense ? !s->swap || !s->corners : !s->band_swap)) {
+    if (!s->A.block || (dense ? !s->swap || !s->corners : !s->band_swap)) {
         spari_linear_free(s);
         return NULL;
     }
@@ -173,10 +176,10 @@ void spari_linear_free(spari_linear *s) {
         free(s->z);
         free(s->ends_x);
         free(s->bad);
-        gsl_matrix_free(s->A);
+        free(s->A.block);
         free(s->swap);
         free(s->room);
-        gsl_vector_uint_free(s->band_swap);
+        free(s->band_swap);
         spari_linear_unwatch(s);
         free(s);
     }
@@ -189,25 +192,29 @@ void spari_linear_share(spari_linear *s, spari_crew *const *crew) {
     }
 }
 
+static void zero_rows(const linear_rows *A) {
+    memset(A->data, 0, A->rows * A->step * sizeof *A->data);
+}
+
 void spari_linear_zero(spari_linear *s) {
     s->fixed = 0;
     if (s->ends) {
         memset(s->parts, 0, (size_t)s->elements * (size_t)(s->block * s->block) * sizeof *s->parts);
         return;
     }
-    gsl_matrix_set_zero(s->A);
+    zero_rows(&s->A);
     if (s->far) {
-        gsl_matrix_set_zero(s->far->A);
+        zero_rows(&s->far->A);
     }
 }
 
 /* Entry (i, j). Row j of the storage is column j of the matrix; banded storage has A(i, j) at 2 band + i - j. */
 static double *entry(const spari_linear *s, size_t i, size_t j) {
-    return s->A->data + j * s->A->tda + (s->swap ? i : 2 * s->band + i - j);
+    return s->A.data + j * s->A.step + (s->swap ? i : 2 * s->band + i - j);
 }
 
 double *spari_linear_entries(const spari_linear *s, int64_t *step) {
-    *step = (int64_t)s->A->tda - (s->swap ? 0 : 1);
+    *step = (int64_t)s->A.step - (s->swap ? 0 : 1);
     return entry(s, 0, 0);
 }
 
@@ -260,7 +267,7 @@ void spari_linear_add(spari_linear *s, int element, const double *S) {
         }
         return;
     }
-    kernels_here()->add((int64_t)m, S, (int64_t)s->A->tda - (s->swap ? 0 : 1), entry(s, first, first));
+    kernels_here()->add((int64_t)m, S, (int64_t)s->A.step - (s->swap ? 0 : 1), entry(s, first, first));
 }
 
 /* Range [from, to) of unknowns that may have entries with unknown i in A. */
@@ -347,7 +354,7 @@ void spari_linear_fix(spari_linear *s, int i) {
    matrix is padded to a multiple of eight by identity rows, because solutions process eights faster than a
    remainder. */
 static void leave_out_lead(spari_linear *s, unsigned fixed) {
-    const size_t lead = (size_t)s->overlap, step = s->A->tda, left = s->n > lead ? s->n - lead : 0;
+    const size_t lead = (size_t)s->overlap, step = s->A.step, left = s->n > lead ? s->n - lead : 0;
     const size_t eights = (left + SPARI_CORNER - 1) / SPARI_CORNER * SPARI_CORNER;
     const unsigned all = lead <= MOST_LEAD ? (1U << lead) - 1 : 0;
     s->lead = 0, s->order_of = s->n;
@@ -356,7 +363,7 @@ static void leave_out_lead(spari_linear *s, unsigned fixed) {
     }
     s->lead = lead, s->order_of = eights;
     for (size_t j = 0; j < eights; j++) {
-        double *column = s->A->data + step * j;
+        double *column = s->A.data + step * j;
         size_t own = j < left ? left : 0;
         memmove(column, column + (own ? (step + 1) * lead : 0), own * sizeof *column);
         memset(column + own, 0, (eights - own) * sizeof *column);
@@ -378,13 +385,13 @@ static void ready_dense(spari_linear *s, int loaded) {
         s->order[i] = there;
     }
     for (size_t j = 0; j < n; j += SPARI_CORNER, corner += SPARI_CORNERS * SPARI_CORNER * SPARI_CORNER) {
-        kernels_here()->corner((int64_t)n, (int64_t)j, loaded, s->A->data, (int64_t)s->A->tda, corner);
+        kernels_here()->corner((int64_t)n, (int64_t)j, loaded, s->A.data, (int64_t)s->A.step, corner);
     }
 }
 
 static int factor_part(spari_linear *s) {
-    /* checked first: a search for the largest of NaNs may return any index */
-    if (spari_first_nonfinite(s->A->data, (int64_t)(s->A->size1 * s->A->tda)) >= 0) {
+    /* before: a search for the largest of what are no numbers may answer anything */
+    if (spari_first_nonfinite(s->A.data, (int64_t)(s->A.rows * s->A.step)) >= 0) {
         return 1;
     }
     int bad = 0;
@@ -392,11 +399,11 @@ static int factor_part(spari_linear *s) {
         s->elements > 0 ? 1 : 0.1; /* a general matrix has zeros inside its profile, which row exchanges would fill */
     if (s->swap) {
         leave_out_lead(s, s->fixed);
-        bad = kernels_here()->factor_dense((int64_t)s->order_of, (int64_t)s->order_of, least, s->A->data,
-                                           (int64_t)s->A->tda, s->swap, s->corners);
+        bad = kernels_here()->factor_dense((int64_t)s->order_of, (int64_t)s->order_of, least, s->A.data,
+                                           (int64_t)s->A.step, s->swap, s->corners);
     } else {
-        bad = kernels_here()->factor_band((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, least, s->A->data,
-                                          (int64_t)s->A->tda, s->band_swap->data);
+        bad = kernels_here()->factor_band((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, least, s->A.data,
+                                          (int64_t)s->A.step, s->band_swap);
     }
     if (bad) {
         return 1;
@@ -525,19 +532,20 @@ int spari_linear_sign(const spari_linear *s) {
     }
     int sign = s->far ? spari_linear_sign(s->far) * spari_linear_sign(s->joint) : 1;
     for (size_t i = 0; i < (s->swap ? s->order_of : s->inner); i++) {
-        size_t from = s->swap ? (size_t)s->swap[i] - 1 : gsl_vector_uint_get(s->band_swap, i);
+        size_t from = s->swap ? (size_t)s->swap[i] - 1 : s->band_swap[i];
         sign = (*entry(s, i, i) < 0) != (from != i) ? -sign : sign;
     }
     return sign;
 }
 
 int spari_linear_watch(spari_linear *s) {
-    s->symmetric = s->symmetric ? s->symmetric : gsl_matrix_calloc(s->n, s->swap ? s->n : s->band + 1);
+    s->symmetric = s->symmetric ? s->symmetric
+                                : spari_zalloc((int64_t)(s->n * (s->swap ? s->n : s->band + 1)), sizeof *s->symmetric);
     return s->symmetric ? 0 : 1;
 }
 
 void spari_linear_unwatch(spari_linear *s) {
-    gsl_matrix_free(s->symmetric);
+    free(s->symmetric);
     s->symmetric = NULL;
 }
 
@@ -573,32 +581,30 @@ int spari_linear_definite(spari_linear *s) {
             }
         }
     }
-    gsl_matrix *L = s->symmetric;
-    gsl_matrix_set_zero(L);
+    double *L = s->symmetric;
+    size_t width = s->swap ? n : band + 1;
+    memset(L, 0, n * width * sizeof *L);
     for (size_t i = 0; i < n; i++) {
         for (size_t j = i; j < n && j <= i + band; j++) {
             double size = sqrt(value_at(s, i, i) * value_at(s, j, j)),
                    value = 0.5 * (value_at(s, i, j) + value_at(s, j, i)) / size + (i == j ? shift : 0);
             if (s->swap) {
-                gsl_matrix_set(L, i, j, value);
-                gsl_matrix_set(L, j, i, value);
+                L[width * i + j] = L[width * j + i] = value;
             } else {
-                gsl_matrix_set(L, i, j - i, value);
+                L[width * i + j - i] = value;
             }
         }
     }
-    int status;
-    SPARI_BLAS(status = s->swap ? gsl_linalg_cholesky_decomp1(L) : gsl_linalg_cholesky_band_decomp(L));
-    return status == GSL_SUCCESS;
+    return !(s->swap ? spari_cholesky((int)n, L) : spari_cholesky_band((int)n, (int)band, L));
 }
 
 static void forth_part(const spari_linear *s, double *x) {
-    kernels_here()->forth((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, s->A->data, (int64_t)s->A->tda,
-                          s->band_swap->data, x);
+    kernels_here()->forth((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, s->A.data, (int64_t)s->A.step,
+                          s->band_swap, x);
 }
 
 static void back_part(const spari_linear *s, double *x) {
-    kernels_here()->back((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, s->A->data, (int64_t)s->A->tda, x);
+    kernels_here()->back((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, s->A.data, (int64_t)s->A.step, x);
 }
 
 static void forth_half(void *context, int64_t item, int worker) {
@@ -724,7 +730,7 @@ static int solve_left(spari_linear *s, double *x) {
         y[i] = x[order[i]];
     }
     memset(s->y + left, 0, (size_t)(n - left) * sizeof *x);
-    int bad = kernels_here()->dense(n, s->A->data, (int64_t)s->A->tda, s->corners, s->y);
+    int bad = kernels_here()->dense(n, s->A.data, (int64_t)s->A.step, s->corners, s->y);
     memcpy(x, s->y, (size_t)left * sizeof *x);
     return bad || poison != 0;
 }
@@ -791,7 +797,7 @@ static void load_chain(spari_linear *s, const double *state) {
 }
 
 static int64_t part_size(const spari_linear *s) {
-    return (int64_t)(s->A->size1 * s->A->size2 + s->inner);
+    return (int64_t)(s->A.rows * s->A.columns + s->inner);
 }
 
 int64_t spari_linear_state_size(const spari_linear *s) {
@@ -805,14 +811,14 @@ int64_t spari_linear_state_size(const spari_linear *s) {
 static void save_dense(const spari_linear *s, size_t i, double *column) {
     const size_t lead = s->lead;
     if (lead == 0) {
-        memcpy(column, s->A->data + i * s->A->tda, s->A->size2 * sizeof *column);
+        memcpy(column, s->A.data + i * s->A.step, s->A.columns * sizeof *column);
         return;
     }
     memset(column, 0, s->n * sizeof *column);
     if (i < lead) {
         column[i] = 1;
     } else {
-        memcpy(column + lead, s->A->data + (i - lead) * s->A->tda, (s->n - lead) * sizeof *column);
+        memcpy(column + lead, s->A.data + (i - lead) * s->A.step, (s->n - lead) * sizeof *column);
     }
 }
 
@@ -851,11 +857,11 @@ void spari_linear_save(const spari_linear *s, double *state) {
         save_chain(s, state);
         return;
     }
-    for (size_t i = 0; i < s->A->size1; i++, state += s->A->size2) {
+    for (size_t i = 0; i < s->A.rows; i++, state += s->A.columns) {
         save_dense(s, i, state);
     }
     for (size_t i = 0; i < s->inner; i++) {
-        state[i] = !s->swap      ? (double)gsl_vector_uint_get(s->band_swap, i)
+        state[i] = !s->swap      ? (double)s->band_swap[i]
                    : i < s->lead ? (double)(i + 1)
                                  : (double)s->lead + s->swap[i - s->lead];
     }
@@ -870,7 +876,7 @@ int spari_linear_is_state(const spari_linear *s, const double *state) {
         return is_chain(s, state);
     }
     double first = s->swap ? 1 : 0;
-    state += s->A->size1 * s->A->size2;
+    state += s->A.rows * s->A.columns;
     for (size_t i = 0; i < s->inner; i++) {
         if (!(state[i] >= first && state[i] < first + (double)s->inner)) {
             return 0;
@@ -886,14 +892,14 @@ void spari_linear_load(spari_linear *s, const double *state) {
         load_chain(s, state);
         return;
     }
-    for (size_t i = 0; i < s->A->size1; i++, state += s->A->size2) {
-        memcpy(s->A->data + i * s->A->tda, state, s->A->size2 * sizeof *state);
+    for (size_t i = 0; i < s->A.rows; i++, state += s->A.columns) {
+        memcpy(s->A.data + i * s->A.step, state, s->A.columns * sizeof *state);
     }
     for (size_t i = 0; i < s->inner; i++) {
         if (s->swap) {
             s->swap[i] = (int)state[i];
         } else {
-            gsl_vector_uint_set(s->band_swap, i, (unsigned)state[i]);
+            s->band_swap[i] = (unsigned)state[i];
         }
     }
     if (s->swap) {

@@ -4,13 +4,11 @@
    consecutive: close ones at first and distant ones later resolve fast and slow modes. */
 #include "prony.h"
 
-#include "../base/blas.h"
 #include "../base/status.h"
+#include "cblas.h"
+#include "dense.h"
 #include "schur.h"
 
-#include <gsl/gsl_blas.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,11 +18,10 @@ enum { MOST_ROWS = 160, MOST_STATES = 60 };
 static const double nothing = 1e-10, fits = 1e-9, as_good = 3, nothing_fits = 0.3;
 
 typedef struct hankel {
-    int size, rows, m; /* size of Y; number of block rows; size * rows */
-    int64_t *at;       /* [rows] */
-    gsl_matrix *U, *V, *next, *G;
-    gsl_vector *S;
-    double complex *A, *Q, *room; /* [MOST_STATES][MOST_STATES] twice; workspace */
+    int size, rows, m;            /* of Y; blocks; size * rows */
+    int64_t *at;                  /* [rows] */
+    double *U, *V, *next, *G, *S; /* [m][m] four times, [m] */
+    double complex *A, *Q, *room; /* [MOST_STATES][MOST_STATES] twice; more */
 } hankel;
 
 void spari_decay_free(spari_decay *d) {
@@ -70,8 +67,7 @@ int spari_decay_solve(int n, double complex *A, int columns, double complex *b) 
 static void hankel_free(hankel *h) {
     free(h->at);
     free(h->A);
-    gsl_matrix_free(h->U), gsl_matrix_free(h->V), gsl_matrix_free(h->next), gsl_matrix_free(h->G);
-    gsl_vector_free(h->S);
+    free(h->U);
 }
 
 /* Indices of the block rows and columns: 0, 1, .. and then increasingly distant, up to a third of the samples. The
@@ -89,67 +85,60 @@ static int hankel_create(hankel *h, int size, int64_t count) {
     int64_t rows = MOST_ROWS / size > 4 ? MOST_ROWS / size : 4, states = MOST_STATES;
     rows = rows < count / 3 ? rows : count / 3;
     *h = (hankel){.size = size, .rows = (int)rows, .m = (int)rows * size};
-    size_t m = (size_t)h->m;
+    int64_t square = (int64_t)h->m * h->m;
     h->at = spari_zalloc(rows, sizeof *h->at);
-    h->A = spari_zalloc(3 * states * states + states, sizeof *h->A);
+    h->A = spari_zalloc(3 * states * states + 4 * states, sizeof *h->A);
     h->Q = h->A ? h->A + states * states : NULL;
     h->room = h->Q ? h->Q + states * states : NULL;
-    h->U = gsl_matrix_alloc(m, m), h->V = gsl_matrix_alloc(m, m);
-    h->next = gsl_matrix_alloc(m, m), h->G = gsl_matrix_alloc(m, m);
-    h->S = gsl_vector_alloc(m);
-    return h->at && h->A && h->U && h->V && h->next && h->G && h->S ? SPAR_OK : SPAR_ERR_MEMORY;
+    h->U = spari_zalloc(4 * square + h->m, sizeof *h->U);
+    h->V = h->U + square, h->next = h->V + square, h->G = h->next + square, h->S = h->G + square;
+    return h->at && h->A && h->U ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
 /* Computes U, S, V, and G = U^T (O A X) V. */
 static int decompose(hankel *h, const double *y) {
-    int n = h->size, status;
-    for (int i = 0; i < h->m; i++) {
-        for (int j = 0; j < h->m; j++) {
+    int n = h->size, m = h->m;
+    for (int i = 0; i < m; i++) {
+        for (int j = 0; j < m; j++) {
             const double *Y = y + n * n * (h->at[i / n] + h->at[j / n]) + n * (i % n) + j % n;
-            gsl_matrix_set(h->U, (size_t)i, (size_t)j, Y[0]);
-            gsl_matrix_set(h->next, (size_t)i, (size_t)j, Y[n * n]);
+            h->U[m * i + j] = Y[0];
+            h->next[m * i + j] = Y[n * n];
         }
     }
-    SPARI_BLAS(status = gsl_linalg_SV_decomp_jacobi(h->U, h->V, h->S)); /* the other variants allocate memory */
-    if (status != GSL_SUCCESS) {
-        return SPAR_ERR_NUMERIC;
-    }
-    SPARI_BLAS(gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1, h->U, h->next, 0, h->G));
-    SPARI_BLAS(gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, h->G, h->V, 0, h->next));
-    gsl_matrix_memcpy(h->G, h->next);
+    SPARI_TRY(spari_singular_values(m, h->U, h->S, h->V));
+    SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, m, m, m, 1, h->U, m, h->next, m, 0, h->G, m));
+    SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, m, m, 1, h->G, m, h->V, m, 0, h->next, m));
+    memcpy(h->G, h->next, (size_t)m * (size_t)m * sizeof *h->G);
     return SPAR_OK;
 }
 
 static double root_of(const hankel *h, int i) {
-    return sqrt(gsl_vector_get(h->S, (size_t)i));
+    return sqrt(h->S[i]);
 }
 
 /* System with r states, by its eigenvectors. Returns 1 if they are not independent. */
 static int find_system(hankel *h, int r, spari_decay *d) {
     int n = h->size;
     for (int i = 0; i < r * r; i++) {
-        h->A[i] = gsl_matrix_get(h->G, (size_t)(i / r), (size_t)(i % r)) / (root_of(h, i / r) * root_of(h, i % r));
+        h->A[i] = h->G[h->m * (i / r) + i % r] / (root_of(h, i / r) * root_of(h, i % r));
     }
-    if (spari_schur(r, h->A, h->Q, h->room)) {
+    if (spari_schur(r, h->A, h->Q, 0, h->room)) {
         return 1;
     }
-    double complex *x = h->room, *W = x + MOST_STATES; /* columns of W: eigenvectors */
+    double complex *x = h->room, *W = x + 2 * MOST_STATES; /* columns of W: eigenvectors */
     for (int k = 0; k < r; k++) {
         d->z[k] = h->A[(r + 1) * k];
-        spari_schur_vector(r, h->A, k, x);
+        spari_schur_vector(r, h->A, h->Q, k, x, x + MOST_STATES);
         for (int i = 0; i < r; i++) {
-            W[r * i + k] = 0;
-            for (int l = 0; l <= k; l++) {
-                W[r * i + k] += h->Q[r * i + l] * x[l];
-            }
+            W[r * i + k] = x[i];
         }
     }
     for (int k = 0; k < r; k++) {
         for (int i = 0; i < n; i++) {
             d->left[n * k + i] = 0;
-            d->right[n * k + i] = root_of(h, k) * gsl_matrix_get(h->V, (size_t)i, (size_t)k);
+            d->right[n * k + i] = root_of(h, k) * h->V[h->m * i + k];
             for (int l = 0; l < r; l++) {
-                d->left[n * k + i] += gsl_matrix_get(h->U, (size_t)i, (size_t)l) * root_of(h, l) * W[r * l + k];
+                d->left[n * k + i] += h->U[h->m * i + l] * root_of(h, l) * W[r * l + k];
             }
         }
     }
@@ -197,7 +186,7 @@ static double try_order(hankel *h, int r, int64_t count, const double *y, double
 static void choose_order(hankel *h, int64_t count, const double *y, double most, spari_decay *d) {
     int top = 0, best = 0;
     double least = INFINITY, found = INFINITY;
-    while (top < h->m && top < MOST_STATES && gsl_vector_get(h->S, (size_t)top) > nothing * gsl_vector_get(h->S, 0)) {
+    while (top < h->m && top < MOST_STATES && h->S[top] > nothing * h->S[0]) {
         top++;
     }
     for (int may_grow = 0; may_grow < 2 && !(least < INFINITY); may_grow++) {

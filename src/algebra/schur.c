@@ -2,10 +2,49 @@
    (Golub and Van Loan, Matrix Computations, chapter 7). */
 #include "schur.h"
 
+#include "../base/status.h"
+
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 
-/* A Givens rotation: (c, s; -conj(s), c) (a, b)^T = (r, 0)^T. */
+#ifdef SPARI_HAVE_LAPACK
+#include "lapack.h"
+
+static void transpose(int n, double complex *A) {
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < i; j++) {
+            double complex x = A[(int64_t)n * i + j];
+            A[(int64_t)n * i + j] = A[(int64_t)n * j + i];
+            A[(int64_t)n * j + i] = x;
+        }
+    }
+}
+
+/* S and Q are stored column by column; room [4 n]. */
+static int find_form(int n, double complex *S, double complex *Q, double complex *room) {
+    int count, bad, size = 2 * n;
+    SPARI_BLAS(zgees_("V", "N", NULL, &n, S, &n, &count, room, Q, &n, room + n, &size, (double *)(room + 3 * n), NULL,
+                      &bad, 1, 1));
+    return bad;
+}
+
+/* Moves the largest eigenvalue to the front, then the next. */
+static int sort_form(int n, double complex *S, double complex *Q) {
+    int bad = 0;
+    for (int i = 0; i < n && !bad; i++) {
+        int from = i + 1, to = i + 1;
+        for (int j = i + 1; j < n; j++) {
+            from = cabs(S[(int64_t)(n + 1) * j]) > cabs(S[(int64_t)(n + 1) * (from - 1)]) ? j + 1 : from;
+        }
+        if (from != to) {
+            SPARI_BLAS(ztrexc_("V", &n, S, &n, Q, &n, &from, &to, &bad, 1));
+        }
+    }
+    return bad;
+}
+#else
+/* A rotation of two rows: (c, s; -conj(s), c) (a, b)^T = (r, 0)^T. */
 typedef struct schur_turn {
     double c;
     double complex s;
@@ -124,15 +163,11 @@ static void sweep(int n, double complex *A, double complex *Q, int begin, int en
     }
 }
 
-int spari_schur(int n, double complex *S, double complex *Q, double complex *room) {
+static int find_form(int n, double complex *S, double complex *Q, double complex *room) {
     enum { PASSES = 60 };
-    double sum = 0, largest = 0; /* every sweep leaves rounding errors relative to the largest entry */
+    double largest = 0; /* every sweep leaves rounding of the largest behind */
     for (int i = 0; i < n * n; i++) {
-        sum += cabs(S[i]);
         largest = fmax(largest, cabs(S[i]));
-    }
-    if (!isfinite(sum)) {
-        return 1;
     }
     to_hessenberg(n, S, Q, room);
     for (int end = n - 1, pass = 0; end > 0;) {
@@ -156,7 +191,8 @@ int spari_schur(int n, double complex *S, double complex *Q, double complex *roo
     return 0;
 }
 
-void spari_schur_swap(int n, double complex *S, double complex *Q, int k) {
+/* The eigenvalues k and k + 1 exchange their places. */
+static void swap_neighbours(int n, double complex *S, double complex *Q, int k) {
     double complex *p = S + (long)n * k + k, first = p[0], second = p[n + 1];
     schur_turn g = turn_onto(p[1], second - first);
     schur_rows(n, S, k, k, g);
@@ -165,7 +201,38 @@ void spari_schur_swap(int n, double complex *S, double complex *Q, int k) {
     p[0] = second, p[n + 1] = first, p[n] = 0;
 }
 
-void spari_schur_vector(int n, const double complex *S, int k, double complex *x) {
+static int sort_form(int n, double complex *S, double complex *Q) {
+    for (int end = n - 1; end > 0; end--) {
+        for (int i = 0; i < end; i++) {
+            if (cabs(S[(int64_t)(n + 1) * i]) < cabs(S[(int64_t)(n + 1) * (i + 1)])) {
+                swap_neighbours(n, S, Q, i);
+            }
+        }
+    }
+    return 0;
+}
+
+static void transpose(int n, double complex *A) { /* rows and columns are as they are to be */
+    (void)n, (void)A;
+}
+#endif
+
+int spari_schur(int n, double complex *S, double complex *Q, int sorted, double complex *room) {
+    if (n < 1) {
+        return 0;
+    }
+    if (spari_first_nonfinite((const double *)S, 2 * (int64_t)n * n) >= 0) {
+        return 1;
+    }
+    transpose(n, S);
+    int bad = find_form(n, S, Q, room) || (sorted && sort_form(n, S, Q));
+    transpose(n, S);
+    transpose(n, Q);
+    return bad;
+}
+
+/* The eigenvector of S to the eigenvalue k: its entry k is 1 and those behind it 0. */
+static void vector_of_form(int n, const double complex *S, int k, double complex *x) {
     double scale = 0;
     for (int i = 0; i <= k; i++) {
         scale = fmax(scale, cabs(S[(long)n * i + i]));
@@ -180,5 +247,16 @@ void spari_schur_vector(int n, const double complex *S, int k, double complex *x
             sum += S[(long)n * i + j] * x[j];
         }
         x[i] = -sum / (cabs(apart) > least ? apart : least);
+    }
+}
+
+void spari_schur_vector(int n, const double complex *S, const double complex *Q, int k, double complex *x,
+                        double complex *room) {
+    vector_of_form(n, S, k, room);
+    for (int i = 0; i < n; i++) {
+        x[i] = 0;
+        for (int l = 0; l <= k; l++) {
+            x[i] += Q[(int64_t)n * i + l] * room[l];
+        }
     }
 }

@@ -5,12 +5,11 @@
 
 #include <complex.h>
 
-/* S [n][n]: A on input, S on output; Q [n][n]: output; room [n]. Returns 0, or 1 if it does not converge or a number
-   is not finite. */
-int spari_schur(int n, double complex *S, double complex *Q, double complex *room);
-/* Exchanges the eigenvalues k and k + 1. */
-void spari_schur_swap(int n, double complex *S, double complex *Q, int k);
-/* x [n]: eigenvector of S for eigenvalue k; its entry k is 1 and later ones are 0. */
-void spari_schur_vector(int n, const double complex *S, int k, double complex *x);
+/* S [n][n]: in A, out S; Q [n][n]: out; sorted: largest eigenvalues first; room [4 n]: workspace. 0, or 1: no
+   convergence, or an entry is not finite. */
+int spari_schur(int n, double complex *S, double complex *Q, int sorted, double complex *room);
+/* x [n]: the eigenvector of A to the eigenvalue S [k][k], room [n]. */
+void spari_schur_vector(int n, const double complex *S, const double complex *Q, int k, double complex *x,
+                        double complex *room);
 
 #endif

@@ -2,6 +2,7 @@
 #include "secants.h"
 
 #include "../base/status.h"
+#include "eigen.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,9 +21,9 @@ struct spari_secants {
     double filter, gain; /* linear independence threshold; largest |w| / |x| */
     double rho;          /* fraction of a change that recurs in the next response */
     secant column[MOST];
-    double at[MOST][MOST]; /* coefficients of column j, of unit size, in the basis: at[j][i] */
-    double *q, *p, *u;     /* [most][n]: orthonormal basis; its images; J times the basis */
-    double a[MOST][MOST], e[MOST][MOST];
+    double at[MOST][MOST]; /* of column j, of unit size, in the basis: at[j][i] */
+    double *q, *p, *u;     /* [most][n]: the basis, orthonormal; its images; J of it */
+    double a[MOST][MOST], room[SPARI_SYMMETRIC_ROOM(MOST)];
 };
 
 spari_secants *spari_secants_create(int64_t n, int most) {
@@ -238,38 +239,11 @@ double spari_secants_defect(spari_secants *s, const spari_secant *column) {
     return seen > 0 ? fmax(sqrt(off) - CARE * s->gain * left * c.size, 0) / sqrt(seen) : -1;
 }
 
-/* Diagonalises a by Jacobi rotations; e [m][m]: eigenvectors in columns. */
-static void diagonalise(double a[MOST][MOST], double e[MOST][MOST], int m) {
-    enum { SWEEPS = 30 };
-    for (int i = 0; i < m; i++) {
-        for (int j = 0; j < m; j++) {
-            e[i][j] = i == j;
-        }
-    }
-    for (int turn = 0; turn < SWEEPS * m * m; turn++) {
-        int p = turn / m % m, q = turn % m;
-        if (q <= p || fabs(a[p][q]) <= 1e-15 * (fabs(a[p][p]) + fabs(a[q][q]))) {
-            continue;
-        }
-        double half = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-        double t = (half >= 0 ? 1 : -1) / (fabs(half) + hypot(half, 1)), c = 1 / hypot(t, 1), r = t * c;
-        for (int k = 0; k < m; k++) {
-            double x = a[k][p], y = a[k][q], g = e[k][p], h = e[k][q];
-            a[k][p] = c * x - r * y, a[k][q] = r * x + c * y;
-            e[k][p] = c * g - r * h, e[k][q] = r * g + c * h;
-        }
-        for (int k = 0; k < m; k++) {
-            double x = a[p][k], y = a[q][k];
-            a[p][k] = c * x - r * y, a[q][k] = r * x + c * y;
-        }
-    }
-}
-
 int spari_secants_step(spari_secants *s, const double *x, const double *r, double length, double longest,
                        double *next) {
     int m = s->rank;
     int64_t n = s->n;
-    double b[MOST] = {0}, y[MOST] = {0};
+    double b[MOST] = {0}, y[MOST] = {0}, value[MOST], *e = s->a[0]; /* [m][m]: I - J, then its eigenvectors */
     for (int i = 0; i < m; i++) {
         const double *p = s->p + i * n;
         for (int64_t k = 0; k < n; k++) {
@@ -277,18 +251,15 @@ int spari_secants_step(spari_secants *s, const double *x, const double *r, doubl
         }
         for (int j = 0; j <= i; j++) {
             double both = product(p, s->u + j * n, n) + product(s->p + j * n, s->u + i * n, n);
-            s->a[i][j] = s->a[j][i] = (i == j) - 0.5 * both;
+            e[m * i + j] = e[m * j + i] = (i == j) - 0.5 * both;
         }
     }
-    diagonalise(s->a, s->e, m);
-    for (int k = 0; k < m; k++) { /* for an added mass, I - J is at least I */
-        double along = 0, value = fmax(fabs(s->a[k][k]), 1);
-        for (int i = 0; i < m; i++) {
-            along += s->e[i][k] * b[i];
-        }
-        for (int i = 0; i < m; i++) {
-            y[i] += s->e[i][k] * along / value;
-        }
+    if (m > 0 && spari_symmetric(m, e, value, s->room) != SPAR_OK) {
+        return 0;
+    }
+    for (int k = 0; k < m; k++) { /* an added mass makes I - J at least I */
+        double along = product(e + m * k, b, m) / fmax(fabs(value[k]), 1);
+        add_times(along, e + m * k, y, m);
     }
     double square = length * length;
     for (int64_t i = 0; i < n; i++) {

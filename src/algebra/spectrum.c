@@ -2,21 +2,19 @@
    quadratic problem is lambda (x, y) = (y, -M^-1 (K x + C y)). Its inverse about the shift, mu = 1 / (lambda -
    sigma),
      T (p, q) = (x, p + sigma x),  x = -P(sigma)^-1 (M (q + sigma p) + C p),  P = K + sigma C + sigma^2 M
-   needs no inverse of M: massless unknowns have infinite eigenvalues, mu = 0. With constraints, P(sigma) is bordered
-     by G and its transpose, and T acts on the admissible part of its argument; the rest gives mu = 0 too.
-   Small problems: Schur form of T as a matrix. Large ones: Arnoldi's method with Krylov-Schur restarts (Stewart
-     2001). */
-#include "../base/blas.h"
+
+   asks for no inverse of M: what has no mass has eigenvalues beyond all numbers, mu = 0. Where motions are held,
+   P(sigma) is bordered by G and its transpose, and T takes of its argument only what G allows: what it does not comes
+   out as mu = 0 too. Small problems: Schur's form of T as a matrix; large ones: Arnoldi's subspaces, restarted with
+   Schur vectors (Stewart 2001). */
 #include "../base/status.h"
 #include "arnoldi.h"
 #include "band.h"
+#include "dense.h"
 #include "pencil.h"
 #include "schur.h"
 
 #include <float.h>
-#include <gsl/gsl_blas.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -96,42 +94,26 @@ static void scale_pencil(spectrum *a) {
 /* G^T = Q R with column pivoting: independent rows of G, and their span. */
 static int find_holds(spectrum *a) {
     spari_pencil *p = a->p;
-    size_t n = (size_t)a->n, h = (size_t)p->holds;
+    int n = a->n, h = p->holds, most = n < h ? n : h;
     if (h == 0) {
         return SPAR_OK;
     }
-    gsl_matrix *G = gsl_matrix_calloc(n, h);
-    gsl_vector *tau = gsl_vector_alloc(n < h ? n : h), *norm = gsl_vector_alloc(h), *unit = gsl_vector_alloc(n);
-    gsl_permutation *order = gsl_permutation_alloc(h);
-    int status = G && tau && norm && unit && order ? SPAR_OK : SPAR_ERR_MEMORY, sign;
+    double *G = spari_zalloc((int64_t)n * h, sizeof *G);
+    int *order = spari_zalloc(h, sizeof *order);
+    a->Q = spari_zalloc((int64_t)most * n, sizeof *a->Q);
+    int status = G && order && a->Q ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
         for (int64_t i = 0; i < p->ties; i++) {
-            *gsl_matrix_ptr(G, (size_t)p->tie[i].column, (size_t)p->tie[i].row) += p->tie[i].g;
+            G[(int64_t)n * p->tie[i].row + p->tie[i].column] += p->tie[i].g;
         }
-        for (size_t c = 0; c < h; c++) {
-            gsl_vector_view column = gsl_matrix_column(G, c);
-            double size = gsl_blas_dnrm2(&column.vector);
-            gsl_vector_scale(&column.vector, size > 0 ? 1 / size : 0);
+        int rank = spari_independent_rows(h, n, G, dependent_hold, order, most, a->Q);
+        status = rank >= 0 ? SPAR_OK : SPAR_ERR_MEMORY;
+        for (a->rank = 0; a->rank < rank; a->rank++) {
+            a->multiplier[order[a->rank]] = a->rank;
         }
-        SPARI_BLAS(gsl_linalg_QRPT_decomp(G, tau, order, &sign, norm));
-        while ((size_t)a->rank < tau->size &&
-               fabs(gsl_matrix_get(G, (size_t)a->rank, (size_t)a->rank)) > dependent_hold) {
-            a->multiplier[gsl_permutation_get(order, (size_t)a->rank)] = a->rank;
-            a->rank++;
-        }
-        a->Q = spari_zalloc((int64_t)a->rank * a->n, sizeof *a->Q);
-        status = a->Q ? SPAR_OK : SPAR_ERR_MEMORY;
     }
-    for (int k = 0; k < a->rank && status == SPAR_OK; k++) {
-        gsl_vector_set_basis(unit, (size_t)k);
-        SPARI_BLAS(gsl_linalg_QR_Qvec(G, tau, unit));
-        memcpy(a->Q + (int64_t)k * a->n, unit->data, n * sizeof *a->Q);
-    }
-    gsl_matrix_free(G);
-    gsl_vector_free(tau);
-    gsl_vector_free(norm);
-    gsl_vector_free(unit);
-    gsl_permutation_free(order);
+    free(G);
+    free(order);
     return status;
 }
 
@@ -332,7 +314,7 @@ typedef struct inverse_pairs {
 static int solve_dense(spectrum *a, inverse_pairs *found) {
     const int n = 2 * a->n;
     const int64_t size = (int64_t)n * n;
-    double complex *S = spari_zalloc(2 * size + 3 * (int64_t)n, sizeof *S), *Q = S + size, *x = Q + size;
+    double complex *S = spari_zalloc(2 * size + 4 * (int64_t)n, sizeof *S), *Q = S + size, *x = Q + size;
     int status = S ? SPAR_OK : SPAR_ERR_MEMORY;
     for (int j = 0; j < n && status == SPAR_OK; j++) {
         x[j] = 1;
@@ -342,17 +324,10 @@ static int solve_dense(spectrum *a, inverse_pairs *found) {
             S[(int64_t)n * i + j] = x[n + i];
         }
     }
-    status = status == SPAR_OK && spari_schur(n, S, Q, x) ? SPAR_ERR_NUMERIC : status;
+    status = status == SPAR_OK && spari_schur(n, S, Q, 0, x) ? SPAR_ERR_NUMERIC : status;
     for (int j = 0; j < n && status == SPAR_OK; j++) {
         found->mu[j] = S[(int64_t)(n + 1) * j];
-        spari_schur_vector(n, S, j, x);
-        for (int i = 0; i < n; i++) {
-            double complex sum = 0;
-            for (int k = 0; k <= j; k++) {
-                sum += Q[(int64_t)n * i + k] * x[k];
-            }
-            found->z[(int64_t)n * j + i] = sum;
-        }
+        spari_schur_vector(n, S, Q, j, found->z + (int64_t)n * j, x);
     }
     found->count = status == SPAR_OK ? n : 0;
     free(S);

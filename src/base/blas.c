@@ -1,7 +1,6 @@
 /* The process-wide lock around BLAS calls: see blas.h. */
 #include "blas.h"
 
-#ifdef SPARI_HAVE_OPENBLAS
 #include <pthread.h>
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
@@ -13,10 +12,3 @@ void spari_blas_begin(void) {
 void spari_blas_end(void) {
     (void)pthread_mutex_unlock(&lock);
 }
-#else
-void spari_blas_begin(void) {
-}
-
-void spari_blas_end(void) {
-}
-#endif

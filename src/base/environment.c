@@ -3,7 +3,6 @@
 
 #include "blas.h"
 
-#include <gsl/gsl_errno.h>
 #include <pthread.h>
 #ifdef SPARI_MXCSR
 #include <xmmintrin.h>
@@ -17,51 +16,10 @@ static void make_locale(void) {
     c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
 }
 
-/* GSL has one error handler for the process. The default handler (NULL) aborts, so the handler is off while any
-   thread is inside the library. */
-static pthread_mutex_t handler_lock = PTHREAD_MUTEX_INITIALIZER;
-static gsl_error_handler_t *host_handler;
-static int threads_inside;
-
-static void hold_handler(void) {
-    (void)pthread_mutex_lock(&handler_lock);
-    if (threads_inside++ == 0) {
-        host_handler = gsl_set_error_handler_off();
-    }
-    (void)pthread_mutex_unlock(&handler_lock);
-}
-
-static void give_handler_back(void) {
-    (void)pthread_mutex_lock(&handler_lock);
-    if (--threads_inside == 0) {
-        (void)gsl_set_error_handler(host_handler);
-    }
-    (void)pthread_mutex_unlock(&handler_lock);
-}
-
-/* fork: a child would wait for locks that other threads of the parent hold. So fork takes the locks itself. The
-   child is inside the library only if the forking thread is. */
-static void before_fork(void) {
-    (void)pthread_mutex_lock(&handler_lock);
-    spari_blas_begin();
-}
-
-static void after_fork(void) {
-    spari_blas_end();
-    (void)pthread_mutex_unlock(&handler_lock);
-}
-
-static void in_child(void) {
-    if (threads_inside > 0 && host.depth == 0) {
-        (void)gsl_set_error_handler(host_handler);
-    }
-    threads_inside = host.depth > 0;
-    after_fork();
-}
-
 static void make_ready(void) {
     make_locale();
-    (void)pthread_atfork(before_fork, after_fork, in_child);
+    /* a lock that another thread holds would stay locked in the child of a fork */
+    (void)pthread_atfork(spari_blas_begin, spari_blas_end, spari_blas_end);
 }
 
 #ifdef SPARI_MXCSR
@@ -129,12 +87,10 @@ static void hold(void) {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     hold_environment(&host.environment);
     pthread_once(&once, make_ready);
-    host.locale = uselocale(c_locale); /* if C's locale could not be made, the host's stays */
-    hold_handler();
+    host.locale = uselocale(c_locale); /* without one: it stays */
 }
 
 static void give_back(void) {
-    give_handler_back();
     (void)uselocale(host.locale);
     give_environment_back(&host.environment);
 }

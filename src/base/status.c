@@ -51,13 +51,19 @@ int spar_has(const char *feature) {
 #ifdef SPARI_HAVE_OPENBLAS
         "openblas",
 #endif
+#ifdef SPARI_HAVE_LAPACK
+        "lapack",
+#endif
+#ifndef SPARI_WITHOUT_GSL
         "gsl",
+#endif
+        NULL,
     };
     if (!feature) {
         return 0;
     }
     for (size_t i = 0; i < sizeof features / sizeof features[0]; i++) {
-        if (strcmp(feature, features[i]) == 0) {
+        if (features[i] && strcmp(feature, features[i]) == 0) {
             return 1;
         }
     }

@@ -1,7 +1,6 @@
-/* Components that are linear, or modal, in a frame that goes with their root. The deformation moves as
-   generalised-alpha has it of vectors. The root moves as a body of one node where joints move it; else its motion is
-   prescribed. See component.h and floating_root.h. */
-#include "../base/blas.h"
+/* Members of an assembly that are linear, or modal, in a frame that goes with their root: the root moves as a body of
+   one node, and the deformation as generalised-alpha has it of vectors. See component.h and floating_root.h. */
+#include "../algebra/cblas.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../time/body_newton.h"
@@ -10,7 +9,6 @@
 #include "../time/fidelity.h"
 #include "floating_root.h"
 
-#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <string.h>
 

@@ -1,11 +1,10 @@
-/* Forces of a frame and their tangent: see floating_root.h. */
-#include "../base/blas.h"
+/* Forces of a frame whose root joints hold, and their tangent: see floating_root.h. */
+#include "../algebra/cblas.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "floating_root.h"
 
-#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <string.h>
 

@@ -1,12 +1,11 @@
 /* The root of a frame and the nodes that joints tie: made, freed; see floating_root.h. */
 #include "floating_root.h"
 
-#include "../base/blas.h"
+#include "../algebra/cblas.h"
 #include "../math/rotation.h"
 #include "../member/joint.h"
 #include "../time/component.h"
 
-#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

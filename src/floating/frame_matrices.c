@@ -1,12 +1,12 @@
 /* What a frame is made of: its matrices, from the exact member's tangents at the reference. */
 #include "floating_root.h"
 
+#include "../algebra/cblas.h"
 #include "../base/session.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
 
-#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /* The modes of a frame: the basis that makes a modal member of a linear one, and the modes about a turning state. */
 #include "frame.h"
 
+#include "../algebra/cblas.h"
 #include "../algebra/eigen.h"
 #include "../algebra/pencil.h"
-#include "../base/blas.h"
 #include "../base/status.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
@@ -11,7 +11,6 @@
 #include "floating_root.h"
 
 #include <float.h>
-#include <gsl/gsl_blas.h> /* the declarations; the linked CBLAS is the fast one */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,27 +74,19 @@ static int is_tied(const spari_frame *f, int node) {
     return found;
 }
 
-/* Takes rows and columns of tied nodes out of K and M over the nodes beside the root; how many are left. NULL: no
-   memory. */
-static size_t leave_out_tied(const spari_frame *f, gsl_matrix **K, gsl_matrix **M) {
-    gsl_matrix **both[2] = {K, M};
-    size_t all = (size_t)(6 * f->nodes - 6), n = all - (size_t)(6 * f->carriage->ends);
-    for (int side = 0; side < 2 && n < all; side++) {
-        gsl_matrix *from = *both[side], *to = n > 0 ? gsl_matrix_alloc(n, n) : NULL;
-        size_t r = 0;
-        for (int i = 6; i < 6 * f->nodes && to; i++) {
-            size_t c = 0;
-            for (int j = 6; j < 6 * f->nodes && !is_tied(f, i / 6); j++) {
-                if (!is_tied(f, j / 6)) {
-                    gsl_matrix_set(to, r, c++, gsl_matrix_get(from, (size_t)(i - 6), (size_t)(j - 6)));
-                }
+/* Takes rows and columns of tied nodes out of A over the nodes beside the root; how many are left. */
+static int leave_out_tied(const spari_frame *f, double *A) {
+    int n = 6 * f->nodes - 6, left = 0;
+    double *to = A;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n && !is_tied(f, 1 + i / 6); j++) {
+            if (!is_tied(f, 1 + j / 6)) {
+                *to++ = A[(int64_t)n * i + j];
             }
-            r += !is_tied(f, i / 6);
         }
-        gsl_matrix_free(from);
-        *both[side] = to;
+        left += !is_tied(f, 1 + i / 6);
     }
-    return n;
+    return left;
 }
 
 /* The lowest modes seen from the root, as columns from `first` on: K z = lambda (M - M R R^T M) z over the nodes beside
@@ -103,36 +94,30 @@ static size_t leave_out_tied(const spari_frame *f, gsl_matrix **K, gsl_matrix **
    deformation. Nodes that joints tie are held too. Beams that nothing holds have a singular K, but not here: rigid
    motions are columns of their own. Solved for 1 / lambda, in which the low modes keep their digits. */
 static int elastic_columns(spari_frame *f, int cols, int first, double *work) {
-    size_t n = (size_t)(6 * f->nodes - 6);
-    gsl_matrix *K = gsl_matrix_calloc(n, n), *M = gsl_matrix_calloc(n, n), *z = NULL;
-    gsl_vector *mu = NULL;
-    int status = K && M ? SPAR_OK : SPAR_ERR_MEMORY;
+    int n = 6 * f->nodes - 6, left = n;
+    int64_t size = (int64_t)n * n;
+    double *K = spari_zalloc(3 * size + n, sizeof *K), *M = K + size, *z = M + size, *mu = z + size;
+    int status = K ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
         double *x = work, *image = work + 6 * f->nodes;
-        assemble_dense(f, f->K, 1, 6, K->data); /* fresh matrices have no gaps */
-        assemble_dense(f, f->M, 1, 6, M->data);
+        assemble_dense(f, f->K, 1, 6, K);
+        assemble_dense(f, f->M, 1, 6, M);
         for (int k = f->held; k < 6; k++) {
             image_of(f, cols, k, x, image);
-            gsl_vector_view beside = gsl_vector_view_array(image + 6, n);
-            gsl_blas_dger(-1, &beside.vector, &beside.vector, M);
+            cblas_dger(CblasRowMajor, n, n, -1, image + 6, 1, image + 6, 1, M, n);
         }
-        n = leave_out_tied(f, &K, &M);
-        z = gsl_matrix_alloc(n, n);
-        mu = gsl_vector_alloc(n);
-        status = K && M && z && mu ? spari_eigen(M, K, mu, z) : SPAR_ERR_MEMORY;
+        left = leave_out_tied(f, K);
+        (void)leave_out_tied(f, M);
+        status = spari_eigen(left, M, K, mu, z);
     }
     for (int k = first; k < cols && status == SPAR_OK; k++) {
-        size_t mode = (size_t)(k - first), at = 0;
-        int massive = gsl_vector_get(mu, mode) > DBL_EPSILON * gsl_vector_get(mu, 0);
-        status = massive ? status : SPAR_ERR_NUMERIC;
-        for (int i = 6; i < 6 * f->nodes; i++) {
-            f->basis[(size_t)i * (size_t)cols + (size_t)k] = is_tied(f, i / 6) ? 0 : gsl_matrix_get(z, at++, mode);
+        const double *mode = z + (int64_t)left * (k - first);
+        status = mu[k - first] > DBL_EPSILON * mu[0] ? status : SPAR_ERR_NUMERIC;
+        for (int i = 6, at = 0; i < 6 * f->nodes; i++) {
+            f->basis[(int64_t)i * cols + k] = is_tied(f, i / 6) ? 0 : mode[at++];
         }
     }
-    gsl_matrix_free(K);
-    gsl_matrix_free(M);
-    gsl_matrix_free(z);
-    gsl_vector_free(mu);
+    free(K);
     return status;
 }
 

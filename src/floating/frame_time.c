@@ -1,7 +1,8 @@
 /* How a frame moves: between the nodes' motion and its own, its turn, stages of a step; saved, and its energy. */
 #include "frame.h"
 
-#include "../base/blas.h"
+#include "../algebra/cblas.h"
+#include "../algebra/dense.h"
 #include "../base/poison.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
@@ -10,10 +11,9 @@
 #include "../member/pose.h"
 #include "../solve/reaction.h"
 #include "../time/driven_root.h"
+#include "../time/steady_rotation.h"
 #include "floating_root.h"
 
-#include <gsl/gsl_cblas.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -265,22 +265,20 @@ void spari_frame_poison(spari_frame *f) {
 
 /* The products of the columns that are free, of which none is made of others, factored. */
 static int factor_gram(spari_frame *f) {
-    int n = f->n, singular;
+    int n = f->n;
     if (f->gram) {
         return SPAR_OK;
     }
     if (!(f->gram = spari_zalloc((int64_t)n * n, sizeof *f->gram))) {
         return SPAR_ERR_MEMORY;
     }
-    gsl_matrix_view gram = gsl_matrix_view_array(f->gram, (size_t)n, (size_t)n);
     SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, n, n, 6 * f->nodes, 1, f->basis, n, f->basis, n, 0,
                            f->gram, n));
     for (int k = 0; k < f->held * n; k++) {
         int i = k / n, j = k % n;
         f->gram[i * n + j] = f->gram[j * n + i] = i == j;
     }
-    SPARI_BLAS(singular = gsl_linalg_cholesky_decomp1(&gram.matrix));
-    if (singular) {
+    if (spari_cholesky(n, f->gram)) {
         free(f->gram);
         f->gram = NULL;
     }
@@ -303,9 +301,7 @@ int spari_frame_felt(spar_member *m, double *load) {
     spari_member_gather(m, load, f->nodal);
     turn_loads(f, root + 3, f->nodal, f->dx);
     memset(f->dx, 0, (size_t)f->held * sizeof *f->dx);
-    gsl_matrix_view gram = gsl_matrix_view_array(f->gram, (size_t)n, (size_t)n);
-    gsl_vector_view y = gsl_vector_view_array(f->dx, (size_t)n);
-    SPARI_BLAS((void)gsl_linalg_cholesky_svx(&gram.matrix, &y.vector));
+    spari_cholesky_solve(n, f->gram, f->dx);
     SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, n, 1, f->basis, n, f->dx, 1, 0, f->nodal, 1));
     for (int64_t i = 0; i < 6 * f->nodes; i += 3) {
         spari_rotate(root + 3, f->nodal + i, f->turned + i);

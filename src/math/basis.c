@@ -1,7 +1,6 @@
 /* Quadrature points and weights, and Lagrange polynomials: see basis.h. */
 #include "basis.h"
 
-#include <gsl/gsl_integration.h>
 #include <math.h>
 
 /* Legendre P_n(x) and P_{n-1}(x) by the three-term recurrence, n >= 1. */
@@ -62,16 +61,28 @@ void spari_gll(int n, double *x, double *w, double *bary) {
     }
 }
 
-int spari_gauss(int n, double *x, double *w) {
-    gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc((size_t)n);
-    if (!table) {
-        return 1;
+/* Newton's method on P_n, with P'_n (1 - x^2) = n (P_{n-1} - x P_n). Long double, where it has more digits, leaves
+   nothing but the last rounding. */
+void spari_gauss(int n, double *x, double *w) {
+    for (int i = 0; i <= n / 2; i++) {
+        int j = n - 1 - i; /* points in exactly symmetric pairs */
+        long double t = 2 * i + 1 == n ? 0 : -cosl(3.14159265358979323846L * (4 * i + 3) / (4 * n + 2)), weight = 0;
+        for (int pass = 0, near = 0; pass < 8 && near < 2 && i <= j; pass++) {
+            long double before = 1, at = t;
+            for (int k = 1; k < n; k++) {
+                long double next = ((2 * k + 1) * t * at - k * before) / (k + 1);
+                before = at, at = next;
+            }
+            long double slope = n * (before - t * at) / (1 - t * t);
+            weight = 2 / ((1 - t * t) * slope * slope);
+            t -= 2 * i + 1 == n ? 0 : at / slope;
+            near += fabsl(at / slope) < 1e-10L; /* once: the next step is the last, and the weight that of the root */
+        }
+        if (i <= j) {
+            x[i] = (double)t, x[j] = (double)-t;
+            w[i] = w[j] = (double)weight;
+        }
     }
-    for (int i = 0; i < n; i++) {
-        gsl_integration_glfixed_point(-1, 1, (size_t)i, &x[i], &w[i], table);
-    }
-    gsl_integration_glfixed_table_free(table);
-    return 0;
 }
 
 void spari_lagrange(int n, const double *x, const double *bary, double xi, double *phi, double *dphi) {

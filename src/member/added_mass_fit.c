@@ -1,6 +1,8 @@
 /* Added mass identified from coupling iterations by least squares: see added_mass_fit.h. */
 #include "added_mass_fit.h"
 
+#include "../algebra/dense.h"
+#include "../algebra/eigen.h"
 #include "../base/environment.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
@@ -142,15 +144,12 @@ uint64_t spari_learned_hash(const spar_member *m, uint64_t hash) {
 
 /* Cholesky factor of a symmetric matrix; pivots are at least a fraction of the diagonal. */
 static void factor_metric(const double W[36], double S[36]) {
-    memset(S, 0, 36 * sizeof *S);
-    for (int j = 0; j < 6; j++) {
-        for (int i = j; i < 6; i++) {
-            double x = W[6 * i + j];
-            for (int k = 0; k < j; k++) {
-                x -= S[6 * i + k] * S[6 * j + k];
-            }
-            S[6 * i + j] = i > j ? x / S[7 * j] : sqrt(fmax(x, fmax(1e-9 * W[7 * j], 1e-300)));
-        }
+    for (int i = 0; i < 36; i++) {
+        S[i] = i % 7 == 0 ? W[i] * (1 + 1e-6) + 1e-300 : W[i];
+    }
+    (void)spari_cholesky(6, S);
+    for (int i = 0; i < 36; i++) {
+        S[i] = i % 6 > i / 6 ? 0 : S[i];
     }
 }
 
@@ -211,29 +210,15 @@ static void to_metric(const double S[36], const double M[36], double out[36]) {
     reduce_rows(S, out);
 }
 
-/* Diagonalises a symmetric A by Jacobi rotations; E: eigenvectors in columns. */
-static void diagonalise_six(double A[36], double E[36]) {
-    enum { SWEEPS = 30 };
-    for (int i = 0; i < 36; i++) {
-        E[i] = i % 7 == 0;
+/* Eigenvalues of a symmetric A, which is lost, and E, its eigenvectors by columns; no eigenvalues where A is no number.
+ */
+static void diagonalise_six(double A[36], double lambda[6], double E[36]) {
+    double room[SPARI_SYMMETRIC_ROOM(6)];
+    if (spari_symmetric(6, A, lambda, room) != SPAR_OK) {
+        memset(lambda, 0, 6 * sizeof *lambda);
     }
-    for (int turn = 0; turn < SWEEPS * 36; turn++) {
-        int p = turn / 6 % 6, q = turn % 6;
-        double off = A[6 * p + q];
-        if (q <= p || fabs(off) <= 1e-16 * sqrt(fabs(A[7 * p] * A[7 * q])) || off == 0) {
-            continue;
-        }
-        double half = (A[7 * q] - A[7 * p]) / (2 * off);
-        double t = (half >= 0 ? 1 : -1) / (fabs(half) + hypot(half, 1)), c = 1 / hypot(t, 1), s = t * c;
-        for (int k = 0; k < 6; k++) {
-            double x = A[6 * k + p], y = A[6 * k + q], g = E[6 * k + p], h = E[6 * k + q];
-            A[6 * k + p] = c * x - s * y, A[6 * k + q] = s * x + c * y;
-            E[6 * k + p] = c * g - s * h, E[6 * k + q] = s * g + c * h;
-        }
-        for (int k = 0; k < 6; k++) {
-            double x = A[6 * p + k], y = A[6 * q + k];
-            A[6 * p + k] = c * x - s * y, A[6 * q + k] = s * x + c * y;
-        }
+    for (int i = 0; i < 36; i++) {
+        E[i] = A[6 * (i % 6) + i / 6];
     }
 }
 
@@ -498,12 +483,12 @@ static void look_around(spari_learned *l) {
     for (int64_t s = 0; s < l->n; s++) {
         double all[36], *lambda = l->squares + 6 * s, most = 0;
         squares_at(l, l->G, s, all);
-        diagonalise_six(all, l->axes + 36 * s);
+        diagonalise_six(all, lambda, l->axes + 36 * s);
         for (int i = 0; i < 6; i++) {
-            most = fmax(most, all[7 * i]);
+            most = fmax(most, lambda[i]);
         }
         for (int i = 0; i < 6; i++) {
-            lambda[i] = all[7 * i] > UNSEEN * most ? all[7 * i] : 0;
+            lambda[i] = lambda[i] > UNSEEN * most ? lambda[i] : 0;
         }
     }
 }
@@ -551,12 +536,12 @@ static void correct_station(const spari_learned *l, double *mass, int64_t s, dou
 
 /* Nearest positive semidefinite mass: negative eigenvalues become 0. */
 static void keep_positive(spari_learned *l, int64_t s) {
-    double A[36], E[36], U[36], *M = l->mass + 36 * s;
+    double A[36], lambda[6], E[36], U[36], *M = l->mass + 36 * s;
     to_metric(l->root + 36 * s, M, A);
-    diagonalise_six(A, E);
+    diagonalise_six(A, lambda, E);
     multiply_six(l->root + 36 * s, E, NEITHER, U);
     for (int i = 0; i < 36; i++) {
-        U[i] *= sqrt(fmax(A[7 * (i % 6)], 0));
+        U[i] *= sqrt(fmax(lambda[i % 6], 0));
     }
     multiply_six(U, U, SECOND, M);
 }

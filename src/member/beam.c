@@ -1,14 +1,12 @@
 /* Discretises a described beam: nodes along its line, sections at quadrature points, quadrature over elements. */
 #include "beam.h"
-#include "../base/blas.h"
 
+#include "../algebra/dense.h"
 #include "../base/session.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
+#include "../math/spline.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
-#include <gsl/gsl_spline.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,51 +56,8 @@ static void interpolate_axis(const spari_beam *beam, double eta, double x[3]) {
     }
 }
 
-/* Workspace of a fit: weight and basis of each row [rows][1 + P]; the matrix, later its factors; right-hand side and
-   residual, scales of the factors, solution. */
-typedef struct fit {
-    size_t rows, inner;
-    int P;
-    double *basis;
-    gsl_matrix *A;
-    gsl_vector *b, *c;
-} fit;
-
-static int fit_create(fit *f) {
-    f->basis = spari_zalloc((int64_t)f->rows * (1 + f->P), sizeof *f->basis);
-    f->A = gsl_matrix_alloc(f->rows, f->inner);
-    f->b = gsl_vector_alloc(2 * f->rows);
-    f->c = gsl_vector_alloc(2 * f->inner);
-    return f->basis && f->A && f->b && f->c ? 0 : 1;
-}
-
-static void fit_free(fit *f) {
-    free(f->basis);
-    gsl_matrix_free(f->A);
-    gsl_vector_free(f->b);
-    gsl_vector_free(f->c);
-}
-
-/* Coordinate d of the inner nodes in x [P][3], from the values of all rows. This QR allocates no memory; GSL's SVD
-   does, without checking. */
-static int fit_solve(fit *f, int d, const gsl_vector *tau, double *x) {
-    gsl_vector_view b = gsl_vector_subvector(f->b, 0, f->rows), left = gsl_vector_subvector(f->b, f->rows, f->rows),
-                    c = gsl_vector_subvector(f->c, f->inner, f->inner);
-    for (size_t i = 0; i < f->rows; i++) {
-        const double *row = f->basis + i * (size_t)(1 + f->P);
-        double ends = row[1] * x[d] + row[f->P] * x[3 * (f->P - 1) + d];
-        gsl_vector_set(&b.vector, i, row[0] * (gsl_vector_get(&b.vector, i) - ends));
-    }
-    int bad;
-    SPARI_BLAS(bad = gsl_linalg_QR_lssolve(f->A, tau, &b.vector, &c.vector, &left.vector) != GSL_SUCCESS);
-    for (size_t j = 0; j < f->inner && !bad; j++) {
-        x[3 * (j + 1) + (size_t)d] = gsl_vector_get(&c.vector, j);
-    }
-    return bad;
-}
-
-/* Least squares on one element: unknown inner nodes, given ends. Axis points have full weight. A spline through all
-   points has weight 1e-7, so it determines only what the points leave open. */
+/* Least squares on one element: unknown inner nodes, ends given. Axis points count fully; a spline through all the
+   points counts so little (1e-7) that it decides only what the points leave open. */
 static int fit_element(const spari_beam *beam, int elements, int e, int P, const double *gll, const double *bary,
                        const double *spline, double *x) {
     double e0 = (double)e / elements, e1 = (double)(e + 1) / elements;
@@ -113,33 +68,28 @@ static int fit_element(const spari_beam *beam, int elements, int e, int P, const
     while (last > first && beam->eta[last] > e1) {
         last--;
     }
-    size_t inner = (size_t)(P - 2),
-           points = beam->eta[first] <= e1 && beam->eta[last] >= e0 ? (size_t)(last - first + 1) : 0;
-    fit f = {.rows = points + inner, .inner = inner, .P = P};
-    int bad = fit_create(&f);
-    for (size_t i = 0; i < f.rows && !bad; i++) {
-        double *row = f.basis + i * (size_t)(1 + P);
-        double xi = i < points ? 2 * (beam->eta[first + (int64_t)i] - e0) / (e1 - e0) - 1 : gll[1 + i - points];
-        row[0] = i < points ? 1 : 1e-7;
-        spari_lagrange(P, gll, bary, xi, row + 1, NULL);
-        for (size_t j = 0; j < inner; j++) {
-            gsl_matrix_set(f.A, i, j, row[0] * row[2 + j]);
+    int inner = P - 2, points = beam->eta[first] <= e1 && beam->eta[last] >= e0 ? (int)(last - first + 1) : 0;
+    int rows = points + inner;
+    double *A = spari_zalloc((int64_t)rows * (inner + 3), sizeof *A), *b = A + (int64_t)rows * inner;
+    for (int i = 0; i < rows && A; i++) {
+        double phi[SPARI_MAX_NODES],
+            xi = i < points ? 2 * (beam->eta[first + i] - e0) / (e1 - e0) - 1 : gll[1 + i - points];
+        const double *data = i < points ? beam->xyz + 3 * (first + i) : spline + 3 * (1 + i - points);
+        double weight = i < points ? 1 : 1e-7;
+        spari_lagrange(P, gll, bary, xi, phi, NULL);
+        for (int j = 0; j < inner; j++) {
+            A[(int64_t)inner * i + j] = weight * phi[1 + j];
+        }
+        for (int d = 0; d < 3; d++) {
+            double ends = phi[0] * x[d] + phi[P - 1] * x[3 * (P - 1) + d];
+            b[(int64_t)rows * d + i] = weight * (data[d] - ends);
         }
     }
-    gsl_vector_view tau = {{0}};
-    if (!bad) {
-        tau = gsl_vector_subvector(f.c, 0, inner);
-        SPARI_BLAS(bad = gsl_linalg_QR_decomp(f.A, &tau.vector) != GSL_SUCCESS);
+    int bad = !A || spari_least_squares(rows, inner, A, 3, b) != SPAR_OK;
+    for (int i = 0; i < 3 * inner && !bad; i++) {
+        x[3 + i] = b[(int64_t)rows * (i % 3) + i / 3];
     }
-    for (int d = 0; d < 3 && !bad; d++) {
-        for (size_t i = 0; i < f.rows; i++) {
-            double data =
-                i < points ? beam->xyz[3 * (first + (int64_t)i) + d] : spline[3 * (1 + i - points) + (size_t)d];
-            gsl_vector_set(f.b, i, data);
-        }
-        bad = fit_solve(&f, d, &tau.vector, x);
-    }
-    fit_free(&f);
+    free(A);
     return bad;
 }
 
@@ -151,18 +101,20 @@ static int fit_axis(const spar_member *member, const double *gll, const double *
     size_t n = (size_t)beam->axis_count;
     double *column = spari_zalloc(beam->axis_count, sizeof *column),
            *spline_x = spari_zalloc(3 * member->nodes, sizeof *spline_x);
-    gsl_spline *spline = gsl_spline_alloc(gsl_interp_cspline, n);
-    int bad = !column || !spline || !spline_x;
+    int bad = !column || !spline_x;
     for (int d = 0; d < 3 && !bad; d++) {
         for (size_t i = 0; i < n; i++) {
             column[i] = beam->xyz[3 * i + (size_t)d];
         }
-        bad = gsl_spline_init(spline, beam->eta, column, n) !=
-              GSL_SUCCESS; /* it allocates memory to solve for the curvatures */
+        spari_spline spline;
+        int64_t interval = 0;
+        bad = spari_spline_create(&spline, SPARI_SPLINE_CUBIC, beam->axis_count, beam->eta, column);
         for (int64_t i = 0; i < member->nodes && !bad; i++) {
             double eta = 0.5 * (1 + spari_member_xi(member, (int)(i / P), gll[i % P]));
-            spline_x[3 * i + d] = gsl_spline_eval(spline, fmin(fmax(eta, beam->eta[0]), beam->eta[n - 1]), NULL);
+            eta = fmin(fmax(eta, beam->eta[0]), beam->eta[n - 1]);
+            spline_x[3 * i + d] = spari_spline_at(&spline, eta, &interval, NULL);
         }
+        spari_spline_free(&spline);
     }
     for (int e = 0; e < E && !bad; e++) {
         double *xe = x + 3 * (int64_t)e * P, *se = spline_x + 3 * (int64_t)e * P;
@@ -170,7 +122,6 @@ static int fit_axis(const spar_member *member, const double *gll, const double *
         memcpy(xe + 3 * (P - 1), e == E - 1 ? beam->xyz + 3 * (n - 1) : se + 3 * (P - 1), 3 * sizeof *xe);
         bad = P > 2 && fit_element(beam, E, e, P, gll, bary, se, xe);
     }
-    gsl_spline_free(spline);
     free(column);
     free(spline_x);
     return bad ? no_memory_for(member, "the fit of its axis") : SPAR_OK;
@@ -543,7 +494,8 @@ static int element_points(const spari_beam *beam, int elements, int e, int P, do
             spari_gll(n, xi, w, NULL);
             return n;
         }
-        return spari_gauss(n, xi, w) ? -1 : n;
+        spari_gauss(n, xi, w);
+        return n;
     }
     double from = -1;
     int count = 0;
@@ -556,9 +508,7 @@ static int element_points(const spari_beam *beam, int elements, int e, int P, do
         double half = 0.5 * (to - from);
         int n = beam->points > 0 ? beam->points : 1 + (int)ceil(half * P);
         if (xi) {
-            if (spari_gauss(n, xi + count, w + count)) {
-                return -1;
-            }
+            spari_gauss(n, xi + count, w + count);
             for (int k = count; k < count + n; k++) {
                 xi[k] = from + half * (1 + xi[k]);
                 w[k] *= half;
@@ -714,10 +664,6 @@ static int fill_body(const spar_member *member, int most, const double mu[6], sp
     }
     for (int e = 0; e < E && status == SPAR_OK; e++) {
         int n = element_points(member->beam, E, e, P, xi, w);
-        if (n < 0) {
-            status = no_memory_for(member, "its quadrature");
-            break;
-        }
         for (int i = 0; i < n; i++) {
             double R[9];
             reference_frame(member, &f, gll, bary, x, e, xi[i], R);

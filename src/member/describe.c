@@ -1,5 +1,5 @@
-/* Description of a member before commit: create calls and setters. */
-#include "../base/blas.h"
+/* The description of a member before commit: creation, setters and what they refuse. */
+#include "../algebra/dense.h"
 #include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../math/rotation.h"
@@ -7,8 +7,6 @@
 #include "beam.h"
 #include "checks.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -212,10 +210,7 @@ const char *spari_stiffness_fault(const double C[36]) {
             scaled[6 * i + j] = 0.5 * (C[6 * i + j] + C[6 * j + i]) / (d[i] * d[j]);
         }
     }
-    gsl_matrix_view view = gsl_matrix_view_array(scaled, 6, 6);
-    int status;
-    SPARI_BLAS(status = gsl_linalg_cholesky_decomp1(&view.matrix));
-    return status == GSL_SUCCESS ? NULL : "not positive definite";
+    return spari_cholesky(6, scaled) ? "not positive definite" : NULL;
 }
 
 int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, const double *stiffness,

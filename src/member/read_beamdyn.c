@@ -8,11 +8,11 @@
 #include "../base/reader.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
+#include "../math/spline.h"
 #include "beam.h"
 #include "checks.h"
 
 #include <ctype.h>
-#include <gsl/gsl_spline.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -194,22 +194,18 @@ typedef struct axis {
 
 enum { AXIS_POINTS = 400, FINE = 16 };
 
-static int member_axis(const blade *b, int first, int count, int each, gsl_spline *s[4], double *work, axis *a) {
-    double *z = work, *y = work + count;
-    gsl_interp_accel *none = NULL;
-    const gsl_interp_type *kind = count > 3    ? gsl_interp_cspline
-                                  : count == 3 ? gsl_interp_polynomial
-                                               : gsl_interp_linear;
+/* work [5][count] */
+static int member_axis(const blade *b, int first, int count, int each, spari_spline s[4], double *work, axis *a) {
+    double *z = work;
+    int64_t near = 0;
+    spari_spline_kind kind = count > 3 ? SPARI_SPLINE_CUBIC : count == 3 ? SPARI_SPLINE_PARABOLA : SPARI_SPLINE_LINEAR;
     for (int k = 0; k < 4; k++) { /* spline of each column over z */
-        s[k] = gsl_spline_alloc(kind, (size_t)count);
-        if (!s[k]) {
-            return 1;
-        }
+        double *y = work + count * (k + 1);
         for (int i = 0; i < count; i++) {
             z[i] = b->key[4 * (int64_t)(first + i) + 2];
             y[i] = b->key[4 * (int64_t)(first + i) + k];
         }
-        if (gsl_spline_init(s[k], z, y, (size_t)count)) {
+        if (spari_spline_create(s + k, kind, count, z, y)) {
             return 1;
         }
     }
@@ -220,17 +216,17 @@ static int member_axis(const blade *b, int first, int count, int each, gsl_splin
             to = j + 1 == each ? z[i + 1] : to;
             for (int g = 0; g < FINE; g++) { /* 2-point Gauss in each part: arc length to 1e-12 */
                 for (int side = -1; side <= 1; side += 2) {
-                    double h = (to - from) / FINE, t = from + h * (g + 0.5 + 0.5 * side / sqrt(3.0));
-                    arc += 0.5 * h *
-                           sqrt(1 + pow(gsl_spline_eval_deriv(s[0], t, none), 2) +
-                                pow(gsl_spline_eval_deriv(s[1], t, none), 2));
+                    double h = (to - from) / FINE, t = from + h * (g + 0.5 + 0.5 * side / sqrt(3.0)), slope[2];
+                    (void)spari_spline_at(s, t, &near, slope);
+                    (void)spari_spline_at(s + 1, t, &near, slope + 1);
+                    arc += 0.5 * h * sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
                 }
             }
             a->eta[at] = a->eta[at - 1] + arc;
             a->xyz[3 * at] = to;
-            a->xyz[3 * at + 1] = gsl_spline_eval(s[0], to, none);
-            a->xyz[3 * at + 2] = gsl_spline_eval(s[1], to, none);
-            a->twist[at] = -gsl_spline_eval(s[3], to, none) * (3.14159265358979323846 / 180);
+            a->xyz[3 * at + 1] = spari_spline_at(s, to, &near, NULL);
+            a->xyz[3 * at + 2] = spari_spline_at(s + 1, to, &near, NULL);
+            a->twist[at] = -spari_spline_at(s + 3, to, &near, NULL) * (3.14159265358979323846 / 180);
         }
     }
     return 0;
@@ -239,7 +235,7 @@ static int member_axis(const blade *b, int first, int count, int each, gsl_splin
 static int make_axis(const blade *b, axis *a) {
     int each = 1 + AXIS_POINTS / b->points;
     int64_t n = 1 + (int64_t)each * (b->points - 1);
-    double *work = spari_zalloc(2 * (int64_t)b->points, sizeof *work);
+    double *work = spari_zalloc(5 * (int64_t)b->points, sizeof *work);
     a->eta = spari_zalloc(n, sizeof *a->eta);
     a->xyz = spari_zalloc(3 * n, sizeof *a->xyz);
     a->twist = spari_zalloc(n, sizeof *a->twist);
@@ -250,10 +246,10 @@ static int make_axis(const blade *b, axis *a) {
     }
     a->n = 0;
     for (int m = 0, first = 0; m < b->members && !bad; first += b->count[m] - 1, m++) {
-        gsl_spline *s[4] = {0};
+        spari_spline s[4] = {{0}};
         bad = member_axis(b, first, b->count[m], each, s, work, a);
         for (int k = 0; k < 4; k++) {
-            gsl_spline_free(s[k]);
+            spari_spline_free(s + k);
         }
     }
     free(work);

@@ -26,8 +26,7 @@ struct spari_beyond {
     double *spread;    /* [nodes][6] */
     double *point;     /* [nodes][6] */
     double *sum;       /* [elements + 1][6] of all elements from e on, about the first node */
-    double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
-    double gauss[SPARI_MAX_NODES], weight[SPARI_MAX_NODES];
+    double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES], gauss[SPARI_MAX_NODES], weight[SPARI_MAX_NODES];
 };
 
 int spari_beyond_is_known(const spar_member *m) {
@@ -241,10 +240,7 @@ spari_beyond *spari_beyond_create(const spar_member *m) {
         return NULL;
     }
     spari_gll(m->per_element, b->gll, NULL, b->bary);
-    if (spari_gauss(m->per_element, b->gauss, b->weight)) {
-        spari_beyond_free(b);
-        return NULL;
-    }
+    spari_gauss(m->per_element, b->gauss, b->weight);
     for (int64_t i = 0; i < 3 * m->nodes; i++) {
         b->x[i] = m->xr[i] + (spari_beyond_is_undeformed(m) ? 0 : m->after.q[7 * (i / 3) + i % 3]);
     }

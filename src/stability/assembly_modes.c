@@ -1,9 +1,11 @@
-/* Public call for modes, and modes of an assembly: the members' problems side by side, springs and geometric
-   stiffness of the joints, and constraints eliminated. Of the constraints G x = 0, G^T = Q R with column pivoting,
-   the last columns of Q are an orthonormal basis of the admissible motions. Stiffness and mass are projected onto
-   it. So the eigenproblem has no multipliers or penalties, and redundant constraints do no harm. */
+/* The call for modes, and those of an assembly: the parts' problems side by side, springs and the turning of the
+   joints' loads between them, and what joints hold taken out. Of the constraints G x = 0, orthonormal rows Q of which
+   the first span the rows of G: the others are a basis of the motions that the constraints allow, on which stiffness
+   and mass are projected, so that no multiplier or penalty is left in the eigenproblem, and holds that say a thing
+   twice do no harm. */
+#include "../algebra/cblas.h"
+#include "../algebra/dense.h"
 #include "../assembly/assembly.h"
-#include "../base/blas.h"
 #include "../base/environment.h"
 #include "../base/session.h"
 #include "../member/body.h"
@@ -12,8 +14,6 @@
 #include "../time/fidelity.h"
 #include "modes.h"
 
-#include <gsl/gsl_blas.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,20 +30,17 @@ typedef struct tied_modes {
     modal_part *part;
     int parts;
     int64_t size, holds; /* unknowns; rows of G */
-    gsl_matrix *K, *M;   /* of all unknowns */
-    gsl_matrix *G;       /* G^T, then its factors */
-    gsl_vector *tau;
-    size_t rank;
-    double *room; /* two vectors of a shape */
+    double *K, *M;       /* [size][size] of all unknowns */
+    double *G;           /* [holds][size] */
+    double *Q;           /* [size][size] orthonormal rows; the first `rank` are the motions that the holds take away */
+    int64_t rank;
+    double *room; /* of a shape, twice */
 } tied_modes;
 
 static void tied_modes_free(tied_modes *t) {
     free(t->part);
     free(t->room);
-    gsl_matrix_free(t->K);
-    gsl_matrix_free(t->M);
-    gsl_matrix_free(t->G);
-    gsl_vector_free(t->tau);
+    free(t->K);
 }
 
 /* ---- members of the assembly ---- */
@@ -145,8 +142,8 @@ static void stiffness_of_joint(const spar_joint *j, double K[12][12], double B[6
 }
 
 /* K += S_a^T X S_b over the unknowns of two sides; X a block of stride 12. */
-static void add_block(gsl_matrix *K, const modal_part *a, const double *S_a, const modal_part *b, const double *S_b,
-                      const double *X) {
+static void add_block(int64_t size, double *K, const modal_part *a, const double *S_a, const modal_part *b,
+                      const double *S_b, const double *X) {
     for (int64_t c = 0; c < b->size; c++) {
         double y[6] = {0};
         for (int i = 0; i < 36; i++) {
@@ -157,19 +154,19 @@ static void add_block(gsl_matrix *K, const modal_part *a, const double *S_a, con
             for (int i = 0; i < 6; i++) {
                 sum += S_a[a->size * i + r] * y[i];
             }
-            *gsl_matrix_ptr(K, (size_t)(a->at + r), (size_t)(b->at + c)) += sum;
+            K[size * (a->at + r) + b->at + c] += sum;
         }
     }
 }
 
-/* Column `hold` of G^T += B_k S, over one side's unknowns. */
-static void add_hold(gsl_matrix *G, int64_t hold, const modal_part *p, const double *S, const double *row) {
+/* A row of G += B_k S, over one side's unknowns. */
+static void add_hold(double *G, const modal_part *p, const double *S, const double *row) {
     for (int64_t c = 0; c < p->size; c++) {
         double sum = 0;
         for (int i = 0; i < 6; i++) {
             sum += row[i] * S[p->size * i + c];
         }
-        *gsl_matrix_ptr(G, (size_t)(p->at + c), (size_t)hold) += sum;
+        G[p->at + c] += sum;
     }
 }
 
@@ -192,13 +189,13 @@ static int add_joint_to_modes(tied_modes *t, const spar_joint *j, int64_t *holds
     for (int i = 0; i < 4; i++) {
         int a = i / 2, b = i % 2;
         if (of[a] && of[b]) {
-            add_block(t->K, of[a], S[a], of[b], S[b], &K[6 * a][6 * b]);
+            add_block(t->size, t->K, of[a], S[a], of[b], S[b], &K[6 * a][6 * b]);
         }
     }
     for (int k = 0; k < 6; k++) {
         for (int side = 0; side < 2 && (spari_joint_given(j) >> k & 1); side++) {
             if (of[side]) {
-                add_hold(t->G, *holds, of[side], S[side], B[k] + 6 * side);
+                add_hold(t->G + t->size * *holds, of[side], S[side], B[k] + 6 * side);
             }
         }
         *holds += spari_joint_given(j) >> k & 1;
@@ -210,8 +207,7 @@ static int add_joint_to_modes(tied_modes *t, const spar_joint *j, int64_t *holds
 /* ---- assembly of the matrices ---- */
 
 static int alloc_tied_modes(tied_modes *t) {
-    size_t n = (size_t)t->size, h = (size_t)t->holds;
-    int64_t most = 0;
+    int64_t most = 0, square = t->size * t->size;
     for (int i = 0; i < t->parts; i++) {
         const spar_member *m = t->part[i].member;
         int64_t room = 2 * t->part[i].size * t->part[i].size, shape = t->part[i].size + 6 * m->body->unique;
@@ -220,11 +216,9 @@ static int alloc_tied_modes(tied_modes *t) {
         most = shape > most ? shape : most;
     }
     t->room = spari_zalloc(most, sizeof *t->room);
-    t->K = gsl_matrix_calloc(n, n);
-    t->M = gsl_matrix_calloc(n, n);
-    t->G = h > 0 ? gsl_matrix_calloc(n, h) : NULL;
-    t->tau = h > 0 ? gsl_vector_alloc(n < h ? n : h) : NULL;
-    return t->room && t->K && t->M && (h == 0 || (t->G && t->tau));
+    t->K = spari_zalloc(3 * square + t->holds * t->size, sizeof *t->K);
+    t->M = t->K + square, t->Q = t->M + square, t->G = t->Q + square;
+    return t->room && t->K;
 }
 
 static int fill_tied_modes(tied_modes *t, const spar_session *s) {
@@ -235,9 +229,9 @@ static int fill_tied_modes(tied_modes *t, const spar_session *s) {
         memset(K, 0, (size_t)(2 * p->size * p->size) * sizeof *K);
         SPARI_TRY(p->member->row->problem(p->member, K, M));
         for (int64_t k = 0; k < p->size * p->size; k++) {
-            size_t r = (size_t)(p->at + k / p->size), c = (size_t)(p->at + k % p->size);
-            gsl_matrix_set(t->K, r, c, K[k]);
-            gsl_matrix_set(t->M, r, c, M[k]);
+            int64_t at = t->size * (p->at + k / p->size) + p->at + k % p->size;
+            t->K[at] = K[k];
+            t->M[at] = M[k];
         }
     }
     for (const spar_joint *j = s->joints; j; j = j->next) {
@@ -250,58 +244,42 @@ static int fill_tied_modes(tied_modes *t, const spar_session *s) {
 
 /* Scales rows of G to 1, then replaces G^T by Q and R. */
 static int factor_holds(tied_modes *t) {
-    if (!t->G) {
-        return SPAR_OK;
+    int *order = spari_zalloc(t->holds + 1, sizeof *order), n = (int)t->size;
+    if (order && t->holds > 0) {
+        t->rank = spari_independent_rows((int)t->holds, n, t->G, dependent_row, order, n, t->Q);
     }
-    int sign, status = SPAR_OK;
-    gsl_permutation *order = gsl_permutation_alloc(t->G->size2);
-    gsl_vector *norm = gsl_vector_alloc(t->G->size2);
-    if (order && norm) {
-        for (size_t c = 0; c < t->G->size2; c++) {
-            gsl_vector_view column = gsl_matrix_column(t->G, c);
-            double size = gsl_blas_dnrm2(&column.vector);
-            gsl_vector_scale(&column.vector, size > 0 ? 1 / size : 0);
-        }
-        SPARI_BLAS(gsl_linalg_QRPT_decomp(t->G, t->tau, order, &sign, norm));
-        while (t->rank < t->tau->size && fabs(gsl_matrix_get(t->G, t->rank, t->rank)) > dependent_row) {
-            t->rank++;
-        }
-    } else {
-        status = SPAR_ERR_MEMORY;
+    for (int64_t i = 0; i < n && t->holds == 0; i++) {
+        t->Q[(t->size + 1) * i] = 1;
     }
-    gsl_permutation_free(order);
-    gsl_vector_free(norm);
+    int status = order && t->rank >= 0 ? SPAR_OK : SPAR_ERR_MEMORY;
+    free(order);
     return status;
 }
 
-/* A := Q^T A Q, A symmetric */
-static void onto_allowed(const tied_modes *t, gsl_matrix *A) {
-    for (int side = 0; side < 2 && t->G; side++) {
-        SPARI_BLAS(gsl_linalg_QR_QTmat(t->G, t->tau, A));
-        gsl_matrix_transpose(A);
-    }
-}
-
-/* The admissible part of A, into B. */
-static void take_allowed(const tied_modes *t, const gsl_matrix *A, gsl_matrix *B) {
-    for (size_t i = 0; i < B->size1; i++) {
-        for (size_t k = 0; k < B->size2; k++) {
-            double a = gsl_matrix_get(A, t->rank + i, t->rank + k), b = gsl_matrix_get(A, t->rank + k, t->rank + i);
-            gsl_matrix_set(B, i, k, 0.5 * (a + b));
+/* The part of a symmetric A that the holds leave, Q A Q^T by the last rows of Q, into B; half [size][size]: room. */
+static void onto_allowed(const tied_modes *t, const double *A, double *half, double *B) {
+    int n = (int)t->size, left = n - (int)t->rank;
+    const double *Q = t->Q + t->size * t->rank;
+    SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, left, n, n, 1, Q, n, A, n, 0, half, n));
+    SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, left, left, n, 1, half, n, Q, n, 0, B, left));
+    for (int i = 0; i < left; i++) {
+        for (int k = 0; k < i; k++) {
+            double mean = 0.5 * (B[(int64_t)left * i + k] + B[(int64_t)left * k + i]);
+            B[(int64_t)left * i + k] = B[(int64_t)left * k + i] = mean;
         }
     }
 }
 
-static void give_shapes(const tied_modes *t, spari_modal *p, const spar_member *m, int64_t n, gsl_vector *x,
+/* x [size]: room */
+static void give_shapes(const tied_modes *t, spari_modal *p, const spar_member *m, int64_t n, double *x,
                         double *shapes) {
     const modal_part *own = modal_part_of(t, m);
+    int size = (int)t->size;
     for (int64_t k = 0; k < n; k++) {
-        gsl_vector_set_zero(x);
-        memcpy(x->data + t->rank, spari_modal_mode(p, (size_t)k), p->size * sizeof *x->data);
-        if (t->G) {
-            SPARI_BLAS(gsl_linalg_QR_Qvec(t->G, t->tau, x));
-        }
-        m->row->shape(m, x->data + own->at, t->room, shapes + 6 * m->nodes * k);
+        const double *mode = spari_modal_mode(p, k);
+        SPARI_BLAS(
+            cblas_dgemv(CblasRowMajor, CblasTrans, p->size, size, 1, t->Q + t->size * t->rank, size, mode, 1, 0, x, 1));
+        m->row->shape(m, x + own->at, t->room, shapes + 6 * m->nodes * k);
     }
 }
 
@@ -310,28 +288,26 @@ static int solve_tied_modes(tied_modes *t, spar_member *m, int64_t n, double *fr
     int status = alloc_tied_modes(t) ? fill_tied_modes(t, s) : SPAR_ERR_MEMORY;
     status = status == SPAR_OK ? factor_holds(t) : status;
     SPARI_REQUIRE(s, status == SPAR_OK, status, "no memory for the modes of what joints tie to '%s'", m->name);
-    int64_t left = t->size - (int64_t)t->rank;
+    int64_t left = t->size - t->rank;
     SPARI_REQUIRE(s, n <= left, SPAR_ERR_ARGUMENT, "'%s' and what joints tie to it: %lld modes; they have %lld",
                   m->name, (long long)n, (long long)left);
     if (n == 0) {
         return SPAR_OK;
     }
     spari_modal p = {0};
-    gsl_vector *x = gsl_vector_calloc((size_t)t->size);
-    status = spari_modal_alloc(&p, (size_t)left) && x ? SPAR_OK : SPAR_ERR_MEMORY;
+    double *room = spari_zalloc(t->size * t->size, sizeof *room);
+    status = spari_modal_alloc(&p, (int)left) && room ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
-        onto_allowed(t, t->K);
-        onto_allowed(t, t->M);
-        take_allowed(t, t->K, p.K);
-        take_allowed(t, t->M, p.M);
+        onto_allowed(t, t->K, room, p.K);
+        onto_allowed(t, t->M, room, p.M);
         status = spari_modal_solve(&p, m, "what joints tie to", n, frequency);
         if (status == SPAR_OK && shapes) {
-            give_shapes(t, &p, m, n, x, shapes);
+            give_shapes(t, &p, m, n, room, shapes);
         }
     } else {
         status = spari_fail(s, status, "no memory for the modes of what joints tie to '%s'", m->name);
     }
-    gsl_vector_free(x);
+    free(room);
     spari_modal_free(&p);
     return status;
 }

@@ -5,8 +5,9 @@
 #include "../trial/trial.h"
 #include "shapes.h"
 
+#include "../algebra/dense.h"
+#include "../algebra/eigen.h"
 #include "../assembly/assembly.h"
-#include "../base/blas.h"
 #include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../exchange/exchange.h"
@@ -15,10 +16,6 @@
 #include "../solve/life.h"
 
 #include <complex.h>
-#include <gsl/gsl_complex_math.h>
-#include <gsl/gsl_eigen.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,22 +35,20 @@ typedef struct floquet {
     double amplitude;
     spari_swing swing;   /* its parts have shapes */
     double *shape;       /* [modes][nodes][6] */
-    double *rate, *unit; /* [modes]: 1/s; amplitude that moves its nodes by one member length or one radian */
-    double *base;        /* [nodes][13]: motion at the beginning of the period, one step from now */
-    gsl_matrix *gram;    /* products of shapes, factored */
-    gsl_matrix *Y[2];    /* [2 modes][2 modes] states at the two ends of the period, one column per disturbance */
-    gsl_matrix *change;  /* [2][2 modes] of a run, at both ends */
-    int mode, kind;      /* of the current run; mode -1: no disturbance */
-    double size, drift;  /* signed; out: distance of the final from the initial state */
+    double *rate, *unit; /* [modes]: 1/s; of a shape that moves its nodes by one length of their member or one radian */
+    double *base;        /* [nodes][13]: motion at the beginning of the period, one step from here */
+    double *gram;        /* [modes][modes] products of shapes, factored */
+    double *Y[2];        /* [2 modes][2 modes] the state at both ends of the period: row by row what was moved, at the
+                            beginning; column by column, at the end */
+    double *change;      /* [2][2 modes] of a run, at both ends */
+    int mode, kind;      /* of the run under way; mode -1: nothing is moved */
+    double size, drift;  /* with its sign; out: how far from the beginning it ends */
 } floquet;
 
 static void floquet_free(floquet *f) {
     spari_swing_free(&f->swing);
     free(f->shape);
-    gsl_matrix_free(f->gram);
-    gsl_matrix_free(f->Y[0]);
-    gsl_matrix_free(f->Y[1]);
-    gsl_matrix_free(f->change);
+    free(f->gram);
 }
 
 /* ---- states ---- */
@@ -112,13 +107,13 @@ static double product_at(double length, const double *a, const double *b) {
     return spari_dot(a, b) + length * length * spari_dot(a + 3, b + 3);
 }
 
-/* The state relative to the beginning, in shapes, into a row; and its size. */
-static void look_at_state(const spar_session *s, floquet *f, gsl_vector *row) {
+/* The state against the beginning, in shapes, into a row; and how far it is away. */
+static void look_at_state(const spar_session *s, floquet *f, double *row) {
     int n = f->modes;
     double radian = f->run.dt * (double)f->steps / (2 * acos(-1));
     const double *base = f->base;
     int64_t at = 0;
-    gsl_vector_set_zero(row);
+    memset(row, 0, 2 * (size_t)n * sizeof *row);
     f->drift = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
         const double *own = base + 10, length = spari_member_length(m);
@@ -127,8 +122,8 @@ static void look_at_state(const spar_session *s, floquet *f, gsl_vector *row) {
             look_at_change(base, own, m->now.q + 7 * i, m->now.v + 6 * i, x);
             for (int k = 0; k < n; k++) {
                 const double *shape = f->shape + 6 * f->nodes * k + at;
-                *gsl_vector_ptr(row, (size_t)k) += product_at(length, shape, x);
-                *gsl_vector_ptr(row, (size_t)(n + k)) += product_at(length, shape, x + 6);
+                row[k] += product_at(length, shape, x);
+                row[n + k] += product_at(length, shape, x + 6);
             }
             if (spari_swing_part(&f->swing, m)) {
                 f->drift = fmax(f->drift, fmax(spari_norm(x) / length, spari_norm(x + 3)));
@@ -137,8 +132,7 @@ static void look_at_state(const spar_session *s, floquet *f, gsl_vector *row) {
         }
     }
     for (int half = 0; half < 2; half++) {
-        gsl_vector_view part = gsl_vector_subvector(row, (size_t)(half * n), (size_t)n);
-        SPARI_BLAS((void)gsl_linalg_cholesky_svx(f->gram, &part.vector));
+        spari_cholesky_solve(n, f->gram, row + half * n);
     }
 }
 
@@ -162,8 +156,7 @@ static int run_period(spar_session *s, void *self) {
             keep_motion(s, f->base);
         }
         if (i == 0 || i == f->steps) {
-            gsl_vector_view row = gsl_matrix_row(f->change, i > 0);
-            look_at_state(s, f, &row.vector);
+            look_at_state(s, f, f->change + 2 * f->modes * (i > 0));
         }
     }
     return SPAR_OK;
@@ -197,32 +190,13 @@ static int find_columns_of_map(spar_session *s, floquet *f, const spari_wish *wi
             SPARI_TRY(try_period(s, f, wish, done++));
             for (int end = 0; end < 2; end++) {
                 for (int i = 0; i < 2 * n; i++) {
-                    *gsl_matrix_ptr(f->Y[end], (size_t)i, (size_t)column) +=
-                        gsl_matrix_get(f->change, (size_t)end, (size_t)i) / (2 * f->size);
+                    f->Y[end][end ? 2 * n * i + column : 2 * n * column + i] +=
+                        f->change[2 * n * end + i] / (2 * f->size);
                 }
             }
         }
     }
     return SPAR_OK;
-}
-
-/* A = Y_1 Y_0^-1, transposed into Y[1]: its eigenvalues are the multipliers. Returns a status, without a message. */
-static int form_map(floquet *f) {
-    size_t n = 2 * (size_t)f->modes;
-    int sign, wrong;
-    gsl_permutation *p = gsl_permutation_alloc(n);
-    if (!p) {
-        return SPAR_ERR_MEMORY;
-    }
-    gsl_matrix_transpose(f->Y[0]);
-    gsl_matrix_transpose(f->Y[1]);
-    SPARI_BLAS(wrong = gsl_linalg_LU_decomp(f->Y[0], p, &sign));
-    for (size_t k = 0; k < n && !wrong; k++) {
-        gsl_vector_view column = gsl_matrix_column(f->Y[1], k);
-        SPARI_BLAS(wrong = gsl_linalg_LU_svx(f->Y[0], p, &column.vector));
-    }
-    gsl_permutation_free(p);
-    return wrong ? SPAR_ERR_NUMERIC : SPAR_OK;
 }
 
 static int by_size(const void *a, const void *b) {
@@ -233,24 +207,13 @@ static int by_size(const void *a, const void *b) {
 /* Multipliers z [2 modes], largest first, one of each conjugate pair, and their number. Returns a status, without a
    message. */
 static int solve_map(floquet *f, double complex *z, int *count) {
-    size_t n = 2 * (size_t)f->modes;
-    gsl_vector_complex *value = gsl_vector_complex_alloc(n);
-    gsl_eigen_nonsymm_workspace *work = gsl_eigen_nonsymm_alloc(n);
-    int status = z && value && work ? form_map(f) : SPAR_ERR_MEMORY;
-    if (status == SPAR_OK) {
-        int wrong;
-        gsl_eigen_nonsymm_params(0, 1, work);
-        SPARI_BLAS(wrong = gsl_eigen_nonsymm(f->Y[1], value, work));
-        status = wrong ? SPAR_ERR_NUMERIC : SPAR_OK;
-    }
-    for (size_t k = 0; k < n && status == SPAR_OK; k++) {
-        gsl_complex x = gsl_vector_complex_get(value, k);
-        if (GSL_IMAG(x) >= 0) {
-            z[(*count)++] = CMPLX(GSL_REAL(x), GSL_IMAG(x));
+    int n = 2 * f->modes, status = z ? spari_least_squares(n, n, f->Y[0], n, f->Y[1]) : SPAR_ERR_MEMORY;
+    status = status == SPAR_OK ? spari_eigenvalues(n, f->Y[1], z) : status;
+    for (int k = 0; k < n && status == SPAR_OK; k++) {
+        if (cimag(z[k]) >= 0) {
+            z[(*count)++] = z[k];
         }
     }
-    gsl_vector_complex_free(value);
-    gsl_eigen_nonsymm_free(work);
     if (*count > 0) {
         qsort(z, (size_t)*count, sizeof *z, by_size);
     }
@@ -266,12 +229,11 @@ static int find_shapes_of_period(spar_session *s, floquet *f) {
     SPARI_TRY(spari_swing_create_loose(&f->swing, s));
     SPARI_REQUIRE(s, f->swing.parts > 0, SPAR_ERR_UNSUPPORTED, "there is no member that spar solves for");
     SPARI_REQUIRE(s, n <= f->swing.size, SPAR_ERR_ARGUMENT, "%d modes; there are %d unknowns", n, f->swing.size);
-    size_t N = (size_t)n;
+    int64_t square = (int64_t)n * n;
     f->shape = spari_zalloc(6 * n * f->nodes + 2 * n + NODE * f->nodes + (int64_t)n * f->swing.size, sizeof *f->shape);
-    f->gram = gsl_matrix_calloc(N, N), f->change = gsl_matrix_calloc(2, 2 * N);
-    f->Y[0] = gsl_matrix_calloc(2 * N, 2 * N), f->Y[1] = gsl_matrix_calloc(2 * N, 2 * N);
-    SPARI_REQUIRE(s, f->shape && f->gram && f->change && f->Y[0] && f->Y[1], SPAR_ERR_MEMORY, "no memory for %d modes",
-                  n);
+    f->gram = spari_zalloc(9 * square + 4 * n, sizeof *f->gram);
+    SPARI_REQUIRE(s, f->shape && f->gram, SPAR_ERR_MEMORY, "no memory for %d modes", n);
+    f->Y[0] = f->gram + square, f->Y[1] = f->Y[0] + 4 * square, f->change = f->Y[1] + 4 * square;
     f->rate = f->shape + 6 * n * f->nodes, f->unit = f->rate + n, f->base = f->unit + n;
     double *x = f->base + NODE * f->nodes;
     SPARI_TRY(spari_shapes_find(&f->swing, n, x, f->rate));
@@ -282,7 +244,6 @@ static int find_shapes_of_period(spar_session *s, floquet *f) {
 
 /* Products of shapes, and the unit amplitude of each. */
 static int weigh_shapes(spar_session *s, floquet *f) {
-    int singular;
     for (int i = 0; i < f->modes; i++) {
         const double *a = f->shape + 6 * f->nodes * i;
         double most = 0;
@@ -292,16 +253,14 @@ static int weigh_shapes(spar_session *s, floquet *f) {
                 most = fmax(most, fmax(spari_norm(a) / length, spari_norm(a + 3)));
                 for (int j = 0; j <= i; j++) {
                     const double *b = a + 6 * f->nodes * (j - i);
-                    double sum = gsl_matrix_get(f->gram, (size_t)i, (size_t)j) + product_at(length, a, b);
-                    gsl_matrix_set(f->gram, (size_t)i, (size_t)j, sum);
-                    gsl_matrix_set(f->gram, (size_t)j, (size_t)i, sum);
+                    f->gram[f->modes * i + j] += product_at(length, a, b);
                 }
             }
         }
         f->unit[i] = most > 0 ? 1 / most : 1;
     }
-    SPARI_BLAS(singular = gsl_linalg_cholesky_decomp1(f->gram));
-    SPARI_REQUIRE(s, !singular, SPAR_ERR_NUMERIC, "the shapes cannot be told from each other; ask for fewer modes");
+    SPARI_REQUIRE(s, spari_cholesky(f->modes, f->gram) == 0, SPAR_ERR_NUMERIC,
+                  "the shapes cannot be told from each other; ask for fewer modes");
     return SPAR_OK;
 }
 

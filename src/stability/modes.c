@@ -5,52 +5,38 @@
    singular. sigma is 0 if K is positive definite beyond rounding, otherwise the smallest tried that makes it so. */
 #include "modes.h"
 
+#include "../algebra/cblas.h"
+#include "../algebra/dense.h"
 #include "../algebra/eigen.h"
-#include "../base/blas.h"
 #include "../base/session.h"
 #include "../member/body.h"
 #include "../time/fidelity.h"
 
-#include <gsl/gsl_blas.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 void spari_modal_free(spari_modal *p) {
-    gsl_matrix_free(p->K);
-    gsl_matrix_free(p->M);
-    gsl_matrix_free(p->A);
-    gsl_matrix_free(p->B);
-    gsl_matrix_free(p->x);
-    gsl_vector_free(p->lambda);
-    gsl_vector_free(p->work);
+    free(p->K);
 }
 
-int spari_modal_alloc(spari_modal *p, size_t n) {
+int spari_modal_alloc(spari_modal *p, int n) {
+    int64_t size = (int64_t)n * n;
     p->size = n;
-    p->K = gsl_matrix_calloc(n, n);
-    p->M = gsl_matrix_calloc(n, n);
-    p->A = gsl_matrix_alloc(n, n);
-    p->B = gsl_matrix_alloc(n, n);
-    p->x = gsl_matrix_alloc(n, n);
-    p->lambda = gsl_vector_alloc(n);
-    p->work = gsl_vector_alloc(n);
-    return p->K && p->M && p->A && p->B && p->x && p->lambda && p->work;
+    p->K = spari_zalloc(5 * size + 2 * (int64_t)n, sizeof *p->K);
+    p->M = p->K + size, p->A = p->M + size, p->B = p->A + size, p->x = p->B + size;
+    p->lambda = p->x + size, p->work = p->lambda + n;
+    return p->K != NULL;
 }
 
 /* K + sigma M into B; tries its Cholesky factor in A. */
 static int shifted(const spari_modal *p, double sigma) {
-    for (size_t i = 0; i < p->size; i++) {
-        for (size_t j = 0; j < p->size; j++) {
-            gsl_matrix_set(p->B, i, j, gsl_matrix_get(p->K, i, j) + sigma * gsl_matrix_get(p->M, i, j));
-        }
+    int64_t size = (int64_t)p->size * p->size;
+    for (int64_t i = 0; i < size; i++) {
+        p->B[i] = p->K[i] + sigma * p->M[i];
     }
-    gsl_matrix_memcpy(p->A, p->B);
-    int status;
-    SPARI_BLAS(status = gsl_linalg_cholesky_decomp1(p->A));
-    return status == GSL_SUCCESS;
+    memcpy(p->A, p->B, (size_t)size * sizeof *p->A);
+    return !spari_cholesky(p->size, p->A);
 }
 
 /* Whether K x is rounding error alone for the motion of least stiffness, by steps of x := K^-1 M x with the factor
@@ -59,23 +45,24 @@ static int shifted(const spari_modal *p, double sigma) {
 static int has_loose_motion(const spari_modal *p) {
     enum { STEPS = 4 };
     const double only_rounding = 1e-12;
-    double left = 0, size = 0;
-    gsl_vector *x = p->lambda, *y = p->work;
-    for (size_t i = 0; i < p->size; i++) {
-        gsl_vector_set(x, i, 1 + 0.3 * sin(12.9898 * (double)(i + 1)));
+    double left = 0, size = 0, *x = p->lambda;
+    int n = p->size;
+    for (int i = 0; i < n; i++) {
+        x[i] = 1 + 0.3 * sin(12.9898 * (double)(i + 1));
     }
     for (int step = 0; step < STEPS; step++) {
-        double norm = gsl_blas_dnrm2(x);
-        gsl_vector_scale(x, norm > 0 ? 1 / norm : 0);
-        SPARI_BLAS(gsl_blas_dsymv(CblasLower, 1, p->M, x, 0, y));
-        SPARI_BLAS(gsl_linalg_cholesky_solve(p->A, y, x));
+        double norm = cblas_dnrm2(n, x, 1);
+        cblas_dscal(n, norm > 0 ? 1 / norm : 0, x, 1);
+        SPARI_BLAS(cblas_dsymv(CblasRowMajor, CblasLower, n, 1, p->M, n, x, 1, 0, p->work, 1));
+        memcpy(x, p->work, (size_t)n * sizeof *x);
+        spari_cholesky_solve(n, p->A, x);
     }
-    for (size_t i = 0; i < p->size; i++) {
-        double sum = 0, of_sizes = 0, own = sqrt(fabs(gsl_matrix_get(p->K, i, i)));
-        for (size_t j = 0; j < p->size; j++) {
-            double part = gsl_matrix_get(p->K, i, j) * gsl_vector_get(x, j);
-            sum += part;
-            of_sizes += fabs(part);
+    for (int i = 0; i < n; i++) {
+        const double *row = p->K + (int64_t)n * i;
+        double sum = 0, of_sizes = 0, own = sqrt(fabs(row[i]));
+        for (int j = 0; j < n; j++) {
+            sum += row[j] * x[j];
+            of_sizes += fabs(row[j] * x[j]);
         }
         left = hypot(left, own > 0 ? sum / own : 0);
         size = hypot(size, own > 0 ? of_sizes / own : 0);
@@ -91,8 +78,8 @@ static double find_shift(const spari_modal *p) {
     if (shifted(p, 0) && !has_loose_motion(p)) {
         return 0;
     }
-    for (size_t i = 0; i < p->size; i++) {
-        double k = fabs(gsl_matrix_get(p->K, i, i)), m = gsl_matrix_get(p->M, i, i);
+    for (int64_t i = 0; i < p->size; i++) {
+        double k = fabs(p->K[(p->size + 1) * i]), m = p->M[(p->size + 1) * i];
         largest = m > 0 && k / m > largest ? k / m : largest;
     }
     for (double f = 1e-6; f < 1e4; f *= 10) {
@@ -103,23 +90,20 @@ static double find_shift(const spari_modal *p) {
     return largest == 0 && shifted(p, 1) ? 1 : -1; /* an unconstrained rigid body */
 }
 
-const double *spari_modal_mode(spari_modal *p, size_t k) {
-    gsl_vector_view x = gsl_matrix_column(p->x, k);
-    double norm;
-    SPARI_BLAS(gsl_blas_dsymv(CblasLower, 1, p->M, &x.vector, 0, p->work));
-    gsl_blas_ddot(&x.vector, p->work, &norm);
-    gsl_vector_memcpy(p->work, &x.vector);
-    gsl_vector_scale(p->work, 1 / (norm > 0 ? sqrt(norm) : 1));
-    return p->work->data;
-}
-
-static int is_finite(const gsl_matrix *A) { /* new matrices are contiguous */
-    return spari_first_nonfinite(A->data, (int64_t)(A->size1 * A->size2)) < 0;
+const double *spari_modal_mode(spari_modal *p, int64_t k) {
+    int n = p->size;
+    const double *x = p->x + n * k;
+    SPARI_BLAS(cblas_dsymv(CblasRowMajor, CblasLower, n, 1, p->M, n, x, 1, 0, p->work, 1));
+    double norm = cblas_ddot(n, x, 1, p->work, 1);
+    memcpy(p->work, x, (size_t)n * sizeof *x);
+    cblas_dscal(n, 1 / (norm > 0 ? sqrt(norm) : 1), p->work, 1);
+    return p->work;
 }
 
 int spari_modal_solve(spari_modal *p, const spar_member *m, const char *who, int64_t n, double *frequency) {
     spar_session *s = m->session;
-    SPARI_REQUIRE(s, is_finite(p->K) && is_finite(p->M), SPAR_ERR_NUMERIC,
+    int64_t size = (int64_t)p->size * p->size; /* M follows K */
+    SPARI_REQUIRE(s, spari_first_nonfinite(p->K, 2 * size) < 0, SPAR_ERR_NUMERIC,
                   "%s '%s': stiffness in the present state is beyond the range of numbers; look at loads and sections, "
                   "or at their units",
                   who, m->name);
@@ -128,14 +112,14 @@ int spari_modal_solve(spari_modal *p, const spar_member *m, const char *who, int
                   "%s '%s': no shift makes the stiffness positive definite in the present state: something can move "
                   "where there is neither mass nor stiffness",
                   who, m->name);
-    gsl_matrix_memcpy(p->A, p->M);
-    int status = spari_eigen(p->A, p->B, p->lambda, p->x);
+    memcpy(p->A, p->M, (size_t)size * sizeof *p->A);
+    int status = spari_eigen(p->size, p->A, p->B, p->lambda, p->x);
     SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory for the modes of '%s'", m->name);
     SPARI_REQUIRE(s, status == SPAR_OK, status,
                   "%s '%s': stiffness and mass lie too far apart for the range of numbers; look at the sections", who,
                   m->name);
     for (int64_t k = 0; k < n; k++) {
-        double mu = gsl_vector_get(p->lambda, (size_t)k), square = mu > 0 ? 1 / mu - sigma : INFINITY;
+        double mu = p->lambda[k], square = mu > 0 ? 1 / mu - sigma : INFINITY;
         frequency[k] = copysign(sqrt(fabs(square)), square) / 6.283185307179586;
     }
     return SPAR_OK;
@@ -157,16 +141,15 @@ static int check_count(const spar_member *m, int64_t n, int64_t free_unknowns) {
 
 static int find_modes(const spar_member *m, int64_t n, spari_modal *p, double *frequency, double *shapes) {
     double *room = spari_zalloc(6 * (int64_t)m->body->unique, sizeof *room);
-    int status = room && spari_modal_alloc(p, (size_t)m->row->unknowns(m))
-                     ? m->row->problem(m, p->K->data, p->M->data) /* contiguous */
-                     : SPAR_ERR_MEMORY;
+    int status =
+        room && spari_modal_alloc(p, (int)m->row->unknowns(m)) ? m->row->problem(m, p->K, p->M) : SPAR_ERR_MEMORY;
     if (status != SPAR_OK) {
         free(room);
         return spari_fail(m->session, status, "no memory for the modes of '%s'", m->name);
     }
     status = spari_modal_solve(p, m, "member", n, frequency);
     for (int64_t k = 0; k < n && shapes && status == SPAR_OK; k++) {
-        m->row->shape(m, spari_modal_mode(p, (size_t)k), room, shapes + 6 * m->nodes * k);
+        m->row->shape(m, spari_modal_mode(p, k), room, shapes + 6 * m->nodes * k);
     }
     free(room);
     return status;

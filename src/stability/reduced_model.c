@@ -161,8 +161,8 @@ typedef struct reduced_root {
 typedef struct reduced_work {
     int n, N, roots;
     reduced_pole *pole;
-    double complex *S, *Q, *room;      /* [N][N] twice, [N] */
-    double complex *T, *D, *X, *Y, *w; /* [n][n] four times, [n] */
+    double complex *S, *Q, *room;      /* [N][N] twice, [4 N] */
+    double complex *T, *D, *X, *Y, *w; /* [n][n] four times, [4 n] */
     double complex *x;                 /* [N][n] */
     reduced_root *root;                /* [N] */
 } reduced_work;
@@ -180,13 +180,13 @@ static int work_create(reduced_work *w, const spari_reduced *r) {
     int poles = w->pole ? find_poles(r, w->pole) : 0;
     w->N = 2 * r->n + poles;
     int64_t N = w->N;
-    w->S = spari_zalloc(2 * N * N + N + N * n, sizeof *w->S);
-    w->T = spari_zalloc(4 * n * n + n, sizeof *w->T);
+    w->S = spari_zalloc(2 * N * N + 4 * N + N * n, sizeof *w->S);
+    w->T = spari_zalloc(4 * n * n + 4 * n, sizeof *w->T);
     w->root = spari_zalloc(N, sizeof *w->root);
     if (!w->pole || !w->S || !w->T || !w->root) {
         return SPAR_ERR_MEMORY;
     }
-    w->Q = w->S + N * N, w->room = w->Q + N * N, w->x = w->room + N;
+    w->Q = w->S + N * N, w->room = w->Q + N * N, w->x = w->room + 4 * N;
     w->D = w->T + n * n, w->X = w->D + n * n, w->Y = w->X + n * n, w->w = w->Y + n * n;
     return SPAR_OK;
 }
@@ -226,7 +226,7 @@ static int form_matrix(const spari_reduced *r, reduced_work *w, double unit) {
 static int find_starts(const spari_reduced *r, reduced_work *w) {
     double unit = r->fastest;
     int n = r->n, N = w->N;
-    if (form_matrix(r, w, unit) || spari_schur(N, w->S, w->Q, w->room)) {
+    if (form_matrix(r, w, unit) || spari_schur(N, w->S, w->Q, 0, w->room)) {
         return SPAR_ERR_NUMERIC;
     }
     for (int k = 0; k < N; k++) {
@@ -236,12 +236,8 @@ static int find_starts(const spari_reduced *r, reduced_work *w) {
         }
         reduced_root *root = w->root + w->roots;
         *root = (reduced_root){.s = s, .begun = s, .x = w->x + n * w->roots++};
-        spari_schur_vector(N, w->S, k, w->room);
-        for (int i = 0; i < n; i++) {
-            for (int l = 0; l <= k; l++) {
-                root->x[i] += w->Q[N * i + l] * w->room[l];
-            }
-        }
+        spari_schur_vector(N, w->S, w->Q, k, w->room, w->room + N);
+        memcpy(root->x, w->room, (size_t)n * sizeof *root->x);
     }
     return SPAR_OK;
 }
@@ -268,7 +264,7 @@ static int bring_nearer(const spari_reduced *r, const reduced_work *w, reduced_r
     double last = INFINITY;
     for (int pass = 0; pass < POLISH; pass++) {
         find_matrix(r, w, root->s);
-        if (spari_decay_solve(n, w->D, n, w->T) || spari_schur(n, w->T, w->Y, w->w)) {
+        if (spari_decay_solve(n, w->D, n, w->T) || spari_schur(n, w->T, w->Y, 0, w->w)) {
             return 1;
         }
         int best = 0;
@@ -282,13 +278,7 @@ static int bring_nearer(const spari_reduced *r, const reduced_work *w, reduced_r
             }
         }
         double complex step = w->T[(n + 1) * best];
-        spari_schur_vector(n, w->T, best, w->w);
-        for (int i = 0; i < n; i++) {
-            root->x[i] = 0;
-            for (int l = 0; l <= best; l++) {
-                root->x[i] += w->Y[n * i + l] * w->w[l];
-            }
-        }
+        spari_schur_vector(n, w->T, w->Y, best, root->x, w->w);
         root->s -= step;
         if (!(cabs(root->s - root->begun) <= 0.2 * cabs(root->begun) + slack)) {
             return 1;

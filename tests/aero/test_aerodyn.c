@@ -164,7 +164,7 @@ static void test_between(void **state) {
     }
     for (int k = 0; k < 4; k++) { /* 11.48 m: 0.3 of the way */
         double a[2][3];
-        gsl_interp_accel accel = {0, 0, 0};
+        int64_t row = 0;
         for (int j = 0; j < 2; j++) {
             const nrel5mw_polar *t = &data.polar[data.polar_of[p[j] + 1]];
             assert_string_equal(t->name, j ? "DU35_A17" : "DU40_A17");
@@ -172,9 +172,9 @@ static void test_between(void **state) {
             a[j][1] = interpolated(t->n, t->alpha, t->cd, alpha[k]);
             a[j][2] = interpolated(t->n, t->alpha, t->cm, alpha[k]);
         }
-        NEAR(spari_table_lift(aero->section[2].table, alpha[k], &accel), 0.7 * a[0][0] + 0.3 * a[1][0], 1e-12);
-        NEAR(spari_table_drag(aero->section[2].table, alpha[k], &accel), 0.7 * a[0][1] + 0.3 * a[1][1], 1e-12);
-        NEAR(spari_table_moment(aero->section[2].table, alpha[k], &accel), 0.7 * a[0][2] + 0.3 * a[1][2], 1e-12);
+        NEAR(spari_table_lift(aero->section[2].table, alpha[k], &row), 0.7 * a[0][0] + 0.3 * a[1][0], 1e-12);
+        NEAR(spari_table_drag(aero->section[2].table, alpha[k], &row), 0.7 * a[0][1] + 0.3 * a[1][1], 1e-12);
+        NEAR(spari_table_moment(aero->section[2].table, alpha[k], &row), 0.7 * a[0][2] + 0.3 * a[1][2], 1e-12);
     }
     spar_aero_destroy(&aero);
     spar_session_destroy(&s);
@@ -307,12 +307,12 @@ static void test_variants(void **state) {
         {"a.dat", "90 1 0.5 0.3", "9d1 1 .5E0 3e-1", 0.5, 0.25},
     };
     for (size_t k = 0; k < sizeof variant / sizeof variant[0]; k++) {
-        gsl_interp_accel accel = {0, 0, 0};
+        int64_t row = 0;
         wing w = make_wing();
         read_wing(&w, deck(variant[k].file, variant[k].old, variant[k].new_text), 0, NULL);
         assert_int_equal(w.aero->n, 3);
-        NEAR(spari_table_lift(w.aero->section[0].table, pi / 4, &accel), variant[k].cl, 1e-15);
-        NEAR(spari_table_moment(w.aero->section[0].table, pi / 4, &accel), variant[k].cm, 1e-15);
+        NEAR(spari_table_lift(w.aero->section[0].table, pi / 4, &row), variant[k].cl, 1e-15);
+        NEAR(spari_table_moment(w.aero->section[0].table, pi / 4, &row), variant[k].cm, 1e-15);
         end_wing(&w);
         no_deck();
     }
@@ -326,7 +326,7 @@ static void test_blends(void **state) {
                                         "4 NumAlf\n-170 2 0 0\n-10 1 0 0\n10 3 0 0\n190 2 0 0\n"};
     const double middle[1] = {2};
     for (int k = 0; k < 2; k++) {
-        gsl_interp_accel accel = {0, 0, 0}, other = {0, 0, 0};
+        int64_t row = 0, other = 0;
         wing w = make_wing();
         const double span[3] = {1, middle[0], 3};
         read_wing(&w,
@@ -338,7 +338,7 @@ static void test_blends(void **state) {
         double at = spari_table_wrap(mean, 80 * pi / 180, &beyond);
         assert_int_equal(beyond, 0);
         double of_a = 80.0 / 90, of_b = k == 0 ? 5 : 3 - 70.0 / 180;
-        NEAR(spari_table_lift(mean, at, &accel), 0.5 * (of_a + of_b), 1e-14);
+        NEAR(spari_table_lift(mean, at, &row), 0.5 * (of_a + of_b), 1e-14);
         NEAR(spari_table_lift(w.aero->section[0].table, at, &other), of_a, 1e-14);
         end_wing(&w);
         no_deck();

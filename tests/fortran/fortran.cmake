@@ -18,7 +18,7 @@ if(CMAKE_C_COMPILER_ID STREQUAL "GNU" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GN
   target_include_directories(fortran_types PRIVATE "${PROJECT_SOURCE_DIR}/include")
   target_compile_options(fortran_types PRIVATE -flto -O0)
   target_link_options(fortran_types PRIVATE -flto -O0 -Werror=lto-type-mismatch)
-  target_link_libraries(fortran_types PRIVATE spar_flags spar::gsl Threads::Threads $<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>)
+  target_link_libraries(fortran_types PRIVATE spar_flags spar::algebra Threads::Threads $<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>)
   add_test(NAME fortran_types COMMAND "${CMAKE_COMMAND}" --build "${PROJECT_BINARY_DIR}" --target fortran_types)
   spar_set_test(fortran_types fortran 300)
 endif()

@@ -49,7 +49,7 @@ static spari_body *random_body(int elements, int P, int points, int damped, int 
     spari_body *b = spari_body_create(elements, P, counts, 1, damped, 1);
     double x[24], bary[24], gx[24], gw[24];
     spari_gll(P, x, NULL, bary);
-    assert_int_equal(spari_gauss(points, gx, gw), 0);
+    spari_gauss(points, gx, gw);
     assert_true(bodies++ % 2 == 0 || spari_body_set_pre(b) == 0);
     b->lanes = lanes;
     b->length = 2.0 * elements;

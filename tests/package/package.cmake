@@ -43,6 +43,16 @@ if(SPAR_MPI)
     --test-command sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${work}/without_mpi/libspar.so")
 endif()
 
+# the same symbols with LAPACK in place of GSL, of which nothing is left; a program solves eigenvalue problems with it
+if(SPAR_GSL AND SPAR_LAPACK AND NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
+  spar_package_test(without_gsl "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}" "${work}/without_gsl"
+    --build-generator "${CMAKE_GENERATOR}" --build-target spar --build-options -DSPAR_GSL=OFF -DSPAR_MPI=OFF -DSPAR_FORTRAN=OFF
+    -DSPAR_BUILD_TESTS=OFF -DSPAR_BUILD_EXAMPLES=OFF -DSPAR_BUILD_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=Debug
+    "-DCMAKE_C_FLAGS=-O0 -g0"
+    --test-command sh "${here}/without_gsl.sh" "${work}/without_gsl" "${work}/without_gsl_program" "${CMAKE_C_COMPILER}")
+  set_tests_properties(package_without_gsl PROPERTIES PROCESSORS 2 TIMEOUT 600)
+endif()
+
 # spar as a part of another project (FetchContent), whose installed program runs without the build folder
 add_test(NAME package_subproject COMMAND sh "${here}/subproject" "${PROJECT_SOURCE_DIR}" "${work}/subproject" -G "${CMAKE_GENERATOR}"
   "-DCMAKE_C_COMPILER=${CMAKE_C_COMPILER}" "-DCMAKE_C_COMPILER_LAUNCHER=${CMAKE_C_COMPILER_LAUNCHER}" -DSPAR_MPI=OFF -DSPAR_FORTRAN=OFF)

@@ -242,7 +242,7 @@ static void cantilever_create(cantilever *c, int fidelity, int substeps, double 
     OK(s, spar_member_set_fidelity(c->beam, fidelity, fidelity == SPAR_FIDELITY_MODAL ? 4 : 0));
     OK(s, spar_member_commit(c->beam));
     OK(s, spar_member_set_load(c->beam, NODES - 1, SPAR_LOAD_DEAD, load));
-    assert_int_equal(spari_gauss(POINTS, c->xi, c->weight), 0);
+    spari_gauss(POINTS, c->xi, c->weight);
     OK(s, spar_fluid_create(c->beam, "strips", &c->strips));
     OK(s, spar_fluid_set_sections(c->strips, POINTS, c->xi, NULL));
     OK(s, spar_fluid_map(c->strips));

@@ -44,7 +44,7 @@ static void wing_create(wing *w, int elements, int nodes, double lambda_l, int s
     w->beam = scene_beam(w->session, "wing", elements, nodes, wing_span, K, M);
     w->lambda = lambda_l / wing_span, w->alpha0 = 0.05, w->theta = 1;
     OK(w->session, spar_member_commit(w->beam));
-    assert_int_equal(spari_gauss(POINTS, xi, weight), 0);
+    spari_gauss(POINTS, xi, weight);
     for (int e = 0; e < elements; e++) {
         for (int k = 0; k < POINTS; k++, w->n++) {
             w->xi[w->n] = (2 * e + 1 + xi[k]) / elements - 1;

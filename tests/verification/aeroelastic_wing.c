@@ -32,7 +32,7 @@ static void create(wing *w, double root) {
     OK(s, spar_beam_set_sections(w->beam, 1, eta, K, M));
     OK(s, spar_member_set_root(w->beam, SPAR_ROOT_FIXED));
     OK(s, spar_member_commit(w->beam));
-    assert_int_equal(spari_gauss(STRIPS, w->xi, w->weight), 0);
+    spari_gauss(STRIPS, w->xi, w->weight);
     OK(s, spar_fluid_create(w->beam, "strips", &w->strips));
     OK(s, spar_fluid_set_sections(w->strips, STRIPS, w->xi, NULL));
     OK(s, spar_fluid_map(w->strips));

@@ -10,19 +10,23 @@ class Spar(CMakePackage):
     homepage = "https://example.org/spar"
     url = "https://example.org/spar/spar-0.9.0.tar.gz"
 
-    license("BSD-3-Clause AND GPL-3.0-or-later", checked_by="spar")  # its own sources, and GSL that it links
+    license("BSD-3-Clause AND GPL-3.0-or-later", checked_by="spar", when="+gsl")  # its own sources, and GSL that it links
+    license("BSD-3-Clause", checked_by="spar", when="~gsl")
 
     version("0.9.0", sha256="0000000000000000000000000000000000000000000000000000000000000000")
 
     variant("mpi", default=True, description="Sessions over an MPI communicator")
     variant("fortran", default=True, description="The Fortran modules")
+    variant("gsl", default=True, description="GSL; without it LAPACK does what GSL does")
     variant("openblas", default=True, description="OpenBLAS in place of GSL's own CBLAS")
 
     depends_on("c", type="build")
     depends_on("fortran", type="build", when="+fortran")
     depends_on("cmake@3.22:", type="build")
-    depends_on("gsl")
+    depends_on("gsl", when="+gsl")
+    depends_on("gsl", type="test")
     depends_on("openblas threads=none", when="+openblas")
+    depends_on("lapack", when="~gsl~openblas")
     depends_on("mpi", when="+mpi")
     depends_on("cmocka", type="test")
 
@@ -33,6 +37,7 @@ class Spar(CMakePackage):
         return [
             self.define_from_variant("SPAR_MPI", "mpi"),
             self.define_from_variant("SPAR_FORTRAN", "fortran"),
+            self.define_from_variant("SPAR_GSL", "gsl"),
             self.define_from_variant("SPAR_OPENBLAS", "openblas"),
             self.define("SPAR_BUILD_TESTS", self.run_tests),
             self.define("SPAR_BUILD_EXAMPLES", False),
