@@ -258,7 +258,7 @@ static int adopt(spar_aero *aero, int effects, const char *caller) {
 }
 
 int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist, const spar_polar *polar) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, i >= 0 && (aero->blades == 0 || i < aero->n), SPAR_ERR_ARGUMENT,
                   "%s: no section %lld; there are %lld, counted from 0", __func__, (long long)i, (long long)aero->n);
@@ -291,7 +291,7 @@ int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist
 
 int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[3], double hub_radius,
                         double tip_radius) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, hub && axis, SPAR_ERR_ARGUMENT, "%s: hub or axis is NULL", __func__);
     SPARI_REQUIRE(aero->session, spari_first_nonfinite(hub, 3) < 0 && spari_first_nonfinite(axis, 3) < 0,
@@ -365,7 +365,7 @@ static int find_direction(const spar_aero *aero, const double v[3], double unit[
 
 int spar_aero_set_shear(spar_aero *aero, int law, const double ground[3], const double up[3], double height,
                         double parameter) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, ground && up, SPAR_ERR_ARGUMENT, "%s: ground or up is NULL", __func__);
     SPARI_REQUIRE(aero->session, spari_first_nonfinite(ground, 3) < 0, SPAR_ERR_ARGUMENT,
@@ -384,7 +384,7 @@ int spar_aero_set_shear(spar_aero *aero, int law, const double ground[3], const 
 
 int spar_aero_set_tower(spar_aero *aero, const double base[3], const double top[3], double base_radius,
                         double top_radius) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, base && top, SPAR_ERR_ARGUMENT, "%s: base or top is NULL", __func__);
     SPARI_REQUIRE(aero->session, spari_first_nonfinite(base, 3) < 0 && spari_first_nonfinite(top, 3) < 0,
@@ -421,7 +421,7 @@ int spar_aero_set_blades(spar_aero *aero, int total) {
 }
 
 int spar_aero_set_effects(spar_aero *aero, int effects) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, (effects & ~SPARI_AERO_ALL) == 0, SPAR_ERR_ARGUMENT,
                   "%s: effects are %d, with bits that are not SPAR_AERO_ effects", __func__, effects);
@@ -645,7 +645,7 @@ static int solve_elements(spar_aero *aero, double density, const double *inflow,
 }
 
 int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     int status = spari_named(aero->session, __func__, solve_elements(aero, density, inflow, theta, __func__));
     if (status != SPAR_OK && aero->blades > 0) { /* a step must not go on with old loads */
@@ -682,7 +682,7 @@ static void sum_rotor(const spar_aero *aero, double *thrust, double *torque, dou
 }
 
 int spar_aero_get_rotor(const spar_aero *aero, double *thrust, double *torque, double *power) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     SPARI_TRY(check_solved(aero, __func__));
     SPARI_REQUIRE(aero->session, aero->rotor_used, SPAR_ERR_STATE,
@@ -700,7 +700,7 @@ int spar_aero_get_rotor(const spar_aero *aero, double *thrust, double *torque, d
 
 int spar_aero_get_sections(const spar_aero *aero, double *alpha, double *cl, double *cd, double *a,
                            double *a_tangential) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     SPARI_TRY(check_solved(aero, __func__));
     double *out[] = {alpha, cl, cd, a, a_tangential};
@@ -717,7 +717,7 @@ int spar_aero_get_sections(const spar_aero *aero, double *alpha, double *cl, dou
 }
 
 int spar_aero_get_chord(const spar_aero *aero, double *chord, double *twist) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     SPARI_TRY(check_described(aero, __func__));
     for (int64_t i = 0; i < aero->n; i++) {
@@ -749,7 +749,7 @@ int spar_aero_get_flags(const spar_aero *aero, int *flags, int64_t *no_root) {
 }
 
 int spar_aero_get_loads(const spar_aero *aero, double *per_length, double *force, double *moment) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     SPARI_TRY(check_solved(aero, __func__));
     size_t bytes = (size_t)(3 * count(aero)) * sizeof(double);

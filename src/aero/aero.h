@@ -16,7 +16,7 @@ struct spar_aero {
     int rotor_given, effects_given, solved;
     spari_section *section; /* [n] */
     int64_t *row;           /* [blades][n] of the polars: where look-ups begin */
-    double *place;          /* reference places [blades][n][3] */
+    double *place;          /* reference positions [blades][n][3] */
     double *length;         /* [blades][n - 1] */
     double *loss_radius;    /* [blades][n], of the first rotor; NULL: no loss asked for so far */
     double *x, *v, *q;

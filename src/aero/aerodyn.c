@@ -132,7 +132,7 @@ static int set_centres(spar_fluid *fluid, const spar_session *session, const cha
 
 int spar_fluid_read_aerodyn(spar_fluid *fluid, const char *primary_path, const char *blade_path, const double q[4],
                             int64_t n, const double *span) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it with spar_fluid_create", __func__);
     spar_member *member;
     spar_session *session;
@@ -331,7 +331,7 @@ static int fill_sections(spar_aero *aero, const char *call, const spari_blade *b
 
 int spar_aero_read_aerodyn(spar_aero *aero, const char *primary_path, const char *blade_path, const double q[4],
                            const double *span) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create",
                   __func__);
     SPARI_REQUIRE(aero->session, primary_path, SPAR_ERR_ARGUMENT, "%s: primary_path is NULL", __func__);

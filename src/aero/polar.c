@@ -133,7 +133,7 @@ static int check_turn(int64_t n, const double *alpha, const double *const value[
 
 int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, const double *cd, const double *cm,
                       spar_polar **polar) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     const double *const value[] = {cl, cd, cm};
     SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the place for the polar is NULL; give the address of a handle",
                   __func__);
@@ -163,7 +163,7 @@ void spar_polar_destroy(spar_polar **polar) {
 }
 
 int spar_polar_set_interpolation(spar_polar *polar, int kind) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the polar is NULL", __func__);
     SPARI_REQUIRE(NULL, kind >= SPAR_POLAR_LINEAR && kind <= SPAR_POLAR_CUBIC, SPAR_ERR_ARGUMENT,
                   "%s: kind %d is not known; SPAR_POLAR_LINEAR, _AKIMA or _CUBIC", __func__, kind);
@@ -247,7 +247,7 @@ void spari_table_find_attached(const spari_table *table, double *zero, double *s
 }
 
 int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, double *cl, double *cd, double *cm) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the polar is NULL", __func__);
     SPARI_REQUIRE(NULL, isfinite(alpha_rad), SPAR_ERR_ARGUMENT, "%s: alpha is not finite", __func__);
     int64_t row = 0;

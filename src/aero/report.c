@@ -130,7 +130,7 @@ static int check_arguments(spar_session *s, const spar_aero *aero, const aero_tr
 int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, int64_t steps, spar_before_step before,
                              spar_fluid_solver solve, void *context, int64_t table_rows, int64_t table_columns,
                              double *table) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; give that of the blades", __func__);
     const aero_trial t = {dt, steps, before, solve, context};
     double made[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};

@@ -13,16 +13,16 @@ static int64_t spans_of(int64_t unknowns) {
     return (unknowns + SPAN - 1) / SPAN;
 }
 
-spari_mixing *spari_mixing_create(int64_t nodes) {
-    spari_mixing *m = spari_zalloc(1, sizeof *m);
+spari_anderson *spari_anderson_create(int64_t nodes) {
+    spari_anderson *m = spari_zalloc(1, sizeof *m);
     int64_t n = spari_mixed_unknowns(nodes);
     int64_t all = VECTORS * n + SPARI_MIXED_SUMS * spans_of(n) + 8;
-    if (!m || !(m->room = spari_zalloc(all, sizeof *m->room))) {
+    if (!m || !(m->workspace = spari_zalloc(all, sizeof *m->workspace))) {
         free(m);
         return NULL;
     }
     m->unknowns = n;
-    m->z = m->room + spari_to_line(m->room);
+    m->z = m->workspace + spari_to_line(m->workspace);
     m->c = m->z + n;
     m->d[0] = m->c + n, m->d[1] = m->d[0] + n;
     m->w[0] = m->d[1] + n, m->w[1] = m->w[0] + n;
@@ -30,21 +30,21 @@ spari_mixing *spari_mixing_create(int64_t nodes) {
     return m;
 }
 
-void spari_mixing_free(spari_mixing *m) {
+void spari_anderson_free(spari_anderson *m) {
     if (m) {
-        free(m->room);
+        free(m->workspace);
         free(m);
     }
 }
 
-typedef struct mixing_pass {
-    const spari_mixing *m;
+typedef struct anderson_pass {
+    const spari_anderson *m;
     const spari_mixing_kernels *kernels;
     double *x, by[2];
-} mixing_pass;
+} anderson_pass;
 
 /* After two corrections without mixing (the second is in w[0]): forms the first pair. */
-static void make_first_pair(const spari_mixing *m, int64_t from, int64_t to) {
+static void make_first_pair(const spari_anderson *m, int64_t from, int64_t to) {
     const double *x = m->w[0];
     for (int64_t i = from; i < to; i++) {
         m->d[0][i] = x[i] - m->z[i];
@@ -53,7 +53,7 @@ static void make_first_pair(const spari_mixing *m, int64_t from, int64_t to) {
 }
 
 static void look_at_span(void *context, int64_t from, int64_t to) {
-    const mixing_pass *t = context;
+    const anderson_pass *t = context;
     if (t->m->seen == 2) {
         make_first_pair(t->m, from, to);
     }
@@ -61,12 +61,12 @@ static void look_at_span(void *context, int64_t from, int64_t to) {
 }
 
 static void mix_span(void *context, int64_t from, int64_t to) {
-    const mixing_pass *t = context;
+    const anderson_pass *t = context;
     t->kernels->mix(t->m, t->by, t->x, from, to);
 }
 
 static void keep_span(void *context, int64_t from, int64_t to) {
-    const mixing_pass *t = context;
+    const anderson_pass *t = context;
     double *kept = t->m->seen == 0 ? t->m->z : t->m->w[0];
     memcpy(kept + from, t->x + from, (size_t)(to - from) * sizeof *kept);
 }
@@ -78,7 +78,7 @@ static void exchange(double **a) {
 }
 
 /* Adds the sums of the spans in their order. */
-static void add_up(const spari_mixing *m, double sums[SPARI_MIXED_SUMS]) {
+static void add_up(const spari_anderson *m, double sums[SPARI_MIXED_SUMS]) {
     memcpy(sums, m->sums, SPARI_MIXED_SUMS * sizeof *sums);
     for (int64_t k = 1; k < spans_of(m->unknowns); k++) {
         for (int i = 0; i < SPARI_MIXED_SUMS; i++) {
@@ -97,7 +97,7 @@ static int is_within_a_pair(double x) {
 
 /* by: minimises |z - by[0] d[0] - by[1] d[1]|. Uses the newer pair alone if the pairs are dependent, or if a
    coefficient exceeds 1, which contradicts a contracting tangent. Uses no pair if that fails too. */
-static void find_parts(const spari_mixing *m, double by[2]) {
+static void find_parts(const spari_anderson *m, double by[2]) {
     double sums[SPARI_MIXED_SUMS];
     add_up(m, sums);
     double newer = sums[0], both = sums[1], older = sums[2], z_newer = sums[3], z_older = sums[4];
@@ -116,22 +116,22 @@ static void find_parts(const spari_mixing *m, double by[2]) {
     }
 }
 
-void spari_mixing_take(spari_mixing *m, spari_crew *crew, int lanes, double length, double *x) {
+void spari_anderson_step(spari_anderson *m, spari_thread_pool *pool, int lanes, double length, double *x) {
     for (int i = 0; i < SPARI_MIXED_STRIPE; i++) {
         m->weight[i] = i % 6 < 3 ? 1 / (length * length) : 1;
     }
-    mixing_pass t = {.m = m, .x = x};
+    anderson_pass t = {.m = m, .x = x};
     if (m->seen < 2) { /* a pair of eigenvalues +-lambda does not show in one change: two corrections are applied
                           without mixing */
-        spari_crew_spread(crew, m->unknowns, SPAN, keep_span, &t);
+        spari_thread_pool_spread(pool, m->unknowns, SPAN, keep_span, &t);
         m->seen++;
         return;
     }
     t.kernels = spari_mixing_kernels_for(lanes ? lanes : 8);
-    spari_crew_spread(crew, m->unknowns, SPAN, look_at_span, &t);
+    spari_thread_pool_spread(pool, m->unknowns, SPAN, look_at_span, &t);
     exchange(m->d);
     exchange(m->w);
     find_parts(m, t.by);
-    spari_crew_spread(crew, m->unknowns, SPAN, mix_span, &t);
+    spari_thread_pool_spread(pool, m->unknowns, SPAN, mix_span, &t);
     m->seen++;
 }

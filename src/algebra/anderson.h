@@ -3,8 +3,8 @@
    A reused tangent applies axial forces in directions that have rotated since. Longitudinal and transverse errors
      then couple: the largest eigenvalues of I - T^-1 K are pairs +-lambda. Two earlier corrections eliminate both.
    Nothing is kept between solutions. Results have the same bits for any number of lanes and threads. */
-#ifndef SPARI_MIXING_H
-#define SPARI_MIXING_H
+#ifndef SPARI_ANDERSON_H
+#define SPARI_ANDERSON_H
 
 #include "../base/thread_pool.h"
 
@@ -14,27 +14,27 @@ static inline int64_t spari_mixed_unknowns(int64_t nodes) {
     return (6 * nodes + SPARI_MIXED_STRIPE - 1) / SPARI_MIXED_STRIPE * SPARI_MIXED_STRIPE;
 }
 
-typedef struct spari_mixing {
+typedef struct spari_anderson {
     int64_t unknowns;                  /* six per node, rounded up to whole stripes */
     int64_t seen;                      /* corrections so far */
     double *z, *c;                     /* last correction from the tangent, and as applied */
     double *d[2];                      /* of the last two pairs, newer first: the change of z */
     double *w[2];                      /* the change of z plus the correction applied in between */
     double weight[SPARI_MIXED_STRIPE]; /* of squares of displacements and rotations */
-    double *room;                      /* memory of all arrays */
+    double *workspace;                 /* memory of all arrays */
     double *sums;                      /* [spans][SPARI_MIXED_SUMS] */
-} spari_mixing;
+} spari_anderson;
 
 /* For a number of nodes. NULL: no memory. */
-spari_mixing *spari_mixing_create(int64_t nodes);
-void spari_mixing_free(spari_mixing *mixing);
+spari_anderson *spari_anderson_create(int64_t nodes);
+void spari_anderson_free(spari_anderson *anderson);
 /* Begins a solution, or continues with a new tangent. */
-static inline void spari_mixing_begin(spari_mixing *mixing) {
-    mixing->seen = 0;
+static inline void spari_anderson_begin(spari_anderson *anderson) {
+    anderson->seen = 0;
 }
 /* Replaces x [nodes][6], a correction from the tangent, by the mixed correction. Displacements are scaled by
    `length`. x has room for whole stripes, filled with zeros. lanes: maximum number of lanes; 0: as the processor has
    (tests try all). */
-void spari_mixing_take(spari_mixing *mixing, spari_crew *crew, int lanes, double length, double *x);
+void spari_anderson_step(spari_anderson *anderson, spari_thread_pool *pool, int lanes, double length, double *x);
 
 #endif

@@ -6,8 +6,8 @@
 #include "anderson.h"
 
 typedef struct spari_mixing_kernels {
-    void (*look)(const spari_mixing *m, const double *x, int64_t from, int64_t to, double *sums);
-    void (*mix)(const spari_mixing *m, const double *by, double *x, int64_t from, int64_t to);
+    void (*look)(const spari_anderson *m, const double *x, int64_t from, int64_t to, double *sums);
+    void (*mix)(const spari_anderson *m, const double *by, double *x, int64_t from, int64_t to);
 } spari_mixing_kernels;
 
 SPARI_KERNEL_TABLES(spari_mixing_kernels)

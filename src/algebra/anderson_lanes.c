@@ -1,4 +1,4 @@
-/* What mixing does of W unknowns at once, for one width of vectors (math/lanes.h).
+/* What Anderson mixing does of W unknowns at once, for one width of vectors (math/lanes.h).
 
    Sums are those of every 24th unknown whatever the width, and nothing is fused: the same bits at every width. */
 #include "anderson_kernels.h"
@@ -28,7 +28,7 @@ HERE double NAME(weighed)(const double *a, const double *b, const double *weight
 
 /* Stores the change of z in d[1], whose content is no longer needed, and the new z. Sums: products of this change
    with itself and with the change before, of that one with itself, of both with z, and of z with itself. */
-TARGET static void NAME(look)(const spari_mixing *m, const double *x, int64_t from, int64_t to, double *sums) {
+TARGET static void NAME(look)(const spari_anderson *m, const double *x, int64_t from, int64_t to, double *sums) {
     const double *old = m->d[0];
     double *z = m->z, *d = m->d[1];
     for (int64_t i = from; i < to; i += W) {
@@ -45,7 +45,7 @@ TARGET static void NAME(look)(const spari_mixing *m, const double *x, int64_t fr
 }
 
 /* x minus by[0] times the newer pair and by[1] times the older one. If both are 0, x is unchanged. */
-TARGET static void NAME(mix)(const spari_mixing *m, const double *by, double *x, int64_t from, int64_t to) {
+TARGET static void NAME(mix)(const spari_anderson *m, const double *by, double *x, int64_t from, int64_t to) {
     const double *d = m->d[0], *old = m->w[1], newer = by[0], older = by[1];
     double *c = m->c, *w = m->w[0];
     const int mixes = newer != 0 || older != 0;

@@ -23,7 +23,7 @@ typedef struct krylov {
     double complex *H;             /* [most + 1][most]; S is its square part after a restart */
     double complex *S, *Q, *b, *h; /* [most][most] twice; [most + 1] twice */
     double left;                   /* norm of the last vector outside the subspace */
-    double complex *room;          /* [most][size] */
+    double complex *workspace;     /* [most][size] */
     double *last;                  /* [most] moduli found by the search before */
     uint64_t seed;
 } krylov;
@@ -32,7 +32,7 @@ static void krylov_free(krylov *k) {
     free(k->V);
     free(k->H);
     free(k->S);
-    free(k->room);
+    free(k->workspace);
     free(k->last);
 }
 
@@ -41,12 +41,12 @@ static int krylov_create(krylov *k) {
     k->V = spari_zalloc((m + 1) * n, sizeof *k->V);
     k->H = spari_zalloc((m + 1) * m, sizeof *k->H);
     k->S = spari_zalloc(2 * m * m + 5 * m + 2, sizeof *k->S);
-    k->room = spari_zalloc(m * n, sizeof *k->room);
+    k->workspace = spari_zalloc(m * n, sizeof *k->workspace);
     k->last = spari_zalloc(m, sizeof *k->last);
     k->Q = k->S ? k->S + m * m : NULL;
     k->b = k->Q ? k->Q + m * m : NULL;
     k->h = k->b ? k->b + m + 1 : NULL;
-    return k->V && k->H && k->S && k->room && k->last;
+    return k->V && k->H && k->S && k->workspace && k->last;
 }
 
 /* Orthogonalises x against the first `count` vectors of V, twice; h [count]: the coefficients. Returns the norm of
@@ -68,7 +68,7 @@ static double orthogonal_to(const krylov *k, int count, double complex *x, doubl
 
 /* Sets vector `at` of V to any vector orthogonal to those before it, in the range of the operator. 1: there is none. */
 static int any_vector(krylov *k, int at) {
-    double complex *x = k->V + (int64_t)k->size * at, *y = k->room;
+    double complex *x = k->V + (int64_t)k->size * at, *y = k->workspace;
     for (int attempt = 0; attempt < 3; attempt++) {
         for (int i = 0; i < k->size; i++) {
             k->seed = k->seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
@@ -126,8 +126,8 @@ static int order_subspace(krylov *k, int m) {
 static int restart(krylov *k, int m, int p, int beside) {
     const double complex one = 1, zero = 0;
     SPARI_BLAS(cblas_zgemm(CblasColMajor, CblasNoTrans, CblasTrans, k->size, p, m, &one, k->V, k->size, k->Q, m, &zero,
-                           k->room, k->size));
-    memcpy(k->V, k->room, (size_t)p * (size_t)k->size * sizeof *k->V);
+                           k->workspace, k->size));
+    memcpy(k->V, k->workspace, (size_t)p * (size_t)k->size * sizeof *k->V);
     memset(k->H, 0, ((size_t)k->most + 1) * (size_t)k->most * sizeof *k->H);
     for (int i = 0; i < p; i++) {
         memcpy(k->H + (int64_t)k->most * i, k->S + (int64_t)m * i, (size_t)p * sizeof *k->H);

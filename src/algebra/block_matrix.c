@@ -282,7 +282,7 @@ static int eliminate_next(block_graph *g) {
 
 /* Orders the blocks, with their lists of later blocks, which are positions at the end. 0 or 1. */
 static int find_order(spari_blocks *m, block_graph *g, const int *size) {
-    int room = 0, used = 0;
+    int capacity = 0, used = 0;
     for (int p = 0; p < m->n; p++) {
         int v = eliminate_next(g);
         if (v < 0) {
@@ -291,9 +291,9 @@ static int find_order(spari_blocks *m, block_graph *g, const int *size) {
         block_panel *panel = m->panel + p;
         *panel = (block_panel){.unit = v, .size = size[v], .first = m->start[v], .near = used, .nears = g->count[v]};
         m->position[v] = p;
-        if (used + panel->nears > room) {
-            room = 2 * (used + panel->nears);
-            int *more = realloc(m->near, (size_t)room * sizeof *more);
+        if (used + panel->nears > capacity) {
+            capacity = 2 * (used + panel->nears);
+            int *more = realloc(m->near, (size_t)capacity * sizeof *more);
             if (!more) {
                 return 1;
             }

@@ -17,8 +17,8 @@ spari_condensed *spari_condensed_create(int ends, const int *node, int unknowns)
     c->W = spari_zalloc(m * n, sizeof *c->W);
     c->rows = spari_zalloc(m * n, sizeof *c->rows);
     c->K = spari_zalloc(m * m, sizeof *c->K);
-    c->held = spari_zalloc(m, sizeof *c->held);
-    if (!c->node || !c->W || !c->rows || !c->K || !c->held) {
+    c->end_values = spari_zalloc(m, sizeof *c->end_values);
+    if (!c->node || !c->W || !c->rows || !c->K || !c->end_values) {
         spari_condensed_free(c);
         return NULL;
     }
@@ -32,7 +32,7 @@ void spari_condensed_free(spari_condensed *c) {
         free(c->W);
         free(c->rows);
         free(c->K);
-        free(c->held);
+        free(c->end_values);
         free(c);
     }
 }
@@ -80,10 +80,10 @@ int spari_condensed_form(spari_condensed *c, spari_linear *factors) {
         if (spari_linear_solve(factors, column)) {
             return 1;
         }
-        memset(c->held, 0, (size_t)m * sizeof *c->held);
-        spari_linear_add_rows(n, m, c->rows, -1, column, c->held);
+        memset(c->end_values, 0, (size_t)m * sizeof *c->end_values);
+        spari_linear_add_rows(n, m, c->rows, -1, column, c->end_values);
         for (int j = 0; j < m; j++) {
-            c->K[m * j + k] += c->held[j];
+            c->K[m * j + k] += c->end_values[j];
         }
     }
     return spari_first_nonfinite(c->K, (int64_t)m * m) >= 0;
@@ -93,17 +93,17 @@ int spari_condensed_reduce(const spari_condensed *c, spari_linear *factors, doub
     int m = 6 * c->ends;
     for (int j = 0; j < m; j++) {
         int u = unknown_of(c, j);
-        c->held[j] = is_fixed(c, u) ? 0 : r[u];
+        c->end_values[j] = is_fixed(c, u) ? 0 : r[u];
         r[u] = 0;
     }
     if (c->n > m) { /* the member has other nodes */
         if (spari_linear_solve(factors, r)) {
             return 1;
         }
-        spari_linear_add_rows(c->n, m, c->rows, -1, r, c->held);
+        spari_linear_add_rows(c->n, m, c->rows, -1, r, c->end_values);
     }
     for (int j = 0; j < m; j++) {
-        r[unknown_of(c, j)] = c->held[j];
+        r[unknown_of(c, j)] = c->end_values[j];
     }
     return 0;
 }
@@ -111,10 +111,10 @@ int spari_condensed_reduce(const spari_condensed *c, spari_linear *factors, doub
 void spari_condensed_expand(const spari_condensed *c, double *x) {
     int m = 6 * c->ends;
     for (int j = 0; j < m; j++) {
-        c->held[j] = x[unknown_of(c, j)];
+        c->end_values[j] = x[unknown_of(c, j)];
     }
     if (c->n > m) {
-        spari_linear_less_columns(c->n, m, c->W, c->held, x);
+        spari_linear_less_columns(c->n, m, c->W, c->end_values, x);
     }
 }
 

@@ -38,33 +38,33 @@ int spari_cholesky_band(int n, int band, double *A) {
 
 /* GSL's QR takes no memory of its own; its LU and SVD do, without looking whether they got any. */
 int spari_least_squares(int m, int n, double *A, int columns, double *b) {
-    double *room = spari_zalloc(2 * (int64_t)n + m, sizeof *room);
-    if (!room) {
+    double *workspace = spari_zalloc(2 * (int64_t)n + m, sizeof *workspace);
+    if (!workspace) {
         return SPAR_ERR_MEMORY;
     }
     gsl_matrix_view a = spari_gsl_matrix(A, m, n);
-    gsl_vector_view tau = spari_gsl_vector(room, n), x = spari_gsl_vector(room + n, n);
-    gsl_vector_view left = spari_gsl_vector(room + 2 * (int64_t)n, m);
+    gsl_vector_view tau = spari_gsl_vector(workspace, n), x = spari_gsl_vector(workspace + n, n);
+    gsl_vector_view left = spari_gsl_vector(workspace + 2 * (int64_t)n, m);
     int bad;
     SPARI_GSL(bad = gsl_linalg_QR_decomp(&a.matrix, &tau.vector));
     for (int c = 0; c < columns && !bad; c++) {
         gsl_vector_view right = spari_gsl_vector(b + (int64_t)m * c, m);
         SPARI_GSL(bad = gsl_linalg_QR_lssolve(&a.matrix, &tau.vector, &right.vector, &x.vector, &left.vector));
-        memcpy(right.vector.data, room + n, (size_t)n * sizeof *room);
+        memcpy(right.vector.data, workspace + n, (size_t)n * sizeof *workspace);
     }
-    free(room);
+    free(workspace);
     return bad ? SPAR_ERR_NUMERIC : SPAR_OK;
 }
 
 /* G^T = Q R with pivoted columns. */
-static int pivot_rows(int h, int n, const double *G, double least, int *order, int want, double *Q, double *room,
+static int pivot_rows(int h, int n, const double *G, double least, int *order, int want, double *Q, double *workspace,
                       gsl_permutation *p) {
     int most = n < h ? n : h, rank = 0, sign;
-    gsl_matrix_view a = spari_gsl_matrix(room, n, h);
-    gsl_vector_view tau = spari_gsl_vector(room + (int64_t)n * h, most);
-    gsl_vector_view norm = spari_gsl_vector(room + (int64_t)n * h + most, h);
+    gsl_matrix_view a = spari_gsl_matrix(workspace, n, h);
+    gsl_vector_view tau = spari_gsl_vector(workspace + (int64_t)n * h, most);
+    gsl_vector_view norm = spari_gsl_vector(workspace + (int64_t)n * h + most, h);
     for (int64_t i = 0; i < (int64_t)h * n; i++) {
-        room[h * (i % n) + i / n] = G[i];
+        workspace[h * (i % n) + i / n] = G[i];
     }
     for (size_t c = 0; c < (size_t)h; c++) {
         gsl_vector_view column = gsl_matrix_column(&a.matrix, c);
@@ -72,7 +72,7 @@ static int pivot_rows(int h, int n, const double *G, double least, int *order, i
         gsl_vector_scale(&column.vector, size > 0 ? 1 / size : 0);
     }
     SPARI_GSL((void)gsl_linalg_QRPT_decomp(&a.matrix, &tau.vector, p, &sign, &norm.vector));
-    while (rank < most && fabs(room[(int64_t)(h + 1) * rank]) > least) {
+    while (rank < most && fabs(workspace[(int64_t)(h + 1) * rank]) > least) {
         rank++;
     }
     for (int i = 0; i < h; i++) {
@@ -87,10 +87,10 @@ static int pivot_rows(int h, int n, const double *G, double least, int *order, i
 }
 
 int spari_independent_rows(int h, int n, double *G, double least, int *order, int want, double *Q) {
-    double *room = spari_zalloc((int64_t)n * h + n + h, sizeof *room);
+    double *workspace = spari_zalloc((int64_t)n * h + n + h, sizeof *workspace);
     gsl_permutation p = {(size_t)h, spari_zalloc(h, sizeof *p.data)};
-    int rank = room && p.data ? pivot_rows(h, n, G, least, order, want, Q, room, &p) : -1;
-    free(room);
+    int rank = workspace && p.data ? pivot_rows(h, n, G, least, order, want, Q, workspace, &p) : -1;
+    free(workspace);
     free(p.data);
     return rank;
 }
@@ -117,12 +117,12 @@ int spari_cholesky_band(int n, int band, double *A) {
 
 int spari_least_squares(int m, int n, double *A, int columns, double *b) {
     int bad, size = n + 32 * (n > columns ? n : columns);
-    double *room = spari_zalloc(size, sizeof *room);
-    if (!room) {
+    double *workspace = spari_zalloc(size, sizeof *workspace);
+    if (!workspace) {
         return SPAR_ERR_MEMORY;
     }
-    SPARI_BLAS(dgels_("T", &n, &m, &columns, A, &n, b, &m, room, &size, &bad, 1));
-    free(room);
+    SPARI_BLAS(dgels_("T", &n, &m, &columns, A, &n, b, &m, workspace, &size, &bad, 1));
+    free(workspace);
     return bad ? SPAR_ERR_NUMERIC : SPAR_OK;
 }
 
@@ -158,11 +158,11 @@ int spari_independent_rows(int h, int n, double *G, double least, int *order, in
  */
 int spari_singular_values(int n, double *A, double *S, double *V) {
     int size = 8 * n, bad;
-    double *room = spari_zalloc((int64_t)n * n + size, sizeof *room), *U = room + size;
-    if (!room) {
+    double *workspace = spari_zalloc((int64_t)n * n + size, sizeof *workspace), *U = workspace + size;
+    if (!workspace) {
         return SPAR_ERR_MEMORY;
     }
-    SPARI_BLAS(dgesvd_("A", "A", &n, &n, A, &n, S, V, &n, U, &n, room, &size, &bad, 1, 1));
+    SPARI_BLAS(dgesvd_("A", "A", &n, &n, A, &n, S, V, &n, U, &n, workspace, &size, &bad, 1, 1));
     memcpy(A, U, (size_t)n * (size_t)n * sizeof *A);
     for (int i = 0; i < n * n; i++) {
         int j = n * (i % n) + i / n;
@@ -170,7 +170,7 @@ int spari_singular_values(int n, double *A, double *S, double *V) {
         V[i] = i < j ? V[j] : V[i];
         V[j] = i < j ? x : V[j];
     }
-    free(room);
+    free(workspace);
     return bad ? SPAR_ERR_NUMERIC : SPAR_OK;
 }
 #else

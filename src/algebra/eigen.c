@@ -43,22 +43,22 @@ static int bring_to_one(int64_t size, double *A, int *exponent) {
 /* solve_symmetric: A x = mu x, mu ascending, the vectors as rows in place of A. solve_real: eigenvalues of A in parts.
    Both return 0 where they converge, -1 without memory. */
 #ifdef SPARI_HAVE_LAPACK
-static int solve_symmetric(int n, double *A, double *mu, double *room) {
+static int solve_symmetric(int n, double *A, double *mu, double *workspace) {
     int bad, size = SPARI_SYMMETRIC_ROOM(n);
-    SPARI_BLAS(dsyev_("V", "U", &n, A, &n, mu, room, &size, &bad, 1, 1));
+    SPARI_BLAS(dsyev_("V", "U", &n, A, &n, mu, workspace, &size, &bad, 1, 1));
     return bad;
 }
 
-static int solve_real(int n, double *A, double *re, double *im, double *room) {
+static int solve_real(int n, double *A, double *re, double *im, double *workspace) {
     int bad, one = 1, size = SPARI_SYMMETRIC_ROOM(n);
-    SPARI_BLAS(dgeev_("N", "N", &n, A, &n, re, im, NULL, &one, NULL, &one, room, &size, &bad, 1, 1));
+    SPARI_BLAS(dgeev_("N", "N", &n, A, &n, re, im, NULL, &one, NULL, &one, workspace, &size, &bad, 1, 1));
     return bad;
 }
 #else
-static int solve_symmetric(int n, double *A, double *mu, double *room) {
-    gsl_matrix_view a = spari_gsl_matrix(A, n, n), z = spari_gsl_matrix(room + 4 * n, n, n);
+static int solve_symmetric(int n, double *A, double *mu, double *workspace) {
+    gsl_matrix_view a = spari_gsl_matrix(A, n, n), z = spari_gsl_matrix(workspace + 4 * n, n, n);
     gsl_vector_view value = spari_gsl_vector(mu, n);
-    gsl_eigen_symmv_workspace w = {(size_t)n, room, room + n, room + 2 * n, room + 3 * n};
+    gsl_eigen_symmv_workspace w = {(size_t)n, workspace, workspace + n, workspace + 2 * n, workspace + 3 * n};
     int bad;
     SPARI_GSL(bad = gsl_eigen_symmv(&a.matrix, &value.vector, &z.matrix, &w));
     (void)gsl_eigen_symmv_sort(&value.vector, &z.matrix, GSL_EIGEN_SORT_VAL_ASC);
@@ -66,9 +66,9 @@ static int solve_symmetric(int n, double *A, double *mu, double *room) {
     return bad;
 }
 
-static int solve_real(int n, double *A, double *re, double *im, double *room) {
+static int solve_real(int n, double *A, double *re, double *im, double *workspace) {
     gsl_matrix_view a = spari_gsl_matrix(A, n, n);
-    gsl_vector_complex_view value = gsl_vector_complex_view_array(room, (size_t)n);
+    gsl_vector_complex_view value = gsl_vector_complex_view_array(workspace, (size_t)n);
     gsl_eigen_nonsymm_workspace *w;
     int bad = -1;
     SPARI_GSL(w = gsl_eigen_nonsymm_alloc((size_t)n));
@@ -78,18 +78,18 @@ static int solve_real(int n, double *A, double *re, double *im, double *room) {
         gsl_eigen_nonsymm_free(w);
     }
     for (int i = 0; i < n; i++) {
-        re[i] = room[2 * i], im[i] = room[2 * i + 1];
+        re[i] = workspace[2 * i], im[i] = workspace[2 * i + 1];
     }
     return bad;
 }
 #endif
 
-int spari_symmetric(int n, double *A, double *mu, double *room) {
+int spari_symmetric(int n, double *A, double *mu, double *workspace) {
     int of_A;
     if (n < 1) {
         return SPAR_OK;
     }
-    if (!bring_to_one((int64_t)n * n, A, &of_A) || solve_symmetric(n, A, mu, room)) {
+    if (!bring_to_one((int64_t)n * n, A, &of_A) || solve_symmetric(n, A, mu, workspace)) {
         return SPAR_ERR_NUMERIC;
     }
     for (int k = 0; k < n; k++) {

@@ -10,7 +10,7 @@
 
 /* A x = mu x with a symmetric A [n][n]: mu [n] ascending, orthonormal eigenvectors as rows in place of A. 0, or
    SPAR_ERR_NUMERIC: an entry is not a finite number. */
-int spari_symmetric(int n, double *A, double *mu, double *room);
+int spari_symmetric(int n, double *A, double *mu, double *workspace);
 
 /* A x = mu B x with A [n][n] symmetric and B symmetric positive definite: mu [n] descending, eigenvectors the rows of x
    [n][n], of unit length. Destroys A and B. 0; SPAR_ERR_MEMORY; SPAR_ERR_NUMERIC: an entry, or one of B^-1 A, is not a

@@ -24,13 +24,13 @@ static void equilibrate(int n, double *S) {
 }
 
 int spari_inertia_negative(int n, const double *A, int stride) {
-    double S[SPARI_INERTIA * SPARI_INERTIA], mu[SPARI_INERTIA], room[SPARI_SYMMETRIC_ROOM(SPARI_INERTIA)];
+    double S[SPARI_INERTIA * SPARI_INERTIA], mu[SPARI_INERTIA], workspace[SPARI_SYMMETRIC_ROOM(SPARI_INERTIA)];
     int negative = 0;
     for (int i = 0; i < n * n; i++) {
         S[i] = 0.5 * (A[stride * (i / n) + i % n] + A[stride * (i % n) + i / n]);
     }
     equilibrate(n, S);
-    int known = spari_symmetric(n, S, mu, room) == SPAR_OK;
+    int known = spari_symmetric(n, S, mu, workspace) == SPAR_OK;
     for (int i = 0; i < n && known; i++) {
         negative += mu[i] < 0;
     }

@@ -18,11 +18,11 @@ enum { LONG = 64, ELEMENTS = 16, GATHERED = 128 };
 /* At most this many constrained first unknowns of an element are removed from a dense matrix. */
 enum { MOST_LEAD = 8 };
 
-/* All memory is taken at the beginning: nothing in a step allocates.
+/* All memory is allocated at the beginning: nothing in a step allocates.
 
-   The unknowns that an element has to itself, where they are many, are taken out of its own matrix, element by element,
-   which leaves a chain of their ends with blocks of 2 overlap. Half the numbers of a band over all unknowns, and
-   elements are independent.
+   The unknowns that an element has to itself, where they are many, are eliminated of its own matrix, element by
+   element, which leaves a chain of their ends with blocks of 2 overlap. Half the numbers of a band over all unknowns,
+   and elements are independent.
 
    A long chain is cut at the joint in its middle: its first half is this system, its second half, from the far end
    backwards, another; both end with the joint's unknowns. Each takes out all but these, and has then in their corner
@@ -36,28 +36,28 @@ typedef struct linear_rows {
 struct spari_linear {
     int elements, block, overlap; /* of a chain; otherwise 0 */
     size_t n, band;               /* unknowns; half bandwidth (banded storage) */
-    size_t size, inner;           /* those that stand in A, and those that are taken out in it: all n, unless cut */
-    linear_rows A;   /* dense n x n, column by column, or banded size x (3 band + 1): column by column, rows apart */
-    int *swap;       /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
-    int *order;      /* dense: where row i came from by all of these */
-    unsigned fixed;  /* dense, of one element: which of its first unknowns are taken out */
-    size_t lead;     /* dense: so many of them that stand in A no longer */
-    size_t order_of; /* dense: unknowns in A when it is factored */
-    double *corners; /* dense: [n / 8, rounded up][4][8][8]: solve_dense */
-    double *y;       /* dense: [n, rounded up to eights] room */
-    double *room;    /* of the last two */
+    size_t size, inner;           /* those that stand in A, and those that are eliminated in it: all n, unless cut */
+    linear_rows A;     /* dense n x n, column by column, or banded size x (3 band + 1): column by column, rows apart */
+    int *swap;         /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
+    int *order;        /* dense: where row i came from by all of these */
+    unsigned fixed;    /* dense, of one element: which of its first unknowns are eliminated */
+    size_t lead;       /* dense: so many of them that stand in A no longer */
+    size_t order_of;   /* dense: unknowns in A when it is factored */
+    double *corners;   /* dense: [n / 8, rounded up][4][8][8]: solve_dense */
+    double *y;         /* dense: [n, rounded up to eights] room */
+    double *workspace; /* of the last two */
     unsigned *band_swap;       /* banded */
     double *symmetric;         /* spari_linear_watch; NULL: not asked for */
     spari_linear *far, *joint; /* of a chain that is cut: unknown i is n - 1 - i of `far`; else NULL */
     double *x;                 /* of a far half: [size] room */
     /* of a chain whose elements have unknowns to themselves; else NULL, 0 */
-    spari_linear *ends;      /* the chain without these */
-    size_t own;              /* how many in each */
-    double *parts;           /* [elements][block][block] column by column, first those, then the ends */
-    int *part_swap;          /* [elements][own] */
-    double *z, *ends_x;      /* [elements][block], the ends of one at least; [ends->n] workspace */
-    unsigned char *bad;      /* [elements / ELEMENTS, rounded up] workspace */
-    spari_crew *const *crew; /* spari_linear_share; NULL: no threads */
+    spari_linear *ends;             /* the chain without these */
+    size_t own;                     /* how many in each */
+    double *parts;                  /* [elements][block][block] column by column, first those, then the ends */
+    int *part_swap;                 /* [elements][own] */
+    double *z, *ends_x;             /* [elements][block], the ends of one at least; [ends->n] workspace */
+    unsigned char *bad;             /* [elements / ELEMENTS, rounded up] workspace */
+    spari_thread_pool *const *pool; /* spari_linear_share; NULL: no threads */
 };
 
 /* rows of `columns` numbers that are `step` apart, from a cache line on. */
@@ -71,15 +71,15 @@ static int alloc_rows(linear_rows *A, size_t rows, size_t columns, size_t step) 
 }
 
 /* Allocates the matrix, whose size is known. */
-static spari_linear *with_room(spari_linear *s, int dense) {
+static spari_linear *with_workspace(spari_linear *s, int dense) {
     if (dense) {
         int64_t n = (int64_t)s->n, eights = (n + SPARI_CORNER - 1) / SPARI_CORNER * SPARI_CORNER;
         (void)alloc_rows(&s->A, s->n, s->n, (size_t)eights);
         s->swap = spari_zalloc(2 * n, sizeof *s->swap);
         s->order = s->swap ? s->swap + n : NULL;
-        s->room = spari_zalloc((SPARI_CORNERS * SPARI_CORNER + 1) * eights + SPARI_CORNER, sizeof *s->room);
-        s->corners = s->room ? s->room + spari_to_line(s->room) : NULL;
-        s->y = s->room ? s->corners + SPARI_CORNERS * SPARI_CORNER * eights : NULL;
+        s->workspace = spari_zalloc((SPARI_CORNERS * SPARI_CORNER + 1) * eights + SPARI_CORNER, sizeof *s->workspace);
+        s->corners = s->workspace ? s->workspace + spari_to_line(s->workspace) : NULL;
+        s->y = s->workspace ? s->corners + SPARI_CORNERS * SPARI_CORNER * eights : NULL;
     } else {
         (void)alloc_rows(&s->A, s->size, 3 * s->band + 1, 3 * s->band + 1);
         s->band_swap = spari_zalloc((int64_t)s->size, sizeof *s->band_swap);
@@ -100,7 +100,7 @@ static spari_linear *make_chain(int elements, int block, int overlap) {
     s->elements = elements, s->block = block, s->overlap = overlap;
     s->n = s->size = s->inner = (size_t)elements * (size_t)(block - overlap) + (size_t)overlap;
     s->band = (size_t)block - 1;
-    return with_room(s, elements == 1);
+    return with_workspace(s, elements == 1);
 }
 
 /* A chain that is split. */
@@ -162,7 +162,7 @@ spari_linear *spari_linear_create_banded(int n, int band) {
         return NULL;
     }
     s->n = s->size = s->inner = (size_t)n, s->band = (size_t)band;
-    return with_room(s, 3 * s->band + 1 >= s->n);
+    return with_workspace(s, 3 * s->band + 1 >= s->n);
 }
 
 void spari_linear_free(spari_linear *s) {
@@ -178,17 +178,17 @@ void spari_linear_free(spari_linear *s) {
         free(s->bad);
         free(s->A.block);
         free(s->swap);
-        free(s->room);
+        free(s->workspace);
         free(s->band_swap);
         spari_linear_unwatch(s);
         free(s);
     }
 }
 
-void spari_linear_share(spari_linear *s, spari_crew *const *crew) {
-    s->crew = crew;
+void spari_linear_share(spari_linear *s, spari_thread_pool *const *pool) {
+    s->pool = pool;
     if (s->ends) {
-        s->ends->crew = crew;
+        s->ends->pool = pool;
     }
 }
 
@@ -429,7 +429,7 @@ typedef struct linear_halves {
 } linear_halves;
 
 static void both(linear_halves *h, spari_task half) {
-    spari_crew_run(h->s->crew ? *h->s->crew : NULL, 2, half, h);
+    spari_thread_pool_run(h->s->pool ? *h->s->pool : NULL, 2, half, h);
 }
 
 static void factor_half(void *context, int64_t item, int worker) {
@@ -467,7 +467,7 @@ static void factor_elements(void *context, int64_t from, int64_t to) {
 
 /* Distributes the elements over the threads. */
 static void spread_elements(const spari_linear *s, spari_span work, void *context) {
-    spari_crew_spread(s->crew ? *s->crew : NULL, s->elements, ELEMENTS, work, context);
+    spari_thread_pool_spread(s->pool ? *s->pool : NULL, s->elements, ELEMENTS, work, context);
 }
 
 static int is_any_bad(const spari_linear *s) {
@@ -709,7 +709,7 @@ static int solve_by_ends(spari_linear *s, double *x) {
     size_t m = (size_t)s->block, o = (size_t)s->overlap, last = (size_t)s->elements;
     linear_elements t = {s, x, kernels_here()};
     spread_elements(s, forth_elements, &t);
-    spari_crew_spread(s->crew ? *s->crew : NULL, s->elements + 1, GATHERED, gather_ends, &t);
+    spari_thread_pool_spread(s->pool ? *s->pool : NULL, s->elements + 1, GATHERED, gather_ends, &t);
     int bad = spari_linear_solve(s->ends, s->ends_x);
     spread_elements(s, back_elements, &t);
     memcpy(x + (m - o) * last, s->ends_x + o * last, o * sizeof(double));

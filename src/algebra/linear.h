@@ -15,7 +15,7 @@ spari_linear *spari_linear_create(int elements, int block, int overlap);
 spari_linear *spari_linear_create_banded(int n, int band);
 void spari_linear_free(spari_linear *system);
 /* Threads for the halves of a long chain (base/thread_pool.h) from now on; NULL: the calling thread. */
-void spari_linear_share(spari_linear *system, spari_crew *const *crew);
+void spari_linear_share(spari_linear *system, spari_thread_pool *const *pool);
 void spari_linear_zero(spari_linear *system);
 void spari_linear_add(spari_linear *system, int element, const double *S); /* S row-major [block][block] */
 /* For general systems: entry (0, 0); entry (i, j), within the band, is i + step j further on. After factoring, (i,

@@ -14,19 +14,19 @@ int spari_pencil_create(spari_pencil *p, int unknowns) {
 
 void spari_pencil_free(spari_pencil *p) {
     free(p->entry);
-    free(p->tie);
+    free(p->row_held);
     free(p->left);
     *p = (spari_pencil){0};
 }
 
 /* Makes room for one more entry of `size` bytes; NULL: no memory. */
-static void *room_for_entry(void *array, int64_t count, int64_t *room, size_t size) {
-    if (count < *room) {
+static void *grow_entries(void *array, int64_t count, int64_t *capacity, size_t size) {
+    if (count < *capacity) {
         return array;
     }
-    int64_t more = *room > 0 ? 2 * *room : 1024;
+    int64_t more = *capacity > 0 ? 2 * *capacity : 1024;
     void *grown = realloc(array, (size_t)more * size);
-    *room = grown ? more : *room;
+    *capacity = grown ? more : *capacity;
     return grown;
 }
 
@@ -34,7 +34,7 @@ void spari_pencil_put(spari_pencil *p, spari_pencil_entry entry) {
     if (entry.k == 0 && entry.c == 0 && entry.m == 0) {
         return;
     }
-    spari_pencil_entry *grown = room_for_entry(p->entry, p->entries, &p->entry_room, sizeof *grown);
+    spari_pencil_entry *grown = grow_entries(p->entry, p->entries, &p->entry_capacity, sizeof *grown);
     p->full = p->full || !grown;
     if (grown) {
         p->entry = grown;
@@ -46,11 +46,11 @@ void spari_pencil_hold_at(spari_pencil *p, spari_pencil_hold hold) {
     if (hold.g == 0) {
         return;
     }
-    spari_pencil_hold *grown = room_for_entry(p->tie, p->ties, &p->tie_room, sizeof *grown);
+    spari_pencil_hold *grown = grow_entries(p->row_held, p->rows_held, &p->held_capacity, sizeof *grown);
     p->full = p->full || !grown;
     if (grown) {
-        p->tie = grown;
-        p->tie[p->ties++] = hold;
+        p->row_held = grown;
+        p->row_held[p->rows_held++] = hold;
     }
 }
 
@@ -65,7 +65,7 @@ void spari_pencil_add(spari_pencil *p, int at, int n, int64_t apart, const doubl
     }
 }
 
-void spari_pencil_leave(spari_pencil *p, int at, int n, const double *r) {
+void spari_pencil_set_forces(spari_pencil *p, int at, int n, const double *r) {
     for (int i = at < 0 ? -at : 0; i < n; i++) {
         p->left[p->base + at + i] += r[i];
     }

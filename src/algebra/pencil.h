@@ -23,9 +23,9 @@ typedef struct spari_pencil_hold { /* of G */
 typedef struct spari_pencil {
     int n, holds; /* unknowns, rows of G */
     int base;     /* first unknown of the entries that are added now */
-    int64_t entries, entry_room, ties, tie_room;
+    int64_t entries, entry_capacity, rows_held, held_capacity;
     spari_pencil_entry *entry;
-    spari_pencil_hold *tie;
+    spari_pencil_hold *row_held;
     double *left;        /* [n] internal minus external forces of the state */
     double scale, noise; /* reference force, and its rounding error */
     int full;            /* an entry did not fit in memory */
@@ -41,7 +41,7 @@ void spari_pencil_add(spari_pencil *pencil, int at, int n, int64_t apart, const 
 void spari_pencil_put(spari_pencil *pencil, spari_pencil_entry entry);
 void spari_pencil_hold_at(spari_pencil *pencil, spari_pencil_hold hold);
 /* left += r [n] from unknown base + at on. */
-void spari_pencil_leave(spari_pencil *pencil, int at, int n, const double *r);
+void spari_pencil_set_forces(spari_pencil *pencil, int at, int n, const double *r);
 /* y [n] += (a K + b C + c M) x of the entries from `first` on. */
 void spari_pencil_times(const spari_pencil *pencil, int64_t first, double a, double b, double c, const double *x,
                         double *y);

@@ -18,10 +18,10 @@ enum { MOST_ROWS = 160, MOST_STATES = 60 };
 static const double nothing = 1e-10, fits = 1e-9, as_good = 3, nothing_fits = 0.3;
 
 typedef struct hankel {
-    int size, rows, m;            /* of Y; blocks; size * rows */
-    int64_t *at;                  /* [rows] */
-    double *U, *V, *next, *G, *S; /* [m][m] four times, [m] */
-    double complex *A, *Q, *room; /* [MOST_STATES][MOST_STATES] twice; more */
+    int size, rows, m;                 /* of Y; blocks; size * rows */
+    int64_t *at;                       /* [rows] */
+    double *U, *V, *next, *G, *S;      /* [m][m] four times, [m] */
+    double complex *A, *Q, *workspace; /* [MOST_STATES][MOST_STATES] twice; more */
 } hankel;
 
 void spari_decay_free(spari_decay *d) {
@@ -89,7 +89,7 @@ static int hankel_create(hankel *h, int size, int64_t count) {
     h->at = spari_zalloc(rows, sizeof *h->at);
     h->A = spari_zalloc(3 * states * states + 4 * states, sizeof *h->A);
     h->Q = h->A ? h->A + states * states : NULL;
-    h->room = h->Q ? h->Q + states * states : NULL;
+    h->workspace = h->Q ? h->Q + states * states : NULL;
     h->U = spari_zalloc(4 * square + h->m, sizeof *h->U);
     h->V = h->U + square, h->next = h->V + square, h->G = h->next + square, h->S = h->G + square;
     return h->at && h->A && h->U ? SPAR_OK : SPAR_ERR_MEMORY;
@@ -122,10 +122,10 @@ static int find_system(hankel *h, int r, spari_decay *d) {
     for (int i = 0; i < r * r; i++) {
         h->A[i] = h->G[h->m * (i / r) + i % r] / (root_of(h, i / r) * root_of(h, i % r));
     }
-    if (spari_schur(r, h->A, h->Q, 0, h->room)) {
+    if (spari_schur(r, h->A, h->Q, 0, h->workspace)) {
         return 1;
     }
-    double complex *x = h->room, *W = x + 2 * MOST_STATES; /* columns of W: eigenvectors */
+    double complex *x = h->workspace, *W = x + 2 * MOST_STATES; /* columns of W: eigenvectors */
     for (int k = 0; k < r; k++) {
         d->z[k] = h->A[(r + 1) * k];
         spari_schur_vector(r, h->A, h->Q, k, x, x + MOST_STATES);
@@ -179,7 +179,7 @@ static double try_order(hankel *h, int r, int64_t count, const double *y, double
             return INFINITY;
         }
     }
-    return misfit_of(d, count, y, most, h->room);
+    return misfit_of(d, count, y, most, h->workspace);
 }
 
 /* Fewest states whose fit is nearly the best. */

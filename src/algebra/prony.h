@@ -1,6 +1,6 @@
 /* Fits decaying sequences of matrices by those of a linear system: Y_k = sum of left_i z_i^k right_i^T. */
-#ifndef SPARI_DECAY_H
-#define SPARI_DECAY_H
+#ifndef SPARI_PRONY_H
+#define SPARI_PRONY_H
 
 #include <complex.h>
 #include <stdint.h>

@@ -22,10 +22,10 @@ static void transpose(int n, double complex *A) {
 }
 
 /* S and Q are stored column by column; room [4 n]. */
-static int find_form(int n, double complex *S, double complex *Q, double complex *room) {
+static int find_form(int n, double complex *S, double complex *Q, double complex *workspace) {
     int count, bad, size = 2 * n;
-    SPARI_BLAS(zgees_("V", "N", NULL, &n, S, &n, &count, room, Q, &n, room + n, &size, (double *)(room + 3 * n), NULL,
-                      &bad, 1, 1));
+    SPARI_BLAS(zgees_("V", "N", NULL, &n, S, &n, &count, workspace, Q, &n, workspace + n, &size,
+                      (double *)(workspace + 3 * n), NULL, &bad, 1, 1));
     return bad;
 }
 
@@ -163,13 +163,13 @@ static void sweep(int n, double complex *A, double complex *Q, int begin, int en
     }
 }
 
-static int find_form(int n, double complex *S, double complex *Q, double complex *room) {
+static int find_form(int n, double complex *S, double complex *Q, double complex *workspace) {
     enum { PASSES = 60 };
     double largest = 0; /* every sweep leaves rounding of the largest behind */
     for (int i = 0; i < n * n; i++) {
         largest = fmax(largest, cabs(S[i]));
     }
-    to_hessenberg(n, S, Q, room);
+    to_hessenberg(n, S, Q, workspace);
     for (int end = n - 1, pass = 0; end > 0;) {
         int begin = end;
         for (; begin > 0; begin--) {
@@ -217,7 +217,7 @@ static void transpose(int n, double complex *A) { /* rows and columns are as the
 }
 #endif
 
-int spari_schur(int n, double complex *S, double complex *Q, int sorted, double complex *room) {
+int spari_schur(int n, double complex *S, double complex *Q, int sorted, double complex *workspace) {
     if (n < 1) {
         return 0;
     }
@@ -225,7 +225,7 @@ int spari_schur(int n, double complex *S, double complex *Q, int sorted, double 
         return 1;
     }
     transpose(n, S);
-    int bad = find_form(n, S, Q, room) || (sorted && sort_form(n, S, Q));
+    int bad = find_form(n, S, Q, workspace) || (sorted && sort_form(n, S, Q));
     transpose(n, S);
     transpose(n, Q);
     return bad;
@@ -251,12 +251,12 @@ static void vector_of_form(int n, const double complex *S, int k, double complex
 }
 
 void spari_schur_vector(int n, const double complex *S, const double complex *Q, int k, double complex *x,
-                        double complex *room) {
-    vector_of_form(n, S, k, room);
+                        double complex *workspace) {
+    vector_of_form(n, S, k, workspace);
     for (int i = 0; i < n; i++) {
         x[i] = 0;
         for (int l = 0; l <= k; l++) {
-            x[i] += Q[(int64_t)n * i + l] * room[l];
+            x[i] += Q[(int64_t)n * i + l] * workspace[l];
         }
     }
 }

@@ -7,9 +7,9 @@
 
 /* S [n][n]: in A, out S; Q [n][n]: out; sorted: largest eigenvalues first; room [4 n]: workspace. 0, or 1: no
    convergence, or an entry is not finite. */
-int spari_schur(int n, double complex *S, double complex *Q, int sorted, double complex *room);
+int spari_schur(int n, double complex *S, double complex *Q, int sorted, double complex *workspace);
 /* x [n]: the eigenvector of A to the eigenvalue S [k][k], room [n]. */
 void spari_schur_vector(int n, const double complex *S, const double complex *Q, int k, double complex *x,
-                        double complex *room);
+                        double complex *workspace);
 
 #endif

@@ -23,7 +23,7 @@ struct spari_secants {
     secant column[MOST];
     double at[MOST][MOST]; /* of column j, of unit size, in the basis: at[j][i] */
     double *q, *p, *u;     /* [most][n]: the basis, orthonormal; its images; J of it */
-    double a[MOST][MOST], room[SPARI_SYMMETRIC_ROOM(MOST)];
+    double a[MOST][MOST], workspace[SPARI_SYMMETRIC_ROOM(MOST)];
 };
 
 spari_secants *spari_secants_create(int64_t n, int most) {
@@ -254,7 +254,7 @@ int spari_secants_step(spari_secants *s, const double *x, const double *r, doubl
             e[m * i + j] = e[m * j + i] = (i == j) - 0.5 * both;
         }
     }
-    if (m > 0 && spari_symmetric(m, e, value, s->room) != SPAR_OK) {
+    if (m > 0 && spari_symmetric(m, e, value, s->workspace) != SPAR_OK) {
         return 0;
     }
     for (int k = 0; k < m; k++) { /* an added mass makes I - J at least I */

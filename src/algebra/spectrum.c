@@ -43,9 +43,9 @@ typedef struct spectrum {
     spari_pencil_hold *at; /* [entries + 2 ties]: positions of the entries of the bordered matrix */
     spari_band *band;
     double complex sigma;
-    double s;             /* scale of x relative to y = lambda x */
-    double complex *room; /* [all + 2 n] */
-    double rounding;      /* rounding error of lambda if the matrix is singular at the requested shift; else 0 */
+    double s;                  /* scale of x relative to y = lambda x */
+    double complex *workspace; /* [all + 2 n] */
+    double rounding;           /* rounding error of lambda if the matrix is singular at the requested shift; else 0 */
 } spectrum;
 
 static void spectrum_free(spectrum *a) {
@@ -53,7 +53,7 @@ static void spectrum_free(spectrum *a) {
     free(a->multiplier);
     free(a->Q);
     free(a->at);
-    free(a->room);
+    free(a->workspace);
     spari_band_free(a->band);
 }
 
@@ -63,7 +63,7 @@ static void spectrum_free(spectrum *a) {
    unknowns get the mass that corresponds to the highest frequency. */
 static void scale_pencil(spectrum *a) {
     spari_pencil *p = a->p;
-    double *k = a->d, *m = (double *)a->room;
+    double *k = a->d, *m = (double *)a->workspace;
     memset(m, 0, (size_t)a->n * sizeof *m);
     for (int64_t i = 0; i < p->entries; i++) {
         const spari_pencil_entry *e = p->entry + i;
@@ -84,8 +84,8 @@ static void scale_pencil(spectrum *a) {
         double f = 1 / (a->d[e->row] * a->d[e->column]);
         e->k *= f, e->c *= f, e->m *= f;
     }
-    for (int64_t i = 0; i < p->ties; i++) {
-        p->tie[i].g /= a->d[p->tie[i].column];
+    for (int64_t i = 0; i < p->rows_held; i++) {
+        p->row_held[i].g /= a->d[p->row_held[i].column];
     }
 }
 
@@ -103,8 +103,8 @@ static int find_holds(spectrum *a) {
     a->Q = spari_zalloc((int64_t)most * n, sizeof *a->Q);
     int status = G && order && a->Q ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
-        for (int64_t i = 0; i < p->ties; i++) {
-            G[(int64_t)n * p->tie[i].row + p->tie[i].column] += p->tie[i].g;
+        for (int64_t i = 0; i < p->rows_held; i++) {
+            G[(int64_t)n * p->row_held[i].row + p->row_held[i].column] += p->row_held[i].g;
         }
         int rank = spari_independent_rows(h, n, G, dependent_hold, order, most, a->Q);
         status = rank >= 0 ? SPAR_OK : SPAR_ERR_MEMORY;
@@ -143,10 +143,10 @@ static int make_band(spectrum *a) {
     for (int64_t i = 0; i < p->entries; i++) {
         a->at[count++] = (spari_pencil_hold){p->entry[i].row, p->entry[i].column, 0};
     }
-    for (int64_t i = 0; i < p->ties; i++) {
-        int k = a->multiplier[p->tie[i].row];
+    for (int64_t i = 0; i < p->rows_held; i++) {
+        int k = a->multiplier[p->row_held[i].row];
         if (k >= 0) {
-            a->at[count++] = (spari_pencil_hold){a->n + k, p->tie[i].column, 0};
+            a->at[count++] = (spari_pencil_hold){a->n + k, p->row_held[i].column, 0};
         }
     }
     for (int i = 0; i < a->all; i++) {
@@ -168,11 +168,11 @@ static int factor_at(spectrum *a, double complex sigma) {
         size = fmax(size, cabs(x));
         spari_band_add(a->band, e->row, e->column, x);
     }
-    for (int64_t i = 0; i < p->ties; i++) {
-        int k = a->multiplier[p->tie[i].row];
+    for (int64_t i = 0; i < p->rows_held; i++) {
+        int k = a->multiplier[p->row_held[i].row];
         if (k >= 0) {
-            spari_band_add(a->band, a->n + k, p->tie[i].column, size * p->tie[i].g);
-            spari_band_add(a->band, p->tie[i].column, a->n + k, size * p->tie[i].g);
+            spari_band_add(a->band, a->n + k, p->row_held[i].column, size * p->row_held[i].g);
+            spari_band_add(a->band, p->row_held[i].column, a->n + k, size * p->row_held[i].g);
         }
     }
     return spari_band_factor(a->band);
@@ -188,7 +188,7 @@ static void solve_at(const spectrum *a, double complex *x) {
 static void apply_inverse(void *self, const double complex *in, double complex *out) {
     const spectrum *a = self;
     const spari_pencil *p = a->p;
-    double complex *x = a->room, *first = x + a->all, *second = first + a->n;
+    double complex *x = a->workspace, *first = x + a->all, *second = first + a->n;
     for (int i = 0; i < a->n; i++) {
         first[i] = in[i] / a->s;
         second[i] = in[a->n + i];
@@ -220,7 +220,7 @@ static double size_of(int n, const double complex *x) {
 static double near_shift(spectrum *a) {
     enum { STEPS = 4 };
     const spari_pencil *p = a->p;
-    double complex *x = a->room, *y = x + a->all;
+    double complex *x = a->workspace, *y = x + a->all;
     double square = 0;
     for (int i = 0; i < a->n; i++) {
         y[i] = 1 + 0.3 * sin(12.9898 * (i + 1));
@@ -249,7 +249,7 @@ static double near_shift(spectrum *a) {
    alone. */
 static double rounding_at(spectrum *a, double complex shift, int *only) {
     const spari_pencil *p = a->p;
-    double complex *x = a->room, *y = x + a->all;
+    double complex *x = a->workspace, *y = x + a->all;
     double *sum = (double *)(y + a->n), most = 0;
     memset(x, 0, (size_t)a->n * sizeof *x);
     memset(sum, 0, (size_t)a->n * sizeof *sum);
@@ -464,9 +464,9 @@ int spari_spectrum(spari_pencil *p, int n, double complex shift, int how, int *f
         how = p->n <= MOST_DENSE || 6 * (n + 1) > left ? SPARI_SPECTRUM_DENSE : SPARI_SPECTRUM_SPARSE;
     }
     a.multiplier = spari_zalloc(p->holds, sizeof *a.multiplier);
-    a.room = spari_zalloc(3 * (int64_t)p->n + p->holds, sizeof *a.room);
-    a.at = spari_zalloc(p->entries + p->ties + p->n + p->holds, sizeof *a.at);
-    int status = a.d && a.multiplier && a.room && a.at && !p->full ? SPAR_OK : SPAR_ERR_MEMORY;
+    a.workspace = spari_zalloc(3 * (int64_t)p->n + p->holds, sizeof *a.workspace);
+    a.at = spari_zalloc(p->entries + p->rows_held + p->n + p->holds, sizeof *a.at);
+    int status = a.d && a.multiplier && a.workspace && a.at && !p->full ? SPAR_OK : SPAR_ERR_MEMORY;
     for (int i = 0; i < p->holds && status == SPAR_OK; i++) {
         a.multiplier[i] = -1;
     }

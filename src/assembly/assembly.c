@@ -20,34 +20,34 @@
 /* Whether any part has starting values of that kind; the others keep their velocities then. */
 static int predict(spari_assembly *a, spari_guess stays) {
     int any = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
         int has = p->row->predict(p, stays);
         any = has || any;
         if (!has) {
             (void)p->row->predict(p, SPARI_KEEP_VELOCITY);
         }
     }
-    for (int i = 0; i < a->links; i++) {
-        a->link[i].joint->after = a->link[i].begin;
+    for (int i = 0; i < a->constraints; i++) {
+        a->constraint[i].joint->after = a->constraint[i].begin;
     }
     return any;
 }
 
-/* Residuals of all parts and gaps of all links at the latest iterate; what rounding in the former is relative to, or
-   NaN. */
+/* Residuals of all parts and gaps of all constraints at the latest iterate; what rounding in the former is relative to,
+   or NaN. */
 static double balance(spari_assembly *a, double s, double dt, double *noise) {
     double scale = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        scale += a->limb[i].row->balance(a->limb + i);
+    for (int i = 0; i < a->components; i++) {
+        scale += a->component[i].row->balance(a->component + i);
     }
-    for (int i = 0; i < a->links; i++) {
-        spari_link_find(a->link + i, s, dt, 1);
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint_find(a->constraint + i, s, dt, 1);
     }
-    spari_links_add(a);
+    spari_constraints_add_forces(a);
     *noise = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        double left = a->limb[i].row->noise(a->limb + i);
+    for (int i = 0; i < a->components; i++) {
+        double left = a->component[i].row->noise(a->component + i);
         *noise = fmax(*noise, left);
         scale += 0 * left;
     }
@@ -55,20 +55,20 @@ static double balance(spari_assembly *a, double s, double dt, double *noise) {
 }
 
 static int form(spari_assembly *a) {
-    for (int i = 0; i < a->limbs; i++) {
-        if (a->limb[i].row->tangent(a->limb + i)) {
+    for (int i = 0; i < a->components; i++) {
+        if (a->component[i].row->tangent(a->component + i)) {
             return 1;
         }
     }
-    spari_tied_keep(a);
+    spari_system_keep_joint_tangents(a);
     return 0;
 }
 
-/* Takes as much of the links' corrections off their loads. */
+/* Takes as much of the constraints' corrections off their loads. */
 static void correct_loads(spari_assembly *a, double cut) {
-    for (int i = 0; i < a->links; i++) {
+    for (int i = 0; i < a->constraints; i++) {
         for (int k = 0; k < 6; k++) {
-            a->link[i].joint->after.load[k] -= cut * a->link[i].correction[k];
+            a->constraint[i].joint->after.load[k] -= cut * a->constraint[i].correction[k];
         }
     }
 }
@@ -76,13 +76,13 @@ static void correct_loads(spari_assembly *a, double cut) {
 /* Takes the corrections off, all shortened alike; their size before. */
 static double correct(spari_assembly *a, double longest) {
     double largest = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].change = a->limb[i].row->change(a->limb + i);
-        largest = fmax(largest, a->limb[i].change);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].correction_size = a->component[i].row->correction_size(a->component + i);
+        largest = fmax(largest, a->component[i].correction_size);
     }
     double cut = largest > longest ? longest / largest : 1;
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->correct(a->limb + i, cut);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->correct(a->component + i, cut);
     }
     correct_loads(a, cut);
     return largest;
@@ -92,23 +92,25 @@ static double correct(spari_assembly *a, double longest) {
    leaves of the rates' gaps as they were then. *size: at least that of what it takes off. */
 static int correct_rates(spari_assembly *a, double cut, double *size) {
     double most = 0;
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
         for (int k = 0; k < 6; k++) {
-            l->gap[k] = spari_link_holds(l, k) ? spari_link_rate_gap(l, k) / a->limb[0].scheme.rate - l->gap[k] : 0;
+            l->gap[k] = spari_constraint_holds(l, k)
+                            ? spari_constraint_rate_gap(l, k) / a->component[0].scheme.rate - l->gap[k]
+                            : 0;
             most = fmax(most, fabs(l->gap[k]));
         }
     }
     if (!(most > 0)) {
         return 0;
     }
-    if (spari_tied_close(a, a->limb[0].scheme.cv)) {
+    if (spari_system_close_gaps(a, a->component[0].scheme.cv)) {
         return 1;
     }
-    for (int i = 0; i < a->limbs; i++) {
-        const spari_scheme *c = &a->limb[i].scheme;
-        *size = fmax(*size, a->limb[i].row->change(a->limb + i));
-        a->limb[i].row->shift_rates(a->limb + i, cut * c->rate, cut * c->cm, cut * c->cb);
+    for (int i = 0; i < a->components; i++) {
+        const spari_scheme *c = &a->component[i].scheme;
+        *size = fmax(*size, a->component[i].row->correction_size(a->component + i));
+        a->component[i].row->shift_rates(a->component + i, cut * c->rate, cut * c->cm, cut * c->cb);
     }
     correct_loads(a, cut);
     return 0;
@@ -119,37 +121,38 @@ static int correct_rates(spari_assembly *a, double cut, double *size) {
 static double tolerance(const spari_assembly *a, double largest) {
     const spar_session *s = a->session;
     double size = 0, most = 0, worst = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
         double way = p->row->way(p);
-        p->leave = s->newton_strict ? 0 : spari_leave(p->member, &p->scheme, way);
+        p->allowed = s->newton_strict ? 0 : spari_newton_tolerance(p->member, &p->scheme, way);
         size = fmax(size, way);
-        most = fmax(most, p->leave);
+        most = fmax(most, p->allowed);
     }
-    for (int i = 0; i < a->limbs && !s->newton_strict; i++) {
-        worst = fmax(worst, a->limb[i].change / fmax(a->limb[i].leave, 0.1 * most));
+    for (int i = 0; i < a->components && !s->newton_strict; i++) {
+        worst = fmax(worst, a->component[i].correction_size / fmax(a->component[i].allowed, 0.1 * most));
     }
-    int stage = a->limb[0].scheme.rule != SPARI_ALPHA;
-    double strict = stage ? spari_leave_stage(s, &a->limb[0].scheme, size) : s->newton_atol + s->newton_rtol * size;
+    int stage = a->component[0].scheme.rule != SPARI_ALPHA;
+    double strict =
+        stage ? spari_newton_tolerance_stage(s, &a->component[0].scheme, size) : s->newton_atol + s->newton_rtol * size;
     return worst > 0 ? fmax(strict, largest / worst) : strict;
 }
 
-static int kept_serves(const spari_assembly *a) {
+static int tangent_serves(const spari_assembly *a) {
     int kept = a->factored;
-    for (int i = 0; i < a->limbs; i++) {
-        kept = kept && a->limb[i].row->serves(a->limb + i);
+    for (int i = 0; i < a->components; i++) {
+        kept = kept && a->component[i].row->serves(a->component + i);
     }
     return kept;
 }
 
-/* Where the parts have moved by less than near_tied (rad; lengths by the members') the factored system still serves: it
-   contracts by about as much. */
-static const double near_tied = 0.01;
+/* Where the parts have moved by less than near_factored (rad; lengths by the members') the factored system still
+   serves: it contracts by about as much. */
+static const double near_factored = 0.01;
 enum { LEAST_PATIENCE = 3, MOST_PATIENCE = 8 };
 
-/* What is left of the tangents for the next solution (see tied.h) after one of so many iterations; took: of those that
-   it was found with, 0: it formed them. New ones take about ten iterations to form and serve for many solutions, so
-   that they are made when they would spare more than one iteration. */
+/* What is left of the tangents for the next solution (see system.h) after one of so many iterations; took: of those
+   that it was found with, 0: it formed them. New ones take about ten iterations to form and serve for many solutions,
+   so that they are made when they would spare more than one iteration. */
 static int tangents_after(int iterations, int took) {
     int patience = took < LEAST_PATIENCE ? LEAST_PATIENCE : took < MOST_PATIENCE ? took + 1 : MOST_PATIENCE;
     if (took == 0) {
@@ -159,48 +162,48 @@ static int tangents_after(int iterations, int took) {
 }
 
 /* A substep of all, as newton.h has it. */
-typedef struct tied_step {
+typedef struct together_step {
     spari_assembly *a;
     double s, dt;
     int took; /* of the tangents that it began with */
-} tied_step;
+} together_step;
 
-static int guess_tied(void *self, spari_guess stays) {
-    const tied_step *t = self;
+static int guess_together(void *self, spari_guess stays) {
+    const together_step *t = self;
     return predict(t->a, stays);
 }
 
-static int begin_tied(void *self, int kept) {
-    tied_step *t = self;
+static int begin_together(void *self, int kept) {
+    together_step *t = self;
     t->took = t->a->factored;
-    t->a->factored = kept && kept_serves(t->a);
+    t->a->factored = kept && tangent_serves(t->a);
     t->a->standing = 0; /* what a solution begins with is not to depend on those before it */
     return t->a->factored;
 }
 
 /* Of positions. So much of a gap is none: in a step h it would ask for an acceleration of the gap / h^2, 1 m/s^2 in
    1e-8 s. */
-static double rounding_of(const spari_link *l) {
+static double rounding_of(const spari_constraint *l) {
     double size = 0;
     for (int side = 0; side < 2; side++) {
-        size = fmax(size, spari_norm(l->place[side].x));
-        size = fmax(size, l->limb[side] ? spari_member_length(l->limb[side]->member) : 0);
+        size = fmax(size, spari_norm(l->pose[side].x));
+        size = fmax(size, l->component[side] ? spari_member_length(l->component[side]->member) : 0);
     }
     return 8 * DBL_EPSILON * size;
 }
 
-static const char *iterate_tied(void *self, double longest, spari_iterate *it) {
-    const tied_step *t = self;
+static const char *iterate_together(void *self, double longest, spari_iterate *it) {
+    const together_step *t = self;
     spari_assembly *a = t->a;
     double noise, scale = balance(a, t->s, t->dt, &noise);
     if (!isfinite(scale)) {
         return "met numbers that are not finite";
     }
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
         double rounding = rounding_of(l);
         for (int k = 0; k < 6; k++) {
-            double gap = spari_link_holds(l, k) ? spari_link_gap(l, k) : 0;
+            double gap = spari_constraint_holds(l, k) ? spari_constraint_gap(l, k) : 0;
             l->gap[k] = copysign(fmax(fabs(gap) - (k < 3 ? rounding : 8 * DBL_EPSILON), 0), gap);
         }
     }
@@ -208,7 +211,7 @@ static const char *iterate_tied(void *self, double longest, spari_iterate *it) {
         return "found a singular tangent";
     }
     a->factored = 1;
-    if (spari_tied_solve(a, a->limb[0].scheme.cv)) {
+    if (spari_system_solve(a, a->component[0].scheme.cv)) {
         return "found a singular tangent";
     }
     it->correction = correct(a, longest);
@@ -218,20 +221,20 @@ static const char *iterate_tied(void *self, double longest, spari_iterate *it) {
     }
     a->moved += it->correction;
     /* How places go beside the scheme is not to depend on where the system was factored. */
-    a->standing = a->standing && a->moved < near_tied && a->limb[0].scheme.rule == SPARI_ALPHA;
+    a->standing = a->standing && a->moved < near_factored && a->component[0].scheme.rule == SPARI_ALPHA;
     it->tolerance = tolerance(a, it->correction);
     it->small = it->correction < 1e-11;
     it->rounded = noise <= 16 * DBL_EPSILON * scale && it->small;
     return NULL;
 }
 
-static void renew_tied(void *self) {
-    const tied_step *t = self;
+static void renew_together(void *self) {
+    const together_step *t = self;
     t->a->factored = 0;
 }
 
-static void end_tied(void *self, int iterations, int fresh) {
-    const tied_step *t = self;
+static void end_together(void *self, int iterations, int fresh) {
+    const together_step *t = self;
     t->a->factored = tangents_after(iterations, fresh ? 0 : t->took);
 }
 
@@ -239,11 +242,11 @@ static void end_tied(void *self, int iterations, int fresh) {
 static int project(spari_assembly *a, double s, double dt) {
     for (int pass = 0; pass < 8; pass++) {
         double worst = 0, size = 0;
-        for (int i = 0; i < a->links; i++) {
-            spari_link *l = a->link + i;
-            spari_link_find(l, s, dt, 1);
+        for (int i = 0; i < a->constraints; i++) {
+            spari_constraint *l = a->constraint + i;
+            spari_constraint_find(l, s, dt, 1);
             for (int k = 0; k < 6; k++) {
-                l->gap[k] = spari_link_holds(l, k) ? spari_link_rate_gap(l, k) : 0;
+                l->gap[k] = spari_constraint_holds(l, k) ? spari_constraint_rate_gap(l, k) : 0;
                 worst = fmax(worst, fabs(l->gap[k]));
             }
             for (int k = 0; k < 12; k++) {
@@ -253,11 +256,11 @@ static int project(spari_assembly *a, double s, double dt) {
         if (worst <= 8 * DBL_EPSILON * size) {
             return 0;
         }
-        if (spari_tied_close(a, a->limb[0].scheme.cv)) {
+        if (spari_system_close_gaps(a, a->component[0].scheme.cv)) {
             return 1;
         }
-        for (int i = 0; i < a->limbs; i++) {
-            a->limb[i].row->shift_rates(a->limb + i, 1, 0, 0);
+        for (int i = 0; i < a->components; i++) {
+            a->component[i].row->shift_rates(a->component + i, 1, 0, 0);
         }
     }
     return 0;
@@ -268,11 +271,11 @@ static int project(spari_assembly *a, double s, double dt) {
 
 /* NULL, or what went wrong in the last attempt. A far correction may lead to another way of closing a loop. */
 static const char *attempts_of(spari_assembly *a, double s, double dt, int *iterations) {
-    static const spari_newton how = {SPARI_LONGEST, LEAST_RATE, guess_tied, begin_tied,
-                                     iterate_tied,  renew_tied, end_tied};
-    tied_step step = {a, s, dt, 0};
-    return spari_newton_solve(&how, &step, kept_serves(a), a->session->newton_max,
-                              spari_leave_begin(a->session, &a->trace), iterations);
+    static const spari_newton how = {SPARI_LONGEST,    LEAST_RATE,     guess_together, begin_together,
+                                     iterate_together, renew_together, end_together};
+    together_step step = {a, s, dt, 0};
+    return spari_newton_solve(&how, &step, tangent_serves(a), a->session->newton_max,
+                              spari_newton_stop_begin(a->session, &a->trace), iterations);
 }
 
 /* Where the last solution has led to. */
@@ -283,14 +286,14 @@ static int guess_onward(void *self, spari_guess stays) {
 
 /* Driven joints that jump, in so many parts of their way: from the place of before each from where the last has led. */
 static const char *walk_drives_in(spari_assembly *a, double s, double dt, int parts, int *iterations) {
-    static const spari_newton how = {SPARI_LONGEST, LEAST_RATE, guess_onward, begin_tied,
-                                     iterate_tied,  renew_tied, end_tied};
-    tied_step step = {a, s, dt, 0};
+    static const spari_newton how = {SPARI_LONGEST,    LEAST_RATE,     guess_onward, begin_together,
+                                     iterate_together, renew_together, end_together};
+    together_step step = {a, s, dt, 0};
     const char *wrong = NULL;
-    (void)predict(a, SPARI_KEEP_PLACE);
+    (void)predict(a, SPARI_KEEP_POSITION);
     for (int part = 1; part <= parts && !wrong; part++) {
-        for (int i = 0; i < a->links; i++) {
-            spari_link *l = a->link + i;
+        for (int i = 0; i < a->constraints; i++) {
+            spari_constraint *l = a->constraint + i;
             for (int k = 0; k < 6; k++) {
                 l->drive.z[k] = l->begin.z[k] + (l->to.z[k] - l->begin.z[k]) * part / parts;
             }
@@ -304,8 +307,8 @@ static const char *walk_drives_in(spari_assembly *a, double s, double dt, int pa
 /* The last resort; wrong: what went wrong before. */
 static const char *walk_drives(spari_assembly *a, double s, double dt, const char *wrong, int *iterations) {
     int jumps = 0;
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
         l->to = l->drive;
         for (int k = 0; k < 6; k++) {
             jumps = jumps || ((l->joint->driven >> k & 1) && fabs(l->to.z[k] - l->begin.z[k]) > 0);
@@ -314,8 +317,8 @@ static const char *walk_drives(spari_assembly *a, double s, double dt, const cha
     for (int parts = 8; parts <= 128 && jumps && wrong; parts *= 4) {
         wrong = walk_drives_in(a, s, dt, parts, iterations);
     }
-    for (int i = 0; i < a->links; i++) {
-        a->link[i].drive = a->link[i].to;
+    for (int i = 0; i < a->constraints; i++) {
+        a->constraint[i].drive = a->constraint[i].to;
     }
     return wrong;
 }
@@ -324,7 +327,7 @@ static const char *walk_drives(spari_assembly *a, double s, double dt, const cha
 static int newton_all(spari_assembly *a, double s, double dt) {
     int iterations = 0;
     const char *wrong = attempts_of(a, s, dt, &iterations);
-    if (wrong && !a->violent && !a->limb[0].scheme.still) {
+    if (wrong && !a->violent && !a->component[0].scheme.still) {
         a->violent = 1;
         wrong = attempts_of(a, s, dt, &iterations);
     }
@@ -334,7 +337,7 @@ static int newton_all(spari_assembly *a, double s, double dt) {
         "the members that joint '%s' ties together: Newton %s (%d iterations in several attempts, each of %d at "
         "most) in the step from t = %g; take a smaller dt, more substeps or a smaller rho_inf, or look at the "
         "loads",
-        a->link[0].joint->name, wrong, iterations, a->session->newton_max, a->session->time);
+        a->constraint[0].joint->name, wrong, iterations, a->session->newton_max, a->session->time);
     return SPAR_OK;
 }
 
@@ -344,38 +347,38 @@ static int newton_all(spari_assembly *a, double s, double dt) {
    Rates of the accelerations at the joints are those of what turns steadily at t^0 (time 0), later those of the time
    that has passed since t^n. 0 or 1. */
 static int shift_for_alpha(spari_assembly *a, double cv, double time) {
-    const spari_scheme *c = &a->limb[0].alpha;
+    const spari_scheme *c = &a->component[0].alpha;
     double C = spari_scheme_error(c);
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
         double jerk[12] = {0}, rate[6];
         for (int k = 0; k < 12; k += 3) {
             int side = k / 6;
             const spar_member *m = l->joint->member[side];
-            if (l->limb[side] && time > 0) {
+            if (l->component[side] && time > 0) {
                 for (int j = k; j < k + 3; j++) {
                     jerk[j] = (l->a[j] - m->now.a[6 * l->joint->seat[side] + j % 6]) / time;
                 }
-            } else if (l->limb[side] && k % 6 == 0) {
+            } else if (l->component[side] && k % 6 == 0) {
                 spari_steady_rate(m, l->v + 6 * side + 3, l->a + k, jerk + k);
             }
         }
-        spari_link_times(l->B, jerk, rate);
+        spari_constraint_times(l->B, jerk, rate);
         const spari_relative found = l->joint->after;
         if (!(time > 0)) { /* those of rigid bodies are there already */
-            spari_link_find(l, 0, 0, 1);
+            spari_constraint_find(l, 0, 0, 1);
         }
         for (int k = 0; k < 6; k++) {
-            double off = time > 0 ? 0 : spari_link_rate_gap(l, k);
-            l->gap[k] = spari_link_holds(l, k) ? off + C * c->h * c->h * rate[k] : 0;
+            double off = time > 0 ? 0 : spari_constraint_rate_gap(l, k);
+            l->gap[k] = spari_constraint_holds(l, k) ? off + C * c->h * c->h * rate[k] : 0;
         }
         l->joint->after = found;
     }
-    if (spari_tied_close(a, cv)) {
+    if (spari_system_close_gaps(a, cv)) {
         return 1;
     }
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->shift_rates(a->limb + i, 1, 0, 0);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->shift_rates(a->component + i, 1, 0, 0);
     }
     return 0;
 }
@@ -386,25 +389,25 @@ enum { START_REFINEMENTS = 3 };
 
 /* What is left of the balance at t^0, and of the constraints' accelerations. */
 static void start_residual(spari_assembly *a, double cm) {
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->unbalance(a->limb + i);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->unbalance(a->component + i);
     }
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
         double drift[6], rate[6];
-        spari_link_find(l, 0, 0, 1);
-        spari_tie_drift(&l->joint->tie, &l->place[0], &l->place[1], l->v, drift);
-        spari_link_times(l->B, l->a, rate);
+        spari_constraint_find(l, 0, 0, 1);
+        spari_kinematics_drift(&l->joint->kinematics, &l->pose[0], &l->pose[1], l->v, drift);
+        spari_constraint_times(l->B, l->a, rate);
         for (int k = 0; k < 6; k++) {
             double asked = l->joint->driven >> k & 1 ? l->drive.acceleration[k] : 0;
-            l->gap[k] = spari_link_holds(l, k) ? (rate[k] + drift[k] - asked) / cm : 0;
+            l->gap[k] = spari_constraint_holds(l, k) ? (rate[k] + drift[k] - asked) / cm : 0;
         }
     }
-    spari_links_add(a);
+    spari_constraints_add_forces(a);
 }
 
 /* A driven motion begins as the members do; later it is where it was driven to. */
-static void begin_drive(spari_link *l) {
+static void begin_drive(spari_constraint *l) {
     spar_joint *j = l->joint;
     for (int k = 0; k < 6; k++) {
         if (j->session->step == 0 && (j->driven >> k & 1)) {
@@ -419,43 +422,43 @@ static void begin_drive(spari_link *l) {
 /* Accelerations at t^0 of the parts and loads of the joints that belong together: body_newton.c's start, with the
  * joints. */
 static int start_all(spari_assembly *a) {
-    double cm = a->limb[0].scheme.cm;
+    double cm = a->component[0].scheme.cm;
     int singular = 0;
-    for (int i = 0; i < a->limbs; i++) { /* all of them: links look at their states */
-        singular = a->limb[i].row->start(a->limb + i) || singular;
+    for (int i = 0; i < a->components; i++) { /* all of them: constraints look at their states */
+        singular = a->component[i].row->start(a->component + i) || singular;
     }
-    for (int i = 0; i < a->links; i++) {
-        spari_link_find(a->link + i, 0, 0, 1);
-        begin_drive(a->link + i);
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint_find(a->constraint + i, 0, 0, 1);
+        begin_drive(a->constraint + i);
     }
-    spari_tied_keep(a);
+    spari_system_keep_joint_tangents(a);
     singular = singular || project(a, 0, 0);
     for (int k = 0; k <= START_REFINEMENTS && !singular; k++) {
         start_residual(a, cm);
-        singular = spari_tied_solve(a, 0);
-        for (int i = 0; i < a->limbs && !singular; i++) {
-            a->limb[i].row->correct_start(a->limb + i);
+        singular = spari_system_solve(a, 0);
+        for (int i = 0; i < a->components && !singular; i++) {
+            a->component[i].row->correct_start(a->component + i);
         }
         correct_loads(a, 1);
     }
-    for (int i = 0; i < a->limbs && !singular; i++) {
-        a->limb[i].row->end_start(a->limb + i);
+    for (int i = 0; i < a->components && !singular; i++) {
+        a->component[i].row->end_start(a->component + i);
     }
     if (a->session->step == 0) { /* later the accelerations that a trial begins with are not those of a steady motion */
         singular = singular || shift_for_alpha(a, 0, 0);
     }
-    for (int i = 0; i < a->limbs && !singular; i++) {
-        if (a->limb[i].row->shift_start) {
-            a->limb[i].row->shift_start(a->limb + i);
+    for (int i = 0; i < a->components && !singular; i++) {
+        if (a->component[i].row->shift_start) {
+            a->component[i].row->shift_start(a->component + i);
         }
     }
     a->factored = 0;
     SPARI_REQUIRE(a->session, !singular, SPAR_ERR_NUMERIC,
                   "the members that joint '%s' ties together: their mass and stiffness are singular at the start; give "
                   "mass or rotary inertia to every direction in which they can move freely",
-                  a->link[0].joint->name);
-    for (int i = 0; i < a->links; i++) {
-        spari_joint_balance(a->link[i].joint);
+                  a->constraint[0].joint->name);
+    for (int i = 0; i < a->constraints; i++) {
+        spari_joint_balance(a->constraint[i].joint);
     }
     return SPAR_OK;
 }
@@ -466,9 +469,9 @@ void spari_assembly_forget(spari_assembly *a) {
 
 /* ---- the step ---- */
 
-/* Places and velocities as they are, accelerations of the balance: of a frame that turns, or a rigid beam, those of its
-   nodes depend on the velocities, and only the scheme's own are those that its loads have answered to. */
-static void publish_limb(spari_limb *p, double *rates) {
+/* Positions and velocities as they are, accelerations of the balance: of a frame that turns, or a rigid beam, those of
+   its nodes depend on the velocities, and only the scheme's own are those that its loads have answered to. */
+static void publish_component(spari_component *p, double *rates) {
     const spar_member *m = p->member;
     size_t size = (size_t)(6 * m->nodes) * sizeof *rates;
     m->row->publish(p->member);
@@ -483,7 +486,7 @@ static int fail_singular(const spari_assembly *a) {
         a->session, SPAR_ERR_NUMERIC,
         "the members that joint '%s' ties together: found a singular tangent in the step from t = %g; take "
         "a smaller dt",
-        a->link[0].joint->name, a->session->time);
+        a->constraint[0].joint->name, a->session->time);
 }
 
 /* The motion that is seen at the end of a step has velocities on the constraints. The scheme goes on with its own,
@@ -491,33 +494,34 @@ static int fail_singular(const spari_assembly *a) {
    first order, for h^2 (1/2 - beta) b^n + h^2 beta b^{n+1} then has to make up for the whole of the way's local error.
  */
 static int publish_all(spari_assembly *a, double dt) {
-    int moves = !a->limb[0].scheme.still;
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->keep_rates(a->limb + i, 0);
+    int moves = !a->component[0].scheme.still;
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->keep_rates(a->component + i, 0);
     }
     int singular = moves && project(a, 1, dt);
-    for (int i = 0; i < a->limbs; i++) {
-        publish_limb(a->limb + i, a->rates);
+    for (int i = 0; i < a->components; i++) {
+        publish_component(a->component + i, a->rates);
     }
-    singular = singular || spari_tied_calm(a, 1, dt);
+    singular = singular || spari_system_damp_constraints(a, 1, dt);
     return singular ? fail_singular(a) : SPAR_OK;
 }
 
-/* rad: beyond it in a step, constraints of places alone ring in the joints' loads, and the ringing feeds itself: of
+/* rad: beyond it in a step, constraints of positions alone ring in the joints' loads, and the ringing feeds itself: of
    what joints turn by, and of what their nodes, and with them the directions of what is held, turn by. */
-static const double farthest_turn = 0.1, farthest_spin = 0.2;
+static const double farthest_rotation = 0.1, farthest_spin = 0.2;
 
-/* In a long chain short links turn back and forth in less than a step under its tension: their ringing feeds itself
+/* In a long chain short members turn back and forth in less than a step under its tension: their ringing feeds itself
    whatever they turn by (tests/stability/chains.c). So many joints with free motions are a long chain. */
 enum { CHAIN = 8 };
 
-static int ties_a_chain(const spari_assembly *a) {
+static int makes_a_chain(const spari_assembly *a) {
     int joints = 0;
-    for (int i = 0; i < a->links; i++) {
-        int holds = spari_link_holds_count(a->link + i);
+    for (int i = 0; i < a->constraints; i++) {
+        int holds = spari_constraint_count(a->constraint + i);
         joints += holds > 1 && holds < 6;
         for (int side = 0; side < 2; side++) {
-            if (a->link[i].limb[side] && a->link[i].limb[side]->frame) { /* its velocities are shifted at its root */
+            if (a->constraint[i].component[side] &&
+                a->constraint[i].component[side]->frame) { /* its velocities are shifted at its root */
                 return 0;
             }
         }
@@ -526,12 +530,12 @@ static int ties_a_chain(const spari_assembly *a) {
 }
 
 /* By the rates at the beginning of a step, in a substep h. */
-static int turns_far(const spari_assembly *a, double h) {
+static int rotates_far(const spari_assembly *a, double h) {
     int far = 0;
-    for (int i = 0; i < a->links; i++) {
-        const spar_joint *j = a->link[i].joint;
-        far = far || (!j->tie.line && spari_norm(j->now.rate + 3) * h > farthest_turn);
-        for (int side = 0; side < 2 && !j->tie.line; side++) {
+    for (int i = 0; i < a->constraints; i++) {
+        const spar_joint *j = a->constraint[i].joint;
+        far = far || (!j->kinematics.line && spari_norm(j->now.rate + 3) * h > farthest_rotation);
+        for (int side = 0; side < 2 && !j->kinematics.line; side++) {
             const spar_member *m = j->member[side];
             far = far || (m && spari_norm(m->now.v + 6 * j->seat[side] + 3) * h > farthest_spin);
         }
@@ -539,34 +543,34 @@ static int turns_far(const spari_assembly *a, double h) {
     return far;
 }
 
-static void begin_links(spari_assembly *a) {
-    for (int i = 0; i < a->links; i++) {
-        a->link[i].joint->after = a->link[i].joint->now;
+static void begin_constraints(spari_assembly *a) {
+    for (int i = 0; i < a->constraints; i++) {
+        a->constraint[i].joint->after = a->constraint[i].joint->now;
     }
 }
 
-/* Joints whose nodes all move as they are told: their springs. */
-static void look_at_links(spari_assembly *a, double dt) {
-    begin_links(a);
-    for (int i = 0; i < a->links; i++) {
-        spari_link_find(a->link + i, 1, dt, 1);
+/* Joints whose nodes all have prescribed motion: their springs. */
+static void look_at_constraints(spari_assembly *a, double dt) {
+    begin_constraints(a);
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint_find(a->constraint + i, 1, dt, 1);
     }
 }
 
 /* A step begins at t^n, in the first one with the accelerations there. */
 static int begin_step(spari_assembly *a, double dt) {
     int started = 1;
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
         started = p->row->take(p, dt / a->session->substeps) && started;
         p->alpha = p->scheme;
     }
-    begin_links(a);
-    if (a->limbs > 0 && !started && !a->limb[0].scheme.still) {
+    begin_constraints(a);
+    if (a->components > 0 && !started && !a->component[0].scheme.still) {
         SPARI_TRY(start_all(a));
     }
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->begin(a->limb + i);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->begin(a->component + i);
     }
     return SPAR_OK;
 }
@@ -576,19 +580,19 @@ int spari_assembly_balance(spari_assembly *a, double dt) {
         return SPAR_OK;
     }
     SPARI_TRY(begin_step(a, dt));
-    for (int i = 0; i < a->links && a->limbs == 0; i++) {
-        spari_link_find(a->link + i, 0, 0, 1);
+    for (int i = 0; i < a->constraints && a->components == 0; i++) {
+        spari_constraint_find(a->constraint + i, 0, 0, 1);
     }
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].member->row->publish(a->limb[i].member);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].member->row->publish(a->component[i].member);
     }
     return SPAR_OK;
 }
 
 /* Tangents where the step has ended. */
 static int form_after(spari_assembly *a) {
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
         double power = p->solver->power;
         (void)p->row->balance(p);
         p->solver->power = power;
@@ -614,29 +618,29 @@ static int gains_of_all(void *self, const spari_part *part) {
     spari_assembly *a = self;
     double gain = 0, size = 0;
     int near = 1;
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
-        if (p->frame || p->member->root == SPAR_ROOT_DRIVEN || p->member->added || p->solver->arms) {
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
+        if (p->frame || p->member->root == SPAR_ROOT_DRIVEN || p->member->added || p->solver->offset_loads) {
             return 0;
         }
         near = near && spari_stage_is_near(p->solver, p->member, p->scheme.h);
     }
-    for (int i = 0; i < a->links && !near; i++) {
-        const spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints && !near; i++) {
+        const spari_constraint *l = a->constraint + i;
         const spar_joint *j = l->joint;
         for (int side = 0; side < 2; side++) {
-            near = near || (!l->limb[side] && j->member[side]);
+            near = near || (!l->component[side] && j->member[side]);
         }
-        if (j->driven || j->tie.line || near) {
+        if (j->driven || j->kinematics.line || near) {
             return 0;
         }
         double left = 1 - 0.5 * (part->from + part->to),
-               change = potential_of(j, left, j->after.z) - potential_of(j, left, l->begin.z);
-        gain += change;
-        size += fabs(change);
+               correction_size = potential_of(j, left, j->after.z) - potential_of(j, left, l->begin.z);
+        gain += correction_size;
+        size += fabs(correction_size);
     }
-    for (int i = 0; i < a->limbs && !near; i++) {
-        spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components && !near; i++) {
+        spari_component *p = a->component + i;
         double more, of;
         spari_stage_energy(p->solver, p->member, part, &more, &of);
         gain += more;
@@ -647,34 +651,34 @@ static int gains_of_all(void *self, const spari_part *part) {
 
 static void name_all(const void *self, char *text, int size) {
     const spari_assembly *a = self;
-    (void)snprintf(text, (size_t)size, "the members that joint '%s' ties together", a->link[0].joint->name);
+    (void)snprintf(text, (size_t)size, "the members that joint '%s' ties together", a->constraint[0].joint->name);
 }
 
 static void enter_all(void *self, const spari_part *part) {
     spari_assembly *a = self;
     (void)part;
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->enter(a->limb + i);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->enter(a->component + i);
     }
-    for (int i = 0; i < a->links; i++) {
-        a->link[i].begin = a->link[i].joint->after;
+    for (int i = 0; i < a->constraints; i++) {
+        a->constraint[i].begin = a->constraint[i].joint->after;
     }
 }
 
-static double turning_of_all(const void *self) {
+static double rotation_rate_of_all(const void *self) {
     const spari_assembly *a = self;
     double most = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        const spari_limb *p = a->limb + i;
-        most = fmax(most, spari_stage_turning(p->solver, p->member));
+    for (int i = 0; i < a->components; i++) {
+        const spari_component *p = a->component + i;
+        most = fmax(most, spari_stage_rotation_rate(p->solver, p->member));
     }
     return most;
 }
 
 /* Coefficients of a stage, of each member by whether it has inertia. */
 static void set_scheme(spari_assembly *a, const spari_scheme *c) {
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
         const spari_scheme own = c->h < p->alpha.h ? spari_scheme_resize(&p->alpha, c->h) : p->alpha;
         p->scheme = c->rule == SPARI_ALPHA ? own : spari_scheme_stage(&own, c->rule);
     }
@@ -686,67 +690,69 @@ static void set_scheme(spari_assembly *a, const spari_scheme *c) {
 static int stage_of_all(void *self, const spari_scheme *c, const spari_part *part) {
     spari_assembly *a = self;
     set_scheme(a, c);
-    a->violent = a->turns_far || c->rule != SPARI_ALPHA;
+    a->violent = a->rotates_far || c->rule != SPARI_ALPHA;
     if (c->rule == SPARI_TRAPEZOIDAL) { /* how places go beside the scheme is a matter of the tangent: one that does not
                                            depend on what has been solved before */
         a->factored = 0;
     }
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
         if (c->rule == SPARI_TRAPEZOIDAL && !(part->from > 0) && !part->again) {
             p->row->take_velocities(p);
         }
         SPARI_TRY(p->row->stage(p, part));
     }
-    for (int i = 0; i < a->links; i++) {
-        spari_joint_drive_at(a->link[i].joint, part->end, part->dt, &a->link[i].drive);
-        a->link[i].joint->left = 1 - part->end;
+    for (int i = 0; i < a->constraints; i++) {
+        spari_joint_drive_at(a->constraint[i].joint, part->end, part->dt, &a->constraint[i].drive);
+        a->constraint[i].joint->left = 1 - part->end;
     }
     return newton_all(a, part->end, part->dt);
 }
 
-static int leave_all(void *self, const spari_scheme *c, const spari_part *part) {
+static int finish_all(void *self, const spari_scheme *c, const spari_part *part) {
     spari_assembly *a = self;
     (void)c;
-    if (part->to < 1 && spari_tied_calm(a, part->to, part->dt)) {
+    if (part->to < 1 && spari_system_damp_constraints(a, part->to, part->dt)) {
         return fail_singular(a);
     }
-    if (part->to < 1 && part->last && shift_for_alpha(a, a->limb[0].scheme.cv, part->to * part->dt)) {
+    if (part->to < 1 && part->last && shift_for_alpha(a, a->component[0].scheme.cv, part->to * part->dt)) {
         return fail_singular(a);
     }
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->end(a->limb + i);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->end(a->component + i);
     }
     return SPAR_OK;
 }
 
-int spari_assembly_advance(spari_assembly *a, double dt, int answers) {
-    static const spari_stepper how = {enter_all, turning_of_all, stage_of_all, leave_all, gains_of_all, name_all};
+int spari_assembly_advance(spari_assembly *a, double dt, int responses) {
+    static const spari_stepper how = {enter_all,  rotation_rate_of_all, stage_of_all,
+                                      finish_all, gains_of_all,         name_all};
     if (!a->here) {
         return SPAR_OK;
     }
-    if (a->limbs == 0) {
-        look_at_links(a, dt);
+    if (a->components == 0) {
+        look_at_constraints(a, dt);
         return SPAR_OK;
     }
     SPARI_TRY(begin_step(a, dt));
-    a->turns_far = !a->limb[0].scheme.still && (ties_a_chain(a) || turns_far(a, dt / a->session->substeps));
-    spari_pattern pattern = a->limb[0].solver->steps.begin;
-    int status = spari_scheme_run(&how, a, &a->limb[0].alpha, &a->limb[0].member->cuts, &pattern, a->session, dt);
+    a->rotates_far = !a->component[0].scheme.still && (makes_a_chain(a) || rotates_far(a, dt / a->session->substeps));
+    spari_pattern pattern = a->component[0].solver->steps.begin;
+    int status =
+        spari_scheme_run(&how, a, &a->component[0].alpha, &a->component[0].member->cuts, &pattern, a->session, dt);
     if (status != SPAR_OK) {
         a->factored = 0;
         return status;
     }
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].solver->steps.solved = pattern;
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].solver->steps.solved = pattern;
     }
     SPARI_TRY(publish_all(a, dt));
-    if (a->limb[0].scheme.rule == SPARI_BACKWARD && pattern.even == SPARI_EVEN - 1 &&
-        shift_for_alpha(a, a->limb[0].scheme.cv, dt)) {
+    if (a->component[0].scheme.rule == SPARI_BACKWARD && pattern.even == SPARI_EVEN - 1 &&
+        shift_for_alpha(a, a->component[0].scheme.cv, dt)) {
         return fail_singular(a);
     }
     a->solved = 1;
-    if (answers && !a->factored && form_after(a) == 0) {
+    if (responses && !a->factored && form_after(a) == 0) {
         a->factored = LEAST_PATIENCE;
     }
     return SPAR_OK;
@@ -763,8 +769,8 @@ static double *stacked_of(const spar_member *member, double *stacked) {
 }
 
 static int has_loads(const spari_assembly *a, double *stacked) {
-    for (int i = 0; i < a->limbs; i++) {
-        const spar_member *m = a->limb[i].member;
+    for (int i = 0; i < a->components; i++) {
+        const spar_member *m = a->component[i].member;
         const double *load = stacked_of(m, stacked);
         for (int64_t k = 0; k < 6 * m->nodes; k++) {
             if (load[k] != 0) {
@@ -776,39 +782,39 @@ static int has_loads(const spari_assembly *a, double *stacked) {
 }
 
 /* One answer of those tangents, stacked. */
-static int answer_one(spari_assembly *a, double *stacked) {
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->take_more(a->limb + i, stacked_of(a->limb[i].member, stacked));
+static int respond_once(spari_assembly *a, double *stacked) {
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->take_more(a->component + i, stacked_of(a->component[i].member, stacked));
     }
-    for (int i = 0; i < a->links; i++) {
-        memset(a->link[i].gap, 0, sizeof a->link[i].gap);
+    for (int i = 0; i < a->constraints; i++) {
+        memset(a->constraint[i].gap, 0, sizeof a->constraint[i].gap);
     }
-    if (spari_tied_solve(a, a->limb[0].scheme.cv)) {
+    if (spari_system_solve(a, a->component[0].scheme.cv)) {
         return 1;
     }
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->show_more(a->limb + i, stacked_of(a->limb[i].member, stacked));
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->show_more(a->component + i, stacked_of(a->component[i].member, stacked));
     }
     return 0;
 }
 
-/* Where the parts and links stood when the step was written to the file that it was read from. What joints have
+/* Where the parts and constraints stood when the step was written to the file that it was read from. What joints have
    moved by stays: its rates are those that were published. */
 static void look_back(spari_assembly *a) {
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->look_back(a->limb + i);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->look_back(a->component + i);
     }
-    for (int i = 0; i < a->links; i++) {
-        spar_joint *j = a->link[i].joint;
+    for (int i = 0; i < a->constraints; i++) {
+        spar_joint *j = a->constraint[i].joint;
         const spari_relative kept = j->after;
-        spari_link_find(a->link + i, 1, a->session->dt, 1);
+        spari_constraint_find(a->constraint + i, 1, a->session->dt, 1);
         j->after = kept;
     }
     a->solved = 1;
 }
 
-int spari_assembly_answer(spari_assembly *a, int64_t count, int64_t apart, double *stacked) {
-    if (!a->here || a->limbs == 0) {
+int spari_assembly_response(spari_assembly *a, int64_t count, int64_t apart, double *stacked) {
+    if (!a->here || a->components == 0) {
         return 0;
     }
     if (!a->factored && (!a->solved || form_after(a))) {
@@ -820,26 +826,26 @@ int spari_assembly_answer(spari_assembly *a, int64_t count, int64_t apart, doubl
     int singular = 0;
     a->standing = 0; /* that system is of parts a little way from here */
     for (int64_t k = 0; k < count && !singular; k++) {
-        singular = has_loads(a, stacked + k * apart) && answer_one(a, stacked + k * apart);
+        singular = has_loads(a, stacked + k * apart) && respond_once(a, stacked + k * apart);
     }
     a->standing = 0;
     return singular;
 }
 
-double spari_assembly_answer_of_mass(const spari_assembly *a) {
-    double force = a->here && a->limbs > 0 ? a->limb[0].scheme.cm * a->mass : 0;
+double spari_assembly_mass_response(const spari_assembly *a) {
+    double force = a->here && a->components > 0 ? a->component[0].scheme.cm * a->mass : 0;
     return force > 0 ? 1 / force : 0;
 }
 
 /* ---- what the host asks ---- */
 
 int spar_member_get_newton(const spar_member *member, int64_t *iterations, double *left) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spari_effort effort = {0};
     if (member->committed && member->row->effort && spari_fidelity_is_here(member)) {
         member->row->effort(member, &effort);
-        effort.left = member->assembly ? spari_assembly_left(member->assembly) : effort.left;
+        effort.left = member->assembly ? spari_assembly_remaining(member->assembly) : effort.left;
     }
     if (iterations) {
         *iterations = effort.iterations;

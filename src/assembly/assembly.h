@@ -18,7 +18,7 @@ int spari_assemblies_make(spar_session *session, const char *call);
 int spari_solvers_place(spar_session *session, const char *call);
 /* What is solved for members that joints tie, made for the joints that there are where it depends on them; where that
    is done it does nothing. Local; a status and a message. */
-int spari_members_retie(spar_session *session);
+int spari_members_renew_joints(spar_session *session);
 /* Where joints are in the reference, as far as that comes before; local. A status and a message. */
 int spari_joints_place(spar_session *session);
 void spari_assemblies_free(spar_session *session);
@@ -39,9 +39,9 @@ int64_t spari_assembly_state_size(const spari_assembly *assembly);
 void spari_assembly_save(const spari_assembly *assembly, double *state);
 int spari_assembly_is_state(const spari_assembly *assembly, const double *state, int64_t count);
 void spari_assembly_load(spari_assembly *assembly, const double *state);
-/* From t^n to t^n + dt: all of its members, on its owner. Joints between nodes that move as they are told: on every
+/* From t^n to t^n + dt: all of its members, on its owner. Joints between nodes with prescribed motion: on every
    rank. answers: it will be asked for answers, with tangents that serve the next solution too. */
-int spari_assembly_advance(spari_assembly *assembly, double dt, int answers);
+int spari_assembly_advance(spari_assembly *assembly, double dt, int responses);
 /* Accelerations of its members and loads of its joints at t^0 under load_history[0], for steps dt: the motions after
    are t^0 with them. Where it has been done already the joints' loads are those of now. */
 int spari_assembly_balance(spari_assembly *assembly, double dt);
@@ -50,11 +50,11 @@ int spari_assembly_balance(spari_assembly *assembly, double dt);
    of all members of the session; of those that it solves the loads, and then the motions; what is zero costs nothing.
    The steps to come are the same, to the last bit. 0, or 1: there is no answer; none is in a step that was read from a
    file and whose solution has left no tangents. */
-int spari_assembly_answer(spari_assembly *assembly, int64_t count, int64_t apart, double *stacked);
+int spari_assembly_response(spari_assembly *assembly, int64_t count, int64_t apart, double *stacked);
 /* And what a unit of force would add to the way of its mass if nothing else held that, m/N; 0: without inertia. */
-double spari_assembly_answer_of_mass(const spari_assembly *assembly);
+double spari_assembly_mass_response(const spari_assembly *assembly);
 /* What Newton's last solution has left of the motion, by estimate. */
-double spari_assembly_left(const spari_assembly *assembly);
+double spari_assembly_remaining(const spari_assembly *assembly);
 /* Equilibrium of all of its members under dead, kept and gravity loads and those that `fluid` gives of a member,
    [nodes][6]; driven motions where they were driven last. onward: from the shapes that the last call found, if that
    leads there; else from t^n. Writes the motions after, or leaves all as it was. */
@@ -67,8 +67,8 @@ void spari_assembly_reject(spari_assembly *assembly);
 /* One of its members has another added mass in its equations. */
 void spari_assembly_forget(spari_assembly *assembly);
 /* The motions after become those the clock stands at. */
-void spari_assembly_settle(spari_assembly *assembly);
+void spari_assembly_commit_state(spari_assembly *assembly);
 /* Those found are given up: the joints are at t^n again. */
-void spari_assembly_leave(spari_assembly *assembly);
+void spari_assembly_discard(spari_assembly *assembly);
 
 #endif

@@ -1,9 +1,9 @@
 /* Which members joints tie together: assemblies found, sized and released. */
 #include "../base/session.h"
 #include "../comm/enter.h"
-#include "assembly.h"
-#include "../time/fidelity.h"
 #include "../solve/life.h"
+#include "../time/fidelity.h"
+#include "assembly.h"
 #include "owners.h"
 #include "system.h"
 
@@ -13,32 +13,32 @@
 
 /* Whether a member's motion is unknown in an assembly. */
 static int is_part(const spar_member *m) {
-    return m && m->row->limb;
+    return m && m->row->component;
 }
 
 /* ---- one assembly ---- */
 
 static void assembly_free(spari_assembly *a) {
-    spari_tied_free(a);
+    spari_system_free(a);
     spari_snapshot_free(&a->before);
-    free(a->limb);
-    free(a->link);
+    free(a->component);
+    free(a->constraint);
     free(a);
 }
 
 static void take_member(spari_assembly *a, spar_member *m) {
-    a->limb[a->limbs++] = (spari_limb){.member = m, .owner_before = m->owner};
+    a->component[a->components++] = (spari_component){.member = m, .owner_before = m->owner};
     m->assembly = a;
 }
 
 /* All that is tied to its first member, in the order in which joints reach it. */
 static void gather(spari_assembly *a, spar_member *first) {
     take_member(a, first);
-    for (int i = 0; i < a->limbs; i++) {
+    for (int i = 0; i < a->components; i++) {
         for (spar_joint *j = a->session->joints; j; j = j->next) {
             for (int side = 0; side < 2; side++) {
                 spar_member *other = j->member[1 - side];
-                if (j->member[side] == a->limb[i].member && is_part(other) && !other->assembly) {
+                if (j->member[side] == a->component[i].member && is_part(other) && !other->assembly) {
                     take_member(a, other);
                 }
             }
@@ -46,31 +46,31 @@ static void gather(spari_assembly *a, spar_member *first) {
     }
 }
 
-static spari_limb *part_of(spari_assembly *a, const spar_member *m) {
-    for (int i = 0; i < a->limbs; i++) {
-        if (a->limb[i].member == m) {
-            return a->limb + i;
+static spari_component *part_of(spari_assembly *a, const spar_member *m) {
+    for (int i = 0; i < a->components; i++) {
+        if (a->component[i].member == m) {
+            return a->component + i;
         }
     }
     return NULL;
 }
 
 /* Where the nodes are in the reference. */
-static void look_at_reference(spari_link *l) {
+static void look_at_reference(spari_constraint *l) {
     const spar_joint *j = l->joint;
     double z[6];
     for (int side = 0; side < 2; side++) {
         const spar_member *m = j->member[side];
-        l->place[side] = (spari_place){.q = {1, 0, 0, 0}};
+        l->pose[side] = (spari_node_pose){.q = {1, 0, 0, 0}};
         if (m) {
-            memcpy(l->place[side].x, m->xr + 3 * j->seat[side], sizeof l->place[side].x);
+            memcpy(l->pose[side].x, m->xr + 3 * j->seat[side], sizeof l->pose[side].x);
         }
     }
-    spari_tie_motion(&j->tie, &l->place[0], &l->place[1], z, l->B);
+    spari_kinematics_motion(&j->kinematics, &l->pose[0], &l->pose[1], z, l->B);
 }
 
-/* Its members and joints, in the order in which joints reach them. first NULL: of `only`, whose nodes both move as they
-   are told. */
+/* Its members and joints, in the order in which joints reach them. first NULL: of `only`, whose nodes both have
+ * prescribed motion. */
 static int assembly_create(spar_session *s, spar_member *first, spar_joint *only) {
     spari_assembly *a = spari_zalloc(1, sizeof *a);
     if (!a) {
@@ -79,21 +79,21 @@ static int assembly_create(spar_session *s, spar_member *first, spar_joint *only
     a->session = s;
     a->next = s->assemblies;
     s->assemblies = a;
-    a->limb = spari_zalloc(s->member_count, sizeof *a->limb);
-    a->link = spari_zalloc(only ? 1 : s->joint_count, sizeof *a->link);
-    if (!a->limb || !a->link) {
+    a->component = spari_zalloc(s->member_count, sizeof *a->component);
+    a->constraint = spari_zalloc(only ? 1 : s->joint_count, sizeof *a->constraint);
+    if (!a->component || !a->constraint) {
         return SPAR_ERR_MEMORY;
     }
     if (first) {
         gather(a, first);
     }
     for (spar_joint *j = only ? only : s->joints; j; j = only ? NULL : j->next) {
-        spari_limb *of[2] = {part_of(a, j->member[0]), part_of(a, j->member[1])};
+        spari_component *of[2] = {part_of(a, j->member[0]), part_of(a, j->member[1])};
         if (of[0] || of[1] || only) {
-            spari_link *l = a->link + a->links++;
+            spari_constraint *l = a->constraint + a->constraints++;
             l->joint = j;
-            l->limb[0] = of[0], l->limb[1] = of[1];
-            j->held = spari_joint_given(j);
+            l->component[0] = of[0], l->component[1] = of[1];
+            j->constrained = spari_joint_constrained(j);
         }
     }
     return SPAR_OK;
@@ -101,8 +101,8 @@ static int assembly_create(spar_session *s, spar_member *first, spar_joint *only
 
 static double mass_of_all(const spari_assembly *a) {
     double sum = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        const spari_body *b = a->limb[i].member->body;
+    for (int i = 0; i < a->components; i++) {
+        const spari_body *b = a->component[i].member->body;
         for (int64_t k = 0; k < b->slot[b->elements] && b->mass; k++) {
             sum += b->weight[k] * *SPARI_BLOCK(b->mass, 10, k);
         }
@@ -112,29 +112,29 @@ static double mass_of_all(const spari_assembly *a) {
 
 /* What solves it, on its owner. */
 static int make_system(spari_assembly *a) {
-    a->here = a->owner == spari_comm_rank(a->session->comm) || a->limbs == 0;
-    if (!a->here || a->limbs == 0) {
+    a->here = a->owner == spari_comm_rank(a->session->comm) || a->components == 0;
+    if (!a->here || a->components == 0) {
         return SPAR_OK;
     }
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row = a->limb[i].member->row->limb;
-        SPARI_TRY(a->limb[i].row->make(a->limb + i));
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row = a->component[i].member->row->component;
+        SPARI_TRY(a->component[i].row->make(a->component + i));
     }
-    SPARI_TRY(spari_tied_tree(a));
-    for (int i = 0; i < a->links; i++) {
-        look_at_reference(a->link + i);
+    SPARI_TRY(spari_system_find_tree(a));
+    for (int i = 0; i < a->constraints; i++) {
+        look_at_reference(a->constraint + i);
     }
-    SPARI_TRY(spari_tied_drop_redundant(a));
+    SPARI_TRY(spari_system_drop_redundant(a));
     a->mass = mass_of_all(a);
-    return spari_tied_room(a);
+    return spari_system_create(a);
 }
 
 /* ---- where it is solved ---- */
 
 /* Its members' solvers on its owner; what they had waits. */
 static int move_members(spari_assembly *a) {
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
         if (p->member->owner != a->owner) {
             p->moved = 1;
             SPARI_TRY(spari_member_move(p->member, a->owner, &p->solution_before));
@@ -144,8 +144,8 @@ static int move_members(spari_assembly *a) {
 }
 
 static void end_moves(spari_assembly *a, int back) {
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
         if (p->moved) {
             spari_member_end_move(p->member, p->owner_before, p->solution_before, back);
         }
@@ -168,23 +168,23 @@ static int check_members(const spar_joint *j) {
                   "joint '%s' ties two nodes of '%s', which moves as one body; leave the joint out", j->name,
                   j->member[0]->name);
     SPARI_REQUIRE(
-        j->session, is_part(j->member[0]) || is_part(j->member[1]) || !spari_joint_given(j), SPAR_ERR_ARGUMENT,
+        j->session, is_part(j->member[0]) || is_part(j->member[1]) || !spari_joint_constrained(j), SPAR_ERR_ARGUMENT,
         "joint '%s' holds or drives motions of nodes that all move as they are told ('%s'); leave its motions "
         "free, with springs for what lies between them",
         j->name, j->member[0]->name);
     return SPAR_OK;
 }
 
-/* A beam that one body carries is held there: a rigid arm leads to the node. Of others the limb knows the nodes that
-   joints tie, in its own order. */
-static void lead_to_limbs(spar_joint *j) {
+/* A beam that one body carries is held there: a rigid arm leads to the node. Of others the component knows the nodes
+   that joints tie, in its own order. */
+static void lead_to_components(spar_joint *j) {
     for (int side = 0; side < 2; side++) {
         const spar_member *m = j->member[side];
         if (is_part(m) && m->row->whole) {
             j->unique[side] = 0;
             j->seat[side] = 0;
             for (int k = 0; k < 3; k++) {
-                j->tie.arm[side][k] += m->xr[3 * j->node[side] + k] - m->xr[k];
+                j->kinematics.arm[side][k] += m->xr[3 * j->node[side] + k] - m->xr[k];
             }
         }
         if (is_part(m) && m->row->end_of) {
@@ -210,13 +210,13 @@ static int gather_all(spar_session *s) {
     return SPAR_OK;
 }
 
-int spari_members_retie(spar_session *s) {
+int spari_members_renew_joints(spar_session *s) {
     if (s->joints_stale) {
         spari_assemblies_free(s); /* they are of what is made anew */
     }
     for (spar_member *m = s->members; m && s->joints_stale; m = m->next) {
-        if (m->committed && m->row->retie) {
-            int status = m->row->retie(m);
+        if (m->committed && m->row->renew_joints) {
+            int status = m->row->renew_joints(m);
             SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory to solve for '%s'", m->name);
             SPARI_TRY(status);
         }
@@ -235,10 +235,10 @@ static int check_joints(const spar_session *s) {
 
 int spari_joints_place(spar_session *s) {
     SPARI_TRY(s->joints_stale ? check_joints(s) : SPAR_OK);
-    SPARI_TRY(spari_members_retie(s));
+    SPARI_TRY(spari_members_renew_joints(s));
     for (spar_joint *j = s->joints; j && s->joints_stale; j = j->next) {
         spari_joint_place(j);
-        lead_to_limbs(j);
+        lead_to_components(j);
     }
     return SPAR_OK;
 }
@@ -260,10 +260,10 @@ static int make_all(spar_session *s) {
 static int agree_on_joints(const spar_session *s, const char *call, int status) {
     char what[SPARI_MESSAGE_SIZE / 2];
     for (const spar_joint *j = s->joints; j; j = j->next) {
-        const spari_alike alike[] = {spari_hash("descriptions of it", spari_joint_hash(j)),
-                                     spari_hash("springs, loads or drives of it", spari_joint_setting(j))};
+        const spari_agreed must_agree[] = {spari_hash("descriptions of it", spari_joint_hash(j)),
+                                           spari_hash("springs, loads or drives of it", spari_joint_setting(j))};
         (void)snprintf(what, sizeof what, "%s: joint '%s'", call, j->name);
-        status = spari_enter_alike(j->session, what, alike, 2, status);
+        status = spari_enter_agreed(j->session, what, must_agree, 2, status);
         SPARI_TRY(status);
     }
     return SPAR_OK;
@@ -271,7 +271,7 @@ static int agree_on_joints(const spar_session *s, const char *call, int status) 
 
 int spari_solvers_place(spar_session *s, const char *call) {
     SPARI_TRY(s->joints ? spari_assemblies_make(s, call) : SPAR_OK);
-    return s->started ? SPAR_OK : spari_owners_settle(s);
+    return s->started ? SPAR_OK : spari_owners_assign(s);
 }
 
 int spari_assemblies_make(spar_session *s, const char *call) {
@@ -313,8 +313,8 @@ void spari_assemblies_give(spar_session *s, spari_assembly *all) {
     spari_assemblies_free(s);
     s->assemblies = all;
     for (spari_assembly *a = all; a; a = a->next) {
-        for (int i = 0; i < a->limbs; i++) {
-            a->limb[i].member->assembly = a;
+        for (int i = 0; i < a->components; i++) {
+            a->component[i].member->assembly = a;
         }
     }
 }

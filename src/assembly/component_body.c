@@ -16,29 +16,29 @@
 
 /* ---- its ends ---- */
 
-int spari_limb_nodes_tied(const spar_member *m, int *node) {
+int spari_component_joint_nodes(const spar_member *m, int *node) {
     int n = 0;
     for (const spar_joint *j = m->session->joints; j; j = j->next) {
         for (int side = 0; side < 2; side++) {
             if (j->member[side] != m || j->node[side] >= m->nodes) { /* of a trial: not yet where it will be tied */
                 continue;
             }
-            int at = 0, tied = m->row->whole ? 0 : spari_member_unique(m, j->node[side]);
-            while (at < n && node[at] < tied) {
+            int at = 0, joint_node = m->row->whole ? 0 : spari_member_unique(m, j->node[side]);
+            while (at < n && node[at] < joint_node) {
                 at++;
             }
-            if (at < n && node[at] == tied) {
+            if (at < n && node[at] == joint_node) {
                 continue;
             }
             memmove(node + at + 1, node + at, (size_t)(n - at) * sizeof *node);
-            node[at] = tied;
+            node[at] = joint_node;
             n++;
         }
     }
     return n;
 }
 
-int spari_limb_joints(const spar_member *m) {
+int spari_component_joint_count(const spar_member *m) {
     int count = 0;
     for (const spar_joint *j = m->session->joints; j; j = j->next) {
         count += (j->member[0] == m) + (j->member[1] == m);
@@ -46,11 +46,11 @@ int spari_limb_joints(const spar_member *m) {
     return count;
 }
 
-static int make_nodes(spari_limb *p) {
+static int make_nodes(spari_component *p) {
     spari_solver *s = p->solver = p->member->row->solver(p->member);
-    int *node = spari_zalloc(spari_limb_joints(p->member) + 1, sizeof *node);
+    int *node = spari_zalloc(spari_component_joint_count(p->member) + 1, sizeof *node);
     spari_condensed_free(s->condensed);
-    s->condensed = node ? spari_condensed_create(spari_limb_nodes_tied(p->member, node), node, 6 * s->n) : NULL;
+    s->condensed = node ? spari_condensed_create(spari_component_joint_nodes(p->member, node), node, 6 * s->n) : NULL;
     free(node);
     p->condensed = s->condensed;
     p->end = s->condensed ? s->condensed->node : NULL;
@@ -58,34 +58,34 @@ static int make_nodes(spari_limb *p) {
     return s->condensed ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-static const double *turn_of_node(const spari_limb *p, int node) {
-    return p->solver->turn + 4 * node;
+static const double *rotation_of_node(const spari_component *p, int node) {
+    return p->solver->rotation + 4 * node;
 }
 
 /* ---- a step ---- */
 
-static int begin_loads_of_nodes(spari_limb *p, double h) {
+static int begin_loads_of_nodes(spari_component *p, double h) {
     p->member->row->take_loads(p->member);
     p->scheme = spari_scheme_of(p->member, p->solver->body->D != NULL, h);
     return p->solver->steps.started;
 }
 
-static void begin_nodes(spari_limb *p) {
+static void begin_nodes(spari_component *p) {
     spari_solver_poison(p->solver);
     spari_stage_start(p->solver, p->member, &p->stage);
 }
 
-static void enter_nodes(spari_limb *p) {
+static void enter_nodes(spari_component *p) {
     spari_stage_enter(p->solver);
 }
 
-static int stage_of_nodes(spari_limb *p, const spari_part *part) {
+static int stage_of_nodes(spari_component *p, const spari_part *part) {
     SPARI_TRY(spari_stage_begin(p->solver, p->member, &p->scheme, part, &p->stage));
     p->state = &p->stage.ends.seen;
     return SPAR_OK;
 }
 
-static void take_velocities_of_nodes(spari_limb *p) {
+static void take_velocities_of_nodes(spari_component *p) {
     const spar_member *m = p->member;
     if (m->row->whole) {
         memcpy(p->solver->from.v, m->now.v, 6 * sizeof(double));
@@ -94,11 +94,11 @@ static void take_velocities_of_nodes(spari_limb *p) {
     }
 }
 
-static void end_nodes(spari_limb *p) {
-    spari_stage_leave(p->solver, p->member, &p->scheme, &p->stage);
+static void end_nodes(spari_component *p) {
+    spari_stage_end(p->solver, p->member, &p->scheme, &p->stage);
 }
 
-static void keep_rates_of_nodes(spari_limb *p, int back) {
+static void keep_rates_of_nodes(spari_component *p, int back) {
     spari_solver *s = p->solver;
     double *v = p->stage.ends.to.v;
     memcpy(back ? v : s->best, back ? s->best : v, (size_t)(6 * s->n) * sizeof *v);
@@ -109,22 +109,22 @@ static void keep_rates_of_nodes(spari_limb *p, int back) {
 
 /* ---- an iteration ---- */
 
-static int predict_nodes(spari_limb *p, spari_guess stays) {
+static int predict_nodes(spari_component *p, spari_guess stays) {
     double *x = p->solver->increment;
     if (p->scheme.still) {
-        spari_alpha_carry(p->solver, p->member, &p->scheme, &p->stage.root, p->stage.turn, &p->stage.ends, x);
+        spari_alpha_carry(p->solver, p->member, &p->scheme, &p->stage.root, p->stage.rotation, &p->stage.ends, x);
         return stays != SPARI_KEEP_SHAPE;
     }
     return spari_alpha_predict(p->solver, p->member, &p->scheme, stays, &p->stage.ends, x);
 }
 
-static double balance_nodes(spari_limb *p) {
+static double balance_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, s->increment);
     return spari_alpha_balance(s, p->member, &p->scheme, &p->stage.ends.seen, s->r);
 }
 
-static double noise_of_nodes(const spari_limb *p) {
+static double noise_of_nodes(const spari_component *p) {
     const spari_solver *s = p->solver;
     double most = 0, poison = 0;
     for (int k = 0; k < 6 * s->n; k++) {
@@ -135,50 +135,51 @@ static double noise_of_nodes(const spari_limb *p) {
     return most + poison;
 }
 
-static int tangent_of_nodes(spari_limb *p) {
+static int tangent_of_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     spari_alpha_operators(s, &p->scheme, &p->stage.ends, s->increment);
     return spari_alpha_tangent(s, p->member, &p->scheme, &p->stage.ends.seen);
 }
 
-static int nodes_serve(const spari_limb *p) {
+static int nodes_serve(const spari_component *p) {
     const spari_solver *s = p->solver;
-    return s->factored && spari_alpha_close(p->scheme.cm, s->kept_cm) && spari_alpha_close(p->scheme.cv, s->kept_cv);
+    return s->factored && spari_alpha_close(p->scheme.cm, s->tangent_cm) &&
+           spari_alpha_close(p->scheme.cv, s->tangent_cv);
 }
 
-static int reduce_nodes(spari_limb *p, double *x) {
+static int reduce_nodes(spari_component *p, double *x) {
     spari_solver *s = p->solver;
-    (void)spari_alpha_turn_back(s, p->state->q, s->r, s->dx);
+    (void)spari_alpha_rotate_back(s, p->state->q, s->r, s->dx);
     if (spari_condensed_reduce(p->condensed, s->linear, s->dx)) {
         return 1;
     }
     for (int e = 0; e < p->condensed->ends; e++) {
-        const double *turn = turn_of_node(p, p->condensed->node[e]), *own = s->dx + 6 * p->condensed->node[e];
+        const double *rotation = rotation_of_node(p, p->condensed->node[e]), *own = s->dx + 6 * p->condensed->node[e];
         for (int k = 0; k < 6; k += 3) {
-            spari_rotate(turn, own + k, x + 6 * e + k);
+            spari_rotate(rotation, own + k, x + 6 * e + k);
         }
     }
     return 0;
 }
 
-static void expand_nodes(spari_limb *p, double *x) {
+static void expand_nodes(spari_component *p, double *x) {
     spari_solver *s = p->solver;
     for (int e = 0; e < p->condensed->ends; e++) {
-        const double *turn = turn_of_node(p, p->condensed->node[e]);
+        const double *rotation = rotation_of_node(p, p->condensed->node[e]);
         double *own = s->dx + 6 * p->condensed->node[e];
         for (int k = 0; k < 6; k += 3) {
-            spari_rotate_back(turn, x + 6 * e + k, own + k);
+            spari_rotate_back(rotation, x + 6 * e + k, own + k);
         }
     }
     spari_condensed_expand(p->condensed, s->dx);
-    spari_alpha_turn_forth(s, s->dx);
+    spari_alpha_rotate_forth(s, s->dx);
 }
 
-static double change_of_nodes(const spari_limb *p) {
+static double correction_of_nodes(const spari_component *p) {
     return spari_alpha_size(p->solver, p->solver->dx);
 }
 
-static void correct_nodes(spari_limb *p, double cut) {
+static void correct_nodes(spari_component *p, double cut) {
     spari_solver *s = p->solver;
     for (int k = 0; k < 6 * s->n && cut < 1; k++) {
         s->dx[k] *= cut;
@@ -187,17 +188,17 @@ static void correct_nodes(spari_limb *p, double cut) {
     s->newton++;
 }
 
-static double way_of_nodes(const spari_limb *p) {
+static double way_of_nodes(const spari_component *p) {
     return spari_alpha_size(p->solver, p->solver->increment) + p->stage.ends.carried;
 }
 
-static void clear_nodes(spari_limb *p) {
+static void clear_nodes(spari_component *p) {
     spari_solver *s = p->solver;
-    (void)spari_alpha_turn_back(s, p->state->q, s->r, s->dx); /* for the turns */
+    (void)spari_alpha_rotate_back(s, p->state->q, s->r, s->dx); /* for the turns */
     memset(s->dx, 0, (size_t)(6 * s->n) * sizeof *s->dx);
 }
 
-static void shift_rates_of_nodes(spari_limb *p, double v, double a, double b) {
+static void shift_rates_of_nodes(spari_component *p, double v, double a, double b) {
     spari_solver *s = p->solver;
     for (int k = 0; k < 6 * s->n; k += 3) {
         if (p->stage.ends.root) {
@@ -210,16 +211,16 @@ static void shift_rates_of_nodes(spari_limb *p, double v, double a, double b) {
 
 /* ---- its answer ---- */
 
-static void take_more_of_nodes(spari_limb *p, const double *load) {
+static void take_more_of_nodes(spari_component *p, const double *load) {
     p->member->row->take_more(p->member, load, p->solver->r);
-    memset(p->solver->r, 0, (size_t)spari_member_held(p->member) * sizeof(double));
+    memset(p->solver->r, 0, (size_t)spari_member_constrained(p->member) * sizeof(double));
 }
 
-static void show_more_of_nodes(spari_limb *p, double *motion) {
+static void show_more_of_nodes(spari_component *p, double *motion) {
     p->member->row->show_more(p->member, p->solver->dx, motion);
 }
 
-static void look_back_at_nodes(spari_limb *p) {
+static void look_back_at_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     p->scheme = spari_scheme_last(p->member, s->body->D != NULL, &s->steps.solved);
     p->stage.ends = (spari_ends){s->from, s->to, s->to, NULL, 0};
@@ -228,9 +229,9 @@ static void look_back_at_nodes(spari_limb *p) {
 
 /* ---- the start ---- */
 
-static int start_nodes(spari_limb *p) {
+static int start_nodes(spari_component *p) {
     spari_solver *s = p->solver;
-    int end = spari_member_held(p->member);
+    int end = spari_member_constrained(p->member);
     if (p->member->root != SPAR_ROOT_DRIVEN) {
         memset(s->begin.a, 0, (size_t)end * sizeof(double));
         memset(s->begin.v, 0, (size_t)end * sizeof(double));
@@ -240,18 +241,18 @@ static int start_nodes(spari_limb *p) {
     return spari_solver_factor(s, p->member, s->begin.q, NULL, NULL, 0, p->scheme.cm, 0, NULL);
 }
 
-static void unbalance_nodes(spari_limb *p) {
+static void unbalance_nodes(spari_component *p) {
     spari_alpha_unbalance(p->solver, p->member, p->solver->begin.a, p->solver->r);
 }
 
-static void correct_start_of_nodes(spari_limb *p) {
+static void correct_start_of_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     for (int n = 0; n < 6 * s->n; n++) {
         s->begin.a[n] -= p->scheme.cm * s->dx[n];
     }
 }
 
-static void end_start_of_nodes(spari_limb *p) {
+static void end_start_of_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     spari_stage_remember(s, p->member, &p->scheme);
     s->steps.started = 1;
@@ -259,7 +260,7 @@ static void end_start_of_nodes(spari_limb *p) {
 
 /* ---- at rest ---- */
 
-static void rest_nodes(spari_limb *p, const double *fluid, int onward) {
+static void rest_nodes(spari_component *p, const double *fluid, int onward) {
     spari_solver *s = p->solver;
     p->member->row->take_rest(p->member, fluid);
     if (!onward) {
@@ -271,29 +272,29 @@ static void rest_nodes(spari_limb *p, const double *fluid, int onward) {
 }
 
 /* Rates of the places where the nodes are now, as they turn with the whole. */
-static void turn_nodes(spari_limb *p, double f) {
+static void rotate_nodes(spari_component *p, double f) {
     const spar_member *m = p->member;
     spari_state *to = &p->solver->to;
-    for (int i = 0; i < p->solver->n && p->turning; i++) {
+    for (int i = 0; i < p->solver->n && p->rotating; i++) {
         double x[3];
         spari_member_arm(m, i, x);
         for (int k = 0; k < 3; k++) {
             x[k] += m->xr[k] + to->q[7 * i + k];
         }
-        spari_turning_rates(p->turning, f, x, to->v + 6 * i, to->a + 6 * i);
+        spari_rotating_frame_rates(p->rotating, f, x, to->v + 6 * i, to->a + 6 * i);
     }
 }
 
-static int turns_with_mass(const spari_limb *p) {
-    return p->turning && p->solver->body->mass && (p->member->effects & SPAR_EFFECT_INERTIA);
+static int rotates_with_mass(const spari_component *p) {
+    return p->rotating && p->solver->body->mass && (p->member->effects & SPAR_EFFECT_INERTIA);
 }
 
-static double balance_nodes_at_rest(spari_limb *p, double f) {
+static double balance_nodes_at_rest(spari_component *p, double f) {
     spari_solver *s = p->solver;
     const spari_body body = spari_body_in_part(s->body, f);
-    turn_nodes(p, f);
-    double scale = turns_with_mass(p) ? spari_turn_residual(&body, s->to.q, s->to.v, s->to.a, f, s->r)
-                                      : spari_body_residual(&body, s->to.q, NULL, NULL, f, s->r, NULL);
+    rotate_nodes(p, f);
+    double scale = rotates_with_mass(p) ? spari_steady_rotation_residual(&body, s->to.q, s->to.v, s->to.a, f, s->r)
+                                        : spari_body_residual(&body, s->to.q, NULL, NULL, f, s->r, NULL);
     for (int k = 0; k < 6 * s->n; k++) {
         s->r[k] -= f * s->steps.load[k];
         scale = fmax(scale, fabs(f * s->steps.load[k]));
@@ -301,21 +302,22 @@ static double balance_nodes_at_rest(spari_limb *p, double f) {
     if (spari_solver_has_applied(s, p->member)) {
         scale = fmax(scale, spari_applied_residual(p->member, s->to.q, f, s->r));
     }
-    if (s->arms) {
-        spari_arms_at(s->arms, f);
-        spari_arms_residual(s->arms, s->to.q + 3, s->r + 3);
+    if (s->offset_loads) {
+        spari_offset_loads_at(s->offset_loads, f);
+        spari_offset_loads_residual(s->offset_loads, s->to.q + 3, s->r + 3);
     }
     return scale;
 }
 
-static int tangent_of_nodes_at_rest(spari_limb *p, double f) {
+static int tangent_of_nodes_at_rest(spari_component *p, double f) {
     spari_solver *s = p->solver;
     const spari_body body = spari_body_in_part(s->body, f), *whole = s->body;
     int singular;
     s->body = &body;
-    if (turns_with_mass(p)) {
-        const spari_turn turn = spari_turn_part(&p->turning->turn, f);
-        singular = spari_solver_factor_turning(s, p->member, &turn, s->to.q, s->to.v, s->to.a, f, p->turning->mass);
+    if (rotates_with_mass(p)) {
+        const spari_steady_rotation rotation = spari_steady_rotation_part(&p->rotating->rotation, f);
+        singular =
+            spari_solver_factor_rotating(s, p->member, &rotation, s->to.q, s->to.v, s->to.a, f, p->rotating->mass);
     } else {
         singular = spari_solver_factor(s, p->member, s->to.q, NULL, NULL, f, 0, 0, NULL);
     }
@@ -323,29 +325,29 @@ static int tangent_of_nodes_at_rest(spari_limb *p, double f) {
     return singular;
 }
 
-static void shift_nodes(spari_limb *p, double cut) {
+static void shift_nodes(spari_component *p, double cut) {
     spari_static_shift(p->solver->n, cut, p->solver->dx, p->solver->to.q);
 }
 
-static void keep_places_of_nodes(spari_limb *p, int back) {
+static void keep_positions_of_nodes(spari_component *p, int back) {
     spari_solver *s = p->solver;
     memcpy(back ? s->to.q : s->best, back ? s->best : s->to.q, (size_t)(7 * s->n) * sizeof(double));
 }
 
-static void leave_rest_of_nodes(spari_limb *p) {
+static void discard_rest_of_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof(double));
     s->factored = 0;
 }
 
-static void end_rest_of_nodes(spari_limb *p) {
-    keep_places_of_nodes(p, 1);
-    turn_nodes(p, 1);
+static void end_rest_of_nodes(spari_component *p) {
+    keep_positions_of_nodes(p, 1);
+    rotate_nodes(p, 1);
     p->solver->factored = 0;
     p->member->row->publish(p->member);
 }
 
-const spari_limb_row spari_limb_nodes = {
+const spari_component_row spari_component_body = {
     .make = make_nodes,
     .take = begin_loads_of_nodes,
     .begin = begin_nodes,
@@ -361,7 +363,7 @@ const spari_limb_row spari_limb_nodes = {
     .serves = nodes_serve,
     .reduce = reduce_nodes,
     .expand = expand_nodes,
-    .change = change_of_nodes,
+    .correction_size = correction_of_nodes,
     .correct = correct_nodes,
     .way = way_of_nodes,
     .clear = clear_nodes,
@@ -377,8 +379,8 @@ const spari_limb_row spari_limb_nodes = {
     .balance_rest = balance_nodes_at_rest,
     .tangent_rest = tangent_of_nodes_at_rest,
     .shift = shift_nodes,
-    .keep_places = keep_places_of_nodes,
-    .leave_rest = leave_rest_of_nodes,
+    .keep_positions = keep_positions_of_nodes,
+    .discard_rest = discard_rest_of_nodes,
     .end_rest = end_rest_of_nodes,
-    .turn = turn_of_node,
+    .rotation = rotation_of_node,
 };

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A node that moves as it is told: of a point, of the host's own member, of one that follows its root. */
+/* A node with prescribed motion: of a point, of the host's own member, of one that follows its root. */
 static spari_pose told(const spar_member *m, int64_t node, double s, double dt) {
     const spari_motion *now = &m->now, *after = &m->after;
     const spari_pose from = spari_pose_of(now->q + 7 * node, now->v + 6 * node, now->a + 6 * node),
@@ -16,14 +16,14 @@ static spari_pose told(const spar_member *m, int64_t node, double s, double dt) 
     return spari_drive_between(&from, &to, s, dt);
 }
 
-/* Place, velocity and acceleration of one side of a link in a state of its part, or at the part s of the step. */
-static void find_side(spari_link *l, int side, double s, double dt) {
+/* Place, velocity and acceleration of one side of a constraint in a state of its part, or at the part s of the step. */
+static void find_side(spari_constraint *l, int side, double s, double dt) {
     const spar_joint *j = l->joint;
     const spar_member *m = j->member[side];
-    spari_place *p = &l->place[side];
+    spari_node_pose *p = &l->pose[side];
     spari_pose x = {.q = {0, 0, 0, 1, 0, 0, 0}};
-    if (l->limb[side]) {
-        const spari_state *state = l->limb[side]->state;
+    if (l->component[side]) {
+        const spari_state *state = l->component[side]->state;
         int u = j->unique[side];
         x = spari_pose_of(state->q + 7 * u, state->v + 6 * u, state->a + 6 * u);
     } else if (m) {
@@ -37,7 +37,7 @@ static void find_side(spari_link *l, int side, double s, double dt) {
     memcpy(l->a + 6 * side, x.a, sizeof x.a);
 }
 
-void spari_link_times(double B[6][12], const double v[12], double rate[6]) {
+void spari_constraint_times(double B[6][12], const double v[12], double rate[6]) {
     for (int k = 0; k < 6; k++) {
         rate[k] = 0;
         for (int i = 0; i < 12; i++) {
@@ -47,12 +47,12 @@ void spari_link_times(double B[6][12], const double v[12], double rate[6]) {
 }
 
 /* Change of the rates of a step with its coordinates; at one moment (dt 0) they are not tied. */
-static double speed_of_step(const spari_link *l, double dt) {
-    const spari_limb *p = l->limb[0] ? l->limb[0] : l->limb[1];
+static double speed_of_step(const spari_constraint *l, double dt) {
+    const spari_component *p = l->component[0] ? l->component[0] : l->component[1];
     return p && dt > 0 ? p->scheme.rate : INFINITY;
 }
 
-void spari_link_find(spari_link *l, double s, double dt, double factor) {
+void spari_constraint_find(spari_constraint *l, double s, double dt, double factor) {
     spar_joint *j = l->joint;
     spari_relative *r = &j->after;
     double near[6];
@@ -60,44 +60,44 @@ void spari_link_find(spari_link *l, double s, double dt, double factor) {
     r->found = 1;
     find_side(l, 0, s, dt);
     find_side(l, 1, s, dt);
-    spari_tie_motion(&j->tie, &l->place[0], &l->place[1], r->z, l->B);
+    spari_kinematics_motion(&j->kinematics, &l->pose[0], &l->pose[1], r->z, l->B);
     spari_joint_count_turns(j, near, r->z);
-    spari_link_times(l->B, l->v, r->rate);
+    spari_constraint_times(l->B, l->v, r->rate);
     l->springs = spari_joint_spring(j, r->z, r->rate, speed_of_step(l, dt), factor, r->load);
 }
 
-double spari_link_gap(const spari_link *l, int k) {
+double spari_constraint_gap(const spari_constraint *l, int k) {
     const spar_joint *j = l->joint;
-    double target = j->driven >> k & 1 ? l->drive.z[k] : j->tie.line ? j->length : 0;
+    double target = j->driven >> k & 1 ? l->drive.z[k] : j->kinematics.line ? j->length : 0;
     return j->after.z[k] - target;
 }
 
-double spari_link_rate_gap(const spari_link *l, int k) {
+double spari_constraint_rate_gap(const spari_constraint *l, int k) {
     return l->joint->after.rate[k] - (l->joint->driven >> k & 1 ? l->drive.rate[k] : 0);
 }
 
-void spari_links_add(spari_assembly *a) {
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
+void spari_constraints_add_forces(spari_assembly *a) {
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
         double f[12];
-        spari_tie_forces(l->B, l->joint->after.load, f);
+        spari_kinematics_forces(l->B, l->joint->after.load, f);
         for (int side = 0; side < 2; side++) {
-            spari_limb *p = l->limb[side];
+            spari_component *p = l->component[side];
             for (int k = 0; k < 6 && p; k++) {
                 p->force[6 * l->joint->unique[side] + k] -= f[6 * side + k];
             }
         }
     }
-    for (int i = 0; i < a->limbs; i++) {
-        memset(a->limb[i].force, 0, (size_t)spari_member_held(a->limb[i].member) * sizeof(double));
+    for (int i = 0; i < a->components; i++) {
+        memset(a->component[i].force, 0, (size_t)spari_member_constrained(a->component[i].member) * sizeof(double));
     }
 }
 
-int spari_link_standing(const spari_link *l) {
+int spari_constraint_fixed_side(const spari_constraint *l) {
     const spar_joint *j = l->joint;
     for (int side = 0; side < 2; side++) {
         const spar_member *m = j->member[side];
-        if (!l->limb[side] && !(m && spari_norm(m->after.v + 6 * j->seat[side]) > 0) &&
+        if (!l->component[side] && !(m && spari_norm(m->after.v + 6 * j->seat[side]) > 0) &&
             !(m && spari_norm(m->after.v + 6 * j->seat[side] + 3) > 0)) {
             return side;
         }
@@ -105,15 +105,15 @@ int spari_link_standing(const spari_link *l) {
     return -1;
 }
 
-void spari_link_turning_dampers(spari_link *l, const double w[3]) {
+void spari_constraint_rotate_dampers(spari_constraint *l, const double w[3]) {
     const spar_joint *j = l->joint;
-    int side = spari_link_standing(l), given = spari_joint_given(j);
+    int side = spari_constraint_fixed_side(l), given = spari_joint_constrained(j);
     double R[6][12], W[9];
     if (side < 0 || !l->springs) {
         return;
     }
     spari_skew(w, W);
-    spari_tie_rates(&j->tie, &l->place[0], &l->place[1], l->v, R);
+    spari_kinematics_rates(&j->kinematics, &l->pose[0], &l->pose[1], l->v, R);
     for (int k = 0; k < 6; k++) {
         for (int i = 0; i < 9; i++) {
             R[k][6 * (1 - side) + i % 3] += l->B[k][6 * (1 - side) + i / 3] * W[i];
@@ -123,7 +123,7 @@ void spari_link_turning_dampers(spari_link *l, const double w[3]) {
         int p = pq / 6, q = pq % 6;
         double d = (given >> p & 1) || (given >> q & 1) ? 0 : j->damping[pq];
         for (int i = 0; i < 144 && d != 0; i++) {
-            l->turning[i / 12][i % 12] -= d * l->B[p][i / 12] * R[q][i % 12];
+            l->joint_tangent[i / 12][i % 12] -= d * l->B[p][i / 12] * R[q][i % 12];
         }
     }
 }

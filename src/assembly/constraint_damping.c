@@ -1,9 +1,9 @@
 /* What joints hold rings in accelerations and loads: along the constraints the scheme has no motion but its own three
-   roots, all -rho_inf. Near -1 they do not die, and what turns feeds them until members fly apart: a chain of ten links
-   that swings by 0.05 rad after 8000 steps with rho_inf = 1. So where rho_inf is larger than `most`, the ringing is
-   taken down to it after each step, along the constraints alone: all else keeps its rho_inf. With
-   e = B a + B-dot v - z-dot-dot, which is of order h^2 but for the ringing, and x the motion that forces of the joints
-   give with B x = e,
+   roots, all -rho_inf. Near -1 they do not die, and what turns feeds them until members fly apart: a chain of ten
+   members that oscillates by 0.05 rad after 8000 steps with rho_inf = 1. So where rho_inf is larger than `most`, the
+   ringing is damped down to it after each step, along the constraints alone: all else keeps its rho_inf. With e = B a +
+   B-dot v - z-dot-dot, which is of order h^2 but for the ringing, and x the motion that forces of the joints give with
+   B x = e,
 
      a := a - (1 - r^2) x,    v := v - (1 - r)^2 / 4 h x,    r = most / rho_inf
 
@@ -19,33 +19,34 @@ static const double most = 0.9;
 
 /* The gaps become e. */
 static void find_ringing(spari_assembly *a, double s, double dt) {
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
         const spari_relative found = l->joint->after;
         double drift[6], rate[6];
-        spari_link_find(l, s, dt, 1);
+        spari_constraint_find(l, s, dt, 1);
         l->joint->after = found;
-        spari_tie_drift(&l->joint->tie, &l->place[0], &l->place[1], l->v, drift);
-        spari_link_times(l->B, l->a, rate);
+        spari_kinematics_drift(&l->joint->kinematics, &l->pose[0], &l->pose[1], l->v, drift);
+        spari_constraint_times(l->B, l->a, rate);
         for (int k = 0; k < 6; k++) {
             double asked = l->joint->driven >> k & 1 ? l->drive.acceleration[k] : 0;
-            l->gap[k] = spari_link_holds(l, k) ? rate[k] + drift[k] - asked : 0;
+            l->gap[k] = spari_constraint_holds(l, k) ? rate[k] + drift[k] - asked : 0;
         }
     }
 }
 
-int spari_tied_calm(spari_assembly *a, double s, double dt) {
-    const spari_scheme *c = &a->limb[0].scheme;
+int spari_system_damp_constraints(spari_assembly *a, double s, double dt) {
+    const spari_scheme *c = &a->component[0].scheme;
     double r = most / a->session->rho_inf;
     if (!(r < 1) || c->still) {
         return 0;
     }
     find_ringing(a, s, dt);
-    if (spari_tied_close(a, c->cv)) {
+    if (spari_system_close_gaps(a, c->cv)) {
         return 1;
     }
-    for (int i = 0; i < a->limbs; i++) { /* violent: velocities are on the constraints */
-        a->limb[i].row->shift_rates(a->limb + i, a->violent ? 0 : 0.25 * (1 - r) * (1 - r) * c->h, 1 - r * r, 0);
+    for (int i = 0; i < a->components; i++) { /* violent: velocities are on the constraints */
+        a->component[i].row->shift_rates(a->component + i, a->violent ? 0 : 0.25 * (1 - r) * (1 - r) * c->h, 1 - r * r,
+                                         0);
     }
     return 0;
 }

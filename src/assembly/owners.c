@@ -3,8 +3,8 @@
 
 #include "../comm/comm.h"
 #include "../member/body.h"
-#include "../time/fidelity.h"
 #include "../solve/life.h"
+#include "../time/fidelity.h"
 #include "system.h"
 
 #include <stdlib.h>
@@ -35,9 +35,9 @@ double spari_member_expected(const spar_member *m) {
 }
 
 double spari_assembly_expected(const spari_assembly *a) {
-    double sum = a->limbs > 0 ? NEWTON * JOINT * a->links : 0;
-    for (int i = 0; i < a->limbs; i++) {
-        sum += spari_member_expected(a->limb[i].member);
+    double sum = a->components > 0 ? NEWTON * JOINT * a->constraints : 0;
+    for (int i = 0; i < a->components; i++) {
+        sum += spari_member_expected(a->component[i].member);
     }
     return sum;
 }
@@ -52,11 +52,11 @@ static int least_busy(const double *busy, int ranks) {
 
 /* Whether a member without joints has yet to be given its owner. */
 static int is_unsettled(const spar_member *m) {
-    return m->committed && !m->assembly && !m->owner_given && !m->settled && spari_member_expected(m) > 0;
+    return m->committed && !m->assembly && !m->owner_given && !m->owner_assigned && spari_member_expected(m) > 0;
 }
 
 /* What the ranks have to do with what has its owner, of those without joints. */
-static void add_settled(const spar_session *s, double *busy) {
+static void add_assigned(const spar_session *s, double *busy) {
     for (const spar_member *m = s->members; m; m = m->next) {
         busy[m->owner] += !m->assembly && !is_unsettled(m) ? spari_member_expected(m) : 0;
     }
@@ -65,11 +65,11 @@ static void add_settled(const spar_session *s, double *busy) {
 /* ---- assemblies ---- */
 
 /* The owner that the host has given its members; -1: none. */
-static int find_given_owner(spari_assembly *a) {
+static int find_host_owner(spari_assembly *a) {
     const spar_member *by = NULL;
     a->owner = -1;
-    for (int i = 0; i < a->limbs; i++) {
-        const spar_member *m = a->limb[i].member;
+    for (int i = 0; i < a->components; i++) {
+        const spar_member *m = a->component[i].member;
         if (!m->owner_given) {
             continue;
         }
@@ -99,10 +99,10 @@ int spari_owners_of_assemblies(spar_session *s) {
     double *busy = spari_zalloc(ranks, sizeof *busy);
     int status = busy ? SPAR_OK : SPAR_ERR_MEMORY;
     if (busy) {
-        add_settled(s, busy);
+        add_assigned(s, busy);
     }
     for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = a->next) {
-        status = find_given_owner(a);
+        status = find_host_owner(a);
         if (status == SPAR_OK && a->owner >= 0) {
             busy[a->owner] += spari_assembly_expected(a);
         }
@@ -149,7 +149,7 @@ static int find_free(const spar_session *s, free_member *all) {
 static int move_free(spar_session *s, free_member *all, int n, double *busy) {
     int ranks = spari_comm_size(s->comm);
     qsort(all, (size_t)n, sizeof *all, compare_free);
-    add_settled(s, busy);
+    add_assigned(s, busy);
     for (const spari_assembly *a = s->assemblies; a; a = a->next) {
         busy[a->owner] += spari_assembly_expected(a);
     }
@@ -166,7 +166,7 @@ static int move_free(spar_session *s, free_member *all, int n, double *busy) {
     return SPAR_OK;
 }
 
-int spari_owners_settle(spar_session *s) {
+int spari_owners_assign(spar_session *s) {
     int ranks = spari_comm_size(s->comm), n = ranks > 1 ? find_free(s, NULL) : 0;
     if (n == 0) {
         return SPAR_OK;
@@ -184,7 +184,7 @@ int spari_owners_settle(spar_session *s) {
         if (all[i].moved) {
             spari_member_end_move(all[i].member, all[i].owner_before, all[i].before, status != SPAR_OK);
         }
-        all[i].member->settled = status == SPAR_OK;
+        all[i].member->owner_assigned = status == SPAR_OK;
     }
     free(all);
     free(busy);

@@ -53,10 +53,10 @@ static double take_along(const double y[6], double x[6]) {
 }
 
 /* N: the complement of the orthonormal Q[held]. */
-static void complete(double Q[6][6], int held, tree_step *step) {
-    step->count = 6 - held;
+static void complete(double Q[6][6], int constrained, tree_step *step) {
+    step->count = 6 - constrained;
     memset(step->N, 0, sizeof step->N);
-    for (int column = 0; column < 6 - held; column++) {
+    for (int column = 0; column < 6 - constrained; column++) {
         int best = 0;
         double most = -1, x[6];
         for (int pass = 0; pass <= 6; pass++) { /* the axis of which the others leave most, last */
@@ -64,14 +64,14 @@ static void complete(double Q[6][6], int held, tree_step *step) {
             for (int i = 0; i < 6; i++) {
                 x[i] = i == axis;
             }
-            for (int j = 0; j < 2 * (held + column); j++) {
-                (void)take_along(Q[j % (held + column)], x);
+            for (int j = 0; j < 2 * (constrained + column); j++) {
+                (void)take_along(Q[j % (constrained + column)], x);
             }
             best = pass < 6 && norm_of(x, 6) > most ? pass : best;
             most = pass < 6 ? fmax(most, norm_of(x, 6)) : most;
         }
         for (int i = 0; i < 6; i++) {
-            Q[held + column][i] = step->N[i][column] = x[i] / most;
+            Q[constrained + column][i] = step->N[i][column] = x[i] / most;
         }
     }
 }
@@ -79,14 +79,14 @@ static void complete(double Q[6][6], int held, tree_step *step) {
 /* The held rows H = L Q of a node's own motion, Q orthonormal: T = -Q^T L^-1 H_parent, and N is the complement of Q. */
 static void find_step(const loop_rows *all, const spari_assembly *a, const spari_interface *v, tree_step *step) {
     double Q[6][6], own[12];
-    const spari_link *l = v->link < 0 ? NULL : a->link + v->link;
-    int held = 0;
+    const spari_constraint *l = v->constraint < 0 ? NULL : a->constraint + v->constraint;
+    int constrained = 0;
     for (int k = 0; k < v->fixed; k++) {
-        memset(Q[held], 0, sizeof Q[held]);
-        Q[held++][k] = 1;
+        memset(Q[constrained], 0, sizeof Q[constrained]);
+        Q[constrained++][k] = 1;
     }
     for (int k = 0; k < 6 && l; k++) {
-        if (!spari_link_holds(l, k)) {
+        if (!spari_constraint_holds(l, k)) {
             continue;
         }
         for (int i = 0; i < 12; i++) {
@@ -96,7 +96,7 @@ static void find_step(const loop_rows *all, const spari_assembly *a, const spari
         for (int i = 0; i < 6; i++) {
             parent[i] = v->parent < 0 ? 0 : -own[6 + i];
         }
-        for (int j = 0; j < held; j++) {
+        for (int j = 0; j < constrained; j++) {
             double along = take_along(Q[j], own);
             for (int i = 0; i < 6; i++) {
                 parent[i] -= along * step->N[j][i]; /* N holds L^-1 H_parent until it is wanted */
@@ -104,18 +104,18 @@ static void find_step(const loop_rows *all, const spari_assembly *a, const spari
         }
         double size = norm_of(own, 6);
         for (int i = 0; i < 6; i++) {
-            Q[held][i] = own[i] / size;
-            step->N[held][i] = parent[i] / size;
+            Q[constrained][i] = own[i] / size;
+            step->N[constrained][i] = parent[i] / size;
         }
-        held++;
+        constrained++;
     }
     for (int i = 0; i < 36; i++) {
         step->T[i / 6][i % 6] = 0;
-        for (int j = 0; j < held && l; j++) {
+        for (int j = 0; j < constrained && l; j++) {
             step->T[i / 6][i % 6] += Q[j][i / 6] * step->N[j][i % 6];
         }
     }
-    complete(Q, held, step);
+    complete(Q, constrained, step);
 }
 
 /* Adds w u of an interface node to the row: along the tree up to `stop`. */
@@ -139,8 +139,9 @@ static void follow_tree(loop_rows *all, const spari_assembly *a, int node, const
     }
 }
 
-/* The row of held motion k of a link, in all->x from *first to *end; its size. */
-static double read_row(loop_rows *all, const spari_assembly *a, const spari_link *l, int k, int *first, int *end) {
+/* The row of constrained motion k of a constraint, in all->x from *first to *end; its size. */
+static double read_row(loop_rows *all, const spari_assembly *a, const spari_constraint *l, int k, int *first,
+                       int *end) {
     double size = 0;
     *first = all->n, *end = 0;
     for (int side = 0; side < 2; side++) {
@@ -190,22 +191,22 @@ static int take_row(loop_rows *all, int first, int end, double size) {
     return 1;
 }
 
-static void tell(const spari_link *l, int k) {
+static void tell(const spari_constraint *l, int k) {
     static const char *const motion[6] = {"x", "y", "z", "the turn about x", "the turn about y", "the turn about z"};
     char text[SPARI_MESSAGE_SIZE];
     const spar_session *s = l->joint->session;
     if (s->log) {
         (void)snprintf(text, sizeof text,
                        "joint '%.200s': redundant constraint ignored: %s follows from the other joints; its load is 0",
-                       l->joint->name, l->joint->tie.line ? "its length" : motion[k]);
+                       l->joint->name, l->joint->kinematics.line ? "its length" : motion[k]);
         spari_log(s, SPAR_LOG_WARNING, text);
     }
 }
 
-static int drop_from_link(loop_rows *all, const spari_assembly *a, const spari_link *l) {
+static int drop_from_constraint(loop_rows *all, const spari_assembly *a, const spari_constraint *l) {
     for (int k = 0; k < 6; k++) {
         int first, end;
-        if (!spari_link_holds(l, k)) {
+        if (!spari_constraint_holds(l, k)) {
             continue;
         }
         double size = read_row(all, a, l, k, &first, &end);
@@ -214,7 +215,7 @@ static int drop_from_link(loop_rows *all, const spari_assembly *a, const spari_l
             return SPAR_ERR_MEMORY;
         }
         if (redundant) {
-            l->joint->held &= ~(1 << k);
+            l->joint->constrained &= ~(1 << k);
             tell(l, k);
         }
     }
@@ -226,8 +227,8 @@ static int begin_rows(loop_rows *all, const spari_assembly *a) {
     if (!all->step) {
         return SPAR_ERR_MEMORY;
     }
-    for (int i = 0; i < a->limbs; i++) {
-        all->length = fmax(all->length, spari_member_length(a->limb[i].member));
+    for (int i = 0; i < a->components; i++) {
+        all->length = fmax(all->length, spari_member_length(a->component[i].member));
     }
     for (int n = 0; n < a->interfaces; n++) {
         tree_step *step = all->step + a->order[n];
@@ -240,16 +241,16 @@ static int begin_rows(loop_rows *all, const spari_assembly *a) {
     return all->row && all->x ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-int spari_tied_drop_redundant(spari_assembly *a) {
+int spari_system_drop_redundant(spari_assembly *a) {
     loop_rows all = {0};
     int loops = 0;
-    for (int i = 0; i < a->links; i++) {
-        loops += a->link[i].role == SPARI_LINK_LOOP;
+    for (int i = 0; i < a->constraints; i++) {
+        loops += a->constraint[i].role == SPARI_CONSTRAINT_LOOP;
     }
     int status = loops ? begin_rows(&all, a) : SPAR_OK;
-    for (int i = 0; i < a->links && status == SPAR_OK && loops; i++) {
-        if (a->link[i].role == SPARI_LINK_LOOP) {
-            status = drop_from_link(&all, a, a->link + i);
+    for (int i = 0; i < a->constraints && status == SPAR_OK && loops; i++) {
+        if (a->constraint[i].role == SPARI_CONSTRAINT_LOOP) {
+            status = drop_from_constraint(&all, a, a->constraint + i);
         }
     }
     for (int i = 0; i < all.n && all.row; i++) {

@@ -14,17 +14,18 @@
 static const double same_motion = 1e-6;
 
 /* A motion that is told: of a root, a node, or by a joint. */
-typedef struct told_motion {
+typedef struct prescribed_motion {
     const char *kind, *name;
     double x[3], v[6], a[3];
-} told_motion;
+} prescribed_motion;
 
-static int is_turning(const told_motion *t) {
+static int is_rotating(const prescribed_motion *t) {
     return spari_norm(t->v + 3) > 0 || spari_norm(t->a) > 0;
 }
 
-static told_motion told_by(const spar_member *m, const char *kind, const spari_motion *motion, int64_t node) {
-    told_motion t = {.kind = kind, .name = m->name};
+static prescribed_motion prescribed_by(const spar_member *m, const char *kind, const spari_motion *motion,
+                                       int64_t node) {
+    prescribed_motion t = {.kind = kind, .name = m->name};
     for (int k = 0; k < 3; k++) {
         t.x[k] = m->xr[3 * node + k] + motion->q[7 * node + k];
     }
@@ -34,34 +35,34 @@ static told_motion told_by(const spar_member *m, const char *kind, const spari_m
 }
 
 /* The turn is that motion's. Where nothing is said of its acceleration, its axis stands. */
-static void take_turn(spari_assembly *a, const told_motion *t) {
-    spari_turning *g = &a->turning;
+static void take_rotation(spari_assembly *a, const prescribed_motion *t) {
+    spari_rotating_frame *g = &a->rotating;
     double inward[3];
-    memcpy(g->turn.w, t->v + 3, sizeof g->turn.w);
-    memcpy(g->turn.v0, t->v, sizeof g->turn.v0);
-    memcpy(g->turn.a0, t->a, sizeof g->turn.a0);
+    memcpy(g->rotation.w, t->v + 3, sizeof g->rotation.w);
+    memcpy(g->rotation.v0, t->v, sizeof g->rotation.v0);
+    memcpy(g->rotation.a0, t->a, sizeof g->rotation.a0);
     memcpy(g->centre, t->x, sizeof g->centre);
-    spari_cross(g->turn.w, g->turn.v0, inward);
+    spari_cross(g->rotation.w, g->rotation.v0, inward);
     if (!(spari_norm(t->a) > 0)) {
-        memcpy(g->turn.a0, inward, sizeof inward);
+        memcpy(g->rotation.a0, inward, sizeof inward);
     }
-    a->turns = 1;
+    a->rotates = 1;
 }
 
 /* Whether it is part of the turn that has been found. */
-static int goes_along(const spari_assembly *a, const told_motion *t) {
-    double v[6], acceleration[6], apart[3], turn[3];
-    const spari_turn *g = &a->turning.turn;
-    spari_turning_rates(&a->turning, 1, t->x, v, acceleration);
+static int goes_along(const spari_assembly *a, const prescribed_motion *t) {
+    double v[6], acceleration[6], apart[3], rotation[3];
+    const spari_steady_rotation *g = &a->rotating.rotation;
+    spari_rotating_frame_rates(&a->rotating, 1, t->x, v, acceleration);
     for (int k = 0; k < 3; k++) {
         apart[k] = v[k] - t->v[k];
-        turn[k] = v[3 + k] - t->v[3 + k];
+        rotation[k] = v[3 + k] - t->v[3 + k];
     }
     double size = spari_norm(g->v0) + spari_norm(v) + spari_norm(t->v);
-    return spari_norm(turn) <= same_motion * spari_norm(g->w) && spari_norm(apart) <= same_motion * size;
+    return spari_norm(rotation) <= same_motion * spari_norm(g->w) && spari_norm(apart) <= same_motion * size;
 }
 
-static int refuse_turns(const spari_assembly *a, const told_motion *one, const told_motion *other) {
+static int refuse_rotations(const spari_assembly *a, const prescribed_motion *one, const prescribed_motion *other) {
     return spari_fail(a->session, SPAR_ERR_UNSUPPORTED,
                       "%s '%s' turns with (%g, %g, %g) rad/s, and %s '%s', which is tied to it, with (%g, %g, %g): "
                       "parts that turn against each other have no state that is steady; for the shape at rest turn "
@@ -73,37 +74,37 @@ static int refuse_turns(const spari_assembly *a, const told_motion *one, const t
 /* ---- who turns it ---- */
 
 /* Takes or compares one. Nodes that stand may carry what turns, as the ground does; members on roots that stand not. */
-static int meet_motion(spari_assembly *a, const told_motion *t, int carries, told_motion *first) {
-    if (!is_turning(t) && (carries || !a->turns)) {
+static int meet_motion(spari_assembly *a, const prescribed_motion *t, int carries, prescribed_motion *first) {
+    if (!is_rotating(t) && (carries || !a->rotates)) {
         return SPAR_OK;
     }
-    if (!a->turns) {
-        take_turn(a, t);
+    if (!a->rotates) {
+        take_rotation(a, t);
         *first = *t;
         return SPAR_OK;
     }
-    return goes_along(a, t) ? SPAR_OK : refuse_turns(a, first, t);
+    return goes_along(a, t) ? SPAR_OK : refuse_rotations(a, first, t);
 }
 
 /* Of roots and nodes that are told; twice, since those that stand come before those that turn. */
-static int meet_told(spari_assembly *a, told_motion *first) {
-    for (int i = 0; i < 2 * a->limbs; i++) {
-        const spar_member *m = a->limb[i % a->limbs].member;
-        told_motion t = told_by(m, "the root of", &m->now, 0);
-        if (m->root == SPAR_ROOT_PINNED && a->turns) {
+static int meet_prescribed(spari_assembly *a, prescribed_motion *first) {
+    for (int i = 0; i < 2 * a->components; i++) {
+        const spar_member *m = a->component[i % a->components].member;
+        prescribed_motion t = prescribed_by(m, "the root of", &m->now, 0);
+        if (m->root == SPAR_ROOT_PINNED && a->rotates) {
             memset(t.v, 0, 3 * sizeof *t.v);
-            memcpy(t.v + 3, a->turning.turn.w, 3 * sizeof *t.v);
+            memcpy(t.v + 3, a->rotating.rotation.w, 3 * sizeof *t.v);
         }
-        if (spari_member_root_is_given(m) || (m->root == SPAR_ROOT_PINNED && a->turns)) {
+        if (spari_member_root_is_prescribed(m) || (m->root == SPAR_ROOT_PINNED && a->rotates)) {
             SPARI_TRY(meet_motion(a, &t, 0, first));
         }
     }
-    for (int i = 0; i < 2 * a->links; i++) {
-        const spari_link *l = a->link + i % a->links;
+    for (int i = 0; i < 2 * a->constraints; i++) {
+        const spari_constraint *l = a->constraint + i % a->constraints;
         const spar_joint *j = l->joint;
-        if (!l->limb[i / a->links] && j->member[i / a->links]) {
-            const spar_member *m = j->member[i / a->links];
-            const told_motion t = told_by(m, "the member", &m->after, j->seat[i / a->links]);
+        if (!l->component[i / a->constraints] && j->member[i / a->constraints]) {
+            const spar_member *m = j->member[i / a->constraints];
+            const prescribed_motion t = prescribed_by(m, "the member", &m->after, j->seat[i / a->constraints]);
             SPARI_TRY(meet_motion(a, &t, 1, first));
         }
     }
@@ -112,16 +113,16 @@ static int meet_told(spari_assembly *a, told_motion *first) {
 
 /* Where the joint is as the side that stands carries it, and its axes there. */
 static void frame_of_joint(const spar_joint *j, int side, double x[3], double q[4]) {
-    spari_place place[2];
-    spari_joint_places(j, place);
-    spari_rotate(place[side].q, j->tie.arm[side], x);
+    spari_node_pose pose[2];
+    spari_joint_poses(j, pose);
+    spari_rotate(pose[side].q, j->kinematics.arm[side], x);
     for (int k = 0; k < 3; k++) {
-        x[k] += place[side].x[k];
+        x[k] += pose[side].x[k];
     }
-    spari_quat_mul(place[side].q, j->tie.axes[side], q);
+    spari_quat_mul(pose[side].q, j->kinematics.axes[side], q);
 }
 
-static int refuse_drive(const spari_link *l) {
+static int refuse_drive(const spari_constraint *l) {
     const spar_joint *j = l->joint;
     return spari_fail(j->session, SPAR_ERR_UNSUPPORTED,
                       "joint '%s' is driven with a rate between parts that move, or other than about one axis: parts "
@@ -131,10 +132,11 @@ static int refuse_drive(const spari_link *l) {
 }
 
 /* A joint driven against what stands, about its one axis. */
-static int meet_drive(spari_assembly *a, const spari_link *l, told_motion *first) {
+static int meet_drive(spari_assembly *a, const spari_constraint *l, prescribed_motion *first) {
     const spar_joint *j = l->joint;
-    int side = spari_link_standing(l), axis = j->tie.line ? -1 : spari_tie_axis(j->tie.free), others = 0;
-    told_motion t = {.kind = "joint", .name = j->name};
+    int side = spari_constraint_fixed_side(l),
+        axis = j->kinematics.line ? -1 : spari_kinematics_free_axis(j->kinematics.free), others = 0;
+    prescribed_motion t = {.kind = "joint", .name = j->name};
     double q[4], unit[3] = {0};
     for (int k = 0; k < 6; k++) {
         others = others || ((j->driven >> k & 1) && fabs(j->drive[1].rate[k]) > 0 && k != 3 + axis);
@@ -180,100 +182,103 @@ static int refuse_loads_across(const spari_assembly *a, const spar_member *m, co
 }
 
 static int check_parts(const spari_assembly *a) {
-    const double *w = a->turning.turn.w, speed = spari_norm(w);
+    const double *w = a->rotating.rotation.w, speed = spari_norm(w);
     const double axis[3] = {w[0] / speed, w[1] / speed, w[2] / speed};
-    for (int i = 0; i < a->limbs && speed > 0; i++) {
-        SPARI_TRY(refuse_loads_across(a, a->limb[i].member, axis));
+    for (int i = 0; i < a->components && speed > 0; i++) {
+        SPARI_TRY(refuse_loads_across(a, a->component[i].member, axis));
     }
     return SPAR_OK;
 }
 
-static int room_to_turn(spari_assembly *a) {
+static int is_free_to_rotate(spari_assembly *a) {
     int64_t most = 1;
-    for (int i = 0; i < a->limbs; i++) {
-        int64_t P = a->limb[i].solver->body->per_element;
+    for (int i = 0; i < a->components; i++) {
+        int64_t P = a->component[i].solver->body->per_element;
         most = P > most ? P : most;
     }
-    a->turning.mass = spari_zalloc(36 * most * most, sizeof *a->turning.mass);
-    SPARI_REQUIRE(a->session, a->turning.mass, SPAR_ERR_MEMORY,
-                  "no memory for the equilibrium of the members that joint '%s' ties together", a->link[0].joint->name);
+    a->rotating.mass = spari_zalloc(36 * most * most, sizeof *a->rotating.mass);
+    SPARI_REQUIRE(a->session, a->rotating.mass, SPAR_ERR_MEMORY,
+                  "no memory for the equilibrium of the members that joint '%s' ties together",
+                  a->constraint[0].joint->name);
     return SPAR_OK;
 }
 
-int spari_turning_begin(spari_assembly *a) {
-    told_motion first;
-    a->turns = 0;
-    a->turning.mass = NULL;
-    SPARI_TRY(meet_told(a, &first));
-    for (int i = 0; i < a->links; i++) {
-        SPARI_TRY(meet_drive(a, a->link + i, &first));
+int spari_rotation_check_begin(spari_assembly *a) {
+    prescribed_motion first;
+    a->rotates = 0;
+    a->rotating.mass = NULL;
+    SPARI_TRY(meet_prescribed(a, &first));
+    for (int i = 0; i < a->constraints; i++) {
+        SPARI_TRY(meet_drive(a, a->constraint + i, &first));
     }
-    if (a->turns) {
-        SPARI_TRY(meet_told(a, &first)); /* a joint has begun it: roots that stand do not go along */
+    if (a->rotates) {
+        SPARI_TRY(meet_prescribed(a, &first)); /* a joint has begun it: roots that stand do not go along */
         SPARI_TRY(check_parts(a));
-        SPARI_TRY(room_to_turn(a));
+        SPARI_TRY(is_free_to_rotate(a));
     }
     return SPAR_OK;
 }
 
-void spari_turning_end(spari_assembly *a) {
-    free(a->turning.mass);
-    a->turning.mass = NULL;
-    a->turns = 0;
+void spari_rotation_check_end(spari_assembly *a) {
+    free(a->rotating.mass);
+    a->rotating.mass = NULL;
+    a->rotates = 0;
 }
 
 /* ---- what holds it ---- */
 
-/* A link as it is when the whole has turned on by some angle: forces on the side that turns, the rows that it holds
-   there, and its motion. */
-typedef struct link_view {
+/* A constraint as it is when the whole has turned on by some angle: forces on the side that turns, the rows that it
+   holds there, and its motion. */
+typedef struct constraint_view {
     double force[6], z[6], B[6][6];
-} link_view;
+} constraint_view;
 
-static void look_at_link(const spari_assembly *a, const spari_link *l, int side, double angle, link_view *view) {
-    const spari_turn *g = &a->turning.turn;
-    double speed = spari_norm(g->w), psi[3], turn[4], hub[3], r[3], along, inward[3], v[12] = {0}, rate[6], room[6];
+static void look_at_constraint(const spari_assembly *a, const spari_constraint *l, int side, double angle,
+                               constraint_view *view) {
+    const spari_steady_rotation *g = &a->rotating.rotation;
+    double speed = spari_norm(g->w), psi[3], rotation[4], hub[3], r[3], along, inward[3], v[12] = {0}, rate[6],
+           unused[6];
     double B[6][12], load[6], f[12];
-    spari_place place[2] = {l->place[0], l->place[1]};
+    spari_node_pose pose[2] = {l->pose[0], l->pose[1]};
     for (int k = 0; k < 3; k++) {
         psi[k] = g->w[k] * angle / speed;
     }
-    spari_quat_exp(psi, turn);
+    spari_quat_exp(psi, rotation);
     spari_cross(g->w, g->v0, inward); /* to the axis: x + w x v / w^2 */
     along = spari_dot(g->w, g->v0) / (speed * speed);
     for (int k = 0; k < 3; k++) {
-        hub[k] = a->turning.centre[k] + inward[k] / (speed * speed);
-        r[k] = place[side].x[k] - hub[k];
+        hub[k] = a->rotating.centre[k] + inward[k] / (speed * speed);
+        r[k] = pose[side].x[k] - hub[k];
     }
-    spari_rotate(turn, r, r);
+    spari_rotate(rotation, r, r);
     for (int k = 0; k < 3; k++) {
-        place[side].x[k] = hub[k] + r[k] + along * psi[k];
+        pose[side].x[k] = hub[k] + r[k] + along * psi[k];
     }
-    spari_quat_mul(turn, place[side].q, place[side].q);
-    spari_turning_rates(&a->turning, 1, place[side].x, v + 6 * side, room);
-    spari_tie_motion(&l->joint->tie, &place[0], &place[1], view->z, B);
-    spari_link_times(B, v, rate);
+    spari_quat_mul(rotation, pose[side].q, pose[side].q);
+    spari_rotating_frame_rates(&a->rotating, 1, pose[side].x, v + 6 * side, unused);
+    spari_kinematics_motion(&l->joint->kinematics, &pose[0], &pose[1], view->z, B);
+    spari_constraint_times(B, v, rate);
     memcpy(load, l->joint->after.load, sizeof load);
     double z[6];
     memcpy(z, view->z, sizeof z);
     spari_joint_count_turns(l->joint, l->joint->after.z, z);
     (void)spari_joint_spring(l->joint, z, rate, INFINITY, 1, load);
     for (int k = 0; k < 6; k++) {
-        load[k] = spari_joint_given(l->joint) >> k & 1 ? 0 : load[k];
+        load[k] = spari_joint_constrained(l->joint) >> k & 1 ? 0 : load[k];
     }
-    spari_tie_forces(B, load, f);
+    spari_kinematics_forces(B, load, f);
     for (int k = 0; k < 6; k++) { /* back into the axes of the beginning */
         memcpy(view->B[k], B[k] + 6 * side, sizeof view->B[k]);
-        spari_rotate_back(turn, view->B[k], view->B[k]);
-        spari_rotate_back(turn, view->B[k] + 3, view->B[k] + 3);
+        spari_rotate_back(rotation, view->B[k], view->B[k]);
+        spari_rotate_back(rotation, view->B[k] + 3, view->B[k] + 3);
     }
     memcpy(view->force, f + 6 * side, sizeof view->force);
-    spari_rotate_back(turn, view->force, view->force);
-    spari_rotate_back(turn, view->force + 3, view->force + 3);
+    spari_rotate_back(rotation, view->force, view->force);
+    spari_rotate_back(rotation, view->force + 3, view->force + 3);
 }
 
 /* Whether row x is made of the rows that are held in `view`; length: of arms. */
-static int is_held_in(const link_view *view, int given, const double x[6]) {
+static int is_constrained_in(const constraint_view *view, int given, const double x[6]) {
     double row[6][6], left[6], size = 0, rest = 0;
     int count = 0;
     for (int k = 0; k <= 6; k++) {
@@ -306,17 +311,19 @@ static int is_held_in(const link_view *view, int given, const double x[6]) {
     return rest <= 1e-12 * size;
 }
 
-static int is_same_view(const spari_link *l, const link_view *now, const link_view *then, double angle, double speed) {
+static int is_same_view(const spari_constraint *l, const constraint_view *now, const constraint_view *then,
+                        double angle, double speed) {
     const spar_joint *j = l->joint;
-    int given = spari_joint_given(j), same = 1, axis = j->tie.line ? -1 : spari_tie_axis(j->tie.free);
+    int given = spari_joint_constrained(j), same = 1,
+        axis = j->kinematics.line ? -1 : spari_kinematics_free_axis(j->kinematics.free);
     double apart = 0, size = 0, most = 0, reach = spari_member_length(j->member[0]);
     for (int k = 0; k < 6; k++) {
         apart = fmax(apart, fabs(now->force[k] - then->force[k]));
         size = fmax(size, fabs(now->force[k]));
-        if (!(given >> k & 1) || (j->tie.line && k > 0)) {
+        if (!(given >> k & 1) || (j->kinematics.line && k > 0)) {
             continue;
         }
-        same = same && is_held_in(now, given, then->B[k]);
+        same = same && is_constrained_in(now, given, then->B[k]);
         double rate = j->driven >> k & 1 ? j->drive[1].rate[k] : 0, gap = then->z[k] - now->z[k] - rate * angle / speed;
         gap = k == 3 + axis ? remainder(gap, 2 * acos(-1)) : gap;
         same = same && fabs(gap) <= 1e-6 * (k < 3 ? reach : 1);
@@ -327,20 +334,20 @@ static int is_same_view(const spari_link *l, const link_view *now, const link_vi
     return same && apart <= 1e-6 * size + 1e-9 * most;
 }
 
-static int check_link(const spari_assembly *a, spari_link *l) {
+static int check_constraint(const spari_assembly *a, spari_constraint *l) {
     static const double angles[2] = {1, 2.3};
-    double speed = spari_norm(a->turning.turn.w);
-    int side = spari_link_standing(l), same = speed > 0;
-    link_view now, then;
-    if (side < 0 || !l->limb[1 - side]) {
+    double speed = spari_norm(a->rotating.rotation.w);
+    int side = spari_constraint_fixed_side(l), same = speed > 0;
+    constraint_view now, then;
+    if (side < 0 || !l->component[1 - side]) {
         return SPAR_OK;
     }
-    spari_link_find(l, 1, 1, 1);
+    spari_constraint_find(l, 1, 1, 1);
     if (same) {
-        look_at_link(a, l, 1 - side, 0, &now);
+        look_at_constraint(a, l, 1 - side, 0, &now);
     }
     for (int k = 0; k < 2 && same; k++) {
-        look_at_link(a, l, 1 - side, angles[k], &then);
+        look_at_constraint(a, l, 1 - side, angles[k], &then);
         same = is_same_view(l, &now, &then, angles[k], speed);
     }
     SPARI_REQUIRE(a->session, same, SPAR_ERR_UNSUPPORTED,
@@ -351,9 +358,9 @@ static int check_link(const spari_assembly *a, spari_link *l) {
     return SPAR_OK;
 }
 
-int spari_turning_check(spari_assembly *a) {
-    for (int i = 0; i < a->links; i++) {
-        SPARI_TRY(check_link(a, a->link + i));
+int spari_rotation_check_joints(spari_assembly *a) {
+    for (int i = 0; i < a->constraints; i++) {
+        SPARI_TRY(check_constraint(a, a->constraint + i));
     }
     return SPAR_OK;
 }

@@ -16,12 +16,12 @@ int spari_assembly_owner(const spari_assembly *a) {
 }
 
 int64_t spari_assembly_share_size(const spari_assembly *a) {
-    return (int64_t)SHARED * a->links;
+    return (int64_t)SHARED * a->constraints;
 }
 
 void spari_assembly_pack(const spari_assembly *a, double *to) {
-    for (int i = 0; i < a->links; i++, to += SHARED) {
-        const spar_joint *j = a->link[i].joint;
+    for (int i = 0; i < a->constraints; i++, to += SHARED) {
+        const spar_joint *j = a->constraint[i].joint;
         to[0] = j->balanced;
         memcpy(to + 1, &j->after, sizeof j->after);
         memcpy(to + 1 + RELATIVE, &j->now, sizeof j->now);
@@ -30,8 +30,8 @@ void spari_assembly_pack(const spari_assembly *a, double *to) {
 }
 
 void spari_assembly_unpack(spari_assembly *a, const double *from) {
-    for (int i = 0; i < a->links; i++, from += SHARED) {
-        spar_joint *j = a->link[i].joint;
+    for (int i = 0; i < a->constraints; i++, from += SHARED) {
+        spar_joint *j = a->constraint[i].joint;
         if (from[0] != 0 && !j->balanced) {
             memcpy(&j->after, from + 1 + RELATIVE, sizeof j->after);
             spari_joint_balance(j);
@@ -41,7 +41,7 @@ void spari_assembly_unpack(spari_assembly *a, const double *from) {
     }
 }
 
-double spari_assembly_left(const spari_assembly *a) {
+double spari_assembly_remaining(const spari_assembly *a) {
     return a->trace.left;
 }
 
@@ -61,11 +61,11 @@ void spari_assembly_reject(spari_assembly *a) {
     if (!a->before.open) {
         return;
     }
-    a->factored = a->before.taken >= 0 ? a->factored_begun : 0;
+    a->factored = a->before.saved >= 0 ? a->factored_begun : 0;
     a->trace = a->trace_begun;
-    const double *from = a->before.taken > 0 ? a->before.data : NULL;
-    for (int i = 0; i < a->links && from; i++, from += SPARI_TURNING) {
-        memcpy(a->link[i].turning, from, sizeof a->link[i].turning);
+    const double *from = a->before.saved > 0 ? a->before.data : NULL;
+    for (int i = 0; i < a->constraints && from; i++, from += SPARI_JOINT_TANGENT) {
+        memcpy(a->constraint[i].joint_tangent, from, sizeof a->constraint[i].joint_tangent);
     }
 }
 
@@ -75,33 +75,33 @@ enum { KEPT_HEAD = 7 };
 
 /* Of a factored system: what remains of the members at the joints' nodes, and of the loads' turning. */
 static int64_t kept_size(const spari_assembly *a) {
-    int64_t n = (int64_t)SPARI_TURNING * a->links;
-    for (int i = 0; i < a->limbs; i++) {
-        n += spari_condensed_state_size(a->limb[i].condensed);
+    int64_t n = (int64_t)SPARI_JOINT_TANGENT * a->constraints;
+    for (int i = 0; i < a->components; i++) {
+        n += spari_condensed_state_size(a->component[i].condensed);
     }
     return n;
 }
 
 int64_t spari_assembly_state_size(const spari_assembly *a) {
     int64_t kept = a->factored ? kept_size(a) : 0;
-    return !a->here || a->limbs == 0 ? 0 : KEPT_HEAD + kept + spari_snapshot_size(&a->before);
+    return !a->here || a->components == 0 ? 0 : KEPT_HEAD + kept + spari_snapshot_size(&a->before);
 }
 
 void spari_assembly_save(const spari_assembly *a, double *state) {
     state[0] = a->factored;
-    state[1] = a->limbs;
+    state[1] = a->components;
     state[2] = a->trace.rate;
     state[3] = a->trace.left;
     state[4] = a->factored_begun;
     state[5] = a->trace_begun.rate;
     state[6] = a->trace_begun.left;
     state += KEPT_HEAD;
-    for (int i = 0; i < a->limbs && a->factored; i++) {
-        spari_condensed_save(a->limb[i].condensed, state);
-        state += spari_condensed_state_size(a->limb[i].condensed);
+    for (int i = 0; i < a->components && a->factored; i++) {
+        spari_condensed_save(a->component[i].condensed, state);
+        state += spari_condensed_state_size(a->component[i].condensed);
     }
-    for (int i = 0; i < a->links && a->factored; i++, state += SPARI_TURNING) {
-        memcpy(state, a->link[i].turning, sizeof a->link[i].turning);
+    for (int i = 0; i < a->constraints && a->factored; i++, state += SPARI_JOINT_TANGENT) {
+        memcpy(state, a->constraint[i].joint_tangent, sizeof a->constraint[i].joint_tangent);
     }
     spari_snapshot_save(&a->before, state);
 }
@@ -111,12 +111,12 @@ static int is_iterations(double x) {
 }
 
 int spari_assembly_is_state(const spari_assembly *a, const double *state, int64_t count) {
-    if (count < KEPT_HEAD || state[1] != a->limbs || !is_iterations(state[0]) || !spari_trace_is(state + 2) ||
+    if (count < KEPT_HEAD || state[1] != a->components || !is_iterations(state[0]) || !spari_trace_is(state + 2) ||
         !is_iterations(state[4]) || !spari_trace_is(state + 5)) {
         return 0;
     }
     int64_t own = KEPT_HEAD + (state[0] == 0 ? 0 : kept_size(a));
-    return count >= own && spari_snapshot_is(state + own, count - own, (int64_t)SPARI_TURNING * a->links);
+    return count >= own && spari_snapshot_is(state + own, count - own, (int64_t)SPARI_JOINT_TANGENT * a->constraints);
 }
 
 void spari_assembly_load(spari_assembly *a, const double *state) {
@@ -126,13 +126,13 @@ void spari_assembly_load(spari_assembly *a, const double *state) {
     a->trace_begun = (spari_trace){state ? state[5] : 0, state ? state[6] : 0};
     a->solved = 0;
     state = state ? state + KEPT_HEAD : NULL;
-    for (int i = 0; i < a->limbs && a->factored; i++) {
-        spari_condensed *c = a->limb[i].condensed;
-        spari_condensed_load(c, spari_member_held(a->limb[i].member), state);
+    for (int i = 0; i < a->components && a->factored; i++) {
+        spari_condensed *c = a->component[i].condensed;
+        spari_condensed_load(c, spari_member_constrained(a->component[i].member), state);
         state += spari_condensed_state_size(c);
     }
-    for (int i = 0; i < a->links && a->factored; i++, state += SPARI_TURNING) {
-        memcpy(a->link[i].turning, state, sizeof a->link[i].turning);
+    for (int i = 0; i < a->constraints && a->factored; i++, state += SPARI_JOINT_TANGENT) {
+        memcpy(a->constraint[i].joint_tangent, state, sizeof a->constraint[i].joint_tangent);
     }
     spari_snapshot_close(&a->before);
     if (state) {

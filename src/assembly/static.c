@@ -11,8 +11,8 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
-#include "system.h"
 #include "rotation_check.h"
+#include "system.h"
 
 #include <float.h>
 #include <math.h>
@@ -28,23 +28,23 @@ static const double loose = 1e-13;
 /* Forces less loads at the factor f, gaps with driven motions so far on their way. */
 static double balance_at_rest(spari_assembly *a, double f, double *noise) {
     double scale = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        scale = fmax(scale, a->limb[i].row->balance_rest(a->limb + i, f));
+    for (int i = 0; i < a->components; i++) {
+        scale = fmax(scale, a->component[i].row->balance_rest(a->component + i, f));
     }
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
         const spar_joint *j = l->joint;
-        spari_link_find(l, 1, 1, f);
+        spari_constraint_find(l, 1, 1, f);
         for (int k = 0; k < 6; k++) {
             l->drive.z[k] = j->now.z[k] + f * (j->drive[1].z[k] - j->now.z[k]);
-            l->gap[k] = spari_link_holds(l, k) ? spari_link_gap(l, k) : 0;
+            l->gap[k] = spari_constraint_holds(l, k) ? spari_constraint_gap(l, k) : 0;
             scale = fmax(scale, fabs(j->after.load[k]));
         }
     }
-    spari_links_add(a);
+    spari_constraints_add_forces(a);
     *noise = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        double left = a->limb[i].row->noise(a->limb + i);
+    for (int i = 0; i < a->components; i++) {
+        double left = a->component[i].row->noise(a->component + i);
         *noise = fmax(*noise, left);
         scale += 0 * left;
     }
@@ -53,28 +53,28 @@ static double balance_at_rest(spari_assembly *a, double f, double *noise) {
 
 /* Corrections of all parts at rest; 0, or 1 where something is not held. */
 static int solve_at_rest(spari_assembly *a, double f) {
-    for (int i = 0; i < a->limbs; i++) {
-        if (a->limb[i].row->tangent_rest(a->limb + i, f)) {
+    for (int i = 0; i < a->components; i++) {
+        if (a->component[i].row->tangent_rest(a->component + i, f)) {
             return 1;
         }
     }
-    spari_tied_keep(a);
-    return spari_tied_solve(a, 0);
+    spari_system_keep_joint_tangents(a);
+    return spari_system_solve(a, 0);
 }
 
 /* Shortened corrections come off; their size before. */
 static double shift_parts(spari_assembly *a, double longest, double *cut) {
     double largest = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        largest = fmax(largest, a->limb[i].row->change(a->limb + i));
+    for (int i = 0; i < a->components; i++) {
+        largest = fmax(largest, a->component[i].row->correction_size(a->component + i));
     }
     *cut = largest > longest ? longest / largest : 1;
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->shift(a->limb + i, *cut);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->shift(a->component + i, *cut);
     }
-    for (int i = 0; i < a->links; i++) {
+    for (int i = 0; i < a->constraints; i++) {
         for (int k = 0; k < 6; k++) {
-            a->link[i].joint->after.load[k] -= *cut * a->link[i].correction[k];
+            a->constraint[i].joint->after.load[k] -= *cut * a->constraint[i].correction[k];
         }
     }
     return largest;
@@ -83,9 +83,9 @@ static double shift_parts(spari_assembly *a, double longest, double *cut) {
 /* The largest correction of a joint's load. */
 static double change_of_loads(const spari_assembly *a) {
     double largest = 0;
-    for (int i = 0; i < a->links; i++) {
+    for (int i = 0; i < a->constraints; i++) {
         for (int k = 0; k < 6; k++) {
-            largest = fmax(largest, fabs(a->link[i].correction[k]));
+            largest = fmax(largest, fabs(a->constraint[i].correction[k]));
         }
     }
     return largest;
@@ -101,8 +101,8 @@ typedef enum rest { FOUND, FAILED, LOOSE, UNSTABLE } rest;
 
 /* Whether all forces have a potential: none follow, no moments of fixed axes, and nothing turns. */
 static int has_potential(const spari_assembly *a, const double *(*fluid)(const spar_member *)) {
-    for (int i = 0; i < a->limbs; i++) {
-        const spar_member *m = a->limb[i].member;
+    for (int i = 0; i < a->components; i++) {
+        const spar_member *m = a->component[i].member;
         const double *other = fluid(m);
         for (int64_t k = 0; k < m->nodes; k++) {
             if (spari_norm(m->dead + 6 * k + 3) > 0 || spari_norm(other + 6 * k + 3) > 0) {
@@ -113,7 +113,7 @@ static int has_potential(const spari_assembly *a, const double *(*fluid)(const s
             return 0;
         }
     }
-    return !a->turns;
+    return !a->rotates;
 }
 
 /* Corrections with the least shift, 0 or of a row that grows by 4, that makes the system one of a minimum. *kept: the
@@ -122,16 +122,16 @@ static rest solve_downhill(spari_assembly *a, double f, double *kept) {
     enum { SHIFTS = 30 };
     rest why = FOUND;
     a->shift = 0;
-    if (solve_at_rest(a, f) || spari_tied_weakest(a) < loose) {
+    if (solve_at_rest(a, f) || spari_system_weakest_pivot(a) < loose) {
         why = LOOSE;
-    } else if (spari_tied_downward(a) > 0) {
+    } else if (spari_system_count_negative(a) > 0) {
         why = UNSTABLE;
     }
     double shift = 0.25 * *kept;
     for (int i = 0, wrong = why != FOUND; i < SHIFTS && wrong; i++, shift *= 4) {
         a->standing = 0;
         a->shift = *kept = shift;
-        wrong = spari_tied_solve(a, 0) || spari_tied_weakest(a) < loose || spari_tied_downward(a) > 0;
+        wrong = spari_system_solve(a, 0) || spari_system_weakest_pivot(a) < loose || spari_system_count_negative(a) > 0;
         if (wrong && i == SHIFTS - 1) {
             return FAILED;
         }
@@ -152,7 +152,7 @@ static rest find_downhill(spari_assembly *a, double f) {
             return FAILED;
         }
         if (it == 0) {
-            kept = 16 * (noise > 0 ? noise : 1) / spari_member_length(a->limb[0].member);
+            kept = 16 * (noise > 0 ? noise : 1) / spari_member_length(a->component[0].member);
         }
         why = solve_downhill(a, f, &kept);
         if (why == FAILED) {
@@ -173,7 +173,7 @@ static int is_unstable(spari_assembly *a, double f) {
     spari_blocks_watch(a->system, 1);
     int singular = solve_at_rest(a, f);
     spari_blocks_watch(a->system, 0);
-    return !singular && spari_tied_weakest(a) >= loose && spari_tied_downward(a) > 0;
+    return !singular && spari_system_weakest_pivot(a) >= loose && spari_system_count_negative(a) > 0;
 }
 
 /* Equilibrium at the factor f from the states `to`. */
@@ -185,7 +185,7 @@ static rest find_rest_at(spari_assembly *a, double f) {
         if (!isfinite(scale)) {
             return FAILED;
         }
-        if (solve_at_rest(a, f) || spari_tied_weakest(a) < loose) {
+        if (solve_at_rest(a, f) || spari_system_weakest_pivot(a) < loose) {
             return LOOSE;
         }
         double largest = shift_parts(a, 0.8, &cut);
@@ -201,23 +201,23 @@ static rest find_rest_at(spari_assembly *a, double f) {
 
 /* The states and multipliers of the last point found. */
 static void keep_point(spari_assembly *a, int back) {
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->keep_places(a->limb + i, back);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->keep_positions(a->component + i, back);
     }
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
         *(back ? &l->joint->after : &l->begin) = back ? l->begin : l->joint->after;
     }
 }
 
 /* Loads into the parts' solvers, which stay where they are onward, else go to t^n. */
 static void begin_rest(spari_assembly *a, const double *(*fluid)(const spar_member *), int onward) {
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].turning = a->turns ? &a->turning : NULL;
-        a->limb[i].row->rest(a->limb + i, fluid(a->limb[i].member), onward);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].rotating = a->rotates ? &a->rotating : NULL;
+        a->component[i].row->rest(a->component + i, fluid(a->component[i].member), onward);
     }
-    for (int i = 0; i < a->links && !onward; i++) {
-        a->link[i].joint->after = a->link[i].joint->now;
+    for (int i = 0; i < a->constraints && !onward; i++) {
+        a->constraint[i].joint->after = a->constraint[i].joint->now;
     }
     keep_point(a, 0);
 }
@@ -232,7 +232,7 @@ typedef struct rest_end {
 static rest find_point(spari_assembly *a, double f, int first, rest_end *end) {
     rest found = find_rest_at(a, f), why = found;
     if (found == LOOSE || found == UNSTABLE) {
-        spari_tied_name_free(a, end->motion, sizeof end->motion);
+        spari_system_name_free(a, end->motion, sizeof end->motion);
     }
     if ((found == LOOSE && first) || found == UNSTABLE) {
         keep_point(a, 1);
@@ -242,7 +242,7 @@ static rest find_point(spari_assembly *a, double f, int first, rest_end *end) {
         a->shift = 0;
         if (found == LOOSE || found == UNSTABLE) { /* where it has come to rest, that motion is the one */
             why = found;
-            spari_tied_name_free(a, end->motion, sizeof end->motion);
+            spari_system_name_free(a, end->motion, sizeof end->motion);
         }
     }
     end->why = found == FOUND ? FOUND : why;
@@ -253,7 +253,8 @@ static rest find_point(spari_assembly *a, double f, int first, rest_end *end) {
 static double follow_loads(spari_assembly *a, int load_steps, rest_end *end) {
     double done = 0, step = 1.0 / load_steps;
     int halvings = 0;
-    for (int taken = 0; done < 1 && halvings <= REST_HALVINGS && taken < load_steps + SPARI_STATIC_MORE; taken++) {
+    for (int attempts = 0; done < 1 && halvings <= REST_HALVINGS && attempts < load_steps + SPARI_STATIC_MORE;
+         attempts++) {
         double f = done + step > 1 - 1e-12 ? 1 : done + step;
         rest found = find_point(a, f, done == 0, end);
         if (found == FOUND) {
@@ -269,10 +270,10 @@ static double follow_loads(spari_assembly *a, int load_steps, rest_end *end) {
 }
 
 static void give_up_rest(spari_assembly *a) {
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->leave_rest(a->limb + i);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->discard_rest(a->component + i);
     }
-    spari_assembly_leave(a);
+    spari_assembly_discard(a);
 }
 
 /* Nothing has been found: all is as it was. */
@@ -291,15 +292,15 @@ static int refuse_rest(spari_assembly *a, double done, const rest_end *end) {
     return spari_fail(a->session, SPAR_ERR_NUMERIC,
                       "the members that joint '%s' ties together: no %sequilibrium found beyond %.6g of the loads%s; "
                       "the state is as it was",
-                      a->link[0].joint->name, end->why == UNSTABLE ? "stable " : "", done, text);
+                      a->constraint[0].joint->name, end->why == UNSTABLE ? "stable " : "", done, text);
 }
 
-/* Joints whose nodes all move as they are told: their springs. */
+/* Joints whose nodes all have prescribed motion: their springs. */
 static int look_at_rest(spari_assembly *a) {
-    for (int i = 0; i < a->links; i++) {
-        spar_joint *j = a->link[i].joint;
+    for (int i = 0; i < a->constraints; i++) {
+        spar_joint *j = a->constraint[i].joint;
         j->after = j->now;
-        spari_link_find(a->link + i, 1, 1, 1);
+        spari_constraint_find(a->constraint + i, 1, 1, 1);
     }
     return SPAR_OK;
 }
@@ -320,34 +321,34 @@ static int find_equilibrium_of(spari_assembly *a, const double *(*fluid)(const s
     if (done < 1) {
         return refuse_rest(a, done, &end);
     }
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].row->end_rest(a->limb + i);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->end_rest(a->component + i);
     }
-    for (int i = 0; i < a->links && !a->turns; i++) {
-        memset(a->link[i].joint->after.rate, 0, sizeof a->link[i].joint->after.rate);
+    for (int i = 0; i < a->constraints && !a->rotates; i++) {
+        memset(a->constraint[i].joint->after.rate, 0, sizeof a->constraint[i].joint->after.rate);
     }
     return SPAR_OK;
 }
 
 int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps, int onward) {
-    if (!a->here || a->limbs == 0) {
+    if (!a->here || a->components == 0) {
         return a->here ? look_at_rest(a) : SPAR_OK;
     }
-    int status = spari_turning_begin(a);
+    int status = spari_rotation_check_begin(a);
     status = status == SPAR_OK ? find_equilibrium_of(a, fluid, load_steps, onward) : status;
-    if (status == SPAR_OK && a->turns) {
-        status = spari_turning_check(a);
+    if (status == SPAR_OK && a->rotates) {
+        status = spari_rotation_check_joints(a);
         if (status != SPAR_OK) {
             give_up_rest(a);
         }
     }
-    spari_turning_end(a);
+    spari_rotation_check_end(a);
     return status;
 }
 
-void spari_assembly_settle(spari_assembly *a) {
-    for (int i = 0; i < a->links; i++) {
-        spar_joint *j = a->link[i].joint;
+void spari_assembly_commit_state(spari_assembly *a) {
+    for (int i = 0; i < a->constraints; i++) {
+        spar_joint *j = a->constraint[i].joint;
         j->now = j->after;
         memcpy(j->before, j->given, sizeof j->before);
         j->drive[0] = j->drive[1];
@@ -358,8 +359,8 @@ void spari_assembly_settle(spari_assembly *a) {
     }
 }
 
-void spari_assembly_leave(spari_assembly *a) {
-    for (int i = 0; i < a->links; i++) {
-        spari_joint_reject(a->link[i].joint);
+void spari_assembly_discard(spari_assembly *a) {
+    for (int i = 0; i < a->constraints; i++) {
+        spari_joint_reject(a->constraint[i].joint);
     }
 }

@@ -6,13 +6,13 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double *turn_of_side(const spari_link *l, int side) {
-    const spari_limb *p = l->limb[side];
-    return p ? p->row->turn(p, l->joint->unique[side]) : NULL;
+static const double *rotation_of_side(const spari_constraint *l, int side) {
+    const spari_component *p = l->component[side];
+    return p ? p->row->rotation(p, l->joint->unique[side]) : NULL;
 }
 
 /* out [3][3] of row stride `to` := R K Q^T, K of row stride `from` */
-static void turn_block(const double R[9], const double Q[9], int from, const double *K, int to, double *out) {
+static void rotate_block(const double R[9], const double Q[9], int from, const double *K, int to, double *out) {
     double half[9];
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
@@ -28,39 +28,41 @@ static void turn_block(const double R[9], const double Q[9], int from, const dou
 }
 
 /* turn NULL: none */
-static void matrix_of_turn(const double *turn, double R[9]) {
+static void matrix_of_rotation(const double *rotation, double R[9]) {
     const double none[4] = {1, 0, 0, 0};
-    spari_quat_matrix(turn ? turn : none, R);
+    spari_quat_matrix(rotation ? rotation : none, R);
 }
 
-/* Whether a link only makes one cluster of its nodes. */
-static int is_rigid(const spari_link *l) {
-    return l->role == SPARI_LINK_TREE && spari_link_holds_count(l) == 6;
+/* Whether a constraint only makes one cluster of its nodes. */
+static int is_rigid(const spari_constraint *l) {
+    return l->role == SPARI_CONSTRAINT_TREE && spari_constraint_count(l) == 6;
 }
 
-void spari_tied_keep(spari_assembly *a) {
-    double *before = a->factored_begun ? spari_snapshot_take(&a->before, (int64_t)SPARI_TURNING * a->links) : NULL;
-    for (int i = 0; i < a->links && before; i++, before += SPARI_TURNING) {
-        memcpy(before, a->link[i].turning, sizeof a->link[i].turning);
+void spari_system_keep_joint_tangents(spari_assembly *a) {
+    double *before =
+        a->factored_begun ? spari_snapshot_take(&a->before, (int64_t)SPARI_JOINT_TANGENT * a->constraints) : NULL;
+    for (int i = 0; i < a->constraints && before; i++, before += SPARI_JOINT_TANGENT) {
+        memcpy(before, a->constraint[i].joint_tangent, sizeof a->constraint[i].joint_tangent);
     }
     a->standing = 0;
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
-        memset(l->turning, 0, sizeof l->turning);
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
+        memset(l->joint_tangent, 0, sizeof l->joint_tangent);
         if (is_rigid(l)) {
             continue;
         }
-        spari_tie_tangent(&l->joint->tie, &l->place[0], &l->place[1], l->joint->after.load, l->turning);
-        if (a->turns) {
-            spari_link_turning_dampers(l, a->turning.turn.w);
+        spari_kinematics_tangent(&l->joint->kinematics, &l->pose[0], &l->pose[1], l->joint->after.load,
+                                 l->joint_tangent);
+        if (a->rotates) {
+            spari_constraint_rotate_dampers(l, a->rotating.rotation.w);
         }
     }
 }
 
 /* K -= B^T (stiffness + cv damping) B of the free motions */
-static void release_springs(const spari_link *l, double cv, double K[12][12]) {
+static void release_springs(const spari_constraint *l, double cv, double K[12][12]) {
     const spar_joint *j = l->joint;
-    int given = spari_joint_given(j);
+    int given = spari_joint_constrained(j);
     for (int p = 0; p < 6; p++) {
         double row[12] = {0};
         int some = 0;
@@ -82,14 +84,14 @@ static void release_springs(const spari_link *l, double cv, double K[12][12]) {
     }
 }
 
-/* K[12][12] := what the link takes from the tangent: the turning of its load, springs and dampers. */
-static void link_tangent(const spari_link *l, double cv, double K[12][12]) {
+/* K[12][12] := what the constraint takes from the tangent: the turning of its load, springs and dampers. */
+static void constraint_tangent(const spari_constraint *l, double cv, double K[12][12]) {
     double R[2][9];
-    matrix_of_turn(turn_of_side(l, 0), R[0]);
-    matrix_of_turn(turn_of_side(l, 1), R[1]);
+    matrix_of_rotation(rotation_of_side(l, 0), R[0]);
+    matrix_of_rotation(rotation_of_side(l, 1), R[1]);
     for (int i = 0; i < 12; i += 3) {
         for (int k = 0; k < 12; k += 3) {
-            turn_block(R[i / 6], R[k / 6], 12, &l->turning[i][k], 12, &K[i][k]);
+            rotate_block(R[i / 6], R[k / 6], 12, &l->joint_tangent[i][k], 12, &K[i][k]);
         }
     }
     if (l->springs) {
@@ -139,26 +141,26 @@ static void add_stiffness(spari_assembly *a, int v, int w, double f, const doubl
 }
 
 /* What remains of a part, in global axes. */
-static void turn_part(spari_limb *p) {
+static void rotate_part(spari_component *p) {
     const spari_condensed *c = p->condensed;
     int m = 6 * c->ends;
     for (int e = 0; e < c->ends; e++) {
         double R[9];
-        matrix_of_turn(p->row->turn(p, p->end[e]), R);
+        matrix_of_rotation(p->row->rotation(p, p->end[e]), R);
         for (int o = 0; o < c->ends; o++) {
             double Q[9];
-            matrix_of_turn(p->row->turn(p, p->end[o]), Q);
+            matrix_of_rotation(p->row->rotation(p, p->end[o]), Q);
             for (int k = 0; k < 4; k++) {
                 int at = m * (6 * e + 3 * (k / 2)) + 6 * o + 3 * (k % 2);
-                turn_block(R, Q, m, c->K + at, m, p->K + at);
+                rotate_block(R, Q, m, c->K + at, m, p->K + at);
             }
         }
     }
 }
 
-static void add_part(spari_assembly *a, spari_limb *p) {
+static void add_part(spari_assembly *a, spari_component *p) {
     int ends = p->condensed->ends, m = 6 * ends;
-    turn_part(p);
+    rotate_part(p);
     for (int e = 0; e < ends; e++) {
         for (int o = 0; o < ends; o++) {
             add_stiffness(a, p->at / 6 + e, p->at / 6 + o, 1, p->K + 6 * m * e + 6 * o, m);
@@ -171,7 +173,7 @@ static void add_part(spari_assembly *a, spari_limb *p) {
 
 /* Inside a cluster the load turns with its nodes, of which one is d from the other: its moment on the cluster, which is
    0, has the derivative (theta x d) x f = (d f^T - d . f) theta. */
-static void add_rigid_load(spari_assembly *a, const spari_link *l) {
+static void add_rigid_load(spari_assembly *a, const spari_constraint *l) {
     const spari_interface *v = moving(a, l->node[0] < 0 ? l->node[1] : l->node[0]);
     double d[3], f[3], along = 0;
     int stride;
@@ -179,7 +181,7 @@ static void add_rigid_load(spari_assembly *a, const spari_link *l) {
         return;
     }
     for (int i = 0; i < 3; i++) {
-        d[i] = l->place[0].x[i] - l->place[1].x[i];
+        d[i] = l->pose[0].x[i] - l->pose[1].x[i];
         f[i] = 0;
         for (int k = 0; k < 3; k++) {
             f[i] += l->B[k][i] * l->joint->after.load[k];
@@ -195,13 +197,13 @@ static void add_rigid_load(spari_assembly *a, const spari_link *l) {
 }
 
 /* The turning of its load, springs and dampers. */
-static void add_link_stiffness(spari_assembly *a, spari_link *l, double cv) {
+static void add_constraint_stiffness(spari_assembly *a, spari_constraint *l, double cv) {
     l->stiff = 0;
     if (is_rigid(l)) {
         add_rigid_load(a, l);
         return;
     }
-    link_tangent(l, cv, l->K);
+    constraint_tangent(l, cv, l->K);
     for (int i = 0; i < 144 && !l->stiff; i++) {
         l->stiff = l->K[i / 12][i % 12] != 0;
     }
@@ -211,23 +213,23 @@ static void add_link_stiffness(spari_assembly *a, spari_link *l, double cv) {
     }
 }
 
-/* The rows of a link as the cluster of its node on a side moves; 0: that does not move. */
-static int rows_of_side(const spari_assembly *a, const spari_link *l, int side, double rows[6][6]) {
+/* The rows of a constraint as the cluster of its node on a side moves; 0: that does not move. */
+static int rows_of_side(const spari_assembly *a, const spari_constraint *l, int side, double rows[6][6]) {
     const spari_interface *v = moving(a, l->node[side]);
-    int held = 0;
+    int constrained = 0;
     for (int k = 0; k < 6 && v; k++) {
-        if (spari_link_holds(l, k)) {
-            memcpy(rows[held], l->rows[k] + 6 * side, sizeof rows[held]);
-            carry_force(v->arm, 1, rows[held]);
-            memset(rows[held], 0, (size_t)fixed_in(a, v) * sizeof rows[held][0]);
-            held++;
+        if (spari_constraint_holds(l, k)) {
+            memcpy(rows[constrained], l->rows[k] + 6 * side, sizeof rows[constrained]);
+            carry_force(v->arm, 1, rows[constrained]);
+            memset(rows[constrained], 0, (size_t)fixed_in(a, v) * sizeof rows[constrained][0]);
+            constrained++;
         }
     }
-    return held;
+    return constrained;
 }
 
-/* The largest stiffness of the clusters that a link ties, and of its own. */
-static double scale_of_link(spari_assembly *a, const spari_link *l) {
+/* The largest stiffness of the clusters that a constraint ties, and of its own. */
+static double scale_of_constraint(spari_assembly *a, const spari_constraint *l) {
     double scale = 0;
     for (int i = 0; i < 144 && l->stiff; i++) {
         scale = fmax(scale, fabs(l->K[i / 12][i % 12]));
@@ -245,18 +247,18 @@ static double scale_of_link(spari_assembly *a, const spari_link *l) {
     return scale > 0 ? scale : a->scale;
 }
 
-/* The multipliers of a link stand in block `own` from row `first` on. */
-static void add_constraint(spari_assembly *a, const spari_link *l, int own, int first) {
+/* The multipliers of a constraint stand in block `own` from row `first` on. */
+static void add_constraint(spari_assembly *a, const spari_constraint *l, int own, int first) {
     for (int side = 0; side < 2; side++) {
         double rows[6][6];
-        int held = rows_of_side(a, l, side, rows), across, down;
-        if (held == 0) {
+        int constrained = rows_of_side(a, l, side, rows), across, down;
+        if (constrained == 0) {
             continue;
         }
         int block = a->interface[l->node[side]].block;
         double *left = spari_blocks_at(a->system, own, block, &across),
                *above = spari_blocks_at(a->system, block, own, &down);
-        for (int k = 0; k < held; k++) {
+        for (int k = 0; k < constrained; k++) {
             for (int j = 0; j < 6; j++) {
                 left[across * (first + k) + j] -= l->scale * rows[k][j];
                 above[down * j + first + k] -= l->scale * rows[k][j];
@@ -265,22 +267,22 @@ static void add_constraint(spari_assembly *a, const spari_link *l, int own, int 
     }
 }
 
-/* A link that closes a loop may be all that holds what it ties. The penalty keeps the blocks before its own from being
-   singular; its constraint makes nothing of it (the augmented Lagrangian of the constraint). */
-static void add_penalty(spari_assembly *a, const spari_link *l, double penalty) {
+/* A constraint that closes a loop may be all that holds what it ties. The penalty keeps the blocks before its own from
+   being singular; the constraint itself is unchanged by it (the augmented Lagrangian of the constraint). */
+static void add_penalty(spari_assembly *a, const spari_constraint *l, double penalty) {
     double rows[2][6][6];
-    int held[2];
+    int constrained[2];
     for (int side = 0; side < 2; side++) {
-        held[side] = rows_of_side(a, l, side, rows[side]);
+        constrained[side] = rows_of_side(a, l, side, rows[side]);
     }
     for (int n = 0; n < 4; n++) {
         int i = n / 2, j = n % 2, stride;
-        if (held[i] == 0 || held[j] == 0) {
+        if (constrained[i] == 0 || constrained[j] == 0) {
             continue;
         }
         double *block =
             spari_blocks_at(a->system, a->interface[l->node[i]].block, a->interface[l->node[j]].block, &stride);
-        for (int k = 0; k < 36 * held[i]; k++) {
+        for (int k = 0; k < 36 * constrained[i]; k++) {
             int row = k / 6 % 6, column = k % 6;
             block[stride * row + column] += penalty * l->scale * rows[i][k / 36][row] * rows[j][k / 36][column];
         }
@@ -302,19 +304,19 @@ static int invert_rotation(const double *A, int stride, double E[9]) {
     return !(fabs(det) > 0);
 }
 
-/* The clusters, by the links as they stand. 0 or 1. */
+/* The clusters, by the constraints as they stand. 0 or 1. */
 static int find_clusters(spari_assembly *a) {
     for (int n = 0; n < a->interfaces; n++) {
         spari_interface *v = a->interface + a->order[n];
         const spari_interface *parent = v->parent < 0 ? NULL : a->interface + v->parent;
         memset(v->arm, 0, sizeof v->arm);
-        if (v->cluster == a->order[n] || v->link < 0) {
+        if (v->cluster == a->order[n] || v->constraint < 0) {
             continue;
         }
-        const spari_link *l = a->link + v->link;
+        const spari_constraint *l = a->constraint + v->constraint;
         v->block = v->cluster < 0 ? -1 : a->interface[v->cluster].block;
         for (int k = 0; k < 3 && parent; k++) {
-            v->arm[k] = parent->arm[k] + l->place[v->side].x[k] - l->place[1 - v->side].x[k];
+            v->arm[k] = parent->arm[k] + l->pose[v->side].x[k] - l->pose[1 - v->side].x[k];
         }
         if (invert_rotation(l->rows[3] + 6 * v->side + 3, 12, v->E)) {
             return 1;
@@ -325,8 +327,8 @@ static int find_clusters(spari_assembly *a) {
 
 /* The shift against every motion of the clusters, turns by their members' lengths. */
 static void add_shift(spari_assembly *a) {
-    for (int i = 0; i < a->limbs; i++) {
-        const spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        const spari_component *p = a->component + i;
         double length = spari_member_length(p->member);
         for (int e = 0; e < p->condensed->ends; e++) {
             const spari_interface *v = a->interface + p->at / 6 + e;
@@ -343,21 +345,21 @@ static void fill_system(spari_assembly *a, double cv, double penalty) {
     a->penalty = penalty;
     spari_blocks_zero(a->system);
     a->scale = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        add_part(a, a->limb + i);
+    for (int i = 0; i < a->components; i++) {
+        add_part(a, a->component + i);
     }
     a->scale = a->scale > 0 ? a->scale : 1;
-    for (int i = 0; i < a->links; i++) {
-        add_link_stiffness(a, a->link + i, cv);
+    for (int i = 0; i < a->constraints; i++) {
+        add_constraint_stiffness(a, a->constraint + i, cv);
     }
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
-        if (l->joint->held && (l->role == SPARI_LINK_LOOP || spari_link_holds_count(l) < 6)) {
-            l->scale = scale_of_link(a, l);
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
+        if (l->joint->constrained && (l->role == SPARI_CONSTRAINT_LOOP || spari_constraint_count(l) < 6)) {
+            l->scale = scale_of_constraint(a, l);
         }
     }
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
         if (l->block >= 0) {
             add_penalty(a, l, penalty);
             add_constraint(a, l, l->block, 0);
@@ -365,8 +367,8 @@ static void fill_system(spari_assembly *a, double cv, double penalty) {
     }
     for (int i = 0; i < a->interfaces; i++) {
         const spari_interface *v = a->interface + i;
-        if (v->cluster == i && v->link >= 0) {
-            add_constraint(a, a->link + v->link, v->block, 6);
+        if (v->cluster == i && v->constraint >= 0) {
+            add_constraint(a, a->constraint + v->constraint, v->block, 6);
         }
         for (int k = 0; k < v->fixed && v->cluster == i; k++) {
             int stride;
@@ -379,10 +381,10 @@ static void fill_system(spari_assembly *a, double cv, double penalty) {
     }
 }
 
-/* The system of the parts and links as they stand. 0 or 1. */
+/* The system of the parts and constraints as they stand. 0 or 1. */
 static int form_system(spari_assembly *a, double cv, double penalty) {
-    for (int i = 0; i < a->links; i++) {
-        memcpy(a->link[i].rows, a->link[i].B, sizeof a->link[i].rows);
+    for (int i = 0; i < a->constraints; i++) {
+        memcpy(a->constraint[i].rows, a->constraint[i].B, sizeof a->constraint[i].rows);
     }
     if (find_clusters(a)) {
         return 1;
@@ -400,7 +402,7 @@ static int factor_system(spari_assembly *a, double cv) {
             return 1;
         }
         singular = spari_blocks_factor(a->system);
-        if (!a->loops || spari_tied_weakest(a) > weak) {
+        if (!a->loops || spari_system_weakest_pivot(a) > weak) {
             break;
         }
     }
@@ -423,18 +425,18 @@ static void add_block_transposed(double f, const double *A, int stride, const do
     }
 }
 
-/* y += K u of the parts and links, [interfaces][6] */
+/* y += K u of the parts and constraints, [interfaces][6] */
 static void add_forces_of(const spari_assembly *a, const double *u, double *y) {
-    for (int i = 0; i < a->limbs; i++) {
-        const spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        const spari_component *p = a->component + i;
         int ends = p->condensed->ends, m = 6 * ends;
         for (int n = 0; n < ends * ends; n++) {
             int row = 6 * (n / ends), column = 6 * (n % ends);
             add_block_times(1, p->K + m * row + column, m, u + p->at + column, y + p->at + row);
         }
     }
-    for (int i = 0; i < a->links; i++) {
-        const spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints; i++) {
+        const spari_constraint *l = a->constraint + i;
         for (int n = 0; n < 4 && l->stiff; n++) {
             int row = l->node[n / 2], column = l->node[n % 2];
             if (row >= 0 && column >= 0) {
@@ -444,9 +446,9 @@ static void add_forces_of(const spari_assembly *a, const double *u, double *y) {
     }
 }
 
-/* The rows of a rigid link for one node's own motion are [A C; 0 F], A orthogonal and F^-1 = E: the motion that they
-   give x, and the loads that balance a force y there. */
-static void solve_for_motion(const spari_link *l, const spari_interface *v, double x[6]) {
+/* The rows of a rigid constraint for one node's own motion are [A C; 0 F], A orthogonal and F^-1 = E: the motion that
+   they give x, and the loads that balance a force y there. */
+static void solve_for_motion(const spari_constraint *l, const spari_interface *v, double x[6]) {
     double motion[6] = {0};
     for (int i = 0; i < 9; i++) {
         motion[3 + i / 3] += v->E[i] * x[3 + i % 3];
@@ -461,7 +463,7 @@ static void solve_for_motion(const spari_link *l, const spari_interface *v, doub
     memcpy(x, motion, sizeof motion);
 }
 
-static void solve_for_loads(const spari_link *l, const spari_interface *v, const double y[6], double load[6]) {
+static void solve_for_loads(const spari_constraint *l, const spari_interface *v, const double y[6], double load[6]) {
     double moment[3] = {y[3], y[4], y[5]};
     for (int k = 0; k < 3; k++) {
         const double *row = l->rows[k] + 6 * v->side;
@@ -480,9 +482,9 @@ static int find_gaps(spari_assembly *a) {
     int any = 0;
     for (int n = 0; n < a->interfaces; n++) {
         spari_interface *v = a->interface + a->order[n];
-        const spari_link *l = a->link + v->link;
+        const spari_constraint *l = a->constraint + v->constraint;
         memset(v->gap, 0, sizeof v->gap);
-        if (v->cluster == a->order[n] || v->link < 0) {
+        if (v->cluster == a->order[n] || v->constraint < 0) {
             continue;
         }
         if (v->parent >= 0) {
@@ -497,16 +499,16 @@ static int find_gaps(spari_assembly *a) {
     return any;
 }
 
-/* What is left of a link's gaps beside them, of the held motions one after the other. */
-static void gaps_left(const spari_assembly *a, const spari_link *l, double left[6]) {
-    int held = 0;
+/* What is left of a constraint's gaps beside them, of the constrained motions one after the other. */
+static void gaps_left(const spari_assembly *a, const spari_constraint *l, double left[6]) {
+    int constrained = 0;
     for (int k = 0; k < 6; k++) {
-        if (spari_link_holds(l, k)) {
+        if (spari_constraint_holds(l, k)) {
             double gap = l->gap[k];
             for (int i = 0; i < 12; i++) {
                 gap -= l->node[i / 6] < 0 ? 0 : l->rows[k][i] * a->interface[l->node[i / 6]].gap[i % 6];
             }
-            left[held++] = gap;
+            left[constrained++] = gap;
         }
     }
 }
@@ -525,28 +527,28 @@ static void load_system(spari_assembly *a, const double *y) {
                 b[k] -= f[k];
             }
         }
-        if (v->cluster == i && v->link >= 0) {
-            const spari_link *l = a->link + v->link;
+        if (v->cluster == i && v->constraint >= 0) {
+            const spari_constraint *l = a->constraint + v->constraint;
             double left[6];
             gaps_left(a, l, left);
-            for (int k = 0; k < spari_link_holds_count(l); k++) {
+            for (int k = 0; k < spari_constraint_count(l); k++) {
                 b[6 + k] = -l->scale * left[k];
             }
         }
     }
-    for (int i = 0; i < a->links; i++) {
-        const spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints; i++) {
+        const spari_constraint *l = a->constraint + i;
         double left[6], rows[6][6];
         if (l->block < 0) {
             continue;
         }
         gaps_left(a, l, left);
-        for (int k = 0; k < spari_link_holds_count(l); k++) {
+        for (int k = 0; k < spari_constraint_count(l); k++) {
             a->b[spari_blocks_first(a->system, l->block) + k] = -l->scale * left[k];
         }
         for (int side = 0; side < 2; side++) {
-            int held = rows_of_side(a, l, side, rows);
-            for (int k = 0; k < 6 * held; k++) {
+            int constrained = rows_of_side(a, l, side, rows);
+            for (int k = 0; k < 6 * constrained; k++) {
                 int block = a->interface[l->node[side]].block;
                 a->b[spari_blocks_first(a->system, block) + k % 6] +=
                     a->penalty * l->scale * rows[k / 6][k % 6] * left[k / 6];
@@ -573,10 +575,10 @@ static void show_motion(const spari_assembly *a, double *x) {
 }
 
 /* Multipliers that stand in the system. y: what forces do not balance, they take their part off. */
-static void read_multipliers(spari_link *l, const double *b, double *y) {
-    int held = 0;
+static void read_multipliers(spari_constraint *l, const double *b, double *y) {
+    int constrained = 0;
     for (int k = 0; k < 6; k++) {
-        l->correction[k] = spari_link_holds(l, k) ? l->scale * b[held++] : 0;
+        l->correction[k] = spari_constraint_holds(l, k) ? l->scale * b[constrained++] : 0;
         for (int i = 0; i < 12; i++) {
             if (l->node[i / 6] >= 0) {
                 y[6 * l->node[i / 6] + i % 6] -= l->rows[k][i] * l->correction[k];
@@ -587,9 +589,9 @@ static void read_multipliers(spari_link *l, const double *b, double *y) {
 
 /* Corrections of the multipliers: those of clusters balance the forces y that are left on their nodes, from the ends of
    the tree on. */
-static void find_link_loads(spari_assembly *a, double *y) {
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
+static void find_constraint_loads(spari_assembly *a, double *y) {
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
         memset(l->correction, 0, sizeof l->correction);
         if (l->block >= 0) {
             read_multipliers(l, a->b + spari_blocks_first(a->system, l->block), y);
@@ -597,10 +599,10 @@ static void find_link_loads(spari_assembly *a, double *y) {
     }
     for (int n = a->interfaces - 1; n >= 0; n--) {
         const spari_interface *v = a->interface + a->order[n];
-        if (v->link < 0) {
+        if (v->constraint < 0) {
             continue;
         }
-        spari_link *l = a->link + v->link;
+        spari_constraint *l = a->constraint + v->constraint;
         if (v->cluster == a->order[n]) {
             read_multipliers(l, a->b + spari_blocks_first(a->system, v->block) + 6, y);
             continue;
@@ -639,21 +641,21 @@ static int solve_reduced(spari_assembly *a, double cv) {
     if (a->clusters) {
         add_forces_of(a, a->x, a->y);
     }
-    find_link_loads(a, a->y);
+    find_constraint_loads(a, a->y);
     for (int i = 0; i < n && gaps; i++) {
         a->x[i] += a->interface[i / 6].gap[i % 6];
     }
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
         p->row->expand(p, a->x + p->at);
     }
     return 0;
 }
 
-int spari_tied_solve(spari_assembly *a, double cv) {
+int spari_system_solve(spari_assembly *a, double cv) {
     /* first: it says how the parts have turned, which the system goes by */
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
         if (p->row->reduce(p, a->x + p->at)) {
             return 1;
         }
@@ -661,20 +663,20 @@ int spari_tied_solve(spari_assembly *a, double cv) {
     return solve_reduced(a, cv);
 }
 
-int spari_tied_close(spari_assembly *a, double cv) {
-    for (int i = 0; i < a->limbs; i++) {
-        spari_limb *p = a->limb + i;
+int spari_system_close_gaps(spari_assembly *a, double cv) {
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
         p->row->clear(p);
         memset(a->x + p->at, 0, (size_t)(6 * p->condensed->ends) * sizeof *a->x);
     }
     return solve_reduced(a, cv);
 }
 
-double spari_tied_weakest(const spari_assembly *a) {
+double spari_system_weakest_pivot(const spari_assembly *a) {
     return spari_blocks_least_pivot(a->system) / a->scale;
 }
 
-int spari_tied_downward(const spari_assembly *a) {
+int spari_system_count_negative(const spari_assembly *a) {
     int multipliers = spari_blocks_rows(a->system);
     for (int i = 0; i < a->interfaces; i++) {
         multipliers -= a->interface[i].cluster == i ? 6 : 0;
@@ -682,14 +684,14 @@ int spari_tied_downward(const spari_assembly *a) {
     return spari_blocks_negative(a->system) - multipliers;
 }
 
-/* Relative motion k of a link in the motion x of the system, turns by the length of its member. */
-static double slip_of(const spari_link *l, const double *x, int k) {
+/* Relative motion k of a constraint in the motion x of the system, turns by the length of its member. */
+static double slip_of(const spari_constraint *l, const double *x, int k) {
     double slip = 0, length = 1;
     for (int i = 0; i < 12; i++) {
         slip += l->node[i / 6] >= 0 ? l->B[k][i] * x[6 * l->node[i / 6] + i % 6] : 0;
     }
     for (int side = 0; side < 2; side++) {
-        length = l->limb[side] ? spari_member_length(l->limb[side]->member) : length;
+        length = l->component[side] ? spari_member_length(l->component[side]->member) : length;
     }
     return fabs(slip) * (k < 3 ? 1 : length);
 }
@@ -705,14 +707,14 @@ static void scale_motion(spari_assembly *a) {
                 largest = pass ? largest : fmax(largest, fabs(b[k]));
                 b[k] /= pass && largest > 0 ? largest : 1;
             }
-            for (int k = 0; b && v->link >= 0 && k < spari_link_holds_count(a->link + v->link); k++) {
+            for (int k = 0; b && v->constraint >= 0 && k < spari_constraint_count(a->constraint + v->constraint); k++) {
                 b[6 + k] = 0;
             }
         }
     }
-    for (int i = 0; i < a->links; i++) {
-        const spari_link *l = a->link + i;
-        for (int k = 0; l->block >= 0 && k < spari_link_holds_count(l); k++) {
+    for (int i = 0; i < a->constraints; i++) {
+        const spari_constraint *l = a->constraint + i;
+        for (int k = 0; l->block >= 0 && k < spari_constraint_count(l); k++) {
             a->b[spari_blocks_first(a->system, l->block) + k] = 0;
         }
     }
@@ -751,14 +753,14 @@ static int free_motion(spari_assembly *a) {
 }
 
 /* Joints that move name it best; where none does, the whole goes, and the farthest motion of a member's node does. */
-void spari_tied_name_free(spari_assembly *a, char *text, int size) {
+void spari_system_name_free(spari_assembly *a, char *text, int size) {
     static const char *const motion[6] = {"x", "y", "z", "the turn about x", "the turn about y", "the turn about z"};
     double most = 0, farthest = 0;
     if (free_motion(a)) {
         return;
     }
-    for (int i = 0; i < a->limbs; i++) {
-        const spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        const spari_component *p = a->component + i;
         for (int k = 0; k < 6 * p->condensed->ends; k++) {
             double x = fabs(a->x[p->at + k]) * (k % 6 < 3 ? 1 : spari_member_length(p->member));
             if (x > farthest) {
@@ -767,14 +769,14 @@ void spari_tied_name_free(spari_assembly *a, char *text, int size) {
             }
         }
     }
-    for (int i = 0; i < a->links; i++) {
-        const spari_link *l = a->link + i;
-        for (int k = 0; k < (l->joint->tie.line ? 1 : 6); k++) {
+    for (int i = 0; i < a->constraints; i++) {
+        const spari_constraint *l = a->constraint + i;
+        for (int k = 0; k < (l->joint->kinematics.line ? 1 : 6); k++) {
             double slip = slip_of(l, a->x, k);
             if (slip > 1e-3 * farthest && slip > most) {
                 most = slip;
-                (void)snprintf(text, (size_t)size, "%s of joint '%.80s'", l->joint->tie.line ? "the length" : motion[k],
-                               l->joint->name);
+                (void)snprintf(text, (size_t)size, "%s of joint '%.80s'",
+                               l->joint->kinematics.line ? "the length" : motion[k], l->joint->name);
             }
         }
     }

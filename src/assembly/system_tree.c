@@ -4,9 +4,9 @@
 
 #include <stdlib.h>
 
-/* The interface node of side of a link; -1 where its motion is given. */
-static int interface_of(const spari_assembly *a, const spari_link *l, int side) {
-    const spari_limb *p = l->limb[side];
+/* The interface node of side of a constraint; -1 where its motion is given. */
+static int interface_of(const spari_assembly *a, const spari_constraint *l, int side) {
+    const spari_component *p = l->component[side];
     if (!p) {
         return -1;
     }
@@ -20,25 +20,25 @@ static int interface_of(const spari_assembly *a, const spari_link *l, int side) 
 
 static int place_interfaces(spari_assembly *a) {
     a->interfaces = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        a->limb[i].at = 6 * a->interfaces;
-        a->interfaces += a->limb[i].condensed->ends;
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].at = 6 * a->interfaces;
+        a->interfaces += a->component[i].condensed->ends;
     }
     a->interface = spari_zalloc(a->interfaces + 1, sizeof *a->interface);
     a->order = spari_zalloc(a->interfaces + 1, sizeof *a->order);
     if (!a->interface || !a->order) {
         return SPAR_ERR_MEMORY;
     }
-    for (int i = 0; i < a->limbs; i++) {
-        const spari_limb *p = a->limb + i;
+    for (int i = 0; i < a->components; i++) {
+        const spari_component *p = a->component + i;
         for (int e = 0; e < p->condensed->ends; e++) {
-            int left = spari_member_held(p->member) - 6 * p->end[e];
+            int left = spari_member_constrained(p->member) - 6 * p->end[e];
             a->interface[p->at / 6 + e].fixed = left < 0 ? 0 : left > 6 ? 6 : left;
         }
     }
-    for (int i = 0; i < a->links; i++) {
+    for (int i = 0; i < a->constraints; i++) {
         for (int side = 0; side < 2; side++) {
-            a->link[i].node[side] = interface_of(a, a->link + i, side);
+            a->constraint[i].node[side] = interface_of(a, a->constraint + i, side);
         }
     }
     return SPAR_OK;
@@ -53,8 +53,8 @@ static int find_part(int *part, int i) {
     return i;
 }
 
-/* Links join parts of the tree in their order; those whose nodes are in one part already close loops. */
-static int sort_links(spari_assembly *a) {
+/* Constraints join parts of the tree in their order; those whose nodes are in one part already close loops. */
+static int sort_constraints(spari_assembly *a) {
     int ground = a->interfaces, *part = spari_zalloc(a->interfaces + 1, sizeof *part);
     if (!part) {
         return SPAR_ERR_MEMORY;
@@ -62,15 +62,15 @@ static int sort_links(spari_assembly *a) {
     for (int i = 0; i <= ground; i++) {
         part[i] = i < ground && a->interface[i].fixed > 0 ? ground : i;
     }
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
-        l->role = SPARI_LINK_SPRING;
-        if (l->joint->held) {
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
+        l->role = SPARI_CONSTRAINT_SPRING;
+        if (l->joint->constrained) {
             int end[2];
             for (int side = 0; side < 2; side++) {
                 end[side] = find_part(part, l->node[side] < 0 ? ground : l->node[side]);
             }
-            l->role = end[0] == end[1] ? SPARI_LINK_LOOP : SPARI_LINK_TREE;
+            l->role = end[0] == end[1] ? SPARI_CONSTRAINT_LOOP : SPARI_CONSTRAINT_TREE;
             part[end[0]] = end[1];
         }
     }
@@ -78,27 +78,27 @@ static int sort_links(spari_assembly *a) {
     return SPAR_OK;
 }
 
-/* The tree's links of each interface node, and of the ground after them: numbers 2 link + side. */
+/* The tree's constraints of each interface node, and of the ground after them: numbers 2 constraint + side. */
 typedef struct tree_lists {
     int *begin, *entry;
 } tree_lists;
 
-static int list_links(const spari_assembly *a, tree_lists *lists) {
+static int list_constraints(const spari_assembly *a, tree_lists *lists) {
     int n = a->interfaces + 1;
     lists->begin = spari_zalloc(n + 1, sizeof *lists->begin);
-    lists->entry = spari_zalloc(2 * (int64_t)a->links + 1, sizeof *lists->entry);
+    lists->entry = spari_zalloc(2 * (int64_t)a->constraints + 1, sizeof *lists->entry);
     int *used = spari_zalloc(n, sizeof *used);
     if (!lists->begin || !lists->entry || !used) {
         free(used);
         return SPAR_ERR_MEMORY;
     }
     for (int pass = 0; pass < 2; pass++) {
-        for (int i = 0; i < 2 * a->links; i++) {
-            const spari_link *l = a->link + i / 2;
+        for (int i = 0; i < 2 * a->constraints; i++) {
+            const spari_constraint *l = a->constraint + i / 2;
             int v = l->node[i % 2] < 0 ? a->interfaces : l->node[i % 2];
-            if (l->role == SPARI_LINK_TREE && pass == 0) {
+            if (l->role == SPARI_CONSTRAINT_TREE && pass == 0) {
                 lists->begin[v + 1]++;
-            } else if (l->role == SPARI_LINK_TREE) {
+            } else if (l->role == SPARI_CONSTRAINT_TREE) {
                 lists->entry[lists->begin[v] + used[v]++] = i;
             }
         }
@@ -113,15 +113,15 @@ static int list_links(const spari_assembly *a, tree_lists *lists) {
 /* The children of interface node v, or of the ground (its number), join the order. */
 static int visit_children(spari_assembly *a, const tree_lists *lists, int v, int visited) {
     for (int k = lists->begin[v]; k < lists->begin[v + 1]; k++) {
-        const spari_link *l = a->link + lists->entry[k] / 2;
+        const spari_constraint *l = a->constraint + lists->entry[k] / 2;
         int side = 1 - lists->entry[k] % 2, child = l->node[side];
         if (child < 0 || a->interface[child].cluster != -2) {
             continue;
         }
         spari_interface *to = a->interface + child;
-        int rigid = spari_link_holds_count(l) == 6;
+        int rigid = spari_constraint_count(l) == 6;
         to->parent = v < a->interfaces ? v : -1;
-        to->link = lists->entry[k] / 2;
+        to->constraint = lists->entry[k] / 2;
         to->side = side;
         to->depth = v < a->interfaces ? a->interface[v].depth + 1 : 1;
         to->cluster = !rigid ? child : v < a->interfaces ? a->interface[v].cluster : -1;
@@ -137,7 +137,7 @@ static void visit_all(spari_assembly *a, const tree_lists *lists) {
     int done = 0, visited = 0;
     for (int i = 0; i < a->interfaces; i++) {
         spari_interface *to = a->interface + i;
-        to->parent = to->link = to->block = -1;
+        to->parent = to->constraint = to->block = -1;
         to->cluster = UNSEEN;
         if (to->fixed > 0) {
             to->cluster = to->fixed == 6 ? -1 : i;
@@ -157,11 +157,11 @@ static void visit_all(spari_assembly *a, const tree_lists *lists) {
     }
 }
 
-int spari_tied_tree(spari_assembly *a) {
+int spari_system_find_tree(spari_assembly *a) {
     tree_lists lists = {0};
     int status = place_interfaces(a);
-    status = status == SPAR_OK ? sort_links(a) : status;
-    status = status == SPAR_OK ? list_links(a, &lists) : status;
+    status = status == SPAR_OK ? sort_constraints(a) : status;
+    status = status == SPAR_OK ? list_constraints(a, &lists) : status;
     if (status == SPAR_OK) {
         visit_all(a, &lists);
     }
@@ -190,15 +190,15 @@ static int count_blocks(spari_assembly *a, int *size) {
     for (int i = 0; i < a->interfaces; i++) {
         spari_interface *v = a->interface + i;
         if (v->cluster == i) {
-            size[n] = 6 + (v->link >= 0 ? spari_link_holds_count(a->link + v->link) : 0);
+            size[n] = 6 + (v->constraint >= 0 ? spari_constraint_count(a->constraint + v->constraint) : 0);
             v->block = n++;
         }
     }
-    for (int i = 0; i < a->links; i++) {
-        spari_link *l = a->link + i;
-        int holds = spari_link_holds_count(l);
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
+        int holds = spari_constraint_count(l);
         l->block = -1;
-        if (l->role == SPARI_LINK_LOOP && holds > 0) {
+        if (l->role == SPARI_CONSTRAINT_LOOP && holds > 0) {
             size[n] = holds;
             l->block = n++;
             a->loops = 1;
@@ -209,7 +209,7 @@ static int count_blocks(spari_assembly *a, int *size) {
 
 /* A loop's constraints have their full rank in the relative coordinates of all that it goes through: they come after
    the clusters on both of its ways up to where they meet. */
-static void close_loop(const spari_assembly *a, const spari_link *l, spari_block_pair *before, int64_t *befores) {
+static void close_loop(const spari_assembly *a, const spari_constraint *l, spari_block_pair *before, int64_t *befores) {
     int v[2] = {l->node[0], l->node[1]}, last[2] = {-1, -1};
     while (v[0] != v[1]) {
         int deeper = v[1] < 0 || (v[0] >= 0 && a->interface[v[0]].depth >= a->interface[v[1]].depth) ? 0 : 1;
@@ -224,16 +224,16 @@ static void close_loop(const spari_assembly *a, const spari_link *l, spari_block
 /* Which blocks have entries, and which come before which. */
 static void couple_blocks(const spari_assembly *a, spari_block_pair *coupled, int64_t *count, spari_block_pair *before,
                           int64_t *befores) {
-    for (int i = 0; i < a->limbs; i++) {
-        int first = a->limb[i].at / 6, ends = a->limb[i].condensed->ends;
+    for (int i = 0; i < a->components; i++) {
+        int first = a->component[i].at / 6, ends = a->component[i].condensed->ends;
         for (int j = 0; j < ends; j++) {
             for (int k = 0; k < j; k++) {
                 add_pair(coupled, count, block_of_node(a, first + j), block_of_node(a, first + k));
             }
         }
     }
-    for (int i = 0; i < a->links; i++) {
-        const spari_link *l = a->link + i;
+    for (int i = 0; i < a->constraints; i++) {
+        const spari_constraint *l = a->constraint + i;
         int block[2] = {block_of_node(a, l->node[0]), block_of_node(a, l->node[1])};
         add_pair(coupled, count, block[0], block[1]);
         for (int side = 0; side < 2; side++) {
@@ -245,21 +245,21 @@ static void couple_blocks(const spari_assembly *a, spari_block_pair *coupled, in
     }
     for (int i = 0; i < a->interfaces; i++) {
         const spari_interface *v = a->interface + i;
-        if (v->cluster == i && v->link >= 0) {
+        if (v->cluster == i && v->constraint >= 0) {
             add_pair(before, befores, v->block, block_of_node(a, v->parent));
         }
     }
 }
 
 static int make_blocks(spari_assembly *a) {
-    int64_t most = 3 * (int64_t)a->links, count = 0, befores = 0;
-    for (int i = 0; i < a->limbs; i++) {
-        int64_t ends = a->limb[i].condensed->ends;
+    int64_t most = 3 * (int64_t)a->constraints, count = 0, befores = 0;
+    for (int i = 0; i < a->components; i++) {
+        int64_t ends = a->component[i].condensed->ends;
         most += ends * (ends - 1) / 2;
     }
-    int *size = spari_zalloc(a->interfaces + a->links + 1, sizeof *size);
+    int *size = spari_zalloc(a->interfaces + a->constraints + 1, sizeof *size);
     spari_block_pair *coupled = spari_zalloc(most + 1, sizeof *coupled),
-                     *before = spari_zalloc(2 * (int64_t)a->links + a->interfaces + 1, sizeof *before);
+                     *before = spari_zalloc(2 * (int64_t)a->constraints + a->interfaces + 1, sizeof *before);
     if (size && coupled && before) {
         int n = count_blocks(a, size);
         couple_blocks(a, coupled, &count, before, &befores);
@@ -271,16 +271,16 @@ static int make_blocks(spari_assembly *a) {
     return a->system ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-int spari_tied_room(spari_assembly *a) {
+int spari_system_create(spari_assembly *a) {
     int64_t most = 0, n = 6 * (int64_t)a->interfaces;
-    for (int i = 0; i < a->limbs; i++) {
-        most = a->limb[i].member->nodes > most ? a->limb[i].member->nodes : most;
+    for (int i = 0; i < a->components; i++) {
+        most = a->component[i].member->nodes > most ? a->component[i].member->nodes : most;
     }
     SPARI_TRY(make_blocks(a));
-    for (int i = 0; i < a->limbs; i++) {
-        int64_t m = 6 * (int64_t)a->limb[i].condensed->ends;
-        a->limb[i].K = spari_zalloc(m * m, sizeof *a->limb[i].K);
-        if (!a->limb[i].K) {
+    for (int i = 0; i < a->components; i++) {
+        int64_t m = 6 * (int64_t)a->component[i].condensed->ends;
+        a->component[i].K = spari_zalloc(m * m, sizeof *a->component[i].K);
+        if (!a->component[i].K) {
             return SPAR_ERR_MEMORY;
         }
     }
@@ -291,9 +291,9 @@ int spari_tied_room(spari_assembly *a) {
     return a->x && a->y && a->b && a->rates ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-void spari_tied_free(spari_assembly *a) {
-    for (int i = 0; i < a->limbs && a->limb; i++) {
-        free(a->limb[i].K);
+void spari_system_free(spari_assembly *a) {
+    for (int i = 0; i < a->components && a->component; i++) {
+        free(a->component[i].K);
     }
     spari_blocks_free(a->system);
     free(a->interface);

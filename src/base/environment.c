@@ -32,11 +32,11 @@ static uint16_t x87_status(void) {
     return status;
 }
 
-static uint32_t quiet_sse(uint32_t sse) {
+static uint32_t guarded_sse(uint32_t sse) {
     return (sse & ~(uint32_t)SSE_ROUNDING) | SSE_MASKED;
 }
 
-static uint16_t quiet_x87(uint16_t control) {
+static uint16_t guarded_x87(uint16_t control) {
     return (uint16_t)((control & ~X87_ROUNDING) | X87_MASKED);
 }
 
@@ -48,11 +48,11 @@ static void hold_environment(spari_environment *e) {
     e->sse = _mm_getcsr();
     e->status = x87_status();
     __asm__ volatile("fnstcw %0" : "=m"(e->control));
-    if (quiet_sse(e->sse) != e->sse) {
-        _mm_setcsr(quiet_sse(e->sse));
+    if (guarded_sse(e->sse) != e->sse) {
+        _mm_setcsr(guarded_sse(e->sse));
     }
-    if (quiet_x87(e->control) != e->control) {
-        load_x87_control(quiet_x87(e->control));
+    if (guarded_x87(e->control) != e->control) {
+        load_x87_control(guarded_x87(e->control));
     }
 }
 
@@ -63,7 +63,7 @@ static void give_environment_back(const spari_environment *e) {
         all.__status_word = (uint16_t)((all.__status_word & ~FLAGS) | (e->status & FLAGS));
         (void)fesetenv(&all);
     }
-    if (quiet_x87(e->control) != e->control) {
+    if (guarded_x87(e->control) != e->control) {
         load_x87_control(e->control);
     }
     if (_mm_getcsr() != e->sse) {
@@ -95,13 +95,13 @@ static void give_back(void) {
     give_environment_back(&host.environment);
 }
 
-void spari_quiet_begin(void) {
+void spari_environment_begin(void) {
     if (host.depth++ == 0) {
         hold();
     }
 }
 
-void spari_quiet_end(void) {
+void spari_environment_end(void) {
     if (--host.depth == 0) {
         give_back();
     }

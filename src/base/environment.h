@@ -6,8 +6,8 @@
    - The locale is "C", so numbers are read and written with a decimal point.
    - GSL's error handler, which may abort, is off while any thread is inside the library.
    The treatment of denormal numbers stays the host's. Exception flags raised inside are not visible outside. */
-#ifndef SPARI_QUIET_H
-#define SPARI_QUIET_H
+#ifndef SPARI_ENVIRONMENT_H
+#define SPARI_ENVIRONMENT_H
 
 #include <fenv.h>
 #include <locale.h>
@@ -26,8 +26,8 @@ typedef fenv_t spari_environment;
 #endif
 
 /* For this thread. Calls may be nested; inner calls cost nothing. */
-void spari_quiet_begin(void);
-void spari_quiet_end(void);
+void spari_environment_begin(void);
+void spari_environment_end(void);
 
 /* Restores the host's environment while the library calls the host. */
 typedef struct spari_host {
@@ -38,20 +38,20 @@ typedef struct spari_host {
 void spari_host_begin(spari_host *inside);
 void spari_host_end(const spari_host *inside);
 
-static inline void spari_quiet_leave(const int *scope) {
+static inline void spari_environment_leave(const int *scope) {
     (void)scope;
-    spari_quiet_end();
+    spari_environment_end();
 }
 
 /* First statement of every public function that computes or reads the host's numbers. Restores the host's
    environment when the function returns. Compilers other than GCC and Clang have no scope cleanup: their hosts must
    not trap, and must switch GSL's handler off themselves. */
 #if defined(__GNUC__)
-#define SPARI_QUIET                                                                                                    \
-    const int spari_quiet_ __attribute__((unused, cleanup(spari_quiet_leave))) = 0;                                    \
-    spari_quiet_begin()
+#define SPARI_GUARD_ENVIRONMENT                                                                                        \
+    const int spari_guard_ __attribute__((unused, cleanup(spari_environment_leave))) = 0;                              \
+    spari_environment_begin()
 #else
-#define SPARI_QUIET (void)0
+#define SPARI_GUARD_ENVIRONMENT (void)0
 #endif
 
 #endif

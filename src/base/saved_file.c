@@ -24,15 +24,15 @@ void spari_image_free(spari_image *image) {
 }
 
 uint64_t *spari_image_add(spari_image *image, int64_t n) {
-    if (image->count + n > image->room) {
-        int64_t room = image->count + n, more_room = room + room / 4;
-        uint64_t *more = realloc(image->word, (size_t)more_room * sizeof *more);
+    if (image->count + n > image->capacity) {
+        int64_t capacity = image->count + n, more_capacity = capacity + capacity / 4;
+        uint64_t *more = realloc(image->word, (size_t)more_capacity * sizeof *more);
         if (!more) {
             image->failed = 1;
             return NULL;
         }
         image->word = more;
-        image->room = more_room;
+        image->capacity = more_capacity;
     }
     image->count += n;
     return image->word + image->count - n;

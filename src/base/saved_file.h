@@ -1,8 +1,8 @@
 /* A file of 64-bit words, little-endian on disc, with heading, version and check sum (CRC-64 of ECMA-182, reflected,
    as in xz). It is written under a temporary name, synchronised and renamed, so that the old or the new file is
    always whole. */
-#ifndef SPARI_IMAGE_H
-#define SPARI_IMAGE_H
+#ifndef SPARI_SAVED_FILE_H
+#define SPARI_SAVED_FILE_H
 
 #include "file.h"
 
@@ -10,7 +10,7 @@
 
 typedef struct spari_image {
     uint64_t *word;
-    int64_t count, room;
+    int64_t count, capacity;
     int64_t at;    /* next word to read */
     int failed;    /* no memory to write, or no words left to read */
     int no_memory; /* reading failed for lack of memory; the file is not at fault */

@@ -10,11 +10,11 @@
 /* Message of a failed create, which has no session. */
 static _Thread_local char thread_message[SPARI_MESSAGE_SIZE];
 /* Redirects messages of this thread; NULL: no redirection. */
-static _Thread_local char *aside;
+static _Thread_local char *redirected;
 
-char *spari_messages_aside(char *text) {
-    char *before = aside;
-    aside = text;
+char *spari_messages_redirect(char *text) {
+    char *before = redirected;
+    redirected = text;
     return before;
 }
 
@@ -44,8 +44,8 @@ static spar_session *teller(const spar_session *session) {
 }
 
 static char *message_of(const spar_session *session) {
-    if (aside) {
-        return aside;
+    if (redirected) {
+        return redirected;
     }
     return session ? teller(session)->message : thread_message;
 }
@@ -61,7 +61,7 @@ int(spari_fail)(const spar_session *session, int status, const char *format, ...
     va_end(arguments);
     shorten(text);
     memcpy(message_of(session), text, strlen(text) + 1);
-    if (session && !aside) {
+    if (session && !redirected) {
         teller(session)->failures++;
         spari_log(session, SPAR_LOG_ERROR, session->message);
     }

@@ -1,6 +1,6 @@
 /* State of a session that every room may use: clock, settings, ranks, members, fluids and messages. */
-#ifndef SPARI_SCENE_H
-#define SPARI_SCENE_H
+#ifndef SPARI_SESSION_H
+#define SPARI_SESSION_H
 
 #include "message.h"
 #include "workspace.h"
@@ -23,10 +23,10 @@ typedef struct spari_setting {
     double least, most;
     const char *range, *words[2]; /* allowed values, in words */
     double initial;
-    int flags; /* SPARI_ALIKE, ... */
+    int flags; /* SPARI_AGREED, ... */
 } spari_setting;
 enum {
-    SPARI_ALIKE = 1,       /* must agree across ranks: compared in collective calls */
+    SPARI_AGREED = 1,      /* must agree across ranks: compared in collective calls */
     SPARI_OF_COUPLING = 2, /* the coupling depends on it: it is created anew after a change, and saved with it */
     SPARI_VARIED = 4       /* varied by trials and advice */
 };
@@ -77,9 +77,9 @@ struct spar_session {
     double advise_limit;                                   /* option advise.limit */
     double fluid_cost;                                     /* option advise.fluid_cost */
     int audit_off;                                         /* option fluid.audit = on (default) | off */
-    struct spari_crew *crew; /* spar_session_set_threads (base/crew.h); NULL: the calling thread alone */
-    spari_room room;         /* work space of the calling thread, for one call; its content is nobody's */
-    int coupling_stale;      /* settings of the coupling have changed since it was made */
+    struct spari_thread_pool *pool; /* spar_session_set_threads (base/thread_pool.h); NULL: the calling thread alone */
+    spari_workspace workspace;      /* work space of the calling thread, for one call; its content is nobody's */
+    int coupling_stale;             /* settings of the coupling have changed since it was made */
 
     double time, time_rest; /* time_rest: rounding error of the clock, carried to the next steps */
     double dt, dt_last[2];  /* dt of the current step, and of the two accepted before */
@@ -91,13 +91,13 @@ struct spar_session {
     int past;  /* number of loads known before those of t^n, which limits the order of the next prediction; -1: those of
                   t^n are unknown too */
     int order; /* order of the predictor in the current step */
-    int iterating;    /* the last check asked for another iteration */
-    int rough;        /* the loads of this iteration are far from converged */
-    int started;      /* the clock has started */
-    int failed;       /* the last check of the current step failed */
-    const char *lent; /* callback in progress: the public call that runs the host's fluid solver; or NULL */
-    int standing;     /* a static solution is in progress: there is one state, whatever theta a fluid pulls at */
-    int trial;        /* a trial is in progress (trial/trial.h) */
+    int iterating;           /* the last check asked for another iteration */
+    int rough;               /* the loads of this iteration are far from converged */
+    int started;             /* the clock has started */
+    int failed;              /* the last check of the current step failed */
+    const char *in_callback; /* callback in progress: the public call that runs the host's fluid solver; or NULL */
+    int standing;            /* a static solution is in progress: there is one state, whatever theta a fluid pulls at */
+    int trial;               /* a trial is in progress (trial/trial.h) */
 
     const spari_setting *settings;
     int setting_count;
@@ -111,13 +111,13 @@ double spari_setting_value(const spar_session *session, const spari_setting *of)
 
 /* Redirects messages of this thread to text [SPARI_MESSAGE_SIZE] until called with NULL; sessions and logs do not
    see them. Returns the previous destination. */
-char *spari_messages_aside(char *text);
+char *spari_messages_redirect(char *text);
 
 /* Passes a text to the host's log callback, if there is one. */
 void spari_log(const spar_session *session, int level, const char *text);
 
 /* Whether two step sizes are equal apart from rounding by the host. */
-static inline int spari_steps_alike(double h, double last) {
+static inline int spari_steps_are_equal(double h, double last) {
     return fabs(h - last) <= 1e-3 * last;
 }
 /* Advances the clock by dt with compensated summation (Kahan): exact to the last digit after any number of steps. */
@@ -128,8 +128,8 @@ static inline void spari_clock_tick(spar_session *s, double dt) {
 }
 /* Whether a step of size dt is integrated by generalised-alpha (time/scheme.h). */
 static inline int spari_steps_even(const spar_session *s, double dt) {
-    return s->step == 0 ||
-           (spari_steps_alike(dt, s->dt_last[0]) && (s->step == 1 || spari_steps_alike(s->dt_last[0], s->dt_last[1])));
+    return s->step == 0 || (spari_steps_are_equal(dt, s->dt_last[0]) &&
+                            (s->step == 1 || spari_steps_are_equal(s->dt_last[0], s->dt_last[1])));
 }
 
 #endif

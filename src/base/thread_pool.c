@@ -25,13 +25,13 @@ typedef struct share {
 } share;
 
 typedef struct hand {
-    spari_crew *crew;
+    spari_thread_pool *pool;
     pthread_t thread;
     int worker;
-    spari_room room;
+    spari_workspace workspace;
 } hand;
 
-struct spari_crew {
+struct spari_thread_pool {
     int threads;
     pid_t process; /* process that created the threads: a forked child has the memory but not the threads */
     hand *hands;   /* [threads]; the first is the calling thread */
@@ -41,7 +41,7 @@ struct spari_crew {
     pthread_cond_t begun, ended;
     atomic_long round;  /* number of rounds so far */
     atomic_int at_work; /* threads that have not finished the round */
-    atomic_int leave;   /* tells the threads to end */
+    atomic_int stop;    /* tells the threads to end */
     spari_task task;
     void *context;
     fenv_t surroundings;
@@ -56,7 +56,7 @@ static inline void rest(void) {
 }
 
 /* Takes items until none is left, beginning with its own. */
-static void work_on(spari_crew *c, int worker) {
+static void work_on(spari_thread_pool *c, int worker) {
     inside = 1;
     for (int k = 0; k < c->threads; k++) {
         share *s = c->share + (worker + k) % c->threads;
@@ -67,7 +67,7 @@ static void work_on(spari_crew *c, int worker) {
     inside = 0;
 }
 
-static void share_out(spari_crew *c, int64_t items) {
+static void share_out(spari_thread_pool *c, int64_t items) {
     int64_t each = items / c->threads, more = items % c->threads, from = 0;
     for (int k = 0; k < c->threads; k++) {
         share *s = c->share + k;
@@ -78,7 +78,7 @@ static void share_out(spari_crew *c, int64_t items) {
 }
 
 /* Waits for the round after `last`. */
-static long next_round(spari_crew *c, long last) {
+static long next_round(spari_thread_pool *c, long last) {
     long round = last;
     for (int k = 0; k < SPIN && round == last; k++) {
         rest();
@@ -96,16 +96,16 @@ static long next_round(spari_crew *c, long last) {
 
 static void *serve(void *argument) {
     const hand *h = argument;
-    spari_crew *c = h->crew;
+    spari_thread_pool *c = h->pool;
     for (long round = 0;;) {
         round = next_round(c, round);
-        if (atomic_load(&c->leave)) {
+        if (atomic_load(&c->stop)) {
             return NULL;
         }
-        spari_quiet_begin();
+        spari_environment_begin();
         (void)fesetenv(&c->surroundings); /* rounding mode and denormal handling of the calling thread */
         work_on(c, h->worker);
-        spari_quiet_end();
+        spari_environment_end();
         if (atomic_fetch_sub_explicit(&c->at_work, 1, memory_order_acq_rel) == 1) {
             (void)pthread_mutex_lock(&c->lock);
             (void)pthread_cond_signal(&c->ended);
@@ -115,14 +115,14 @@ static void *serve(void *argument) {
 }
 
 /* Wakes all threads for a round, or to end. */
-static void call_hands(spari_crew *c) {
+static void call_hands(spari_thread_pool *c) {
     (void)pthread_mutex_lock(&c->lock);
     atomic_fetch_add_explicit(&c->round, 1, memory_order_release);
     (void)pthread_cond_broadcast(&c->begun);
     (void)pthread_mutex_unlock(&c->lock);
 }
 
-static void wait_for_hands(spari_crew *c) {
+static void wait_for_hands(spari_thread_pool *c) {
     for (int k = 0; k < SPIN && atomic_load_explicit(&c->at_work, memory_order_acquire) > 0; k++) {
         rest();
     }
@@ -135,13 +135,13 @@ static void wait_for_hands(spari_crew *c) {
     }
 }
 
-static int is_of_this_process(const spari_crew *c) {
+static int is_of_this_process(const spari_thread_pool *c) {
     return c->process == getpid();
 }
 
 /* Ends the first `threads` threads, which are waiting. */
-static void end_hands(spari_crew *c) {
-    atomic_store(&c->leave, 1);
+static void end_hands(spari_thread_pool *c) {
+    atomic_store(&c->stop, 1);
     call_hands(c);
     for (int k = 1; k < c->threads; k++) {
         (void)pthread_join(c->hands[k].thread, NULL);
@@ -151,12 +151,12 @@ static void end_hands(spari_crew *c) {
     (void)pthread_mutex_destroy(&c->lock);
 }
 
-static void dismiss(spari_crew *c) {
+static void dismiss(spari_thread_pool *c) {
     if (is_of_this_process(c)) { /* a forked child has no threads to wait for */
         end_hands(c);
     }
     for (int k = 1; k < c->threads; k++) {
-        spari_room_free(&c->hands[k].room);
+        spari_workspace_free(&c->hands[k].workspace);
     }
     free(c->hands);
     free(c->share);
@@ -173,8 +173,8 @@ static int start_hand(hand *h) {
     return failed;
 }
 
-spari_crew *spari_crew_create(int threads) {
-    spari_crew *c = spari_zalloc(1, sizeof *c);
+spari_thread_pool *spari_thread_pool_create(int threads) {
+    spari_thread_pool *c = spari_zalloc(1, sizeof *c);
     hand *hands = spari_zalloc(threads, sizeof *hands);
     share *shares = spari_zalloc(threads, sizeof *shares);
     if (!c || !hands || !shares) {
@@ -190,7 +190,7 @@ spari_crew *spari_crew_create(int threads) {
     (void)pthread_cond_init(&c->ended, NULL);
     for (c->threads = 1; c->threads < threads; c->threads++) {
         hand *h = hands + c->threads;
-        *h = (hand){.crew = c, .worker = c->threads};
+        *h = (hand){.pool = c, .worker = c->threads};
         if (start_hand(h) != 0) {
             dismiss(c);
             return NULL;
@@ -199,72 +199,72 @@ spari_crew *spari_crew_create(int threads) {
     return c;
 }
 
-void spari_crew_free(spari_crew *crew) {
-    if (crew) {
-        dismiss(crew);
+void spari_thread_pool_free(spari_thread_pool *pool) {
+    if (pool) {
+        dismiss(pool);
     }
 }
 
-int spari_crew_threads(const spari_crew *crew) {
-    return crew && is_of_this_process(crew) ? crew->threads : 1;
+int spari_thread_pool_threads(const spari_thread_pool *pool) {
+    return pool && is_of_this_process(pool) ? pool->threads : 1;
 }
 
-int spari_crew_is_free(const spari_crew *crew) {
-    return crew && !inside && is_of_this_process(crew);
+int spari_thread_pool_is_free(const spari_thread_pool *pool) {
+    return pool && !inside && is_of_this_process(pool);
 }
 
-void spari_crew_run(spari_crew *crew, int64_t items, spari_task task, void *context) {
-    if (items < 2 || !spari_crew_is_free(crew)) {
+void spari_thread_pool_run(spari_thread_pool *pool, int64_t items, spari_task task, void *context) {
+    if (items < 2 || !spari_thread_pool_is_free(pool)) {
         for (int64_t i = 0; i < items; i++) {
             task(context, i, 0);
         }
         return;
     }
 #ifdef SPAR_POISON
-    for (int k = 1; k < crew->threads; k++) { /* results of a round may stay there until the next */
-        spari_poison(spari_room_at(&crew->hands[k].room, crew->kept), crew->kept);
+    for (int k = 1; k < pool->threads; k++) { /* results of a round may stay there until the next */
+        spari_poison(spari_workspace_at(&pool->hands[k].workspace, pool->kept), pool->kept);
     }
 #endif
-    crew->task = task, crew->context = context;
-    (void)fegetenv(&crew->surroundings);
-    share_out(crew, items);
-    atomic_store_explicit(&crew->at_work, crew->threads - 1, memory_order_relaxed);
-    call_hands(crew);
-    work_on(crew, 0);
-    wait_for_hands(crew);
+    pool->task = task, pool->context = context;
+    (void)fegetenv(&pool->surroundings);
+    share_out(pool, items);
+    atomic_store_explicit(&pool->at_work, pool->threads - 1, memory_order_relaxed);
+    call_hands(pool);
+    work_on(pool, 0);
+    wait_for_hands(pool);
 }
 
-typedef struct crew_spread {
+typedef struct span_task {
     int64_t n, span;
     spari_span work;
     void *context;
-} crew_spread;
+} span_task;
 
 static void do_span(void *context, int64_t item, int worker) {
-    const crew_spread *s = context;
+    const span_task *s = context;
     int64_t from = item * s->span;
     (void)worker;
     s->work(s->context, from, from + s->span < s->n ? from + s->span : s->n);
 }
 
-void spari_crew_spans(spari_crew *crew, int64_t n, int64_t span, spari_span work, void *context) {
-    crew_spread s = {n, span, work, context};
-    spari_crew_run(crew, (n + span - 1) / span, do_span, &s);
+void spari_thread_pool_run_spans(spari_thread_pool *pool, int64_t n, int64_t span, spari_span work, void *context) {
+    span_task s = {n, span, work, context};
+    spari_thread_pool_run(pool, (n + span - 1) / span, do_span, &s);
 }
 
-int spari_crew_keep(spari_crew *crew, int64_t doubles) {
-    if (!crew || doubles <= crew->kept) {
+int spari_thread_pool_reserve(spari_thread_pool *pool, int64_t doubles) {
+    if (!pool || doubles <= pool->kept) {
         return 0;
     }
-    for (int k = 1; k < crew->threads; k++) {
-        if (spari_room_keep(&crew->hands[k].room, doubles)) {
+    for (int k = 1; k < pool->threads; k++) {
+        if (spari_workspace_reserve(&pool->hands[k].workspace, doubles)) {
             return 1;
         }
     }
-    crew->kept = doubles;
+    pool->kept = doubles;
     return 0;
 }
 
-double *spari_crew_room(const spari_crew *crew, int worker, int64_t doubles) {
-    return crew && doubles <= crew->kept ? spari_room_at(&crew->hands[worker].room, doubles) : NULL;
+double *spari_thread_pool_workspace(const spari_thread_pool *pool, int worker, int64_t doubles) {
+    return pool && doubles <= pool->kept ? spari_workspace_at(&pool->hands[worker].workspace, doubles) : NULL;
 }

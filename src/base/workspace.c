@@ -7,27 +7,27 @@
 
 enum { LINE = 64 }; /* bytes of a cache line and of the widest vector */
 
-int spari_room_keep(spari_room *room, int64_t doubles) {
-    if (doubles <= room->doubles) {
+int spari_workspace_reserve(spari_workspace *workspace, int64_t doubles) {
+    if (doubles <= workspace->doubles) {
         return 0;
     }
     double *block = spari_zalloc(doubles + LINE / (int64_t)sizeof *block, sizeof *block);
     if (!block) {
         return 1;
     }
-    free(room->block);
-    *room = (spari_room){block, doubles};
+    free(workspace->block);
+    *workspace = (spari_workspace){block, doubles};
     return 0;
 }
 
-void spari_room_free(spari_room *room) {
-    free(room->block);
-    *room = (spari_room){0};
+void spari_workspace_free(spari_workspace *workspace) {
+    free(workspace->block);
+    *workspace = (spari_workspace){0};
 }
 
-double *spari_room_at(const spari_room *room, int64_t doubles) {
-    if (!room->block || doubles > room->doubles) {
+double *spari_workspace_at(const spari_workspace *workspace, int64_t doubles) {
+    if (!workspace->block || doubles > workspace->doubles) {
         return NULL;
     }
-    return room->block + (LINE - (uintptr_t)room->block % LINE) % LINE / sizeof *room->block;
+    return workspace->block + (LINE - (uintptr_t)workspace->block % LINE) % LINE / sizeof *workspace->block;
 }

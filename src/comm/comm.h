@@ -31,7 +31,7 @@ int spari_comm_agree(spari_comm *comm, int status, char *message, size_t size);
 #endif
 
 /* An argument or setting of a collective call that must agree across ranks. */
-typedef struct spari_alike {
+typedef struct spari_agreed {
     const char *name; /* "dt"; used in messages only */
     enum {
         SPARI_REAL,
@@ -41,31 +41,31 @@ typedef struct spari_alike {
     } kind; /* GIVEN: whether a pointer is not NULL; HASH: a hash that is not shown */
     double real;
     int64_t whole; /* for all kinds but the first */
-} spari_alike;
-enum { SPARI_MOST_ALIKE = 64 };
+} spari_agreed;
+enum { SPARI_MOST_AGREED = 64 };
 
-static inline spari_alike spari_real(const char *name, double x) {
-    return (spari_alike){name, SPARI_REAL, x + 0.0, 0}; /* no negative zero: numbers are compared by their bits */
+static inline spari_agreed spari_real(const char *name, double x) {
+    return (spari_agreed){name, SPARI_REAL, x + 0.0, 0}; /* no negative zero: numbers are compared by their bits */
 }
 
-static inline spari_alike spari_whole(const char *name, int64_t x) {
-    return (spari_alike){name, SPARI_WHOLE, 0, x};
+static inline spari_agreed spari_whole(const char *name, int64_t x) {
+    return (spari_agreed){name, SPARI_WHOLE, 0, x};
 }
 
-static inline spari_alike spari_given(const char *name, int given) {
-    return (spari_alike){name, SPARI_GIVEN, 0, given};
+static inline spari_agreed spari_given(const char *name, int given) {
+    return (spari_agreed){name, SPARI_GIVEN, 0, given};
 }
 
-static inline spari_alike spari_hash(const char *name, uint64_t hash) {
-    return (spari_alike){name, SPARI_HASH, 0, (int64_t)hash};
+static inline spari_agreed spari_hash(const char *name, uint64_t hash) {
+    return (spari_agreed){name, SPARI_HASH, 0, (int64_t)hash};
 }
 
 /* spari_comm_agree at the entry of the collective call `call`. Only here are calls compared. Ranks in different
    calls would wait for each other for ever; ranks with different arguments would diverge later. Both give
    SPAR_ERR_COMM on all ranks. alike[count]: what must agree; count must be equal on all ranks. Takes one message;
    finding the name of a difference takes another. */
-int spari_comm_enter(spari_comm *comm, const char *call, const spari_alike *alike, int count, int status, char *message,
-                     size_t size);
+int spari_comm_enter(spari_comm *comm, const char *call, const spari_agreed *must_agree, int count, int status,
+                     char *message, size_t size);
 
 /* Replaces x[n] by its sum over the ranks, with the same bits on all of them. The x of a failing rank counts as
    zero. x must have room for n + 1 doubles: the last carries the status. Returns as spari_comm_agree. */

@@ -9,6 +9,6 @@
 /* Agrees on a status and on the call. */
 int spari_enter(spar_session *session, const char *call, int status);
 /* Also compares arguments alike[count] and all settings of the session. */
-int spari_enter_alike(spar_session *session, const char *call, const spari_alike *alike, int count, int status);
+int spari_enter_agreed(spar_session *session, const char *call, const spari_agreed *must_agree, int count, int status);
 
 #endif

@@ -91,7 +91,7 @@ static int is_same(const int64_t *pair) {
 }
 
 /* FNV-1a, which may continue from an earlier hash. */
-static int64_t as_word(const spari_alike *a) {
+static int64_t as_word(const spari_agreed *a) {
     int64_t word = a->whole;
     if (a->kind == SPARI_REAL) {
         memcpy(&word, &a->real, sizeof word);
@@ -99,16 +99,16 @@ static int64_t as_word(const spari_alike *a) {
     return word;
 }
 
-static int64_t key_of(const spari_alike *alike, int count) {
+static int64_t key_of(const spari_agreed *must_agree, int count) {
     uint64_t hash = SPARI_HASH_BEGIN;
     for (int i = 0; i < count; i++) {
-        int64_t word = as_word(alike + i);
+        int64_t word = as_word(must_agree + i);
         hash = spari_hash_bytes(hash, &word, sizeof word);
     }
     return (int64_t)hash;
 }
 
-static void tell_own(const spari_alike *a, char *text, size_t size) {
+static void tell_own(const spari_agreed *a, char *text, size_t size) {
     switch (a->kind) {
     case SPARI_REAL:
         (void)snprintf(text, size, " (here %.17g)", a->real);
@@ -126,32 +126,32 @@ static void tell_own(const spari_alike *a, char *text, size_t size) {
 }
 
 /* The keys differ, as all ranks know: finds the first difference. */
-static int tell_difference(mpi_comm *c, const char *call, const spari_alike *alike, int count, char *message,
+static int tell_difference(mpi_comm *c, const char *call, const spari_agreed *must_agree, int count, char *message,
                            size_t size) {
-    int64_t mine[2 * SPARI_MOST_ALIKE], all[2 * SPARI_MOST_ALIKE];
+    int64_t mine[2 * SPARI_MOST_AGREED], all[2 * SPARI_MOST_AGREED];
     char own[64] = "";
     int first = 0;
     for (int i = 0; i < count; i++) {
-        put_pair(mine + 2 * i, as_word(alike + i));
+        put_pair(mine + 2 * i, as_word(must_agree + i));
     }
     TRY_MPI(MPI_Allreduce(mine, all, 2 * count, MPI_INT64_T, MPI_MIN, c->handle));
     while (first < count - 1 && is_same(all + 2 * first)) {
         first++;
     }
-    tell_own(alike + first, own, sizeof own);
+    tell_own(must_agree + first, own, sizeof own);
     (void)snprintf(message, size, "%s: the ranks have different %s%s; give the same on every rank", call,
-                   alike[first].name, own);
+                   must_agree[first].name, own);
     return SPAR_ERR_COMM;
 }
 
 /* call NULL: inside a call that all ranks are known to be in. */
-static int meet(mpi_comm *c, const char *call, const spari_alike *alike, int count, int status, char *message,
+static int meet(mpi_comm *c, const char *call, const spari_agreed *must_agree, int count, int status, char *message,
                 size_t size) {
     int64_t mine[WORDS], all[WORDS];
     SPARI_TRY(check_up(c, message, size));
     mine[FAILED] = status == SPAR_OK ? NOBODY : c->base.rank;
     put_pair(mine + NAME, call ? (int64_t)spari_hash_bytes(SPARI_HASH_BEGIN, call, strlen(call)) : 0);
-    put_pair(mine + KEY, key_of(alike, count));
+    put_pair(mine + KEY, key_of(must_agree, count));
     TRY_MPI(MPI_Allreduce(mine, all, WORDS, MPI_INT64_T, MPI_MIN, c->handle));
     if (all[FAILED] == LEAVING) {
         c->gone = 1;
@@ -166,12 +166,12 @@ static int meet(mpi_comm *c, const char *call, const spari_alike *alike, int cou
     if (all[FAILED] != NOBODY) {
         return tell_all(c, (int)all[FAILED], status, message, size);
     }
-    return !alike || is_same(all + KEY) ? SPAR_OK : tell_difference(c, call, alike, count, message, size);
+    return !must_agree || is_same(all + KEY) ? SPAR_OK : tell_difference(c, call, must_agree, count, message, size);
 }
 
-static int mpi_enter(spari_comm *comm, const char *call, const spari_alike *alike, int count, int status, char *message,
-                     size_t size) {
-    return meet((mpi_comm *)comm, call, alike, count, status, message, size);
+static int mpi_enter(spari_comm *comm, const char *call, const spari_agreed *must_agree, int count, int status,
+                     char *message, size_t size) {
+    return meet((mpi_comm *)comm, call, must_agree, count, status, message, size);
 }
 
 static int mpi_agree(spari_comm *comm, int status, char *message, size_t size) {

@@ -7,8 +7,8 @@
 typedef struct spari_comm_ops {
     void (*destroy)(spari_comm *comm);
     int (*agree)(spari_comm *comm, int status, char *message, size_t size);
-    int (*enter)(spari_comm *comm, const char *call, const spari_alike *alike, int count, int status, char *message,
-                 size_t size);
+    int (*enter)(spari_comm *comm, const char *call, const spari_agreed *must_agree, int count, int status,
+                 char *message, size_t size);
     int (*sum)(spari_comm *comm, double *x, int64_t n, int status, char *message, size_t size);
     int (*prepare_bins)(spari_comm *comm, char *message, size_t size);
     int (*sum_bins)(spari_comm *comm, spari_bins *x, int64_t n, int status, char *message, size_t size);

@@ -48,9 +48,9 @@ int(spari_comm_agree)(spari_comm *comm, int status, char *message, size_t size) 
     return comm->ops ? comm->ops->agree(comm, status, message, size) : status;
 }
 
-int spari_comm_enter(spari_comm *comm, const char *call, const spari_alike *alike, int count, int status, char *message,
-                     size_t size) {
-    return comm->ops ? comm->ops->enter(comm, call, alike, count, status, message, size) : status;
+int spari_comm_enter(spari_comm *comm, const char *call, const spari_agreed *must_agree, int count, int status,
+                     char *message, size_t size) {
+    return comm->ops ? comm->ops->enter(comm, call, must_agree, count, status, message, size) : status;
 }
 
 int spari_comm_sum(spari_comm *comm, double *x, int64_t n, int status, char *message, size_t size) {

@@ -31,7 +31,7 @@ spari_accelerator *spari_accelerator_create(int64_t n, int period, int split,
              (a->r = spari_zalloc(m * m, sizeof *a->r)) && (a->alpha = spari_zalloc(m, sizeof *a->alpha)) &&
              (a->order = spari_zalloc(m, sizeof *a->order)) && (a->image = spari_zalloc(2 * n, sizeof *a->image)) &&
              (a->change = spari_zalloc(2 * n, sizeof *a->change)) &&
-             (a->answer = spari_zalloc(2 * n + 1, sizeof *a->answer)) &&
+             (a->response = spari_zalloc(2 * n + 1, sizeof *a->response)) &&
              (a->iv = spari_zalloc(2 * k * n + 1, sizeof *a->iv)) &&
              (a->iw = spari_zalloc(2 * k * n + 1, sizeof *a->iw)) && (a->b = spari_zalloc(2 * k * n, sizeof *a->b)) &&
              (a->ib = spari_zalloc(2 * k * n + 1, sizeof *a->ib)) &&
@@ -49,8 +49,8 @@ void spari_accelerator_free(spari_accelerator **accelerator) {
     if (!a) {
         return;
     }
-    double *all[] = {a->x, a->g,  a->image, a->change, a->answer, a->v, a->w, a->iv,   a->iw,
-                     a->b, a->ib, a->lead,  a->last,   a->q,      a->r, a->p, a->alpha};
+    double *all[] = {a->x, a->g,  a->image, a->change, a->response, a->v, a->w, a->iv,   a->iw,
+                     a->b, a->ib, a->lead,  a->last,   a->q,        a->r, a->p, a->alpha};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }
@@ -82,7 +82,7 @@ static void measure_kinds(const spari_accelerator *a, const double *x, const dou
 
 /* The step's first loads determine the weights; loads that exceed them tenfold determine new ones. Returns whether
    they changed. */
-static int weigh(spari_accelerator *a, const double *x, const double *g) {
+static int set_weights(spari_accelerator *a, const double *x, const double *g) {
     double size[2];
     measure_kinds(a, x, g, size);
     if (a->iteration > 1 && size[0] <= 10 * a->size[0] && size[1] <= 10 * a->size[1]) {
@@ -95,7 +95,7 @@ static int weigh(spari_accelerator *a, const double *x, const double *g) {
     return 1;
 }
 
-int spari_accelerator_settle(const spari_accelerator *a, const double *x, const double *g, double *r) {
+int spari_accelerator_settled(const spari_accelerator *a, const double *x, const double *g, double *r) {
     double rho = spari_rho_of(a);
     const double *before = a->iteration > 0 ? a->g : a->ended ? a->last : NULL;
     for (int64_t i = 0; rho > 0 && before && i < a->n; i++) {
@@ -118,9 +118,9 @@ static void aitken_learn(spari_accelerator *a) {
         for (int k = 0; k < a->period && i + k < a->n; k++) {
             int kind = k >= a->split;
             double before = a->g[i + k] - a->x[i + k], change = a->change[i + k];
-            double answer = a->imaged ? a->answer[i + k] : change;
-            product[kind] += before * answer;
-            square[kind] += change * answer;
+            double response = a->imaged ? a->response[i + k] : change;
+            product[kind] += before * response;
+            square[kind] += change * response;
         }
     }
     double w[2] = {a->weight[0] * a->weight[0], a->weight[1] * a->weight[1]};
@@ -135,12 +135,17 @@ static void aitken_learn(spari_accelerator *a) {
 
 /* ---- the schemes ---- */
 
-static const spari_coupling_scheme
-    scheme_explicit = {.name = "explicit"},
-    scheme_fixed_point = {.name = "fixed point", .iterates = 1},
-    scheme_aitken = {.name = "Aitken", .iterates = 1, .begin = aitken_begin, .learn = aitken_learn},
-    scheme_iqn_ils = {
-        .name = "IQN-ILS", .iterates = 1, .columns = 1, .learn = spari_columns_learn, .next = spari_columns_next};
+static const spari_coupling_scheme scheme_explicit = {.name = "explicit"},
+                                   scheme_fixed_point = {.name = "fixed point", .iterates = 1},
+                                   scheme_aitken = {.name = "Aitken",
+                                                    .iterates = 1,
+                                                    .begin = aitken_begin,
+                                                    .learn = aitken_learn},
+                                   scheme_iqn_ils = {.name = "IQN-ILS",
+                                                     .iterates = 1,
+                                                     .columns = 1,
+                                                     .learn = spari_differences_learn,
+                                                     .next = spari_differences_next};
 
 const spari_coupling_scheme *spari_coupling_scheme_of(int scheme) {
 #define SPARI_SCHEME(number, name) [SPAR_COUPLING_##number] = &scheme_##name,
@@ -163,7 +168,7 @@ void spari_accelerator_begin(spari_accelerator *a, double dt) {
     a->begun.ratios = a->ratios_before;
     spari_snapshot_open(&a->before, 1);
     spari_poison(a->change, a->change ? 2 * a->n : 0);
-    spari_poison(a->answer, 2 * a->n);
+    spari_poison(a->response, 2 * a->n);
     spari_poison(a->alpha, a->slots > 0 ? a->set.columns : 0);
     a->omega = a->set.omega;
     if (a->scheme->begin) {
@@ -187,9 +192,9 @@ static void estimate_ratio(spari_accelerator *a) {
     double product = 0, square = 0;
     for (int64_t i = 0; i < a->n; i++) {
         double w = a->weight[i % a->period >= a->split], dg = a->change[a->n + i], dx = dg - a->change[i];
-        double answer = a->imaged ? a->answer[a->n + i] - a->answer[i] : w * w * dx;
-        product -= answer * dg;
-        square += answer * dx;
+        double response = a->imaged ? a->response[a->n + i] - a->response[i] : w * w * dx;
+        product -= response * dg;
+        square += response * dx;
     }
     double ratio = product / square;
     if (isfinite(ratio) && fabs(ratio) > fabs(a->ratio)) {
@@ -223,7 +228,7 @@ static void set_norm(spari_accelerator *a, int imaged) {
     if (imaged != a->imaged) {
         for (int s = 0; s < a->slots; s++) {
             if (a->column[s].state == SPARI_LIVE) {
-                spari_columns_drop(a, s);
+                spari_differences_drop(a, s);
             }
         }
         a->iteration = a->used = 0;
@@ -238,7 +243,7 @@ int spari_accelerator_imaged(const spari_accelerator *a) {
 }
 
 static void measure(spari_accelerator *a, const double *x, const double *g, const double *image) {
-    a->residual = a->imaged ? spari_columns_residual(a, x, g, image, a->change) : 0;
+    a->residual = a->imaged ? spari_differences_residual(a, x, g, image, a->change) : 0;
     if (a->iteration == 1) {
         a->residual_first = a->residual_least = a->residual;
         a->rises = 0;
@@ -264,7 +269,7 @@ static int learn(spari_accelerator *a, const double *x, const double *g, const s
         a->change[i] = a->change[a->n + i] - (x[i] - a->x[i]);
     }
     if (images && a->imaged) {
-        SPARI_TRY(images->of(images->context, 2, a->change, a->answer));
+        SPARI_TRY(images->of(images->context, 2, a->change, a->response));
     }
     estimate_ratio(a);
     if (a->scheme->learn) {
@@ -273,7 +278,7 @@ static int learn(spari_accelerator *a, const double *x, const double *g, const s
     a->led = a->imaged && a->secants;
     if (a->led) {
         memcpy(a->lead, a->change + a->n, (size_t)a->n * sizeof *a->lead);
-        memcpy(a->lead + a->n, a->answer + a->n, (size_t)a->n * sizeof *a->lead);
+        memcpy(a->lead + a->n, a->response + a->n, (size_t)a->n * sizeof *a->lead);
     }
     return SPAR_OK;
 }
@@ -292,13 +297,13 @@ int spari_accelerator_next(spari_accelerator *a, const double *x, const double *
     const double *image = images ? images->now : NULL;
     set_norm(a, image && a->set.imaged);
     a->iteration++;
-    int reweighed = weigh(a, x, g);
+    int reweighed = set_weights(a, x, g);
     if (reweighed && a->slots > 0 && !a->imaged) {
-        spari_columns_factor(a);
+        spari_differences_factor(a);
     }
     if (a->iteration == 1 && a->imaged && a->slots > 0) {
-        SPARI_TRY(spari_columns_renew(a, x, g, images));
-        spari_columns_factor(a);
+        SPARI_TRY(spari_differences_renew(a, x, g, images));
+        spari_differences_factor(a);
     }
     SPARI_TRY(a->iteration > 1 ? learn(a, x, g, images) : lead_in(a, g, images));
     measure(a, x, g, image);
@@ -318,7 +323,7 @@ int spari_accelerator_next(spari_accelerator *a, const double *x, const double *
 }
 
 void spari_accelerator_accept(spari_accelerator *a, const double *g) {
-    spari_columns_accept(a);
+    spari_differences_accept(a);
     if (a->iteration > 1) {
         a->omega_accepted = a->omega;
     }
@@ -339,7 +344,7 @@ void spari_accelerator_accept(spari_accelerator *a, const double *g) {
 
 void spari_accelerator_reject(spari_accelerator *a) {
     for (int s = 0; s < a->slots; s++) {
-        spari_column *c = a->column + s;
+        spari_difference *c = a->column + s;
         if (c->state != SPARI_FREE) {
             c->state = c->step == a->step ? SPARI_FREE : SPARI_LIVE;
         }
@@ -350,7 +355,7 @@ void spari_accelerator_reject(spari_accelerator *a) {
     if (a->before.open) { /* otherwise the step was read from a file */
         a->imaged = a->begun.imaged;
         a->ratios_before = a->begun.ratios;
-        spari_columns_restore(a);
+        spari_differences_restore(a);
     }
     spari_snapshot_close(&a->before);
     a->used = 0;

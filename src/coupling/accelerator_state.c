@@ -40,7 +40,7 @@ static void column_vectors(const spari_accelerator *a, int s, double *vectors[6]
 
 /* Returns the position after it. */
 static double *save_column(const spari_accelerator *a, int s, double *state) {
-    const spari_column *c = a->column + s;
+    const spari_difference *c = a->column + s;
     const double what[COLUMN_HEAD] = {s, c->state, (double)c->step, (double)c->serial, c->dt, c->led};
     double *vectors[6];
     column_vectors(a, s, vectors);
@@ -55,8 +55,8 @@ static double *save_column(const spari_accelerator *a, int s, double *state) {
 static const double *load_column(spari_accelerator *a, const double *state) {
     int s = (int)state[0];
     double *vectors[6];
-    a->column[s] = (spari_column){(spari_column_state)(int)state[1], (int64_t)state[2], (int64_t)state[3], state[4],
-                                  (int)state[5]};
+    a->column[s] = (spari_difference){(spari_difference_state)(int)state[1], (int64_t)state[2], (int64_t)state[3],
+                                      state[4], (int)state[5]};
     column_vectors(a, s, vectors);
     state += COLUMN_HEAD;
     for (int k = 0; k < of_column(a); k++, state += a->n) {
@@ -225,7 +225,7 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
     }
     a->used = 0;
     for (int j = 0; j < used; j++) { /* in the original order: the same bits */
-        (void)spari_columns_append(a, (int)state[j], 0);
+        (void)spari_differences_append(a, (int)state[j], 0);
     }
     return 1;
 }

@@ -22,8 +22,8 @@ void spari_coupling_free(spari_coupling **coupling) {
     if (!c) {
         return;
     }
-    double *all[] = {c->length, c->unit,  c->x,    c->g,      c->predicted, c->motion, c->residual,
-                     c->size,   c->image, c->room, c->missed, c->shift,     c->settled};
+    double *all[] = {c->length, c->unit,  c->x,         c->g,      c->predicted, c->motion, c->residual,
+                     c->size,   c->image, c->workspace, c->missed, c->shift,     c->settled};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }
@@ -59,7 +59,7 @@ static int make_vectors(const spar_session *s, int scheme, spari_coupling *c) {
            (shifted == 0 || (c->shift = spari_zalloc(shifted, sizeof(double)))) &&
            (!(c->weighs && spari_coupling_scheme_of(scheme)->columns) ||
             (c->settled = spari_zalloc(2 * n + 1, sizeof(double)))) &&
-           (c->room = spari_zalloc(images > 0 ? 6 * largest : 0, sizeof(double))) &&
+           (c->workspace = spari_zalloc(images > 0 ? 6 * largest : 0, sizeof(double))) &&
            (!iterated || (c->accelerator = spari_accelerator_create(n, 6, 3, &set)));
 }
 
@@ -84,7 +84,7 @@ int spari_coupling_create(spar_session *s, int scheme, int standing, spari_coupl
         c->members = s->member_count;
         int iterates = spari_coupling_scheme_of(scheme)->iterates;
         c->estimates = !standing && !iterates && s->coupling_estimate;
-        c->weighs = !standing && iterates && spari_weighs_motion(s);
+        c->weighs = !standing && iterates && spari_motion_norm_is_used(s);
     }
     if (!c || !make_vectors(s, scheme, c)) {
         spari_coupling_free(&c);
@@ -400,8 +400,8 @@ static int not_converged(spar_session *s, const char *call) {
                       call, s->iteration, c->residual[last], c->size[last], motion, mass, cures_of(s, 0));
 }
 
-static spari_weighed weighed(const spari_coupling *c) {
-    return (spari_weighed){c->n, c->unit, c->x, c->g, c->shift, c->image, c->room};
+static spari_norm_loads weighed(const spari_coupling *c) {
+    return (spari_norm_loads){c->n, c->unit, c->x, c->g, c->shift, c->image, c->workspace};
 }
 
 int spari_coupling_weighs(const spar_session *s) {
@@ -415,11 +415,11 @@ int spari_coupling_weighs(const spar_session *s) {
 static int unsettled(spar_session *s, double *motion) {
     const spari_coupling *c = s->own->coupling;
     double *r = c->settled, *image = c->settled + c->n, square = 0;
-    if (!spari_accelerator_settle(c->accelerator, c->x, c->g, r)) {
+    if (!spari_accelerator_settled(c->accelerator, c->x, c->g, r)) {
         return SPAR_OK;
     }
-    const spari_weighed w = weighed(c);
-    SPARI_TRY(spari_weigh_images(s, &w, 1, r, image));
+    const spari_norm_loads w = weighed(c);
+    SPARI_TRY(spari_motion_norm_images(s, &w, 1, r, image));
     for (int64_t i = 0; i < c->n; i++) {
         square += r[i] * image[i];
     }
@@ -428,15 +428,15 @@ static int unsettled(spar_session *s, double *motion) {
 }
 
 /* The residual in the motion norm: the motion that it causes, relative to the motion caused by all loads. */
-static int weigh_residual(spar_session *s, double size, double *residual) {
+static int measure_residual(spar_session *s, double size, double *residual) {
     spari_coupling *c = s->own->coupling;
     double motion, whole;
     c->weighed = 0;
     /* a step that has changed to the load norm keeps it */
     if (c->weighs && (s->iteration == 1 || spari_accelerator_imaged(c->accelerator))) {
         stack(s);
-        const spari_weighed w = weighed(c);
-        SPARI_TRY(spari_weigh(s, &w, &motion, &whole, &c->weighed));
+        const spari_norm_loads w = weighed(c);
+        SPARI_TRY(spari_motion_norm(s, &w, &motion, &whole, &c->weighed));
         if (c->weighed && c->settled) {
             SPARI_TRY(unsettled(s, &motion));
         }
@@ -460,10 +460,10 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
     if (motion) {
         motion_norms(s);
     }
-    SPARI_TRY(weigh_residual(s, size, &residual));
+    SPARI_TRY(measure_residual(s, size, &residual));
     record(c, residual, size);
     if (c->estimates) {
-        SPARI_TRY(spari_weigh_miss(s, c->n, c->image, c->room, c->report + SPAR_REPORT_MOTION_ERROR));
+        SPARI_TRY(spari_motion_norm_miss(s, c->n, c->image, c->workspace, c->report + SPAR_REPORT_MOTION_ERROR));
     }
     *agreed = residual <= s->coupling_atol + s->coupling_rtol * size &&
               (!motion || c->moved <= s->motion_atol + s->motion_rtol * c->travelled);
@@ -472,21 +472,21 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
 
 static int image_loads(void *session, int64_t count, const double *loads, double *image) {
     spar_session *s = session;
-    const spari_weighed w = weighed(s->own->coupling);
-    return spari_weigh_images(s, &w, count, loads, image);
+    const spari_norm_loads w = weighed(s->own->coupling);
+    return spari_motion_norm_images(s, &w, count, loads, image);
 }
 
 int spari_coupling_next(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     const spari_images images = {c->image, image_loads, s};
-    const spari_weighed w = weighed(c);
+    const spari_norm_loads w = weighed(c);
     /* Done first: otherwise a column of loads that move almost nothing would contain arbitrary amounts of loads that
        move nothing. */
     int felt = c->weighed && spari_coupling_scheme_of(s->scheme)->columns;
     stack(s);
-    SPARI_TRY(felt ? spari_weigh_felt(s, &w, c->settled, c->x) : SPAR_OK);
+    SPARI_TRY(felt ? spari_motion_norm_felt(s, &w, c->settled, c->x) : SPAR_OK);
     SPARI_TRY(spari_accelerator_next(c->accelerator, c->x, c->g, c->weighed ? &images : NULL, c->x));
-    SPARI_TRY(felt ? spari_weigh_felt(s, &w, c->settled, c->x) : SPAR_OK);
+    SPARI_TRY(felt ? spari_motion_norm_felt(s, &w, c->settled, c->x) : SPAR_OK);
     unstack(s);
     report_added_mass(c);
     c->report[SPAR_REPORT_COLUMNS] = spari_accelerator_columns(c->accelerator);
@@ -570,7 +570,8 @@ static double ratio_of_growth(int order, double z) {
    so fast, relative to its limit: 1, 1/3, 1/7 of the mass. */
 static void tell_alternation(const spar_session *s) {
     const spari_coupling *c = s->own->coupling;
-    double mean = c->log_growth / c->turns, spread = sqrt(fmax(c->log_growth2 / c->turns - mean * mean, 0));
+    double mean = c->log_growth / c->alternations,
+           spread = sqrt(fmax(c->log_growth2 / c->alternations - mean * mean, 0));
     double z = exp(mean), ratio = ratio_of_growth(s->order, z);
     static const double bears[3] = {1, 1.0 / 3, 1.0 / 7};
     if (s->log) {
@@ -582,8 +583,8 @@ static void tell_alternation(const spar_session *s) {
             "about %.2g (+- %.1g) of the mass; an explicit scheme with a predictor of order %d is stable up to %.2g; "
             "iterate "
             "(spar_session_set_coupling) or lower the order of the predictor",
-            s->time + s->dt, c->turns + 1, z, z * spread, ratio, ratio_of_growth(s->order, z * exp(spread)) - ratio,
-            s->order, bears[s->order]);
+            s->time + s->dt, c->alternations + 1, z, z * spread, ratio,
+            ratio_of_growth(s->order, z * exp(spread)) - ratio, s->order, bears[s->order]);
         spari_log(s, SPAR_LOG_WARNING, text);
     }
 }
@@ -591,14 +592,14 @@ static void tell_alternation(const spar_session *s) {
 /* In a sound run the defect is a small part of the work. In a run that is about to diverge it has the size of the
    work and grows from step to step. */
 static void watch(spar_session *s) {
-    enum { GROWING_STEPS = 4, LONG_CALM = 20 };
+    enum { GROWING_STEPS = 4, LONG_UNWARNED = 20 };
     spari_coupling *c = s->own->coupling;
     double whole, defect = work_defect(s, &whole);
     c->grown = fabs(defect) > fabs(c->defect) && fabs(defect) > 0.9 * whole ? c->grown + 1 : 0;
     c->defect = defect;
     c->report[SPAR_REPORT_WORK_DEFECT] = defect;
-    c->calm = c->grown == 0 && c->turns == 0 ? c->calm + 1 : 0;
-    if (c->calm >= LONG_CALM) {
+    c->steps_unwarned = c->grown == 0 && c->alternations == 0 ? c->steps_unwarned + 1 : 0;
+    if (c->steps_unwarned >= LONG_UNWARNED) {
         c->warned = 0;
     }
     if (c->grown >= GROWING_STEPS && !c->warned) {
@@ -637,14 +638,14 @@ static void watch_alternation(spar_session *s) {
     }
     double factor = sqrt(now / before);
     if (!(before > 0) || both > OPPOSITE * sqrt(now * before) || !(factor > 1.02) || !isfinite(factor)) {
-        c->turns = 0;
+        c->alternations = 0;
         c->log_growth = c->log_growth2 = 0;
         return;
     }
-    c->turns++;
+    c->alternations++;
     c->log_growth += log(factor);
     c->log_growth2 += log(factor) * log(factor);
-    int sure = c->turns >= SURE ? change > SMALL * size : c->turns >= AT_LEAST && change > LARGE * size;
+    int sure = c->alternations >= SURE ? change > SMALL * size : c->alternations >= AT_LEAST && change > LARGE * size;
     if (sure && c->log_growth > log(2) && !c->warned) {
         c->warned = 1;
         tell_alternation(s);
@@ -686,7 +687,7 @@ void spari_coupling_forget(spar_session *s) {
 
 int spar_session_get_iterations(const spar_session *session, int *iterations, int64_t capacity, double *residual,
                                 double *size) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_need_capacity(session, __func__, capacity));
     const spari_coupling *c = session->own->coupling;
@@ -714,7 +715,7 @@ int spar_session_get_residual(const spar_session *session, double *residual, dou
 }
 
 int spar_session_get_report(const spar_session *session, int64_t capacity, double *report) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_need_capacity(session, __func__, capacity));
     const spari_coupling *c = session->own->coupling;

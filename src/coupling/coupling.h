@@ -19,7 +19,7 @@ typedef struct spari_coupling {
     double *shift;  /* motion norm, with an added mass: contribution of the added mass to x and g; or NULL */
     double *image;  /* motion norm: [2 n + 1] motion due to g - x and to g, stacked; with a shift [3 n + 1], also due to
                        the loads; and room for the ranks' status */
-    double *room;   /* motion norm: loads of one member */
+    double *workspace; /* motion norm: loads of one member */
     double *settled;   /* motion norm, with columns: [2 n + 1] residual relative to the settled fluid, and its image */
     double *predicted; /* iterated: predicted loads of the step, unscaled */
     double *motion;    /* motion test: positions and quaternions [7] of the iteration before */
@@ -31,9 +31,9 @@ typedef struct spari_coupling {
     double report[SPAR_REPORT_COUNT];
     double defect;                  /* of the last accepted step */
     int grown;                      /* consecutive steps in which it has grown */
-    int warned, calm;               /* a warning was given; steps since the last reason for one */
+    int warned, steps_unwarned;     /* a warning was given; steps since the last reason for one */
     double *missed;                 /* explicit: pushed minus predicted loads of the last step */
-    int turns;                      /* consecutive steps in which it has grown and changed sign */
+    int alternations;               /* consecutive steps in which it has grown and changed sign */
     double log_growth, log_growth2; /* sums of the logarithms of its growth, and of their squares */
     int unconverged, in_row;        /* the current step is accepted unconverged; number of such steps before it */
 } spari_coupling;
@@ -46,9 +46,9 @@ int spari_coupling_prepare(spar_session *session);
 /* Replace the session's coupling by a temporary one for a solution that is not a step, and end it. Collective; on
    failure nothing has changed. If the solution was found, the steps begin anew. If not, they continue with their own
    coupling, and the reported last iteration is that of the solution. */
-int spari_coupling_lay_aside(spar_session *session, int scheme);
+int spari_coupling_suspend(spar_session *session, int scheme);
 void spari_coupling_keep(spar_session *session);
-void spari_coupling_take_back(spar_session *session);
+void spari_coupling_resume(spar_session *session);
 /* Whether the next check uses the motion norm, as far as is known in advance. */
 int spari_coupling_weighs(const spar_session *session);
 /* Whether the session's coupling fits the present settings and members. Local, the same on every rank. */

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-int spari_weighs_motion(const spar_session *s) {
+int spari_motion_norm_is_used(const spar_session *s) {
     for (const spar_member *m = s->members; m; m = m->next) {
         if (!m->row->moves) { /* only the host knows its response */
             return 0;
@@ -28,9 +28,9 @@ int spari_weighs_motion(const spar_session *s) {
 
 /* Response of member m, whose stacked loads begin at `at`, to the loads x - from (from NULL: x), stacked. Members
    connected by joints are solved together later; here their loads are stored instead. */
-static int answer_stacked(const spari_weighed *c, spar_member *m, double unit, int64_t at, const double *x,
-                          const double *from, double *out) {
-    double *load = m->assembly ? out + at : c->room;
+static int respond_stacked(const spari_norm_loads *c, spar_member *m, double unit, int64_t at, const double *x,
+                           const double *from, double *out) {
+    double *load = m->assembly ? out + at : c->workspace;
     int64_t n = 6 * m->nodes;
     for (int64_t i = 0; i < n; i++) {
         load[i] = (x[at + i] - (from ? from[at + i] : 0)) / (i % 6 < 3 ? 1 : unit);
@@ -38,7 +38,7 @@ static int answer_stacked(const spari_weighed *c, spar_member *m, double unit, i
     if (m->assembly) {
         return 0;
     }
-    if (m->row->answer(m, load, out + at)) {
+    if (m->row->response(m, load, out + at)) {
         return 1;
     }
     for (int64_t i = 0; i < n; i++) {
@@ -50,10 +50,10 @@ static int answer_stacked(const spari_weighed *c, spar_member *m, double unit, i
 /* Stacks the motions of a connected member. LEAST times the flexibility of its assembly's mass alone is added. Loads
    carried by constraints move nothing, and a norm that ignores them would not control them. They count a hundredth
    of loads that move the structure. With less, averaged columns still carry loads on rigid beams away. */
-static void stack_tied(const spar_member *m, double unit, int64_t at, const double *x, const double *from,
-                       double *out) {
+static void stack_assembled(const spar_member *m, double unit, int64_t at, const double *x, const double *from,
+                            double *out) {
     static const double LEAST = 1e-4;
-    double least = LEAST * spari_assembly_answer_of_mass(m->assembly);
+    double least = LEAST * spari_assembly_mass_response(m->assembly);
     for (int64_t i = at; i < at + 6 * m->nodes; i++) {
         double load = x[i] - (from ? from[i] : 0);
         out[i] = out[i] / ((i - at) % 6 < 3 ? 1 : unit) + least * load;
@@ -62,16 +62,16 @@ static void stack_tied(const spar_member *m, double unit, int64_t at, const doub
 
 /* And those of members whose loads x[j] - from[j] are stored, the x `apart` numbers from each other; from NULL:
    nothing is subtracted. */
-static int answer_tied(spar_session *s, const spari_weighed *c, int64_t count, const double *x, int64_t apart,
-                       const double *const *from, double *image) {
+static int respond_assembled(spar_session *s, const spari_norm_loads *c, int64_t count, const double *x, int64_t apart,
+                             const double *const *from, double *image) {
     int rank = spari_comm_rank(s->comm), singular = 0, k = 0;
     int64_t at = 0;
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
-        singular = spari_assembly_answer(a, count, c->n, image) || singular;
+        singular = spari_assembly_response(a, count, c->n, image) || singular;
     }
     for (const spar_member *m = s->members; m && s->assemblies; at += 6 * m->nodes, m = m->next, k++) {
         for (int64_t j = 0; j < count && m->assembly && m->owner == rank; j++) {
-            stack_tied(m, c->unit[k], at, x + j * apart, from ? from[j] : NULL, image + j * c->n);
+            stack_assembled(m, c->unit[k], at, x + j * apart, from ? from[j] : NULL, image + j * c->n);
         }
     }
     return singular;
@@ -97,38 +97,38 @@ static const double ROUNDING = 1e-13;
    orthogonal columns can be nearly equal. The step's matrix is unsymmetric if beams rotate far under large loads,
    and by gyroscopic terms. Symmetric ones are symmetric to 1e-11. Joints rotate with their loads in each step; a
    scheme that alternates between two norms learns less than in either. */
-static int is_symmetric(const spari_weighed *c, int tied, const double *answer, const double *whole, double work,
-                        double all) {
-    static const double LOPSIDED = 1e-5, TIED = 1e-4;
-    double sizes = 0, one = sum_products(c->g, answer, NULL, c->n, &sizes),
+static int is_symmetric(const spari_norm_loads *c, int assembled, const double *response, const double *whole,
+                        double work, double all) {
+    static const double LOPSIDED = 1e-5, ASSEMBLED = 1e-4;
+    double sizes = 0, one = sum_products(c->g, response, NULL, c->n, &sizes),
            other = sum_products(c->g, whole, c->x, c->n, &sizes);
     return fabs(one - other) <=
-           (tied ? TIED : LOPSIDED) * sqrt(fmax(work, 0) * fmax(all, 0)) + ROUNDING * fmax(all, sizes);
+           (assembled ? ASSEMBLED : LOPSIDED) * sqrt(fmax(work, 0) * fmax(all, 0)) + ROUNDING * fmax(all, sizes);
 }
 
-int spari_weigh(spar_session *s, const spari_weighed *c, double *residual, double *size, int *ok) {
-    double *answer = c->image, *whole = c->image + c->n, *bare = c->shift ? whole + c->n : whole;
+int spari_motion_norm(spar_session *s, const spari_norm_loads *c, double *residual, double *size, int *ok) {
+    double *response = c->image, *whole = c->image + c->n, *bare = c->shift ? whole + c->n : whole;
     int64_t at = 0, images = c->shift ? 3 * c->n : 2 * c->n;
     int rank = spari_comm_rank(s->comm), singular = 0, k = 0;
     memset(c->image, 0, (size_t)(images + 1) * sizeof *c->image);
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next, k++) {
-        if (m->owner == rank && m->row->answer) {
-            singular = singular || answer_stacked(c, m, c->unit[k], at, c->g, c->x, answer) ||
-                       answer_stacked(c, m, c->unit[k], at, c->g, NULL, whole) ||
-                       (c->shift && answer_stacked(c, m, c->unit[k], at, c->g, c->shift, bare));
+        if (m->owner == rank && m->row->response) {
+            singular = singular || respond_stacked(c, m, c->unit[k], at, c->g, c->x, response) ||
+                       respond_stacked(c, m, c->unit[k], at, c->g, NULL, whole) ||
+                       (c->shift && respond_stacked(c, m, c->unit[k], at, c->g, c->shift, bare));
         }
     }
     const double *const from[3] = {c->x, NULL, c->shift};
-    singular = singular || answer_tied(s, c, c->shift ? 3 : 2, c->g, 0, from, c->image);
+    singular = singular || respond_assembled(s, c, c->shift ? 3 : 2, c->g, 0, from, c->image);
     if (singular) { /* its numbers would make the sums NaN, on every rank */
         c->image[0] = NAN;
     }
     SPARI_TRY(spari_comm_sum(s->comm, c->image, images, SPAR_OK, s->message, sizeof s->message));
-    double works = 0, sizes = 0, work = sum_products(c->g, answer, c->x, c->n, &works),
+    double works = 0, sizes = 0, work = sum_products(c->g, response, c->x, c->n, &works),
            all = sum_products(c->g, bare, c->shift, c->n, &sizes);
     double both = c->shift ? fmax(all, sum_products(c->g, whole, NULL, c->n, &sizes)) : all;
     *ok = isfinite(work) && isfinite(all) && work >= -ROUNDING * works && (all > 0 || work <= 0) &&
-          is_symmetric(c, s->assemblies != NULL, answer, whole, work, both);
+          is_symmetric(c, s->assemblies != NULL, response, whole, work, both);
     *residual = sqrt(fmax(work, 0));
     *size = sqrt(fmax(all, 0));
     return SPAR_OK;
@@ -142,38 +142,40 @@ static int is_zero(const double *x, int64_t n) {
     return i == n;
 }
 
-int spari_weigh_images(spar_session *s, const spari_weighed *c, int64_t count, const double *loads, double *image) {
+int spari_motion_norm_images(spar_session *s, const spari_norm_loads *c, int64_t count, const double *loads,
+                             double *image) {
     int rank = spari_comm_rank(s->comm), k = 0;
     int64_t at = 0;
     memset(image, 0, (size_t)(count * c->n + 1) * sizeof *image);
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next, k++) {
-        for (int64_t j = 0; j < count && m->owner == rank && m->row->answer; j++) {
+        for (int64_t j = 0; j < count && m->owner == rank && m->row->response; j++) {
             const double *x = loads + j * c->n;
-            if (!is_zero(x + at, 6 * m->nodes) && answer_stacked(c, m, c->unit[k], at, x, NULL, image + j * c->n)) {
-                image[0] = NAN; /* cannot happen after spari_weigh succeeded */
+            if (!is_zero(x + at, 6 * m->nodes) && respond_stacked(c, m, c->unit[k], at, x, NULL, image + j * c->n)) {
+                image[0] = NAN; /* cannot happen after spari_motion_norm succeeded */
             }
         }
     }
-    if (answer_tied(s, c, count, loads, c->n, NULL, image)) {
+    if (respond_assembled(s, c, count, loads, c->n, NULL, image)) {
         image[0] = NAN;
     }
     return spari_comm_sum(s->comm, image, count * c->n, SPAR_OK, s->message, sizeof s->message);
 }
 
 /* The part of the loads x - g that member m responds to, into off, stacked. */
-static int felt_of(const spari_weighed *c, spar_member *m, double unit, const double *x, const double *g, double *off) {
+static int felt_of(const spari_norm_loads *c, spar_member *m, double unit, const double *x, const double *g,
+                   double *off) {
     int64_t n = 6 * m->nodes;
     for (int64_t i = 0; i < n; i++) {
-        c->room[i] = (x[i] - g[i]) / (i % 6 < 3 ? 1 : unit);
+        c->workspace[i] = (x[i] - g[i]) / (i % 6 < 3 ? 1 : unit);
     }
-    int status = m->row->felt && !m->assembly ? m->row->felt(m, c->room) : SPAR_OK;
+    int status = m->row->felt && !m->assembly ? m->row->felt(m, c->workspace) : SPAR_OK;
     for (int64_t i = 0; i < n; i++) {
-        off[i] = c->room[i] * (i % 6 < 3 ? 1 : unit);
+        off[i] = c->workspace[i] * (i % 6 < 3 ? 1 : unit);
     }
     return status;
 }
 
-int spari_weigh_felt(spar_session *s, const spari_weighed *c, double *off, double *x) {
+int spari_motion_norm_felt(spar_session *s, const spari_norm_loads *c, double *off, double *x) {
     int rank = spari_comm_rank(s->comm), asked = 0, status = SPAR_OK, k = 0;
     int64_t at = 0;
     memset(off, 0, (size_t)(c->n + 1) * sizeof *off);
@@ -196,29 +198,29 @@ int spari_weigh_felt(spar_session *s, const spari_weighed *c, double *off, doubl
 }
 
 /* Response of this rank's members to the loads that the prediction missed, image [n]. 1: none. */
-static int answer_miss(spar_session *s, double *image, double *room) {
+static int respond_to_miss(spar_session *s, double *image, double *workspace) {
     int rank = spari_comm_rank(s->comm), singular = 0;
     double *at = image;
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next) {
-        if (m->owner != rank || !m->row->answer) {
+        if (m->owner != rank || !m->row->response) {
             continue;
         }
-        double *miss = m->assembly ? at : room; /* replaced later by the response of connected members */
+        double *miss = m->assembly ? at : workspace; /* replaced later by the response of connected members */
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
             miss[i] = m->load_pushed[i] - m->load_used[i];
         }
-        singular = (!m->assembly && m->row->answer(m, room, at)) || singular;
+        singular = (!m->assembly && m->row->response(m, workspace, at)) || singular;
     }
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
-        singular = spari_assembly_answer(a, 1, 0, image) || singular;
+        singular = spari_assembly_response(a, 1, 0, image) || singular;
     }
     return singular;
 }
 
-int spari_weigh_miss(spar_session *s, int64_t n, double *image, double *room, double *farthest) {
+int spari_motion_norm_miss(spar_session *s, int64_t n, double *image, double *workspace, double *farthest) {
     double square = 0;
     memset(image, 0, (size_t)(n + 1) * sizeof *image);
-    if (answer_miss(s, image, room)) {
+    if (respond_to_miss(s, image, workspace)) {
         image[0] = NAN;
     }
     SPARI_TRY(spari_comm_sum(s->comm, image, n, SPAR_OK, s->message, sizeof s->message));

@@ -1,43 +1,43 @@
 /* Norms of the coupling: loads measured by the motion that they cause, or by themselves. */
-#ifndef SPARI_WEIGH_H
-#define SPARI_WEIGH_H
+#ifndef SPARI_MOTION_NORM_H
+#define SPARI_MOTION_NORM_H
 
 #include "../exchange/session_private.h"
 
 #include <stdint.h>
 
 /* Stacked loads of all members, moments times `unit` of the member. */
-typedef struct spari_weighed {
+typedef struct spari_norm_loads {
     int64_t n;
     const double *unit;  /* per member, in order */
     const double *x, *g; /* [n] used, and returned */
     const double *shift; /* [n] contribution of an added mass to g; NULL: none */
     double *image; /* [2 n + 1] out: motion due to g - x, and to g; with a shift [3 n + 1], also due to the loads; room
                       for the ranks' status */
-    double *room;  /* 6 per node of the largest member */
-} spari_weighed;
+    double *workspace; /* 6 per node of the largest member */
+} spari_norm_loads;
 
 /* Whether the motion norm is possible (the library knows the flexibility of all members with fluids) and wanted
    (coupling.norm). */
-int spari_weighs_motion(const spar_session *session);
+int spari_motion_norm_is_used(const spar_session *session);
 /* Fills w->image, and the sizes of g - x and of the loads in this norm. All ranks; the owners' results go to the
    others. *ok: whether it is a norm: finite, nonnegative squares, symmetric flexibility. */
-int spari_weigh(spar_session *session, const spari_weighed *w, double *residual, double *size, int *ok);
+int spari_motion_norm(spar_session *session, const spari_norm_loads *w, double *residual, double *size, int *ok);
 
 /* image [count][n], with room for one more := motions due to `count` loads [count][n], stacked as w->x; uses n, unit
    and room of w. All ranks. */
-int spari_weigh_images(spar_session *session, const spari_weighed *w, int64_t count, const double *loads,
-                       double *image);
+int spari_motion_norm_images(spar_session *session, const spari_norm_loads *w, int64_t count, const double *loads,
+                             double *image);
 
 /* Removes from x [n], stacked as w->g, the part of x - g that moves nothing: this part becomes that of the returned
    loads. Returns a status. All ranks; a message is sent only if an owner must be asked (spari_fidelity's felt_here).
    room [n + 1]. */
-int spari_weigh_felt(spar_session *session, const spari_weighed *w, double *room, double *x);
+int spari_motion_norm_felt(spar_session *session, const spari_norm_loads *w, double *workspace, double *x);
 
 /* Explicit coupling: displacement of the farthest node, m, if the pushed loads replaced the predicted ones, as
    another iteration would do. 0 for members that the library does not solve; infinite if the matrix is singular. n:
    6 per node of all members; image [n + 1]: workspace, and the ranks' status; room: 6 per node of the largest
    member. All ranks. */
-int spari_weigh_miss(spar_session *session, int64_t n, double *image, double *room, double *farthest);
+int spari_motion_norm_miss(spar_session *session, int64_t n, double *image, double *workspace, double *farthest);
 
 #endif

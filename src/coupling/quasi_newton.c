@@ -21,17 +21,17 @@ static void forget_lead(const spari_accelerator *a, int s, double *change, doubl
     }
 }
 
-double spari_columns_residual(const spari_accelerator *a, const double *x, const double *g, const double *image,
-                              double *r) {
+double spari_differences_residual(const spari_accelerator *a, const double *x, const double *g, const double *image,
+                                  double *r) {
     double square = 0, rho = a->led ? spari_rho_of(a) : 0;
     for (int64_t i = 0; i < a->n; i++) {
         r[i] = g[i] - x[i];
-        double answer = image[i];
+        double response = image[i];
         if (rho > 0) {
             r[i] += rho * a->lead[i];
-            answer += rho * a->lead[a->n + i];
+            response += rho * a->lead[a->n + i];
         }
-        square += r[i] * answer;
+        square += r[i] * response;
     }
     return sqrt(fmax(square, 0));
 }
@@ -54,7 +54,7 @@ static int is_unled(const spari_accelerator *a, int slot) {
 
 /* Adds a column to the factorisation by twofold Gram-Schmidt (Giraud et al. 2005: orthogonal to rounding). Returns 0
    and adds nothing if at most `filter` of it is linearly independent. */
-int spari_columns_append(spari_accelerator *a, int slot, double filter) {
+int spari_differences_append(spari_accelerator *a, int slot, double filter) {
     int k = a->used;
     if (k == a->set.columns || is_unled(a, slot)) {
         return 0;
@@ -111,21 +111,21 @@ static int newest_before(const spari_accelerator *a, int64_t serial) {
     return found;
 }
 
-void spari_columns_drop(spari_accelerator *a, int slot) {
+void spari_differences_drop(spari_accelerator *a, int slot) {
     a->column[slot].state = a->column[slot].step == a->step ? SPARI_FREE : SPARI_DROPPED;
 }
 
-void spari_columns_factor(spari_accelerator *a) {
+void spari_differences_factor(spari_accelerator *a) {
     int64_t serial = a->serial + 1;
     a->used = 0;
     for (int s = newest_before(a, serial); s >= 0; s = newest_before(a, serial)) {
         serial = a->column[s].serial;
         int full = a->used == a->set.columns;
-        if (!spari_columns_append(a, s, least_new(a))) {
+        if (!spari_differences_append(a, s, least_new(a))) {
             a->dropped += !full;
-            /* those taken out below SPARI_CONTRADICTION_SEEN have nothing to say; above, they are averaged with */
+            /* those removed below SPARI_CONTRADICTION_SEEN have nothing to say; above, they are averaged with */
             if (a->memory.scatter <= SPARI_CONTRADICTION_SEEN && !is_unled(a, s)) {
-                spari_columns_drop(a, s);
+                spari_differences_drop(a, s);
             }
         }
     }
@@ -144,15 +144,15 @@ static int free_slot(const spari_accelerator *a) {
 static void limit_columns(spari_accelerator *a) {
     int count = 0, oldest = -1;
     for (int s = 0; s < a->slots; s++) {
-        const spari_column *c = a->column + s;
+        const spari_difference *c = a->column + s;
         if (c->state == SPARI_LIVE && c->step == a->step) {
             count++;
             oldest = oldest < 0 || c->serial < a->column[oldest].serial ? s : oldest;
         }
     }
     if (count == a->set.columns) {
-        spari_columns_drop(a, oldest);
-        spari_columns_factor(a);
+        spari_differences_drop(a, oldest);
+        spari_differences_factor(a);
     }
 }
 
@@ -213,7 +213,7 @@ static double recall(spari_accelerator *a) {
 
 /* Evaluates the newest column: its contradiction with the others of the step, whether memory explains it, and the
    remaining scatter. */
-static void weigh_answers(spari_accelerator *a, int newest) {
+static void weigh_responses(spari_accelerator *a, int newest) {
     spari_recollection *m = &a->memory;
     double defect = defect_of(a, newest, 0), was = m->rho, left = 1;
     m->contradiction = faded(m->contradiction, defect);
@@ -231,15 +231,15 @@ static void weigh_answers(spari_accelerator *a, int newest) {
     }
 }
 
-void spari_columns_learn(spari_accelerator *a) {
+void spari_differences_learn(spari_accelerator *a) {
     limit_columns(a);
     int s = free_slot(a), moved = 0;
     size_t bytes = (size_t)a->n * sizeof *a->change;
     memcpy(spari_slot_v(a, s), a->change, bytes);
     memcpy(spari_slot_w(a, s), a->change + a->n, bytes);
     if (a->imaged) {
-        memcpy(spari_slot_iv(a, s), a->answer, bytes);
-        memcpy(spari_slot_iw(a, s), a->answer + a->n, bytes);
+        memcpy(spari_slot_iv(a, s), a->response, bytes);
+        memcpy(spari_slot_iw(a, s), a->response + a->n, bytes);
     }
     for (int64_t i = 0; i < a->n; i++) {
         moved |= a->change[i] != 0;
@@ -248,17 +248,17 @@ void spari_columns_learn(spari_accelerator *a) {
         a->dropped++;
         return;
     }
-    a->column[s] = (spari_column){SPARI_LIVE, a->step, ++a->serial, a->dt, a->imaged && a->led};
+    a->column[s] = (spari_difference){SPARI_LIVE, a->step, ++a->serial, a->dt, a->imaged && a->led};
     if (a->column[s].led) {
         memcpy(spari_slot_b(a, s), a->lead, bytes);
         memcpy(spari_slot_ib(a, s), a->lead + a->n, bytes);
     }
     double rho = a->memory.rho;
     if (a->imaged) {
-        weigh_answers(a, s);
+        weigh_responses(a, s);
     }
-    if (a->memory.rho != rho || !spari_columns_append(a, s, least_new(a))) {
-        spari_columns_factor(a);
+    if (a->memory.rho != rho || !spari_differences_append(a, s, least_new(a))) {
+        spari_differences_factor(a);
     }
 }
 
@@ -278,12 +278,12 @@ static double longest(spari_accelerator *a) {
 static void trust(spari_accelerator *a, const double *x, double *next) {
     double step = 0, most = longest(a), rho = spari_rho_of(a);
     for (int64_t i = 0; i < a->n; i++) {
-        double answer = a->image[i] + (rho > 0 && a->led ? rho * a->lead[a->n + i] : 0);
+        double response = a->image[i] + (rho > 0 && a->led ? rho * a->lead[a->n + i] : 0);
         for (int j = 0; j < a->used; j++) {
             int slot = a->order[j];
-            answer += a->alpha[j] * (spari_slot_iw(a, slot)[i] - (rho > 0 ? rho * spari_slot_ib(a, slot)[i] : 0));
+            response += a->alpha[j] * (spari_slot_iw(a, slot)[i] - (rho > 0 ? rho * spari_slot_ib(a, slot)[i] : 0));
         }
-        step += (next[i] - x[i]) * answer;
+        step += (next[i] - x[i]) * response;
     }
     if (step > most * most) {
         double cut = most / sqrt(step);
@@ -310,7 +310,7 @@ static void back_substitute(spari_accelerator *a) {
 static int quasi_newton_imaged(spari_accelerator *a, const double *x, const double *g, double *next) {
     int64_t n = a->n;
     int m = a->used;
-    (void)spari_columns_residual(a, x, g, a->image, next);
+    (void)spari_differences_residual(a, x, g, a->image, next);
     memset(a->alpha, 0, (size_t)m * sizeof *a->alpha);
     for (int pass = 0; pass < 2; pass++) {
         for (int j = 0; j < m; j++) {
@@ -370,12 +370,12 @@ static int step_by_average(spari_accelerator *a, const double *x, const double *
     double *r = a->change;
     gather_secants(a, fmin(fmax(a->set.filter, PART * a->memory.scatter), FILTER), a->serial + 1, 0);
     spari_secants_remember(a->secants, a->memory.rho);
-    double length = spari_columns_residual(a, x, g, a->image, r);
+    double length = spari_differences_residual(a, x, g, a->image, r);
     return spari_secants_fit(a->secants, a->memory.scatter * a->memory.scatter) > 0 &&
            spari_secants_step(a->secants, x, r, length, longest(a), next);
 }
 
-int spari_columns_next(spari_accelerator *a, const double *x, const double *g, double *next) {
+int spari_differences_next(spari_accelerator *a, const double *x, const double *g, double *next) {
     return (a->imaged && a->memory.scatter > SPARI_SCATTER_AVERAGED && step_by_average(a, x, g, next)) ||
            (a->used > 0 && quasi_newton(a, x, g, next));
 }
@@ -420,18 +420,18 @@ static void keep_images(spari_accelerator *a) {
     }
 }
 
-void spari_columns_restore(spari_accelerator *a) {
-    double *from = a->before.data, *at = a->before.taken > 0 ? from + a->slots : NULL;
+void spari_differences_restore(spari_accelerator *a) {
+    double *from = a->before.data, *at = a->before.saved > 0 ? from + a->slots : NULL;
     for (int s = 0; s < a->slots && at; s++) {
         if (from[s] >= 0) {
             a->column[s].led = from[s] > 0;
             at = copy_images(a, s, a->column[s].led, at, 1);
         }
     }
-    a->renewed = a->before.taken < 0; /* no memory for them */
+    a->renewed = a->before.saved < 0; /* no memory for them */
 }
 
-int spari_columns_renew(spari_accelerator *a, const double *x, const double *g, const spari_images *images) {
+int spari_differences_renew(spari_accelerator *a, const double *x, const double *g, const spari_images *images) {
     int other = a->renewed;
     for (int s = 0; s < a->slots && !other; s++) {
         other = a->column[s].state == SPARI_LIVE && is_of_another(a, s, x, g, images->now);
@@ -443,7 +443,7 @@ int spari_columns_renew(spari_accelerator *a, const double *x, const double *g, 
     int led = 0;
     keep_images(a);
     for (int s = 0; s < a->slots; s++) {
-        spari_column *c = a->column + s;
+        spari_difference *c = a->column + s;
         c->led &= spari_accelerator_contradicted(a); /* otherwise unused */
         led |= c->led;
         if (c->state == SPARI_FREE) {
@@ -474,9 +474,9 @@ static int oldest_live(const spari_accelerator *a, int *count) {
     return oldest;
 }
 
-void spari_columns_accept(spari_accelerator *a) {
+void spari_differences_accept(spari_accelerator *a) {
     for (int s = 0; s < a->slots; s++) {
-        spari_column *c = a->column + s;
+        spari_difference *c = a->column + s;
         if (c->state == SPARI_DROPPED || a->step - c->step >= a->set.reuse) {
             c->state = SPARI_FREE;
         }

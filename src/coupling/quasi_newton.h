@@ -1,7 +1,7 @@
 /* Data of an accelerator, shared by accelerator.c (create, step, schemes), quasi_newton.c (quasi-Newton) and
    accelerator_state.c (save and load). */
-#ifndef SPARI_COLUMNS_H
-#define SPARI_COLUMNS_H
+#ifndef SPARI_QUASI_NEWTON_H
+#define SPARI_QUASI_NEWTON_H
 
 #include "../algebra/secants.h"
 #include "../time/tangent_snapshot.h"
@@ -12,15 +12,15 @@
 
 /* State of a column slot: free, in use, or out of use until the step ends (resting: returns; dropped: freed, or
    returns after reject). */
-typedef enum spari_column_state { SPARI_FREE, SPARI_LIVE, SPARI_RESTING, SPARI_DROPPED } spari_column_state;
+typedef enum spari_difference_state { SPARI_FREE, SPARI_LIVE, SPARI_RESTING, SPARI_DROPPED } spari_difference_state;
 
-typedef struct spari_column {
-    spari_column_state state;
+typedef struct spari_difference {
+    spari_difference_state state;
     int64_t step;   /* step in which it was made, by the accelerator's own count */
     int64_t serial; /* increasing with age of creation: the largest is the newest */
     double dt;
     int led; /* imaged: the change of g before it is known */
-} spari_column;
+} spari_difference;
 
 /* Weighted ratios of differences: their mean and their spread. */
 typedef struct spari_ratios {
@@ -53,7 +53,7 @@ struct spari_accelerator {
     double *x, *g;             /* of the iteration before */
     double *image;             /* [2 n] imaged: images of its g - x and g */
     int imaged;                /* in this step: inner products use the images */
-    double *change, *answer;   /* [2][n + 1] changes of g - x and of g since the iteration before; their images */
+    double *change, *response; /* [2][n + 1] changes of g - x and of g since the iteration before; their images */
     int renewed;               /* images of columns were recomputed for this step */
     spari_snapshot before;     /* images before that */
     struct {
@@ -71,21 +71,21 @@ struct spari_accelerator {
     double cut,
         cut_residual; /* the last step was limited to this fraction of its length (0: not limited), at this residual */
 
-    int slots;              /* twice the columns: resting and dropped ones return after reject */
-    spari_column *column;   /* [slots] */
-    double *v, *w;          /* [slots][n] differences of the residual g - x, and of g */
-    double *iv, *iw;        /* imaged: their images */
-    double *b, *ib;         /* imaged: the preceding change of g, and its image */
-    double *q, *r;          /* [columns][n] and [columns][columns], r by columns: weighted v = q r */
-    double *p;              /* imaged: images of q */
-    spari_secants *secants; /* imaged */
-    double *alpha;          /* [columns] */
-    int *order;             /* slot of each column of q */
-    int used;               /* columns of q */
+    int slots;                /* twice the columns: resting and dropped ones return after reject */
+    spari_difference *column; /* [slots] */
+    double *v, *w;            /* [slots][n] differences of the residual g - x, and of g */
+    double *iv, *iw;          /* imaged: their images */
+    double *b, *ib;           /* imaged: the preceding change of g, and its image */
+    double *q, *r;            /* [columns][n] and [columns][columns], r by columns: weighted v = q r */
+    double *p;                /* imaged: images of q */
+    spari_secants *secants;   /* imaged */
+    double *alpha;            /* [columns] */
+    int *order;               /* slot of each column of q */
+    int used;                 /* columns of q */
 };
 
 /* Restores the images of the beginning of the step. */
-void spari_columns_restore(spari_accelerator *a);
+void spari_differences_restore(spari_accelerator *a);
 
 /* ---- vectors: plain sums in a fixed order, for the same bits on ranks with different processors ---- */
 
@@ -141,24 +141,24 @@ static inline double spari_size_in(const double *a, const double *image, int64_t
 /* ---- quasi_newton.c ---- */
 
 /* Factors anew, newest columns first, so that the filter and the limit on their number remove old ones. */
-void spari_columns_factor(spari_accelerator *a);
+void spari_differences_factor(spari_accelerator *a);
 /* Adds the column in a slot to the factorisation. Returns 0 and adds nothing if at most `filter` of it is linearly
    independent. */
-int spari_columns_append(spari_accelerator *a, int slot, double filter);
+int spari_differences_append(spari_accelerator *a, int slot, double filter);
 /* Takes a column out of use: one of this step for good, an older one until the step is accepted or rejected. */
-void spari_columns_drop(spari_accelerator *a, int slot);
+void spari_differences_drop(spari_accelerator *a, int slot);
 /* Converts the columns of earlier steps to the norm of this one; recomputes their images if the structure has
    rotated or stiffened enough to matter. Returns the status of images->of. */
-int spari_columns_renew(spari_accelerator *a, const double *x, const double *g, const spari_images *images);
+int spari_differences_renew(spari_accelerator *a, const double *x, const double *g, const spari_images *images);
 /* Adds the column of the last two iterations. */
-void spari_columns_learn(spari_accelerator *a);
+void spari_differences_learn(spari_accelerator *a);
 /* Next loads from the columns of this and earlier steps, averaged if they contradict each other. 0: not finite. */
-int spari_columns_next(spari_accelerator *a, const double *x, const double *g, double *next);
+int spari_differences_next(spari_accelerator *a, const double *x, const double *g, double *next);
 /* Accepts the step: frees dropped columns, restores resting ones, and limits their number. */
-void spari_columns_accept(spari_accelerator *a);
+void spari_differences_accept(spari_accelerator *a);
 /* r := the residual plus the recurring part of the last change, (T31); returns its length. */
-double spari_columns_residual(const spari_accelerator *a, const double *x, const double *g, const double *image,
-                              double *r);
+double spari_differences_residual(const spari_accelerator *a, const double *x, const double *g, const double *image,
+                                  double *r);
 
 /* Limits of spari_recollection. The scheme acts on a contradiction of the fluid's responses above the first. It
    averages difference columns whose scatter is above the second. */

@@ -13,8 +13,8 @@
      T32).
    Without images, entries i with i % period < split are forces, the others moments (already divided by a length).
      Each kind is scaled by its own size, so iterates do not depend on units. */
-#ifndef SPARI_ACCELERATE_H
-#define SPARI_ACCELERATE_H
+#ifndef SPARI_SCHEMES_H
+#define SPARI_SCHEMES_H
 
 #include <spar/spar.h>
 
@@ -76,7 +76,7 @@ int spari_accelerator_next(spari_accelerator *a, const double *x, const double *
 int spari_accelerator_contradicted(const spari_accelerator *a);
 /* Residual relative to the settled fluid, (T32): r [n] for x and g, which were not passed to `next` yet. Returns 0,
    with r unchanged, if the fluid has no memory. */
-int spari_accelerator_settle(const spari_accelerator *a, const double *x, const double *g, double *r);
+int spari_accelerator_settled(const spari_accelerator *a, const double *x, const double *g, double *r);
 /* Accepts the step: its columns may serve in later ones. g: the last result; NULL: unknown. */
 void spari_accelerator_accept(spari_accelerator *a, const double *g);
 /* Rejects the step: restores the state of its beginning. Its columns are discarded, because they contain the cause

@@ -5,24 +5,24 @@
 #include "../comm/enter.h"
 #include "../exchange/session_private.h"
 
-int spari_coupling_lay_aside(spar_session *s, int scheme) {
+int spari_coupling_suspend(spar_session *s, int scheme) {
     spari_coupling *own = NULL;
     int status = spari_enter(s, "coupling", spari_coupling_create(s, scheme, 1, &own));
     if (status != SPAR_OK) {
         spari_coupling_free(&own);
         return status;
     }
-    s->own->aside = s->own->coupling;
+    s->own->suspended = s->own->coupling;
     s->own->coupling = own;
     return SPAR_OK;
 }
 
 void spari_coupling_keep(spar_session *s) {
-    const spari_coupling *of_steps = s->own->aside;
+    const spari_coupling *of_steps = s->own->suspended;
     if (of_steps) {
         s->own->coupling->report[SPAR_REPORT_UNCONVERGED] = of_steps->report[SPAR_REPORT_UNCONVERGED];
     }
-    spari_coupling_free(&s->own->aside);
+    spari_coupling_free(&s->own->suspended);
     s->coupling_stale = 1;
 }
 
@@ -32,8 +32,8 @@ static void swap_lists(double **a, double **b) {
     *b = other;
 }
 
-void spari_coupling_take_back(spar_session *s) {
-    spari_coupling *own = s->own->coupling, *of_steps = s->own->aside;
+void spari_coupling_resume(spar_session *s) {
+    spari_coupling *own = s->own->coupling, *of_steps = s->own->suspended;
     if (!of_steps) {
         s->coupling_stale = 1;
         return;
@@ -49,6 +49,6 @@ void spari_coupling_take_back(spar_session *s) {
     }
     of_steps->report[SPAR_REPORT_ADDED_MASS_SPREAD] = own->report[SPAR_REPORT_ADDED_MASS_SPREAD];
     s->own->coupling = of_steps;
-    s->own->aside = NULL;
+    s->own->suspended = NULL;
     spari_coupling_free(&own);
 }

@@ -76,16 +76,16 @@ static int fits_blocks(const spar_session *s) {
 static void free_bins(spar_session *s) {
     free(s->own->bins);
     s->own->bins = NULL;
-    s->own->bins_room = 0;
+    s->own->bins_capacity = 0;
 }
 
 /* Never shrinks: a trial returns to members with more nodes. */
 static int make_bins(spar_session *s, int64_t count) {
-    if (s->own->bins_room < count) {
+    if (s->own->bins_capacity < count) {
         free_bins(s);
         s->own->bins = spari_zalloc(count, sizeof *s->own->bins);
         SPARI_REQUIRE(s, s->own->bins, SPAR_ERR_MEMORY, "no memory for reproducible sums over the ranks");
-        s->own->bins_room = count;
+        s->own->bins_capacity = count;
     }
     return spari_comm_prepare_bins(s->comm, s->message, sizeof s->message);
 }
@@ -130,7 +130,7 @@ int spari_session_seal(spar_session *s, int status) {
 }
 
 int spari_session_is_sealed(const spar_session *s) {
-    return !s->reproducible || s->own->bins_room >= s->own->pack_count + 2;
+    return !s->reproducible || s->own->bins_capacity >= s->own->pack_count + 2;
 }
 
 /* ---- loads ---- */
@@ -190,10 +190,10 @@ int spari_session_exchange_loads(spar_session *s, int *pushed) {
 int spari_session_moved(spar_session *s, int *moved) {
     double some[2] = {0, 0};
     *moved = 0;
-    if (!spari_joints_tie_given(s)) {
+    if (!spari_joints_hold_prescribed(s)) {
         return SPAR_OK;
     }
-    some[0] = spari_joints_tie_moved(s);
+    some[0] = spari_joints_hold_moved(s);
     SPARI_TRY(spari_comm_sum(s->comm, some, 1, SPAR_OK, s->message, sizeof s->message));
     *moved = some[0] > 0;
     return SPAR_OK;

@@ -1,6 +1,6 @@
 /* Data of a session that rooms below do not see. */
-#ifndef SPARI_OWN_H
-#define SPARI_OWN_H
+#ifndef SPARI_SESSION_PRIVATE_H
+#define SPARI_SESSION_PRIVATE_H
 
 #include "../base/session.h"
 #include "../math/bins.h"
@@ -10,13 +10,13 @@ typedef struct spari_coupling spari_coupling; /* coupling/coupling.h */
 typedef struct spari_advised spari_advised;   /* tune/apply.h */
 
 /* Step-size control (session/step_control.h). */
-typedef struct spari_pace {
+typedef struct spari_step_control {
     double last;  /* error/tolerance of the last accepted step, */
     double ratio; /* and the decaying value that determines dt; 0: none */
     double next;  /* dt, s; 0: no step yet */
     double cut;   /* the last attempted step was rejected: 1 */
     int64_t rejected;
-} spari_pace;
+} spari_step_control;
 
 enum { SPARI_MOST_NUMBERS = 32 };
 
@@ -24,17 +24,17 @@ struct spari_own {
     double *pack; /* loads of all members, stacked, for the sum over ranks: [6 * nodes of all members], number of fluids
                      that push, status */
     int64_t pack_count;
-    spari_bins *bins; /* reproducible sums of the same numbers, in their order; capacity bins_room */
-    int64_t bins_room;
+    spari_bins *bins; /* reproducible sums of the same numbers, in their order; capacity bins_capacity */
+    int64_t bins_capacity;
     int64_t *first;          /* several ranks: begin of the block of each rank's members in `motion` */
     double *motion;          /* several ranks: motion of all solved members, by owner */
-    struct spari_unit *unit; /* items of the threads (session/work_shares.h); NULL: none, capacity unit_room */
-    int64_t unit_room;
+    struct spari_unit *unit; /* items of the threads (session/work_shares.h); NULL: none, capacity unit_capacity */
+    int64_t unit_capacity;
     spar_member **member; /* all members, for a step with several threads, `listed` of them; same capacity */
     int64_t listed;
-    spari_coupling *coupling; /* from the first step on */
-    spari_coupling *aside;    /* that of the steps, while a solution is under way that is none; NULL: there was none */
-    spari_pace pace;          /* of steps to a tolerance */
+    spari_coupling *coupling;  /* from the first step on */
+    spari_coupling *suspended; /* that of the steps, while a solution is under way that is none; NULL: there was none */
+    spari_step_control step_control;   /* of steps to a tolerance */
     double number[SPARI_MOST_NUMBERS]; /* spar_session_push_numbers, this rank's; 0: not pushed */
     spari_record *kept;                /* of a trial that others are compared with; NULL: none */
     void (*free_kept)(spari_record *kept);

@@ -12,9 +12,9 @@
 #include <math.h>
 #include <string.h>
 
-static int make_frame(spari_limb *p) {
+static int make_frame(spari_component *p) {
     p->frame = p->member->solution;
-    spari_carriage *c = p->frame->carriage;
+    spari_floating_root *c = p->frame->floating_root;
     p->solver = c->root;
     p->condensed = c->condensed;
     p->end = c->order;
@@ -22,20 +22,21 @@ static int make_frame(spari_limb *p) {
     return SPAR_OK;
 }
 
-static const double *turn_of_frame(const spari_limb *p, int node) {
+static const double *rotation_of_frame(const spari_component *p, int node) {
     (void)node; /* all go with the root */
-    return p->solver->turn;
+    return p->solver->rotation;
 }
 
 static spari_rates deformation_rates(const spari_frame *f, const spari_frame_state *s) {
-    return (spari_rates){s->v + f->held, s->a + f->held, s->b + f->held, NULL};
+    return (spari_rates){s->v + f->constrained, s->a + f->constrained, s->b + f->constrained, NULL};
 }
 
-/* The root at the end of the step, and what links see of it and of the tied nodes. A prescribed root is there already.
+/* The root at the end of the step, and what constraints see of it and of the tied nodes. A prescribed root is there
+ * already.
  */
-static void look_at_end_of_step(spari_limb *p) {
+static void look_at_end_of_step(spari_component *p) {
     spari_frame *f = p->frame;
-    spari_carriage *c = f->carriage;
+    spari_floating_root *c = f->floating_root;
     spari_frame_state *s = &f->to;
     const spari_state *root = &p->stage.ends.seen;
     p->state = &c->seen;
@@ -49,20 +50,20 @@ static void look_at_end_of_step(spari_limb *p) {
     memcpy(c->seen.v, s->root.v, 6 * sizeof(double));
     memcpy(c->seen.a, s->root.a, 6 * sizeof(double));
     for (int e = 1; e <= c->ends; e++) {
-        int at = spari_carriage_at(f, e);
+        int at = spari_floating_root_at(f, e);
         spari_frame_node(p->member, &s->root, c->node[e - 1], s->y + at, s->v + at, s->a + at, c->seen.q + 7 * e,
                          c->seen.v + 6 * e, c->seen.a + 6 * e);
     }
 }
 
 /* What the forces r leave on the ends, in global axes. */
-static void show_forces(spari_limb *p, const spari_frame_state *s) {
+static void show_forces(spari_component *p, const spari_frame_state *s) {
     spari_frame *f = p->frame;
-    spari_carriage *c = f->carriage;
+    spari_floating_root *c = f->floating_root;
     for (int e = 0; e < c->condensed->ends; e++) {
-        memcpy(c->force + 6 * e, f->r + spari_carriage_at(f, e), 6 * sizeof(double));
+        memcpy(c->force + 6 * e, f->r + spari_floating_root_at(f, e), 6 * sizeof(double));
     }
-    spari_carriage_push(f, p->member, s->y, c->force);
+    spari_floating_root_absolute(f, p->member, s->y, c->force);
     for (int k = 0; k < 6 * c->condensed->ends; k += 3) {
         spari_rotate(s->root.q + 3, c->force + k, c->force + k);
     }
@@ -70,7 +71,7 @@ static void show_forces(spari_limb *p, const spari_frame_state *s) {
 
 /* ---- a step ---- */
 
-static int take_frame(spari_limb *p, double h) {
+static int take_frame(spari_component *p, double h) {
     spari_frame *f = p->frame;
     spari_scheme_loads(p->member, &f->steps);
     p->scheme = spari_scheme_of(p->member, f->D != NULL, h);
@@ -78,13 +79,13 @@ static int take_frame(spari_limb *p, double h) {
 }
 
 static void copy_to(spari_frame *f) {
-    spari_solver *s = f->carriage->root;
+    spari_solver *s = f->floating_root->root;
     memcpy(f->to.y, f->begin.y, (size_t)(4 * f->n) * sizeof *f->to.y);
     f->to.root = f->begin.root;
     memcpy(s->to.q, s->begin.q, 25 * sizeof *s->to.q);
 }
 
-static void begin_frame_limb(spari_limb *p) {
+static void begin_floating_component(spari_component *p) {
     spari_frame *f = p->frame;
     spari_frame_poison(f);
     spari_solver_poison(p->solver);
@@ -94,7 +95,7 @@ static void begin_frame_limb(spari_limb *p) {
     p->stage.power = spari_frame_damped_power(f, &f->begin);
 }
 
-static void enter_frame(spari_limb *p) {
+static void enter_frame(spari_component *p) {
     spari_frame *f = p->frame;
     const spari_frame_state y = f->from;
     if (f->floats) {
@@ -104,7 +105,7 @@ static void enter_frame(spari_limb *p) {
 }
 
 /* Where a driven root is at the end of the stage, and how far it takes the member along. */
-static void prescribe_root(spari_limb *p, const spari_part *part) {
+static void prescribe_root(spari_component *p, const spari_part *part) {
     spari_stage *g = &p->stage;
     double turn[4], psi[3], way[3];
     g->root = spari_drive_at(p->member, part->to, part->dt);
@@ -119,7 +120,7 @@ static void prescribe_root(spari_limb *p, const spari_part *part) {
     g->ends.carried = spari_norm(way) / p->solver->body->length + spari_norm(psi);
 }
 
-static int stage_of_frame(spari_limb *p, const spari_part *part) {
+static int stage_of_frame(spari_component *p, const spari_part *part) {
     const spar_member *m = p->member;
     spari_frame *f = p->frame;
     spari_scheme_mix_loads(m, &f->steps, 6 * f->nodes, part->end);
@@ -129,12 +130,12 @@ static int stage_of_frame(spari_limb *p, const spari_part *part) {
         prescribe_root(p, part);
     }
     spari_frame_stage(f, m, &p->scheme, part, &p->stage.root);
-    spari_carriage_turn(f, &f->from, p->scheme.span);
-    p->state = &f->carriage->seen;
+    spari_floating_root_rotate(f, &f->from, p->scheme.span);
+    p->state = &f->floating_root->seen;
     return SPAR_OK;
 }
 
-static void take_velocities_of_frame(spari_limb *p) {
+static void take_velocities_of_frame(spari_component *p) {
     spari_frame *f = p->frame;
     if (f->floats) {
         memcpy(p->solver->from.v, p->member->now.v, 6 * sizeof(double));
@@ -142,7 +143,7 @@ static void take_velocities_of_frame(spari_limb *p) {
     spari_frame_take_velocities(f, p->member, &f->from);
 }
 
-static void end_frame_limb(spari_limb *p) {
+static void end_floating_component(spari_component *p) {
     spari_frame *f = p->frame;
     if (f->floats) {
         spari_stage_restart(p->solver, p->member, &p->scheme, &p->stage);
@@ -154,9 +155,9 @@ static void end_frame_limb(spari_limb *p) {
     spari_scheme_dissipate(p->member, &p->scheme, &p->stage.power, spari_frame_damped_power(f, &f->to));
 }
 
-static void keep_rates_of_frame(spari_limb *p, int back) {
+static void keep_rates_of_frame(spari_component *p, int back) {
     spari_frame *f = p->frame;
-    double *kept = f->carriage->kept, *root = p->stage.ends.to.v, *v = f->to.v;
+    double *kept = f->floating_root->kept, *root = p->stage.ends.to.v, *v = f->to.v;
     memcpy(back ? v : kept, back ? kept : v, (size_t)f->n * sizeof *v);
     if (f->floats) {
         memcpy(back ? root : p->solver->best, back ? p->solver->best : root, 6 * sizeof *v);
@@ -169,16 +170,16 @@ static void keep_rates_of_frame(spari_limb *p, int back) {
 
 /* ---- an iteration ---- */
 
-static int predict_frame(spari_limb *p, spari_guess stays) {
+static int predict_frame(spari_component *p, spari_guess stays) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
-    double *x = f->dx + f->held;
-    int n = f->n - f->held;
+    double *x = f->dx + f->constrained;
+    int n = f->n - f->constrained;
     if (stays == SPARI_KEEP_SHAPE) { /* the deformation is linear: nothing leads astray */
         return 0;
     }
     if (f->floats && p->scheme.still) {
-        spari_alpha_carry(s, p->member, &p->scheme, &p->stage.root, p->stage.turn, &p->stage.ends, s->increment);
+        spari_alpha_carry(s, p->member, &p->scheme, &p->stage.root, p->stage.rotation, &p->stage.ends, s->increment);
     } else if (f->floats) {
         (void)spari_alpha_predict(s, p->member, &p->scheme, stays, &p->stage.ends, s->increment);
     }
@@ -187,32 +188,32 @@ static int predict_frame(spari_limb *p, spari_guess stays) {
         memset(f->to.v, 0, (size_t)(3 * f->n) * sizeof *x);
     } else {
         spari_rates from = deformation_rates(f, &f->from);
-        from.stage = f->stage_v + f->held;
+        from.stage = f->stage_v + f->constrained;
         spari_scheme_predict(&p->scheme, stays, n, from, x, deformation_rates(f, &f->to));
     }
-    for (int k = f->held; k < f->n; k++) {
+    for (int k = f->constrained; k < f->n; k++) {
         f->to.y[k] = f->from.y[k] + f->dx[k];
     }
     look_at_end_of_step(p);
     return 1;
 }
 
-static double balance_frame(spari_limb *p) {
+static double balance_frame(spari_component *p) {
     spari_frame *f = p->frame;
     if (f->floats) {
         spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, p->solver->increment);
     }
     look_at_end_of_step(p);
-    double scale = spari_carriage_forces(f, p->member, &f->to, p->scheme.still, 1, f->r);
+    double scale = spari_floating_root_forces(f, p->member, &f->to, p->scheme.still, 1, f->r);
     show_forces(p, &f->to);
     return scale;
 }
 
-static double noise_of_frame(const spari_limb *p) {
+static double noise_of_frame(const spari_component *p) {
     const spari_frame *f = p->frame;
     const spari_condensed *d = p->condensed;
     double most = 0, poison = 0;
-    for (int i = f->held; i < f->n; i++) {
+    for (int i = f->constrained; i < f->n; i++) {
         int at_end = 0;
         for (int e = 1; e < d->ends; e++) {
             at_end = at_end || i / 6 == d->node[e];
@@ -227,35 +228,36 @@ static double noise_of_frame(const spari_limb *p) {
     return most + poison;
 }
 
-static int tangent_of_frame(spari_limb *p) {
+static int tangent_of_frame(spari_component *p) {
     spari_frame *f = p->frame;
     if (f->floats) {
         spari_alpha_operators(p->solver, &p->scheme, &p->stage.ends, p->solver->increment);
     }
-    return spari_carriage_tangent(f, p->member, &f->to, p->scheme.cm, p->scheme.cv, p->solver->tinv, f->r);
+    return spari_floating_root_tangent(f, p->member, &f->to, p->scheme.cm, p->scheme.cv, p->solver->tinv, f->r);
 }
 
-static int frame_serves(const spari_limb *p) {
+static int frame_serves(const spari_component *p) {
     const spari_frame *f = p->frame;
-    return f->factored && spari_alpha_close(p->scheme.cm, f->kept_cm) && spari_alpha_close(p->scheme.cv, f->kept_cv);
+    return f->factored && spari_alpha_close(p->scheme.cm, f->tangent_cm) &&
+           spari_alpha_close(p->scheme.cv, f->tangent_cv);
 }
 
-static int frame_is_solved(const spari_limb *p) {
+static int frame_is_solved(const spari_component *p) {
     const spari_frame *f = p->frame;
-    return !f->floats && spari_carriage_is_linear(f, p->member) && f->kept_cm == p->scheme.cm &&
-           f->kept_cv == p->scheme.cv && memcmp(f->kept_turn, f->turn, sizeof f->turn) == 0;
+    return !f->floats && spari_carriage_is_linear(f, p->member) && f->tangent_cm == p->scheme.cm &&
+           f->tangent_cv == p->scheme.cv && memcmp(f->tangent_turn, f->turn, sizeof f->turn) == 0;
 }
 
-static void see_turn_of_frame(const spari_limb *p) {
+static void see_rotation_of_frame(const spari_component *p) {
     const spari_solver *s = p->solver;
-    spari_quat_between(s->kept_q, p->frame->to.root.q + 3, s->turn);
+    spari_quat_between(s->tangent_q, p->frame->to.root.q + 3, s->rotation);
 }
 
-static int reduce_frame(spari_limb *p, double *x) {
+static int reduce_frame(spari_component *p, double *x) {
     spari_frame *f = p->frame;
     const double *y = f->to.y, *root = f->to.root.q + 3;
     int M = 6 * p->condensed->ends;
-    see_turn_of_frame(p);
+    see_rotation_of_frame(p);
     memcpy(f->dx, f->r, (size_t)f->n * sizeof *f->dx);
     if (spari_condensed_reduce(p->condensed, f->linear, f->dx)) {
         return 1;
@@ -264,7 +266,7 @@ static int reduce_frame(spari_limb *p, double *x) {
         int u = 6 * p->condensed->node[k / 6] + k % 6;
         x[k] = u < p->condensed->fixed ? 0 : f->dx[u] - f->r[u];
     }
-    spari_carriage_push(f, p->member, y, x);
+    spari_floating_root_absolute(f, p->member, y, x);
     for (int k = 0; k < M; k += 3) {
         spari_rotate(root, x + k, x + k);
     }
@@ -274,7 +276,7 @@ static int reduce_frame(spari_limb *p, double *x) {
     return 0;
 }
 
-static void expand_frame(spari_limb *p, double *x) {
+static void expand_frame(spari_component *p, double *x) {
     spari_frame *f = p->frame;
     int M = 6 * p->condensed->ends;
     if (f->floats) {
@@ -283,7 +285,7 @@ static void expand_frame(spari_limb *p, double *x) {
     for (int k = 0; k < M; k += 3) {
         spari_rotate_back(f->to.root.q + 3, x + k, x + k);
     }
-    spari_carriage_see(f, p->member, f->to.y, x);
+    spari_floating_root_relative(f, p->member, f->to.y, x);
     for (int k = 0; k < M; k++) {
         f->dx[6 * p->condensed->node[k / 6] + k % 6] = x[k];
     }
@@ -292,12 +294,12 @@ static void expand_frame(spari_limb *p, double *x) {
 }
 
 /* The largest motion of a node, by the member's length, and turn, of unknowns x. */
-static double size_of_deformation(const spari_limb *p, const double *x) {
+static double size_of_deformation(const spari_component *p, const double *x) {
     const spari_frame *f = p->frame;
-    double largest = 0, *own = f->carriage->x;
+    double largest = 0, *own = f->floating_root->x;
     double *y = f->nodal;
     memcpy(y, x, (size_t)f->n * sizeof *y);
-    memset(y, 0, (size_t)f->held * sizeof *y);
+    memset(y, 0, (size_t)f->constrained * sizeof *y);
     const double *w = spari_frame_nodal(f, y, own);
     for (int i = 0; i < f->nodes; i++) {
         largest = fmax(largest, fmax(spari_norm(w + 6 * i) / p->solver->body->length, spari_norm(w + 6 * i + 3)));
@@ -305,12 +307,12 @@ static double size_of_deformation(const spari_limb *p, const double *x) {
     return largest;
 }
 
-static double change_of_frame(const spari_limb *p) {
+static double correction_of_frame(const spari_component *p) {
     double root = p->frame->floats ? spari_alpha_size(p->solver, p->solver->dx) : 0;
     return fmax(root, size_of_deformation(p, p->frame->dx));
 }
 
-static void correct_frame(spari_limb *p, double cut) {
+static void correct_frame(spari_component *p, double cut) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
     for (int k = 0; k < 6 && cut < 1; k++) {
@@ -319,12 +321,12 @@ static void correct_frame(spari_limb *p, double cut) {
     if (f->floats) {
         (void)spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, INFINITY, s->increment, s->dx);
     }
-    spari_scheme_correct(&p->scheme, cut, f->n - f->held, f->dx + f->held, f->to.y + f->held,
+    spari_scheme_correct(&p->scheme, cut, f->n - f->constrained, f->dx + f->constrained, f->to.y + f->constrained,
                          deformation_rates(f, &f->to));
     look_at_end_of_step(p);
 }
 
-static double way_of_frame(const spari_limb *p) {
+static double way_of_frame(const spari_component *p) {
     const spari_frame *f = p->frame;
     double *step = f->increment;
     for (int k = 0; k < f->n; k++) {
@@ -334,18 +336,18 @@ static double way_of_frame(const spari_limb *p) {
     return fmax(root + p->stage.ends.carried, size_of_deformation(p, step));
 }
 
-static void clear_frame(spari_limb *p) {
-    see_turn_of_frame(p);
+static void clear_frame(spari_component *p) {
+    see_rotation_of_frame(p);
     memset(p->frame->dx, 0, (size_t)p->frame->n * sizeof(double));
 }
 
-static void shift_rates_of_frame(spari_limb *p, double v, double a, double b) {
+static void shift_rates_of_frame(spari_component *p, double v, double a, double b) {
     spari_frame *f = p->frame;
     double *dx = p->solver->dx;
     for (int k = 0; k < 6 && f->floats && p->stage.ends.root; k += 3) {
         spari_rotate_back(p->stage.ends.root->q + 3, dx + k, dx + k);
     }
-    for (int k = f->held; k < f->n; k++) {
+    for (int k = f->constrained; k < f->n; k++) {
         f->to.v[k] -= v * f->dx[k];
         f->to.a[k] -= a * f->dx[k];
         f->to.b[k] -= b * f->dx[k];
@@ -361,9 +363,9 @@ static void shift_rates_of_frame(spari_limb *p, double v, double a, double b) {
 
 /* Force and moment of loads [6 nodes] of the whole about the root, arms deformed: modal unknowns have those of the
    reference already. */
-static void sum_about_root(const spari_limb *p, const double *load, double sum[6]) {
+static void sum_about_root(const spari_component *p, const double *load, double sum[6]) {
     const spari_frame *f = p->frame;
-    const double *x = spari_frame_nodal(f, f->to.y, f->carriage->x);
+    const double *x = spari_frame_nodal(f, f->to.y, f->floating_root->x);
     memset(sum, 0, 6 * sizeof *sum);
     for (int i = 0; i < f->nodes; i++) {
         double arm[3], turn[3];
@@ -381,7 +383,7 @@ static void sum_about_root(const spari_limb *p, const double *load, double sum[6
 }
 
 /* As forces r and on the ends. */
-static void take_more_of_frame(spari_limb *p, const double *load) {
+static void take_more_of_frame(spari_component *p, const double *load) {
     spari_frame *f = p->frame;
     double *own = f->turned;
     spari_member_gather(p->member, load, own);
@@ -392,14 +394,14 @@ static void take_more_of_frame(spari_limb *p, const double *load) {
     if (f->floats) {
         sum_about_root(p, own, f->r);
     }
-    memset(f->r, 0, (size_t)(f->floats ? spari_member_held(p->member) : f->held) * sizeof *f->r);
+    memset(f->r, 0, (size_t)(f->floats ? spari_member_constrained(p->member) : f->constrained) * sizeof *f->r);
     show_forces(p, &f->to);
 }
 
 /* motion [6 nodes] += that of a root which carries the nodes where they are */
-static void add_motion_of_root(const spari_limb *p, const double *root, double *motion) {
+static void add_motion_of_root(const spari_component *p, const double *root, double *motion) {
     const spari_frame *f = p->frame;
-    const double *q = f->to.root.q + 3, *x = spari_frame_nodal(f, f->to.y, f->carriage->x);
+    const double *q = f->to.root.q + 3, *x = spari_frame_nodal(f, f->to.y, f->floating_root->x);
     for (int i = 0; i < f->nodes; i++) {
         double arm[3], turn[3], *out = motion + 6 * i;
         spari_member_arm(p->member, i, arm);
@@ -415,9 +417,9 @@ static void add_motion_of_root(const spari_limb *p, const double *root, double *
     }
 }
 
-static void show_more_of_frame(spari_limb *p, double *motion) {
+static void show_more_of_frame(spari_component *p, double *motion) {
     spari_frame *f = p->frame;
-    memset(f->dx, 0, (size_t)f->held * sizeof *f->dx);
+    memset(f->dx, 0, (size_t)f->constrained * sizeof *f->dx);
     const double *change = spari_frame_nodal(f, f->dx, f->nodal);
     for (int i = 0; i < 6 * f->nodes; i += 3) {
         spari_rotate(f->to.root.q + 3, change + i, f->turned + i);
@@ -428,7 +430,7 @@ static void show_more_of_frame(spari_limb *p, double *motion) {
     spari_member_from_unique(p->member, 6, f->turned, motion);
 }
 
-static void look_back_at_frame(spari_limb *p) {
+static void look_back_at_frame(spari_component *p) {
     spari_solver *s = p->solver;
     p->scheme = spari_scheme_last(p->member, p->frame->D != NULL, &p->solver->steps.solved);
     p->stage.ends = (spari_ends){s->from, s->to, s->to, NULL, 0};
@@ -437,11 +439,11 @@ static void look_back_at_frame(spari_limb *p) {
 
 /* ---- the start ---- */
 
-static int start_of_frame(spari_limb *p) {
+static int start_of_frame(spari_component *p) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
     const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    int end = spari_member_held(p->member);
+    int end = spari_member_constrained(p->member);
     if (p->member->root != SPAR_ROOT_DRIVEN) {
         memset(s->begin.a, 0, (size_t)end * sizeof(double));
         memset(s->begin.v, 0, (size_t)end * sizeof(double));
@@ -451,32 +453,32 @@ static int start_of_frame(spari_limb *p) {
     p->stage.ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
     memcpy(f->steps.load, f->steps.load0, (size_t)(6 * f->nodes) * sizeof *f->steps.load);
     look_at_end_of_step(p);
-    spari_carriage_turn(f, &f->to, 0);
-    (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->r);
+    spari_floating_root_rotate(f, &f->to, 0);
+    (void)spari_floating_root_forces(f, p->member, &f->to, 0, 1, f->r);
     memset(f->r, 0, (size_t)f->n * sizeof *f->r);
-    return spari_carriage_tangent(f, p->member, &f->to, p->scheme.cm, 0, unit, f->r);
+    return spari_floating_root_tangent(f, p->member, &f->to, p->scheme.cm, 0, unit, f->r);
 }
 
-static void unbalance_frame(spari_limb *p) {
+static void unbalance_frame(spari_component *p) {
     spari_frame *f = p->frame;
     look_at_end_of_step(p);
-    (void)spari_carriage_forces(f, p->member, &f->to, 0, 1, f->r);
+    (void)spari_floating_root_forces(f, p->member, &f->to, 0, 1, f->r);
     show_forces(p, &f->to);
 }
 
-static void correct_start_of_frame(spari_limb *p) {
+static void correct_start_of_frame(spari_component *p) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
     for (int k = 0; k < 6 && f->floats; k++) {
         s->begin.a[k] -= p->scheme.cm * s->dx[k];
     }
-    for (int k = f->held; k < f->n; k++) {
+    for (int k = f->constrained; k < f->n; k++) {
         f->to.a[k] -= p->scheme.cm * f->dx[k];
     }
     look_at_end_of_step(p);
 }
 
-static void end_start_of_frame(spari_limb *p) {
+static void end_start_of_frame(spari_component *p) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
     if (f->floats) {
@@ -489,14 +491,14 @@ static void end_start_of_frame(spari_limb *p) {
     f->steps.started = s->steps.started = 1;
 }
 
-static void shift_start_of_frame(spari_limb *p) {
+static void shift_start_of_frame(spari_component *p) {
     spari_frame *f = p->frame;
     memcpy(f->begin.v, f->to.v, (size_t)f->n * sizeof *f->to.v);
 }
 
 /* ---- at rest ---- */
 
-static void rest_frame(spari_limb *p, const double *fluid, int onward) {
+static void rest_frame(spari_component *p, const double *fluid, int onward) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
     spari_member_gather(p->member, p->member->dead, f->steps.load);
@@ -517,7 +519,7 @@ static void rest_frame(spari_limb *p, const double *fluid, int onward) {
 }
 
 /* The root turns with the whole, and with it the frame and what rests in that. */
-static void turn_root(spari_limb *p, double factor) {
+static void rotate_root(spari_component *p, double factor) {
     const spar_member *m = p->member;
     spari_frame *f = p->frame;
     spari_state *to = &p->solver->to;
@@ -527,83 +529,83 @@ static void turn_root(spari_limb *p, double factor) {
         x[k] = m->xr[k] + q[k];
     }
     if (f->floats) {
-        spari_turning_rates(p->turning, factor, x, to->v, to->a);
+        spari_rotating_frame_rates(p->rotating, factor, x, to->v, to->a);
     } else {
-        spari_turning_rates(p->turning, factor, x, f->to.root.v, f->to.root.a);
+        spari_rotating_frame_rates(p->rotating, factor, x, f->to.root.v, f->to.root.a);
     }
     look_at_end_of_step(p);
 }
 
-static double balance_frame_at_rest(spari_limb *p, double factor) {
+static double balance_frame_at_rest(spari_component *p, double factor) {
     spari_frame *f = p->frame;
-    int turning = p->turning && f->M && (p->member->effects & SPAR_EFFECT_INERTIA);
-    spari_turn part = {{0}, {0}, {0}};
-    if (p->turning) {
-        turn_root(p, factor);
+    int rotating = p->rotating && f->M && (p->member->effects & SPAR_EFFECT_INERTIA);
+    spari_steady_rotation part = {{0}, {0}, {0}};
+    if (p->rotating) {
+        rotate_root(p, factor);
     }
-    if (turning) {
-        part = spari_turn_part(&p->turning->turn, factor);
-        spari_carriage_turn(f, &f->to, 0);
+    if (rotating) {
+        part = spari_steady_rotation_part(&p->rotating->rotation, factor);
+        spari_floating_root_rotate(f, &f->to, 0);
     }
-    f->carriage->steady = turning;
-    memcpy(f->carriage->steady_turn, part.w, sizeof part.w);
-    double scale = spari_carriage_forces(f, p->member, &f->to, !turning, factor, f->r);
+    f->floating_root->steady = rotating;
+    memcpy(f->floating_root->steady_rotation, part.w, sizeof part.w);
+    double scale = spari_floating_root_forces(f, p->member, &f->to, !rotating, factor, f->r);
     show_forces(p, &f->to);
     return scale;
 }
 
-static int tangent_of_frame_at_rest(spari_limb *p, double factor) {
+static int tangent_of_frame_at_rest(spari_component *p, double factor) {
     const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     (void)factor; /* that of the forces at rest */
-    int singular = spari_carriage_tangent(p->frame, p->member, &p->frame->to, 0, 0, unit, p->frame->r);
-    p->frame->carriage->steady = 0;
+    int singular = spari_floating_root_tangent(p->frame, p->member, &p->frame->to, 0, 0, unit, p->frame->r);
+    p->frame->floating_root->steady = 0;
     return singular;
 }
 
-static void shift_frame(spari_limb *p, double cut) {
+static void shift_frame(spari_component *p, double cut) {
     spari_frame *f = p->frame;
     if (f->floats) {
         spari_static_shift(1, cut, p->solver->dx, p->solver->to.q);
     }
-    for (int k = f->held; k < f->n; k++) {
+    for (int k = f->constrained; k < f->n; k++) {
         f->to.y[k] -= cut * f->dx[k];
     }
     look_at_end_of_step(p);
 }
 
-static void keep_places_of_frame(spari_limb *p, int back) {
+static void keep_positions_of_frame(spari_component *p, int back) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
-    double *kept = f->carriage->kept + f->n, *y = f->to.y;
+    double *kept = f->floating_root->kept + f->n, *y = f->to.y;
     memcpy(back ? s->to.q : s->best, back ? s->best : s->to.q, 7 * sizeof *y);
     memcpy(back ? y : kept, back ? kept : y, (size_t)f->n * sizeof *y);
     look_at_end_of_step(p);
 }
 
-static void leave_rest_of_frame(spari_limb *p) {
+static void discard_rest_of_frame(spari_component *p) {
     copy_to(p->frame);
     p->frame->factored = 0;
-    p->frame->carriage->steady = 0;
+    p->frame->floating_root->steady = 0;
 }
 
-static void end_rest_of_frame(spari_limb *p) {
-    keep_places_of_frame(p, 1);
-    if (p->turning) {
-        turn_root(p, 1);
+static void end_rest_of_frame(spari_component *p) {
+    keep_positions_of_frame(p, 1);
+    if (p->rotating) {
+        rotate_root(p, 1);
     }
     p->frame->factored = 0;
-    p->frame->carriage->steady = 0;
+    p->frame->floating_root->steady = 0;
     p->member->row->publish(p->member);
 }
 
-const spari_limb_row spari_limb_frame = {
+const spari_component_row spari_component_floating = {
     .make = make_frame,
     .take = take_frame,
-    .begin = begin_frame_limb,
+    .begin = begin_floating_component,
     .enter = enter_frame,
     .stage = stage_of_frame,
     .take_velocities = take_velocities_of_frame,
-    .end = end_frame_limb,
+    .end = end_floating_component,
     .keep_rates = keep_rates_of_frame,
     .predict = predict_frame,
     .balance = balance_frame,
@@ -613,7 +615,7 @@ const spari_limb_row spari_limb_frame = {
     .solved = frame_is_solved,
     .reduce = reduce_frame,
     .expand = expand_frame,
-    .change = change_of_frame,
+    .correction_size = correction_of_frame,
     .correct = correct_frame,
     .way = way_of_frame,
     .clear = clear_frame,
@@ -630,8 +632,8 @@ const spari_limb_row spari_limb_frame = {
     .balance_rest = balance_frame_at_rest,
     .tangent_rest = tangent_of_frame_at_rest,
     .shift = shift_frame,
-    .keep_places = keep_places_of_frame,
-    .leave_rest = leave_rest_of_frame,
+    .keep_positions = keep_positions_of_frame,
+    .discard_rest = discard_rest_of_frame,
     .end_rest = end_rest_of_frame,
-    .turn = turn_of_frame,
+    .rotation = rotation_of_frame,
 };

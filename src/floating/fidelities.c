@@ -38,7 +38,7 @@ static int allocate_matrices(spari_frame *f, const spar_member *m) {
     for (int k = 0; k < 4; k++) {
         ok = ok && (!wanted[k] || (*matrices[k] = spari_zalloc(f->size, sizeof(double))));
     }
-    for (int k = 0; k < SPARI_TURNS; k++) {
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
         ok = ok && (!turns || ((f->N[k] = spari_zalloc(f->size, sizeof(double))) &&
                                (f->f[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double)))));
         ok = ok && (!turns || !m->floats || (f->S[k] = spari_zalloc(f->size, sizeof(double))));
@@ -69,7 +69,7 @@ static int allocate_work(spari_frame *f, const spar_member *m) {
         ok = ok && (f->sumK = spari_zalloc(f->size, sizeof(double))) && (f->sumf = spari_zalloc(f->n, sizeof(double)));
     }
     int64_t block = 6 * (int64_t)m->per_element;
-    ok = ok && (!f->A || !m->learned || (f->room_A = spari_zalloc(block * (block + f->n), sizeof(double))));
+    ok = ok && (!f->A || !m->learned || (f->dense_A = spari_zalloc(block * (block + f->n), sizeof(double))));
     return !ok;
 }
 
@@ -78,14 +78,14 @@ static void frame_free(void *solution) {
     if (!f) {
         return;
     }
-    double *all[] = {f->basis,       f->A,           f->K,       f->M,      f->D,         f->sumK,
-                     f->sumC,        f->sumf,        f->begin.y, f->from.y, f->to.y,      f->steps.load,
-                     f->steps.load0, f->steps.load1, f->r,       f->dx,     f->increment, f->stage_v,
-                     f->nodal,       f->turned,      f->element, f->room_A, f->gram,      f->pull};
+    double *all[] = {f->basis,       f->A,           f->K,       f->M,       f->D,         f->sumK,
+                     f->sumC,        f->sumf,        f->begin.y, f->from.y,  f->to.y,      f->steps.load,
+                     f->steps.load0, f->steps.load1, f->r,       f->dx,      f->increment, f->stage_v,
+                     f->nodal,       f->turned,      f->element, f->dense_A, f->gram,      f->pull};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         free(all[k]);
     }
-    for (int k = 0; k < SPARI_TURNS; k++) {
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
         free(f->N[k]);
         free(f->S[k]);
         free(f->f[k]);
@@ -95,7 +95,7 @@ static void frame_free(void *solution) {
         free(f->G[k]);
         free(f->E[k]);
     }
-    spari_carriage_free(f->carriage);
+    spari_floating_root_free(f->floating_root);
     spari_linear_free(f->linear);
     spari_snapshot_free(&f->before);
     free(f);
@@ -118,8 +118,8 @@ static double *arms_of(const spar_member *m) {
 /* The matrices, of the nodes or of m->modes modes. */
 static int fill_frame(spari_frame *f, const spar_member *m) {
     double *arm = arms_of(m);
-    int more = (int)m->modes + spari_member_held(m) - 6, most = 6 * (f->nodes - 1 - f->carriage->ends);
-    int cols = 6 + 6 * f->carriage->ends + (more < most ? more : most);
+    int more = (int)m->modes + spari_member_constrained(m) - 6, most = 6 * (f->nodes - 1 - f->floating_root->ends);
+    int cols = 6 + 6 * f->floating_root->ends + (more < most ? more : most);
     int status = arm && allocate_matrices(f, m) == 0 ? spari_frame_form(f, m->body, arm) : SPAR_ERR_MEMORY;
     if (status == SPAR_OK && f->A) {
         for (int e = 0; e < f->elements; e++) {
@@ -130,7 +130,7 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
         spari_foundation_tangent(m, e, 1, f->K + (int64_t)f->block * f->block * e);
     }
     if (status == SPAR_OK && f->floats) {
-        status = spari_carriage_keep_pushes(f);
+        status = spari_floating_root_keep_pushes(f);
     }
     if (status == SPAR_OK && m->modes > 0) {
         status = spari_frame_fill_basis(f, arm, cols);
@@ -138,12 +138,12 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
     }
     free(arm);
     status = status == SPAR_OK && allocate_work(f, m) ? SPAR_ERR_MEMORY : status;
-    return status == SPAR_OK ? spari_carriage_finish(f, m) : status;
+    return status == SPAR_OK ? spari_floating_root_finish(f, m) : status;
 }
 
 static int frame_create(spar_member *m) {
-    m->floats = spari_member_is_tied(m) && !spari_member_root_is_given(m);
-    SPARI_REQUIRE(m->session, m->floats || spari_member_root_is_given(m) || (m->effects & SPAR_EFFECT_INERTIA),
+    m->floats = spari_member_has_joints(m) && !spari_member_root_is_prescribed(m);
+    SPARI_REQUIRE(m->session, m->floats || spari_member_root_is_prescribed(m) || (m->effects & SPAR_EFFECT_INERTIA),
                   SPAR_ERR_STATE,
                   "member '%s' is linear without inertia and nothing holds it: fix or drive its root, or leave INERTIA "
                   "on",
@@ -162,11 +162,11 @@ static int frame_create(spar_member *m) {
         return SPAR_ERR_MEMORY;
     }
     f->floats = m->floats;
-    f->held = f->floats ? 6 : spari_member_held(m);
+    f->constrained = f->floats ? 6 : spari_member_constrained(m);
     f->nodes = m->body->unique;
     f->elements = m->elements, f->block = 6 * m->per_element, f->overlap = 6, f->n = 6 * f->nodes;
     f->size = (int64_t)f->elements * f->block * f->block;
-    int status = spari_carriage_create(f, m);
+    int status = spari_floating_root_create(f, m);
     status = status == SPAR_OK ? fill_frame(f, m) : status;
     f->factors = 0; /* those of the set-up do not count */
     SPARI_REQUIRE(m->session, status == SPAR_OK || status == SPAR_ERR_MEMORY, status,
@@ -179,8 +179,8 @@ static int frame_create(spar_member *m) {
 /* ---- what the description must have ---- */
 
 static int modal_check(const spar_member *m) {
-    int held = spari_member_held(m);
-    int64_t most = 6 * ((int64_t)m->elements * (m->per_element - 1) + 1) - held, least = 6 - held;
+    int constrained = spari_member_constrained(m);
+    int64_t most = 6 * ((int64_t)m->elements * (m->per_element - 1) + 1) - constrained, least = 6 - constrained;
     SPARI_REQUIRE(m->session, m->beam->mass, SPAR_ERR_STATE,
                   "member '%s' has no mass, which a modal member needs; give its sections mass", m->name);
     SPARI_REQUIRE(m->session, m->modes <= most, SPAR_ERR_ARGUMENT,
@@ -195,21 +195,21 @@ static int modal_check(const spar_member *m) {
 /* ---- the rest of the rows ---- */
 
 /* It alone, as a component. */
-static spari_limb frame_component(spar_member *m) {
-    spari_limb p = {.member = m, .row = &spari_limb_frame};
+static spari_component frame_component(spar_member *m) {
+    spari_component p = {.member = m, .row = &spari_component_floating};
     (void)p.row->make(&p);
     return p;
 }
 
 static int frame_advance(spar_member *m, double dt) {
-    spari_limb p = frame_component(m);
+    spari_component p = frame_component(m);
     SPARI_TRY(spari_component_advance(&p, dt));
     spari_frame_publish(m);
     return SPAR_OK;
 }
 
 static int frame_balance(spar_member *m, double dt) {
-    spari_limb p = frame_component(m);
+    spari_component p = frame_component(m);
     SPARI_TRY(spari_component_balance(&p, dt));
     spari_frame_publish(m);
     return SPAR_OK;
@@ -218,10 +218,10 @@ static int frame_balance(spar_member *m, double dt) {
 static int frame_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
     const spari_frame *f = m->solution;
     (void)load_steps, (void)onward; /* the equations are linear */
-    SPARI_REQUIRE(m->session, f->held == 6, SPAR_ERR_STATE,
+    SPARI_REQUIRE(m->session, f->constrained == 6, SPAR_ERR_STATE,
                   "member '%s': nothing holds a linear member that its root leaves free to turn; fix or drive its root",
                   m->name);
-    spari_limb p = frame_component(m);
+    spari_component p = frame_component(m);
     int failed = spari_component_static(&p, fluid) || spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 ||
                  spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0;
     SPARI_REQUIRE(m->session, !failed, SPAR_ERR_NUMERIC,
@@ -232,11 +232,11 @@ static int frame_rest(spar_member *m, const double *fluid, int load_steps, int o
 
 static int64_t frame_unknowns(const spar_member *m) {
     const spari_frame *f = m->solution;
-    return f->n - spari_member_held(m);
+    return f->n - spari_member_constrained(m);
 }
 
-static int frame_answer(spar_member *m, const double *load, double *motion) {
-    spari_limb p = frame_component(m);
+static int frame_response(spar_member *m, const double *load, double *motion) {
+    spari_component p = frame_component(m);
     return spari_component_answer(&p, load, motion);
 }
 
@@ -252,10 +252,10 @@ static void frame_effort(const spar_member *m, spari_effort *e) {
 }
 
 /* Joints have come, or have changed: it is made anew for them. */
-static int frame_retie(spar_member *m) {
+static int frame_renew_joints(spar_member *m) {
     const spari_frame *f = m->solution;
-    int had = f->carriage->condensed->ends > 0;
-    if (!had && !spari_member_is_tied(m)) {
+    int had = f->floating_root->condensed->ends > 0;
+    if (!had && !spari_member_has_joints(m)) {
         return SPAR_OK;
     }
     void *before = m->solution;
@@ -278,13 +278,13 @@ static int frame_retie(spar_member *m) {
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .create = frame_create, .free = frame_free,                    \
     .remass = spari_frame_remass, .restart = spari_frame_restart, .advance = frame_advance, .balance = frame_balance,  \
-    .answer = frame_answer, .felt = spari_frame_felt, .accept = spari_frame_accept, .begin = spari_frame_begin,        \
+    .response = frame_response, .felt = spari_frame_felt, .accept = spari_frame_accept, .begin = spari_frame_begin,    \
     .reject = spari_frame_reject, .effort = frame_effort, .rest = frame_rest,                                          \
-    .reaction_room = spari_reaction_of_whole_room, .reaction = spari_reaction_of_whole, .energy = spari_frame_energy,  \
+    .reaction_size = spari_reaction_of_whole_size, .reaction = spari_reaction_of_whole, .energy = spari_frame_energy,  \
     .unknowns = frame_unknowns, .problem = spari_frame_problem, .shape = spari_frame_shape,                            \
     .linearise = spari_frame_linearise, .state_size = spari_frame_state_size, .save = spari_frame_save,                \
-    .is_state = spari_frame_is_state, .load = spari_frame_load, .limb = &spari_limb_frame, .retie = frame_retie,       \
-    .end_of = spari_carriage_end_of, .publish = spari_frame_publish
+    .is_state = spari_frame_is_state, .load = spari_frame_load, .component = &spari_component_floating,                \
+    .renew_joints = frame_renew_joints, .end_of = spari_floating_root_end_of, .publish = spari_frame_publish
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
 const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .felt_here = 1, .massive = 1, .takes_modes = 1,

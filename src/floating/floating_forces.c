@@ -8,13 +8,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { TURN_PARTS = 1, GYRO_PARTS = 7, EULER_PARTS = 10, ALL_PARTS = 13 };
+enum { ROTATION_PARTS = 1, GYRO_PARTS = 7, EULER_PARTS = 10, ALL_PARTS = 13 };
 
 /* ---- loads ---- */
 
 /* Whether the forces are those of a step: at rest, and in what begins at t^0, the guess has no part. */
 static int steps_on(const spari_frame *f) {
-    return !f->carriage->still && !f->carriage->steady && f->steps.started;
+    return !f->floating_root->still && !f->floating_root->steady && f->steps.started;
 }
 
 int spari_carriage_is_linear(const spari_frame *f, const spar_member *m) {
@@ -23,7 +23,7 @@ int spari_carriage_is_linear(const spari_frame *f, const spar_member *m) {
 
 /* The latest iterate, for loads that depend on it. */
 static void look_at_iterate(spari_frame *f, const spari_frame_state *s) {
-    spari_carriage *c = f->carriage;
+    spari_floating_root *c = f->floating_root;
     const double *x = spari_frame_nodal(f, s->y, c->x);
     c->speeds = s->v, c->rates = s->a;
     if (x != c->x) {
@@ -34,7 +34,7 @@ static void look_at_iterate(spari_frame *f, const spari_frame_state *s) {
 /* Nodal loads, global axes; those that follow where the state has put the nodes, and with a root that moves so what the
    guess of the fluid's added mass takes of their accelerations. */
 static void gather_loads_of(spari_frame *f, const spar_member *m, const spari_pose *root) {
-    spari_carriage *c = f->carriage;
+    spari_floating_root *c = f->floating_root;
     int n = f->nodes, n6 = 6 * n, guessed = m->added && steps_on(f);
     double *q = f->turned, *v = q + 7 * n, *a = v + n6;
     memset(c->loads, 0, (size_t)n6 * sizeof *c->loads);
@@ -60,7 +60,7 @@ static void gather_loads_of(spari_frame *f, const spar_member *m, const spari_po
    frame there; load [6 nodes]: the loads there. */
 static void add_weight_and_loads(spari_frame *f, const spar_member *m, const spari_pose *root, double rate[6],
                                  double *load, double *out) {
-    const spari_carriage *c = f->carriage;
+    const spari_floating_root *c = f->floating_root;
     for (int k = 0; k < 6; k++) {
         rate[k] = (c->still ? 0 : root->a[k]) - (k < 3 ? c->factor * m->body->gravity[k] : 0);
     }
@@ -91,7 +91,7 @@ static double largest_force(int n, const double *x) {
 
 /* One sum of the matrices for the turn of the root. */
 static double forces_of_prescribed(spari_frame *f, const spar_member *m, const spari_frame_state *s, double *r) {
-    spari_carriage *c = f->carriage;
+    spari_floating_root *c = f->floating_root;
     double rate[6], turn[6] = {0};
     const size_t size = (size_t)f->n * sizeof *r;
     spari_rotate_back(s->root.q + 3, s->root.v + 3, turn);
@@ -120,7 +120,7 @@ static double forces_of_prescribed(spari_frame *f, const spar_member *m, const s
     if (f->M && !c->still) {
         spari_frame_add_times(f, f->M, s->a, 1, r);
     }
-    memset(r, 0, (size_t)f->held * sizeof *r);
+    memset(r, 0, (size_t)f->constrained * sizeof *r);
     return scale;
 }
 
@@ -128,7 +128,7 @@ static double forces_of_prescribed(spari_frame *f, const spar_member *m, const s
 
 /* parts[k] := X y */
 static void product_into(spari_frame *f, int k, const double *X, const double *y) {
-    double *to = f->carriage->parts + (int64_t)k * f->n;
+    double *to = f->floating_root->parts + (int64_t)k * f->n;
     memset(to, 0, (size_t)f->n * sizeof *to);
     if (X) {
         spari_frame_add_times(f, X, y, 1, to);
@@ -137,9 +137,9 @@ static void product_into(spari_frame *f, int k, const double *X, const double *y
 
 /* K + S(w, w), which stays for the substep. */
 static void combine_stretch(spari_frame *f) {
-    spari_carriage *c = f->carriage;
+    spari_floating_root *c = f->floating_root;
     memcpy(c->stiff, f->K, (size_t)f->size * sizeof *c->stiff);
-    for (int k = 0; k < SPARI_TURNS; k++) {
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
         double by = c->turns[spari_frame_pair[k][0]] * c->turns[spari_frame_pair[k][1]];
         if (by != 0) {
             cblas_daxpy((int)f->size, by, f->S[k], 1, c->stiff, 1);
@@ -147,8 +147,8 @@ static void combine_stretch(spari_frame *f) {
     }
 }
 
-void spari_carriage_turn(spari_frame *f, const spari_frame_state *s, double h) {
-    spari_carriage *c = f->carriage;
+void spari_floating_root_rotate(spari_frame *f, const spari_frame_state *s, double h) {
+    spari_floating_root *c = f->floating_root;
     double alpha[3];
     if (!f->S[0]) {
         return;
@@ -165,7 +165,7 @@ void spari_carriage_turn(spari_frame *f, const spari_frame_state *s, double h) {
 
 /* E_k y among the parts, and the products of rates with it. */
 static void gather_euler(spari_frame *f, int k, const spari_frame_state *s) {
-    spari_carriage *c = f->carriage;
+    spari_floating_root *c = f->floating_root;
     const double *part = c->parts + (int64_t)(EULER_PARTS + k) * f->n + 6;
     product_into(f, EULER_PARTS + k, f->E[k], s->v);
     c->seconds.vEv[k] = cblas_ddot(f->n - 6, s->v + 6, 1, part, 1);
@@ -176,16 +176,16 @@ static void gather_euler(spari_frame *f, int k, const spari_frame_state *s) {
 
 /* What does not depend on how the root moves. */
 static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
-    spari_carriage *c = f->carriage;
+    spari_floating_root *c = f->floating_root;
     product_into(f, 0, c->still ? NULL : f->M, s->a);
     memset(&c->seconds, 0, sizeof c->seconds);
-    for (int k = 0; k < SPARI_TURNS && !c->still; k++) {
-        const double *part = c->parts + (int64_t)(TURN_PARTS + k) * f->n + 6;
-        product_into(f, TURN_PARTS + k, f->N[k], s->y);
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS && !c->still; k++) {
+        const double *part = c->parts + (int64_t)(ROTATION_PARTS + k) * f->n + 6;
+        product_into(f, ROTATION_PARTS + k, f->N[k], s->y);
         c->seconds.yNy[k] = cblas_ddot(f->n - 6, s->y + 6, 1, part, 1);
         c->seconds.vNy[k] = cblas_ddot(f->n - 6, s->v + 6, 1, part, 1);
         if (f->f[k]) {
-            cblas_daxpy(f->n, 1, f->f[k], 1, c->parts + (int64_t)(TURN_PARTS + k) * f->n, 1);
+            cblas_daxpy(f->n, 1, f->f[k], 1, c->parts + (int64_t)(ROTATION_PARTS + k) * f->n, 1);
         }
     }
     for (int k = 0; k < 3 && !c->still; k++) {
@@ -203,26 +203,26 @@ static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
 }
 
 /* out += what turning of the frame adds */
-static void add_turning(const spari_frame *f, const spari_pose *root, double *out) {
-    const double *parts = f->carriage->parts;
-    double omega[3], alpha[3], c[SPARI_TURNS], less[ALL_PARTS - TURN_PARTS];
+static void add_rotation_forces(const spari_frame *f, const spari_pose *root, double *out) {
+    const double *parts = f->floating_root->parts;
+    double omega[3], alpha[3], c[SPARI_SPIN_PRODUCTS], less[ALL_PARTS - ROTATION_PARTS];
     int n = f->n;
     spari_rotate_back(root->q + 3, root->v + 3, omega);
     spari_rotate_back(root->q + 3, root->a + 3, alpha);
-    for (int k = 0; k < SPARI_TURNS; k++) {
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
         c[k] = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
         less[k] = -c[k];
     }
     for (int k = 0; k < 3; k++) {
-        less[GYRO_PARTS - TURN_PARTS + k] = -omega[k];
-        less[EULER_PARTS - TURN_PARTS + k] = -alpha[k];
+        less[GYRO_PARTS - ROTATION_PARTS + k] = -omega[k];
+        less[EULER_PARTS - ROTATION_PARTS + k] = -alpha[k];
     }
-    spari_linear_less_columns(n, ALL_PARTS - TURN_PARTS, parts + (int64_t)TURN_PARTS * n, less, out);
+    spari_linear_less_columns(n, ALL_PARTS - ROTATION_PARTS, parts + (int64_t)ROTATION_PARTS * n, less, out);
 }
 
 /* heavy := M R (a - g, alpha) - loads of the nodes, in the axes of the frame; out += the same of the unknowns */
 static void add_heavy(spari_frame *f, const spar_member *m, const spari_pose *root, double *out) {
-    spari_carriage *c = f->carriage;
+    spari_floating_root *c = f->floating_root;
     int n6 = 6 * f->nodes;
     double rate[6], omega[3], *load = f->turned;
     add_weight_and_loads(f, m, root, rate, load, out);
@@ -230,7 +230,8 @@ static void add_heavy(spari_frame *f, const spar_member *m, const spari_pose *ro
         c->heavy[i] = -load[i];
     }
     spari_rotate_back(root->q + 3, root->v + 3, omega);
-    for (int k = 0; k < SPARI_TURNS && f->S[0] && !c->still; k++) { /* of those on the unknowns it is among the parts */
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS && f->S[0] && !c->still;
+         k++) { /* of those on the unknowns it is among the parts */
         cblas_daxpy(n6, omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]], c->spin[k], 1, c->heavy, 1);
     }
     for (int k = 0; k < 6 && f->rigid[0]; k++) {
@@ -241,7 +242,7 @@ static void add_heavy(spari_frame *f, const spar_member *m, const spari_pose *ro
 /* Force and moment of the whole about the root, arms deformed, into the first six of out; the elastic forces, which
    have none, come to the others. */
 static void gather_whole(const spari_frame *f, const spar_member *m, double *out) {
-    const spari_carriage *c = f->carriage;
+    const spari_floating_root *c = f->floating_root;
     double sum[6] = {0};
     for (int i = 0; i < f->nodes; i++) {
         double arm[3], turn[3];
@@ -269,18 +270,18 @@ static void gather_whole(const spari_frame *f, const spar_member *m, double *out
 
 /* The whole has moments as they are: less m x theta / 2, which N and E have on the unknowns. */
 static void take_half_moments_off(const spari_frame *f, const spari_pose *root, double moment[3]) {
-    const spari_carriage *c = f->carriage;
-    double omega[3], alpha[3], by[SPARI_TURNS];
+    const spari_floating_root *c = f->floating_root;
+    double omega[3], alpha[3], by[SPARI_SPIN_PRODUCTS];
     spari_rotate_back(root->q + 3, root->v + 3, omega);
     spari_rotate_back(root->q + 3, root->a + 3, alpha);
-    for (int t = 0; t < SPARI_TURNS; t++) {
+    for (int t = 0; t < SPARI_SPIN_PRODUCTS; t++) {
         by[t] = omega[spari_frame_pair[t][0]] * omega[spari_frame_pair[t][1]];
     }
     for (int i = 3; i < 6 * f->nodes; i += 6) {
         double m[3], turn[3];
         for (int k = 0; k < 3; k++) {
             m[k] = alpha[0] * c->push[3][i + k] + alpha[1] * c->push[4][i + k] + alpha[2] * c->push[5][i + k];
-            for (int t = 0; t < SPARI_TURNS; t++) {
+            for (int t = 0; t < SPARI_SPIN_PRODUCTS; t++) {
                 m[k] += by[t] * c->spin[t][i + k];
             }
         }
@@ -294,7 +295,7 @@ static void take_half_moments_off(const spari_frame *f, const spari_pose *root, 
 /* Of second order in the deformation, the moment that goes with N and E: the motion's Lagrangian has
    omega_k y' . E_k y - y . N(omega, omega) y / 2, and the momentum of the turn is its derivative by omega. */
 static void add_seconds(const spari_frame *f, const spari_pose *root, double moment[3]) {
-    const spari_seconds *s = &f->carriage->seconds;
+    const spari_seconds *s = &f->floating_root->seconds;
     double omega[3], alpha[3], p[3], turn[3];
     spari_rotate_back(root->q + 3, root->v + 3, omega);
     spari_rotate_back(root->q + 3, root->a + 3, alpha);
@@ -302,7 +303,7 @@ static void add_seconds(const spari_frame *f, const spari_pose *root, double mom
     for (int k = 0; k < 3; k++) {
         moment[k] += s->aEy[k] + s->vEv[k];
     }
-    for (int t = 0; t < SPARI_TURNS; t++) {
+    for (int t = 0; t < SPARI_SPIN_PRODUCTS; t++) {
         int i = spari_frame_pair[t][0], j = spari_frame_pair[t][1];
         p[i] -= 0.5 * omega[j] * s->yNy[t];
         p[j] -= 0.5 * omega[i] * s->yNy[t];
@@ -317,24 +318,24 @@ static void add_seconds(const spari_frame *f, const spari_pose *root, double mom
 
 /* The forces with a root that moves so; the rest is gathered. */
 static void forces_at(spari_frame *f, const spar_member *m, const spari_pose *root, double *out) {
-    memcpy(out, f->carriage->parts, (size_t)f->n * sizeof *out);
+    memcpy(out, f->floating_root->parts, (size_t)f->n * sizeof *out);
     if (m->added) {
         gather_loads_of(f, m, root);
     }
-    if (!f->carriage->still) {
-        add_turning(f, root, out);
+    if (!f->floating_root->still) {
+        add_rotation_forces(f, root, out);
     }
     add_heavy(f, m, root, out);
     gather_whole(f, m, out);
-    if (!f->carriage->still && f->S[0]) {
+    if (!f->floating_root->still && f->S[0]) {
         add_seconds(f, root, out + 3);
         take_half_moments_off(f, root, out + 3);
     }
 }
 
-double spari_carriage_forces(spari_frame *f, const spar_member *m, const spari_frame_state *s, int still, double factor,
-                             double *r) {
-    spari_carriage *c = f->carriage;
+double spari_floating_root_forces(spari_frame *f, const spar_member *m, const spari_frame_state *s, int still,
+                                  double factor, double *r) {
+    spari_floating_root *c = f->floating_root;
     double scale = 0;
     c->still = still, c->factor = factor;
     if (!f->floats) {
@@ -349,7 +350,7 @@ double spari_carriage_forces(spari_frame *f, const spar_member *m, const spari_f
     for (int i = 0; i < 6 * f->nodes; i++) {
         scale = fmax(scale, fabs(c->heavy[i]));
     }
-    memset(r, 0, (size_t)spari_member_held(m) * sizeof *r);
+    memset(r, 0, (size_t)spari_member_constrained(m) * sizeof *r);
     return scale;
 }
 
@@ -357,16 +358,16 @@ double spari_carriage_forces(spari_frame *f, const spar_member *m, const spari_f
 
 /* Where tied node e (from 1) is from the root, and the inverse tangent operator of its rotation. */
 static void look_at_end(const spari_frame *f, const spar_member *m, const double *y, int e, double d[3], double T[9]) {
-    const double *x = y + spari_carriage_at(f, e);
-    spari_member_arm(m, f->carriage->node[e - 1], d);
+    const double *x = y + spari_floating_root_at(f, e);
+    spari_member_arm(m, f->floating_root->node[e - 1], d);
     for (int k = 0; k < 3; k++) {
         d[k] += x[k];
     }
     spari_tangent_inverse(x + 3, T);
 }
 
-void spari_carriage_see(const spari_frame *f, const spar_member *m, const double *y, double *x) {
-    for (int e = 1; e <= f->carriage->ends; e++) {
+void spari_floating_root_relative(const spari_frame *f, const spar_member *m, const double *y, double *x) {
+    for (int e = 1; e <= f->floating_root->ends; e++) {
         double d[3], T[9], turn[3], less[3], *z = x + 6 * e;
         look_at_end(f, m, y, e, d, T);
         spari_cross(x + 3, d, turn);
@@ -380,8 +381,8 @@ void spari_carriage_see(const spari_frame *f, const spar_member *m, const double
     }
 }
 
-void spari_carriage_push(const spari_frame *f, const spar_member *m, const double *y, double *x) {
-    for (int e = 1; e <= f->carriage->ends; e++) {
+void spari_floating_root_absolute(const spari_frame *f, const spar_member *m, const double *y, double *x) {
+    for (int e = 1; e <= f->floating_root->ends; e++) {
         double d[3], T[9], turn[3], *F = x + 6 * e, M[3] = {F[3], F[4], F[5]};
         look_at_end(f, m, y, e, d, T);
         spari_cross(d, F, turn);
@@ -396,16 +397,16 @@ void spari_carriage_push(const spari_frame *f, const spar_member *m, const doubl
 /* ---- the tangent ---- */
 
 /* The root moved by `by` along k, in the axes of the frame, with the rates that go along. */
-static spari_pose moved_root(const spari_carriage *c, const spari_pose *root, int k, double by, double cm, double cv,
-                             const double tinv[9]) {
+static spari_pose moved_root(const spari_floating_root *c, const spari_pose *root, int k, double by, double cm,
+                             double cv, const double tinv[9]) {
     spari_pose p = *root;
     double unit[3] = {0}, axis[3], x[3], turn[4];
     unit[k % 3] = by;
     spari_rotate(root->q + 3, unit, axis);
     if (k < 3) {
         if (c->steady) {
-            spari_cross(c->steady_turn, axis, x);
-            spari_cross(c->steady_turn, x, x);
+            spari_cross(c->steady_rotation, axis, x);
+            spari_cross(c->steady_rotation, x, x);
         }
         for (int i = 0; i < 3; i++) {
             p.a[i] += cm * axis[i] + (c->steady ? x[i] : 0);
@@ -425,7 +426,7 @@ static spari_pose moved_root(const spari_carriage *c, const spari_pose *root, in
 /* Columns of the root: by differences, of forces that are linear in its accelerations and of low order in all else. */
 static void form_columns(spari_frame *f, const spar_member *m, const spari_pose *root, double cm, double cv,
                          const double tinv[9]) {
-    spari_carriage *c = f->carriage;
+    spari_floating_root *c = f->floating_root;
     double fastest = fmax(1, fmax(cv, sqrt(cm)));
     for (int k = 0; k < 6; k++) {
         double *column = c->border + (int64_t)(6 + k) * f->n, by = (k < 3 ? m->body->length : 1) * 1e-5 / fastest;
@@ -442,7 +443,7 @@ static void form_columns(spari_frame *f, const spar_member *m, const spari_pose 
 
 /* Rows of the whole: rigid motions times the tangent S of element e. */
 static void add_rows(const spari_frame *f, const spar_member *m, int e, const double *S) {
-    double *rows = f->carriage->border;
+    double *rows = f->floating_root->border;
     int first = e * (f->block - f->overlap);
     for (int i = 0; i < f->block && (!f->basis || i < 6); i++) {
         double arm[3], weight[6] = {0};
@@ -462,7 +463,7 @@ static void add_rows(const spari_frame *f, const spar_member *m, int e, const do
 
 /* And of the arms, that change: dx x heavy. */
 static void add_arms_to_rows(const spari_frame *f) {
-    const spari_carriage *c = f->carriage;
+    const spari_floating_root *c = f->floating_root;
     for (int i = 0; i < f->nodes; i++) {
         double W[9];
         spari_skew(c->heavy + 6 * i, W);
@@ -499,7 +500,7 @@ static void form_prescribed(spari_frame *f, double cm, double cv) {
 
 /* Of y x M y'', in the rows of the whole. */
 static void add_euler_to_rows(const spari_frame *f, double cm) {
-    const spari_carriage *c = f->carriage;
+    const spari_floating_root *c = f->floating_root;
     int m = f->block, step = f->block - f->overlap;
     for (int k = 0; k < 3 && f->S[0] && !c->still; k++) {
         double *row = c->border + (int64_t)(3 + k) * f->n;
@@ -513,7 +514,7 @@ static void add_euler_to_rows(const spari_frame *f, double cm) {
 
 /* The tangent of the unknowns into the linear system, and the rows of the whole. */
 static void form_chain(spari_frame *f, const spar_member *m, const spari_pose *root, double cm, double cv) {
-    spari_carriage *c = f->carriage;
+    spari_floating_root *c = f->floating_root;
     int64_t mm = (int64_t)f->block * f->block;
     double alpha[3], turn[6] = {0};
     spari_rotate_back(root->q + 3, root->a + 3, alpha);
@@ -543,14 +544,14 @@ static void form_chain(spari_frame *f, const spar_member *m, const spari_pose *r
 
 /* Puts the root's rows and columns where the chain had none. */
 static void put_border(spari_frame *f, const spar_member *m) {
-    const spari_carriage *c = f->carriage;
+    const spari_floating_root *c = f->floating_root;
     spari_condensed *d = c->condensed;
     int M = 6 * d->ends, n = f->n;
-    for (int j = spari_member_held(m); j < 6; j++) {
+    for (int j = spari_member_constrained(m); j < 6; j++) {
         double *row = d->rows + (int64_t)n * j, *column = d->W + (int64_t)n * j;
         memcpy(row, c->border + (int64_t)n * j, (size_t)n * sizeof *row);
         memcpy(column, c->border + (int64_t)n * (6 + j), (size_t)n * sizeof *row);
-        for (int k = spari_member_held(m); k < M; k++) {
+        for (int k = spari_member_constrained(m); k < M; k++) {
             int u = 6 * d->node[k / 6] + k % 6;
             d->K[M * j + k] = k < 6 ? column[u] : row[u]; /* of the root with itself: as the differences have it */
             if (k >= 6) {
@@ -561,8 +562,8 @@ static void put_border(spari_frame *f, const spar_member *m) {
             row[6 * d->node[k / 6] + k % 6] = column[6 * d->node[k / 6] + k % 6] = 0;
         }
     }
-    for (int j = spari_member_held(m); j < 6; j++) {
-        for (int k = spari_member_held(m); k < 6; k++) {
+    for (int j = spari_member_constrained(m); j < 6; j++) {
+        for (int k = spari_member_constrained(m); k < 6; k++) {
             d->K[M * j + k] = c->border[(int64_t)n * (6 + k) + j];
         }
     }
@@ -571,23 +572,23 @@ static void put_border(spari_frame *f, const spar_member *m) {
 /* What remains at the ends, from motions seen from the root to absolute ones, in global axes: K := T^T K T, and what
    the turning of the forces there adds. r: the forces. */
 static void take_ends_out(spari_frame *f, const spar_member *m, const spari_frame_state *s, const double *r,
-                          double *room) {
-    const spari_carriage *c = f->carriage;
+                          double *workspace) {
+    const spari_floating_root *c = f->floating_root;
     spari_condensed *d = c->condensed;
-    int M = 6 * d->ends, held = spari_member_held(m);
-    double *K = room, *z = K + (int64_t)M * M, *g = z + M, *force = g + M;
+    int M = 6 * d->ends, constrained = spari_member_constrained(m);
+    double *K = workspace, *z = K + (int64_t)M * M, *g = z + M, *force = g + M;
     for (int k = 0; k < M; k++) {
         force[k] = r[6 * d->node[k / 6] + k % 6];
     }
-    spari_carriage_push(f, m, s->y, force);
+    spari_floating_root_absolute(f, m, s->y, force);
     memset(K, 0, (size_t)(M * M) * sizeof *K);
-    for (int j = held; j < M; j++) {
+    for (int j = constrained; j < M; j++) {
         memset(z, 0, (size_t)M * sizeof *z);
         z[j] = 1;
-        spari_carriage_see(f, m, s->y, z);
+        spari_floating_root_relative(f, m, s->y, z);
         cblas_dgemv(CblasRowMajor, CblasNoTrans, M, M, 1, d->K, M, z, 1, 0, g, 1);
-        memset(g, 0, (size_t)held * sizeof *g);
-        spari_carriage_push(f, m, s->y, g);
+        memset(g, 0, (size_t)constrained * sizeof *g);
+        spari_floating_root_absolute(f, m, s->y, g);
         for (int e = 1; e < d->ends; e++) { /* the arm of its force moves */
             double turn[3];
             spari_cross(z + 6 * e, force + 6 * e, turn);
@@ -602,18 +603,18 @@ static void take_ends_out(spari_frame *f, const spar_member *m, const spari_fram
                 g[k + i] += turn[i];
             }
         }
-        for (int k = held; k < M; k++) {
+        for (int k = constrained; k < M; k++) {
             K[M * k + j] = g[k];
         }
     }
-    for (int j = 0; j < held; j++) {
+    for (int j = 0; j < constrained; j++) {
         K[(M + 1) * j] = 1;
     }
     memcpy(d->K, K, (size_t)(M * M) * sizeof *K);
 }
 
 /* K [M][M], blocks of three, into global axes */
-static void turn_ends(const double q[4], int M, double *K) {
+static void rotate_ends(const double q[4], int M, double *K) {
     for (int side = 0; side < 2; side++) {
         for (int i = 0; i < M; i++) {
             for (int j = 0; j < M; j += 3) {
@@ -630,9 +631,9 @@ static void turn_ends(const double q[4], int M, double *K) {
     }
 }
 
-int spari_carriage_tangent(spari_frame *f, const spar_member *m, const spari_frame_state *s, double cm, double cv,
-                           const double tinv[9], const double *r) {
-    spari_carriage *c = f->carriage;
+int spari_floating_root_tangent(spari_frame *f, const spar_member *m, const spari_frame_state *s, double cm, double cv,
+                                const double tinv[9], const double *r) {
+    spari_floating_root *c = f->floating_root;
     spari_condensed *d = c->condensed;
     spari_frame_keep_factors(f);
     f->factored = 0;
@@ -642,10 +643,10 @@ int spari_carriage_tangent(spari_frame *f, const spar_member *m, const spari_fra
     } else {
         form_prescribed(f, cm, cv);
     }
-    for (int i = 0; i < f->held; i++) {
+    for (int i = 0; i < f->constrained; i++) {
         spari_linear_fix(f->linear, i);
     }
-    spari_condensed_take(d, f->linear, spari_member_held(m));
+    spari_condensed_take(d, f->linear, spari_member_constrained(m));
     if (f->floats) {
         put_border(f, m);
     }
@@ -654,12 +655,12 @@ int spari_carriage_tangent(spari_frame *f, const spar_member *m, const spari_fra
         return 1;
     }
     if (d->ends > 0) {
-        take_ends_out(f, m, s, r, c->room);
-        turn_ends(s->root.q + 3, 6 * d->ends, d->K);
+        take_ends_out(f, m, s, r, c->workspace);
+        rotate_ends(s->root.q + 3, 6 * d->ends, d->K);
     }
     f->factored = 1;
-    f->kept_cm = cm, f->kept_cv = cv;
-    memcpy(f->kept_turn, f->turn, sizeof f->kept_turn);
-    memcpy(c->root->kept_q, s->root.q + 3, 4 * sizeof(double));
+    f->tangent_cm = cm, f->tangent_cv = cv;
+    memcpy(f->tangent_turn, f->turn, sizeof f->tangent_turn);
+    memcpy(c->root->tangent_q, s->root.q + 3, 4 * sizeof(double));
     return 0;
 }

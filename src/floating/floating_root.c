@@ -10,12 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int find_tied(spari_carriage *c, const spar_member *m) {
-    c->node = spari_zalloc(spari_limb_joints(m) + 1, sizeof *c->node);
+static int find_joint_nodes(spari_floating_root *c, const spar_member *m) {
+    c->node = spari_zalloc(spari_component_joint_count(m) + 1, sizeof *c->node);
     if (!c->node) {
         return SPAR_ERR_MEMORY;
     }
-    c->ends = spari_limb_nodes_tied(m, c->node);
+    c->ends = spari_component_joint_nodes(m, c->node);
     if (c->ends > 0 && c->node[0] == 0) {
         c->ends--;
         memmove(c->node, c->node + 1, (size_t)c->ends * sizeof *c->node);
@@ -23,9 +23,9 @@ static int find_tied(spari_carriage *c, const spar_member *m) {
     return SPAR_OK;
 }
 
-int spari_carriage_create(spari_frame *f, spar_member *m) {
-    spari_carriage *c = f->carriage = spari_zalloc(1, sizeof *c);
-    if (!c || find_tied(c, m) != SPAR_OK) {
+int spari_floating_root_create(spari_frame *f, spar_member *m) {
+    spari_floating_root *c = f->floating_root = spari_zalloc(1, sizeof *c);
+    if (!c || find_joint_nodes(c, m) != SPAR_OK) {
         return SPAR_ERR_MEMORY;
     }
     spari_body *body = c->body = spari_body_create(1, 1, (const int[]){1}, 0, 0, 0);
@@ -64,7 +64,7 @@ static void solve_whole(double A[6][6], int n, double *X) {
 
 /* c->mean, when the unknowns are known. R_k^T M R_j from the nodes. */
 static int find_mean(spari_frame *f, const spar_member *m) {
-    spari_carriage *c = f->carriage;
+    spari_floating_root *c = f->floating_root;
     double A[6][6] = {{0}}, *X = spari_zalloc(6 * (int64_t)f->n, sizeof *X);
     c->mean = spari_zalloc(3 * (int64_t)f->n, sizeof *c->mean);
     if (!X || !c->mean) {
@@ -98,8 +98,8 @@ static double *copy_nodal(const spari_frame *f, const double *x) {
     return to;
 }
 
-int spari_carriage_keep_pushes(spari_frame *f) {
-    spari_carriage *c = f->carriage;
+int spari_floating_root_keep_pushes(spari_frame *f) {
+    spari_floating_root *c = f->floating_root;
     int ok = 1;
     for (int k = 0; k < 6; k++) {
         ok = ok && (!f->rigid[k] || (c->push[k] = copy_nodal(f, f->rigid[k])));
@@ -108,28 +108,28 @@ int spari_carriage_keep_pushes(spari_frame *f) {
     return ok ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-int spari_carriage_at(const spari_frame *f, int e) {
-    return e == 0 ? 0 : f->basis ? 6 * e : 6 * f->carriage->node[e - 1];
+int spari_floating_root_at(const spari_frame *f, int e) {
+    return e == 0 ? 0 : f->basis ? 6 * e : 6 * f->floating_root->node[e - 1];
 }
 
-int spari_carriage_finish(spari_frame *f, const spar_member *m) {
-    spari_carriage *c = f->carriage;
+int spari_floating_root_finish(spari_frame *f, const spar_member *m) {
+    spari_floating_root *c = f->floating_root;
     const int64_t n = f->n, n6 = 6 * (int64_t)f->nodes, ends = 1 + c->ends, size = f->S[0] ? f->size : 0;
-    double **rooms[] = {&c->loads, &c->x,     &c->kept, &c->elastic, &c->room,
-                        &c->heavy, &c->parts, &c->out,  &c->border,  &c->stiff};
+    double **floating_root_sizes[] = {&c->loads, &c->x,     &c->kept, &c->elastic, &c->workspace,
+                                      &c->heavy, &c->parts, &c->out,  &c->border,  &c->stiff};
     const int64_t sizes[] = {n6, n6, 2 * n, n, 36 * ends * ends + 18 * ends, n6, 13 * n, 2 * n, 12 * n, size};
-    const size_t wanted = f->floats ? sizeof rooms / sizeof *rooms : 5;
+    const size_t wanted = f->floats ? sizeof floating_root_sizes / sizeof *floating_root_sizes : 5;
     int ok = 1, *at = spari_zalloc(ends, sizeof *at);
     for (size_t k = 0; k < wanted; k++) {
-        ok = ok && (*rooms[k] = spari_zalloc(sizes[k], sizeof(double)));
+        ok = ok && (*floating_root_sizes[k] = spari_zalloc(sizes[k], sizeof(double)));
     }
     ok = ok && (c->block = spari_zalloc(31 * ends, sizeof *c->block));
     c->order = spari_zalloc(ends, sizeof *c->order);
     for (int e = 0; e < ends && at && c->order; e++) {
         c->order[e] = e;
-        at[e] = spari_carriage_at(f, e) / 6;
+        at[e] = spari_floating_root_at(f, e) / 6;
     }
-    c->condensed = at ? spari_condensed_create(spari_member_is_tied(m) ? (int)ends : 0, at, f->n) : NULL;
+    c->condensed = at ? spari_condensed_create(spari_member_has_joints(m) ? (int)ends : 0, at, f->n) : NULL;
     free(at);
     if (!ok || !c->order || !c->condensed) {
         return SPAR_ERR_MEMORY;
@@ -142,7 +142,7 @@ int spari_carriage_finish(spari_frame *f, const spar_member *m) {
     return f->S[0] ? find_mean(f, m) : SPAR_OK;
 }
 
-void spari_carriage_free(spari_carriage *c) {
+void spari_floating_root_free(spari_floating_root *c) {
     if (!c) {
         return;
     }
@@ -150,8 +150,8 @@ void spari_carriage_free(spari_carriage *c) {
         free(c->push[k]);
         free(c->spin[k]);
     }
-    double *all[] = {c->block, c->kept, c->loads,  c->elastic, c->parts, c->x,
-                     c->heavy, c->out,  c->border, c->room,    c->stiff};
+    double *all[] = {c->block, c->kept, c->loads,  c->elastic,   c->parts, c->x,
+                     c->heavy, c->out,  c->border, c->workspace, c->stiff};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         free(all[k]);
     }
@@ -164,10 +164,10 @@ void spari_carriage_free(spari_carriage *c) {
     free(c);
 }
 
-int spari_carriage_end_of(const spar_member *m, int node) {
+int spari_floating_root_end_of(const spar_member *m, int node) {
     const spari_frame *f = m->solution;
     int e = 0;
-    while (node > 0 && e < f->carriage->ends && f->carriage->node[e] != node) {
+    while (node > 0 && e < f->floating_root->ends && f->floating_root->node[e] != node) {
         e++;
     }
     return node > 0 ? 1 + e : 0;
@@ -175,8 +175,8 @@ int spari_carriage_end_of(const spar_member *m, int node) {
 
 /* ---- modal: amplitudes of tied nodes ---- */
 
-int spari_carriage_split(const spari_frame *f, double *x, double *y) {
-    const spari_carriage *c = f->carriage;
+int spari_floating_root_split(const spari_frame *f, double *x, double *y) {
+    const spari_floating_root *c = f->floating_root;
     int n6 = 6 * f->nodes;
     for (int k = 0; k < 6 * c->ends; k++) {
         y[6 + k] = x[6 * c->node[k / 6] + k % 6];
@@ -184,11 +184,11 @@ int spari_carriage_split(const spari_frame *f, double *x, double *y) {
     for (int k = 0; k < 6 * c->ends; k++) {
         cblas_daxpy(n6, -y[6 + k], f->basis + 6 + k, f->n, x, 1);
     }
-    return c->ends > 0 ? 6 + 6 * c->ends : f->held;
+    return c->ends > 0 ? 6 + 6 * c->ends : f->constrained;
 }
 
-void spari_carriage_take(const spari_frame *f, const spar_member *m, const double J[6], double *y) {
-    const spari_carriage *c = f->carriage;
+void spari_floating_root_take_rigid(const spari_frame *f, const spar_member *m, const double J[6], double *y) {
+    const spari_floating_root *c = f->floating_root;
     int first = 6 + 6 * c->ends;
     for (int k = first; k < f->n; k++) { /* of the rigid motion what is left beside the tied nodes' shapes */
         const double *row = f->M + (int64_t)f->n * k;

@@ -1,14 +1,13 @@
-/* A beam that is linear in the frame that moves with its root (fixed or driven): the motion of the root is taken
-   exactly, the deformation beyond it to first order. The frame of a root that is free or pinned stands where the
-   reference is, and the motion of the whole is taken to first order. In the axes of the frame, with x = (w, theta) of
-   the nodes,
+/* A beam that is linear in the frame that moves with its root (fixed or driven): the motion of the root is exact, the
+   deformation beyond it to first order. The frame of a root that is free or pinned stands where the reference is, and
+   the motion of the whole is treated to first order. In the axes of the frame, with x = (w, theta) of the nodes,
 
      M x'' + (D + G(omega)) x' + (K + N(omega, omega) + E(alpha)) x
          = loads - M (rigid acceleration - weight) - f(omega, omega)
 
    where G holds the Coriolis and gyroscopic terms, E those of the root's angular acceleration, N what turning with
    omega adds to the stiffness: centrifugal softening, the turned inertia of the sections, and the geometric stiffness S
-   of the axial forces that hold the centrifugal ones. All matrices are taken from the exact member's own tangents at
+   of the axial forces that hold the centrifugal ones. All matrices come from the exact member's own tangents at
    the reference, so that the answer is its limit for small deformation. N and E are those of rotation vectors: N is
    symmetric. Neglected: terms of second order in x, and the
    geometric stiffness of weight, of fluid loads and of the root's acceleration.
@@ -33,7 +32,7 @@
 
 struct spari_pencil;
 
-enum { SPARI_TURNS = 6 }; /* products omega_i omega_j */
+enum { SPARI_SPIN_PRODUCTS = 6 }; /* products omega_i omega_j */
 
 /* Deformation at one time, [n] each: amplitudes, rates, true and algorithmic accelerations; and the root. */
 typedef struct spari_frame_state {
@@ -42,29 +41,30 @@ typedef struct spari_frame_state {
 } spari_frame_state;
 
 typedef struct spari_frame {
-    int nodes;                       /* unique nodes */
-    int held;                        /* of the root's six unknowns, the first that stay zero */
-    int floats;                      /* joints move the root; else the motion of the frame is prescribed */
-    struct spari_carriage *carriage; /* the root, and the nodes that joints tie */
-    int elements, block, overlap;    /* of the matrices */
-    int n;                           /* unknowns, the root's six first */
-    int64_t size;                    /* doubles of one matrix: elements * block * block */
+    int nodes;                                 /* unique nodes */
+    int constrained;                           /* of the root's six unknowns, the first that stay zero */
+    int floats;                                /* joints move the root; else the motion of the frame is prescribed */
+    struct spari_floating_root *floating_root; /* the root, and the nodes that joints tie */
+    int elements, block, overlap;              /* of the matrices */
+    int n;                                     /* unknowns, the root's six first */
+    int64_t size;                              /* doubles of one matrix: elements * block * block */
     double *gram;  /* modal: [n][n] products of the basis' columns, factored, once spari_frame_felt has been asked */
     double *basis; /* modal: [6 nodes][n]; NULL: the unknowns are those of the nodes */
-    double *K, *M, *D;                              /* [elements][block][block]; M, D NULL: none */
-    double *A;                                      /* the guess of the fluid's added mass, likewise */
-    double *room_A;                                 /* where that is learned: [block][block + n] of the nodes' blocks */
-    double *N[SPARI_TURNS], *G[3], *f[SPARI_TURNS]; /* NULL where the frame cannot turn or there is no inertia */
-    double *S[SPARI_TURNS];                         /* of the axial forces, where it is not in N */
-    double *E[3];                                   /* of the root's angular acceleration, where N is */
-    double *pull;                                   /* forces of pretension at the reference, likewise; NULL: none */
-    double *rigid[6];                               /* M times the rigid accelerations of the frame; NULL: none */
-    double turn[6]; /* angular velocity and acceleration that the three sums below were formed for */
+    double *K, *M, *D; /* [elements][block][block]; M, D NULL: none */
+    double *A;         /* the guess of the fluid's added mass, likewise */
+    double *dense_A;   /* where that is learned: [block][block + n] of the nodes' blocks */
+    double *N[SPARI_SPIN_PRODUCTS], *G[3],
+        *f[SPARI_SPIN_PRODUCTS];    /* NULL where the frame cannot turn or there is no inertia */
+    double *S[SPARI_SPIN_PRODUCTS]; /* of the axial forces, where it is not in N */
+    double *E[3];                   /* of the root's angular acceleration, where N is */
+    double *pull;                   /* forces of pretension at the reference, likewise; NULL: none */
+    double *rigid[6];               /* M times the rigid accelerations of the frame; NULL: none */
+    double turn[6];                 /* angular velocity and acceleration that the three sums below were formed for */
     int combined;
     double *sumK, *sumC, *sumf;
     spari_linear *linear;
     int factored;
-    double kept_cm, kept_cv, kept_turn[6];
+    double tangent_cm, tangent_cv, tangent_turn[6];
     struct {
         int factored;
         double cm, cv, turn[6];
@@ -92,7 +92,7 @@ int spari_frame_energy(const spar_member *member, double energy[4]);
 /* K + N of the turn that the root of member->after has, and M. */
 int spari_frame_problem(const spar_member *member, double *K, double *M);
 int spari_frame_linearise(const spar_member *member, const double w[3], struct spari_pencil *to);
-void spari_frame_shape(const spar_member *member, const double *x, double *room, double *nodes);
+void spari_frame_shape(const spar_member *member, const double *x, double *workspace, double *nodes);
 int64_t spari_frame_state_size(const spar_member *member);
 void spari_frame_save(const spar_member *member, double *state);
 int spari_frame_is_state(const spar_member *member, const double *state, int64_t count);
@@ -105,8 +105,8 @@ void spari_frame_keep_factors(spari_frame *frame);
 
 /* ---- what matrices, modes and time share ---- */
 
-/* Which two components of the turn are multiplied in each of the SPARI_TURNS products. */
-extern const int spari_frame_pair[SPARI_TURNS][2];
+/* Which two components of the turn are multiplied in each of the SPARI_SPIN_PRODUCTS products. */
+extern const int spari_frame_pair[SPARI_SPIN_PRODUCTS][2];
 
 /* Forms the matrices of the nodes, for which there is memory. arm [nodes][3] from the root. A status without a message.
  */

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const int spari_frame_pair[SPARI_TURNS][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+const int spari_frame_pair[SPARI_SPIN_PRODUCTS][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
 void spari_frame_add_times(const spari_frame *f, const double *X, const double *x, double factor, double *y) {
     int m = f->block, step = f->block - f->overlap;
@@ -65,7 +65,7 @@ typedef struct setup {
 /* What a turn with omega adds: matrices of the place (into N, element after element) and of the rate (into G). A frame
    that turns gives du-dot = omega x u, d(u-ddot) = 2 omega x u-dot + omega x (omega x u), d(alpha) = omega x theta-dot.
  */
-static void turn_matrices(const spari_frame *f, const setup *w, const double omega[3], double *N, double *G) {
+static void rotation_matrices(const spari_frame *f, const setup *w, const double omega[3], double *N, double *G) {
     int m = w->m;
     int64_t mm = (int64_t)m * m;
     double W[9], WW[9], W2[9];
@@ -127,7 +127,7 @@ static void rest_matrices(const spari_frame *f, const setup *w) {
 
 /* What of N and f belongs to omega_i omega_j alone. */
 static void polarise(spari_frame *f) {
-    for (int k = 3; k < SPARI_TURNS; k++) {
+    for (int k = 3; k < SPARI_SPIN_PRODUCTS; k++) {
         for (int side = 0; side < 2; side++) {
             int d = spari_frame_pair[k][side];
             cblas_daxpy((int)f->size, -1, f->N[d], 1, f->N[k], 1);
@@ -225,7 +225,7 @@ static int stretch_terms(spari_frame *f, const setup *w) {
     if (spari_body_set_pre(&tense)) {
         return SPAR_ERR_MEMORY;
     }
-    for (int k = 0; k < SPARI_TURNS; k++) {
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
         double beyond[3] = {0}, *to = f->S[k] ? f->S[k] : f->N[k], *S = w->S[0];
         tense.pre_part = large;
         for (int e = tense.elements - 1; e >= 0; e--) {
@@ -256,13 +256,13 @@ static void add_half_moments(const spari_frame *f, const setup *w, const double 
     }
 }
 
-static int turn_terms(spari_frame *f, const setup *w) {
+static int rotation_terms(spari_frame *f, const setup *w) {
     double *none = NULL;
-    for (int k = 0; k < SPARI_TURNS; k++) {
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
         int i = spari_frame_pair[k][0], j = spari_frame_pair[k][1];
         double omega[3] = {0};
         omega[i] = omega[j] = 1;
-        turn_matrices(f, w, omega, f->N[k], i == j ? f->G[i] : none);
+        rotation_matrices(f, w, omega, f->N[k], i == j ? f->G[i] : none);
         rigid_motion(f, w->arm, omega, w->v, w->a);
         spari_body_residual(w->body, w->q, w->v, w->a, 0, f->f[k], NULL);
         cblas_daxpy(f->pull ? 6 * f->nodes : 0, -1, f->pull, 1, f->f[k], 1);
@@ -272,7 +272,7 @@ static int turn_terms(spari_frame *f, const setup *w) {
         }
     }
     polarise(f);
-    for (int k = 0; k < SPARI_TURNS; k++) {
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
         add_half_moments(f, w, f->f[k], f->N[k]);
     }
     return stretch_terms(f, w);
@@ -317,7 +317,7 @@ int spari_frame_form(spari_frame *f, const spari_body *damped, const double *arm
         spari_body_residual(body, w.q, NULL, NULL, 0, f->pull, NULL);
     }
     rigid_forces(f, &w);
-    int status = f->N[0] ? turn_terms(f, &w) : SPAR_OK;
+    int status = f->N[0] ? rotation_terms(f, &w) : SPAR_OK;
     if (damped->drag > 0 && f->M) {
         cblas_daxpy((int)f->size, damped->drag, f->M, 1, f->D, 1);
     }

@@ -66,25 +66,25 @@ static int orthonormalise(spari_frame *f, int cols, int first, int from, int end
     return 0;
 }
 
-static int is_tied(const spari_frame *f, int node) {
+static int is_joint_node(const spari_frame *f, int node) {
     int found = 0;
-    for (int e = 0; e < f->carriage->ends; e++) {
-        found = found || f->carriage->node[e] == node;
+    for (int e = 0; e < f->floating_root->ends; e++) {
+        found = found || f->floating_root->node[e] == node;
     }
     return found;
 }
 
 /* Takes rows and columns of tied nodes out of A over the nodes beside the root; how many are left. */
-static int leave_out_tied(const spari_frame *f, double *A) {
+static int leave_out_joint_nodes(const spari_frame *f, double *A) {
     int n = 6 * f->nodes - 6, left = 0;
     double *to = A;
     for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n && !is_tied(f, 1 + i / 6); j++) {
-            if (!is_tied(f, 1 + j / 6)) {
+        for (int j = 0; j < n && !is_joint_node(f, 1 + i / 6); j++) {
+            if (!is_joint_node(f, 1 + j / 6)) {
                 *to++ = A[(int64_t)n * i + j];
             }
         }
-        left += !is_tied(f, 1 + i / 6);
+        left += !is_joint_node(f, 1 + i / 6);
     }
     return left;
 }
@@ -102,19 +102,19 @@ static int elastic_columns(spari_frame *f, int cols, int first, double *work) {
         double *x = work, *image = work + 6 * f->nodes;
         assemble_dense(f, f->K, 1, 6, K);
         assemble_dense(f, f->M, 1, 6, M);
-        for (int k = f->held; k < 6; k++) {
+        for (int k = f->constrained; k < 6; k++) {
             image_of(f, cols, k, x, image);
             cblas_dger(CblasRowMajor, n, n, -1, image + 6, 1, image + 6, 1, M, n);
         }
-        left = leave_out_tied(f, K);
-        (void)leave_out_tied(f, M);
+        left = leave_out_joint_nodes(f, K);
+        (void)leave_out_joint_nodes(f, M);
         status = spari_eigen(left, M, K, mu, z);
     }
     for (int k = first; k < cols && status == SPAR_OK; k++) {
         const double *mode = z + (int64_t)left * (k - first);
         status = mu[k - first] > DBL_EPSILON * mu[0] ? status : SPAR_ERR_NUMERIC;
         for (int i = 6, at = 0; i < 6 * f->nodes; i++) {
-            f->basis[(int64_t)i * cols + k] = is_tied(f, i / 6) ? 0 : mode[at++];
+            f->basis[(int64_t)i * cols + k] = is_joint_node(f, i / 6) ? 0 : mode[at++];
         }
     }
     free(K);
@@ -122,8 +122,8 @@ static int elastic_columns(spari_frame *f, int cols, int first, double *work) {
 }
 
 /* The shapes of the tied nodes: each moves by one in a direction, the root and the others do not, K x = 0 between. */
-static int tied_columns(spari_frame *f, int cols, double *work) {
-    int ends = f->carriage->ends, n = 6 * f->nodes;
+static int joint_columns(spari_frame *f, int cols, double *work) {
+    int ends = f->floating_root->ends, n = 6 * f->nodes;
     double *column = spari_zalloc((int64_t)6 * ends * n, sizeof *column);
     if (!column) {
         return SPAR_ERR_MEMORY;
@@ -133,10 +133,10 @@ static int tied_columns(spari_frame *f, int cols, double *work) {
         spari_linear_add(f->linear, e, f->K + (int64_t)f->block * f->block * e);
     }
     for (int k = 0; k < 6 * ends; k++) {
-        spari_linear_read(f->linear, 6 * f->carriage->node[k / 6] + k % 6, work, column + (int64_t)n * k);
+        spari_linear_read(f->linear, 6 * f->floating_root->node[k / 6] + k % 6, work, column + (int64_t)n * k);
     }
     for (int i = 0; i < n && ends > 0; i++) {
-        if (i < 6 || is_tied(f, i / 6)) {
+        if (i < 6 || is_joint_node(f, i / 6)) {
             spari_linear_fix(f->linear, i);
         }
     }
@@ -144,10 +144,10 @@ static int tied_columns(spari_frame *f, int cols, double *work) {
     for (int k = 0; k < 6 * ends && !singular; k++) {
         double *x = column + (int64_t)n * k;
         for (int i = 0; i < n; i++) {
-            x[i] = i < 6 || is_tied(f, i / 6) ? 0 : -x[i];
+            x[i] = i < 6 || is_joint_node(f, i / 6) ? 0 : -x[i];
         }
         singular = spari_linear_solve(f->linear, x);
-        x[6 * f->carriage->node[k / 6] + k % 6] = 1;
+        x[6 * f->floating_root->node[k / 6] + k % 6] = 1;
         cblas_dcopy(n, x, 1, f->basis + 6 + k, cols);
     }
     free(column);
@@ -156,12 +156,13 @@ static int tied_columns(spari_frame *f, int cols, double *work) {
 
 int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols) {
     double *work = spari_zalloc(12 * (int64_t)f->nodes, sizeof *work);
-    int first = 6 + 6 * f->carriage->ends, alone = f->held < 6 ? f->held : first;
+    int first = 6 + 6 * f->floating_root->ends, alone = f->constrained < 6 ? f->constrained : first;
     f->basis = spari_zalloc((int64_t)6 * f->nodes * cols, sizeof *f->basis);
     int status = work && f->basis ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
         rigid_columns(f, arm, cols);
-        status = orthonormalise(f, cols, f->held, f->held, 6, work) ? SPAR_ERR_NUMERIC : tied_columns(f, cols, work);
+        status = orthonormalise(f, cols, f->constrained, f->constrained, 6, work) ? SPAR_ERR_NUMERIC
+                                                                                  : joint_columns(f, cols, work);
     }
     if (status == SPAR_OK && cols > first) {
         status = elastic_columns(f, cols, first, work);
@@ -206,21 +207,21 @@ static void no_strain(const spari_frame *f, double *X) {
 
 int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
     int bad = 0;
-    double **all[4 + 2 * SPARI_TURNS + 6] = {&f->K, &f->M, &f->D, &f->A};
-    for (int k = 0; k < SPARI_TURNS; k++) {
+    double **all[4 + 2 * SPARI_SPIN_PRODUCTS + 6] = {&f->K, &f->M, &f->D, &f->A};
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
         all[4 + k] = &f->N[k];
-        all[10 + SPARI_TURNS + k] = &f->S[k];
+        all[10 + SPARI_SPIN_PRODUCTS + k] = &f->S[k];
     }
     for (int k = 0; k < 3; k++) {
-        all[4 + SPARI_TURNS + k] = &f->G[k];
-        all[7 + SPARI_TURNS + k] = &f->E[k];
+        all[4 + SPARI_SPIN_PRODUCTS + k] = &f->G[k];
+        all[7 + SPARI_SPIN_PRODUCTS + k] = &f->E[k];
     }
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         bad = bad || (*all[k] && project_matrix(f, cols, all[k]));
     }
     double *part = spari_zalloc(cols, sizeof *part);
     double *const *const vectors[] = {f->f, f->rigid, &f->pull};
-    const int counts[] = {SPARI_TURNS, 6, 1};
+    const int counts[] = {SPARI_SPIN_PRODUCTS, 6, 1};
     for (int v = 0; v < 3 && part; v++) {
         for (int k = 0; k < counts[v] && vectors[v][k]; k++) {
             double *x = vectors[v][k];
@@ -247,7 +248,7 @@ int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
 void spari_frame_remass(spar_member *m) {
     spari_frame *f = m->solution;
     int block = 6 * m->per_element, cols = f->n;
-    double *X = f->room_A, *half = X + (int64_t)block * block;
+    double *X = f->dense_A, *half = X + (int64_t)block * block;
     memset(f->A, 0, (size_t)f->size * sizeof *f->A);
     for (int e = 0; e < m->elements; e++) {
         const double *b = f->basis ? f->basis + (int64_t)e * (block - 6) * cols : NULL;
@@ -271,14 +272,14 @@ int spari_frame_problem(const spar_member *m, double *K, double *M) {
     const spari_pose pose = spari_member_pose(m, &m->after);
     double omega[3];
     spari_rotate_back(pose.q + 3, pose.v + 3, omega);
-    int held = spari_member_held(m);
-    assemble_dense(f, f->K, 1, held, K);
-    assemble_dense(f, f->M, 1, held, M);
-    for (int k = 0; k < SPARI_TURNS && f->N[0]; k++) {
+    int constrained = spari_member_constrained(m);
+    assemble_dense(f, f->K, 1, constrained, K);
+    assemble_dense(f, f->M, 1, constrained, M);
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS && f->N[0]; k++) {
         double c = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
-        assemble_dense(f, f->N[k], c, held, K);
+        assemble_dense(f, f->N[k], c, constrained, K);
         if (f->S[k]) {
-            assemble_dense(f, f->S[k], c, held, K);
+            assemble_dense(f, f->S[k], c, constrained, K);
         }
     }
     return SPAR_OK;
@@ -295,18 +296,18 @@ int spari_frame_linearise(const spar_member *m, const double w[3], spari_pencil 
         return SPAR_ERR_UNSUPPORTED;
     }
     const spari_pose pose = spari_member_pose(m, &m->after);
-    int held = spari_member_held(m), step = f->block - f->overlap;
+    int constrained = spari_member_constrained(m), step = f->block - f->overlap;
     int64_t mm = (int64_t)f->block * f->block;
     double omega[3];
     spari_rotate_back(pose.q + 3, pose.v + 3, omega);
     for (int e = 0; e < f->elements; e++) {
         int64_t at = mm * e;
-        spari_pencil_add(to, e * step - held, f->block, f->block, f->K + at, f->D ? f->D + at : NULL,
+        spari_pencil_add(to, e * step - constrained, f->block, f->block, f->K + at, f->D ? f->D + at : NULL,
                          f->M ? f->M + at : NULL);
         for (int i = 0; i < f->block * f->block && f->N[0]; i++) {
-            int row = e * step - held + i / f->block, column = e * step - held + i % f->block;
+            int row = e * step - constrained + i / f->block, column = e * step - constrained + i % f->block;
             spari_pencil_entry x = {to->base + row, to->base + column, 0, 0, 0};
-            for (int k = 0; k < SPARI_TURNS; k++) {
+            for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
                 double c = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
                 x.k += c * (f->N[k][at + i] + (f->S[k] ? f->S[k][at + i] : 0));
             }
@@ -321,19 +322,19 @@ int spari_frame_linearise(const spar_member *m, const double w[3], spari_pencil 
     return SPAR_OK;
 }
 
-void spari_frame_shape(const spar_member *m, const double *x, double *room, double *nodes) {
+void spari_frame_shape(const spar_member *m, const double *x, double *workspace, double *nodes) {
     const spari_frame *f = m->solution;
     const spari_pose pose = spari_member_pose(m, &m->after);
-    int held = spari_member_held(m);
-    memset(room, 0, (size_t)(6 * f->nodes) * sizeof *room);
+    int constrained = spari_member_constrained(m);
+    memset(workspace, 0, (size_t)(6 * f->nodes) * sizeof *workspace);
     if (f->basis) {
-        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - held, 1, f->basis + held, f->n, x, 1,
-                               0, room, 1));
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, f->n - constrained, 1, f->basis + constrained,
+                               f->n, x, 1, 0, workspace, 1));
     } else {
-        memcpy(room + held, x, (size_t)(f->n - held) * sizeof *room);
+        memcpy(workspace + constrained, x, (size_t)(f->n - constrained) * sizeof *workspace);
     }
     for (int i = 0; i < 6 * f->nodes; i += 3) {
-        spari_rotate(pose.q + 3, room + i, room + i);
+        spari_rotate(pose.q + 3, workspace + i, workspace + i);
     }
-    spari_member_from_unique(m, 6, room, nodes);
+    spari_member_from_unique(m, 6, workspace, nodes);
 }

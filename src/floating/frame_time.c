@@ -51,11 +51,11 @@ static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion 
         still[7 * i + 3] = 1;
     }
     for (int k = 0; k < 2; k++) {
-        int first = spari_carriage_split(f, in[k], out[k]);
+        int first = spari_floating_root_split(f, in[k], out[k]);
         spari_body_residual(&loose, still, zero, in[k], 0, force, NULL);
         SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n - first, 1, f->basis + first, f->n, force,
                                1, 0, out[k] + first, 1));
-        memset(out[k], 0, (size_t)f->held * sizeof *y);
+        memset(out[k], 0, (size_t)f->constrained * sizeof *y);
     }
 }
 
@@ -164,8 +164,8 @@ void spari_frame_combine(spari_frame *f, const double turn[6]) {
     }
     memcpy(f->sumK, f->K, (size_t)f->size * sizeof *f->sumK);
     memset(f->sumf, 0, (size_t)f->n * sizeof *f->sumf);
-    double c[SPARI_TURNS];
-    for (int k = 0; k < SPARI_TURNS; k++) {
+    double c[SPARI_SPIN_PRODUCTS];
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
         c[k] = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
         if (c[k] != 0) {
             cblas_daxpy((int)f->size, c[k], f->N[k], 1, f->sumK, 1);
@@ -191,7 +191,7 @@ void spari_frame_gather(const spari_frame *f, const double *x, double *out) {
 }
 
 /* Nodal loads [unique][6] in global axes, as loads on the unknowns. Destroys x. */
-static void turn_loads(const spari_frame *f, const double q[4], double *x, double *out) {
+static void rotate_loads(const spari_frame *f, const double q[4], double *x, double *out) {
     for (int i = 0; i < 6 * f->nodes; i += 3) {
         spari_rotate_back(q, x + i, x + i);
     }
@@ -208,7 +208,7 @@ static void take_jump(const spari_frame *f, const spar_member *m, double h, spar
         const double *J = jump[s];
         double *x = rows[s];
         if (f->basis) {
-            spari_carriage_take(f, m, J, x);
+            spari_floating_root_take_rigid(f, m, J, x);
         }
         for (int i = 1; i < f->nodes && !f->basis; i++) {
             double arm[3], turn[3];
@@ -274,7 +274,7 @@ static int factor_gram(spari_frame *f) {
     }
     SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, n, n, 6 * f->nodes, 1, f->basis, n, f->basis, n, 0,
                            f->gram, n));
-    for (int k = 0; k < f->held * n; k++) {
+    for (int k = 0; k < f->constrained * n; k++) {
         int i = k / n, j = k % n;
         f->gram[i * n + j] = f->gram[j * n + i] = i == j;
     }
@@ -299,8 +299,8 @@ int spari_frame_felt(spar_member *m, double *load) {
         return SPAR_OK;
     }
     spari_member_gather(m, load, f->nodal);
-    turn_loads(f, root + 3, f->nodal, f->dx);
-    memset(f->dx, 0, (size_t)f->held * sizeof *f->dx);
+    rotate_loads(f, root + 3, f->nodal, f->dx);
+    memset(f->dx, 0, (size_t)f->constrained * sizeof *f->dx);
     spari_cholesky_solve(n, f->gram, f->dx);
     SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, n, 1, f->basis, n, f->dx, 1, 0, f->nodal, 1));
     for (int64_t i = 0; i < 6 * f->nodes; i += 3) {
@@ -318,7 +318,7 @@ int spari_frame_felt(spar_member *m, double *load) {
 
 /* Factors, the root's orientation that they belong to, and what remains at the ends. */
 static int64_t factors_size(const spari_frame *f) {
-    return spari_linear_state_size(f->linear) + 4 + spari_condensed_state_size(f->carriage->condensed);
+    return spari_linear_state_size(f->linear) + 4 + spari_condensed_state_size(f->floating_root->condensed);
 }
 
 void spari_frame_keep_factors(spari_frame *f) {
@@ -326,34 +326,34 @@ void spari_frame_keep_factors(spari_frame *f) {
     double *to = f->begun.factored ? spari_snapshot_take(&f->before, factors_size(f)) : NULL;
     if (to) {
         spari_linear_save(f->linear, to);
-        memcpy(to + factors, f->carriage->root->kept_q, 4 * sizeof *to);
-        spari_condensed_save(f->carriage->condensed, to + factors + 4);
+        memcpy(to + factors, f->floating_root->root->tangent_q, 4 * sizeof *to);
+        spari_condensed_save(f->floating_root->condensed, to + factors + 4);
     }
 }
 
 void spari_frame_begin(spar_member *m) {
     spari_frame *f = m->solution;
     f->begun.factored = f->factored;
-    f->begun.cm = f->kept_cm, f->begun.cv = f->kept_cv;
-    memcpy(f->begun.turn, f->kept_turn, sizeof f->kept_turn);
+    f->begun.cm = f->tangent_cm, f->begun.cv = f->tangent_cv;
+    memcpy(f->begun.turn, f->tangent_turn, sizeof f->tangent_turn);
     spari_snapshot_open(&f->before, 1);
-    spari_solver_begin(f->carriage->root);
+    spari_solver_begin(f->floating_root->root);
 }
 
 void spari_frame_reject(spar_member *m) {
     spari_frame *f = m->solution;
-    spari_condensed *d = f->carriage->condensed;
+    spari_condensed *d = f->floating_root->condensed;
     if (!f->before.open) {
         return;
     }
-    f->factored = f->begun.factored && f->before.taken >= 0;
-    f->kept_cm = f->begun.cm, f->kept_cv = f->begun.cv;
-    memcpy(f->kept_turn, f->begun.turn, sizeof f->kept_turn);
-    spari_solver_reject(f->carriage->root);
-    if (f->before.taken > 0) {
+    f->factored = f->begun.factored && f->before.saved >= 0;
+    f->tangent_cm = f->begun.cm, f->tangent_cv = f->begun.cv;
+    memcpy(f->tangent_turn, f->begun.turn, sizeof f->tangent_turn);
+    spari_solver_reject(f->floating_root->root);
+    if (f->before.saved > 0) {
         const double *from = f->before.data, *ends = from + spari_linear_state_size(f->linear);
         spari_linear_load(f->linear, from);
-        memcpy(f->carriage->root->kept_q, ends, 4 * sizeof *ends);
+        memcpy(f->floating_root->root->tangent_q, ends, 4 * sizeof *ends);
         spari_condensed_load(d, d->fixed, ends + 4);
     }
 }
@@ -363,12 +363,12 @@ void spari_frame_accept(spar_member *m) {
     spari_snapshot_close(&f->before);
     const spari_frame_state begin = f->to;
     f->to = f->begin, f->begin = begin;
-    spari_solver_accept(f->carriage->root);
+    spari_solver_accept(f->floating_root->root);
 }
 
 void spari_frame_restart(spar_member *m) {
     spari_frame *f = m->solution;
-    spari_solver *root = f->carriage->root;
+    spari_solver *root = f->floating_root->root;
     memcpy(root->begin.q, m->now.q, 7 * sizeof(double));
     memcpy(root->begin.v, m->now.v, 6 * sizeof(double));
     memcpy(root->begin.a, m->now.a, 6 * sizeof(double));
@@ -384,7 +384,7 @@ void spari_frame_restart(spar_member *m) {
     f->steps.started = 0;
 }
 
-enum { STATE_HEAD = 27, STATE_TURN = 6, STATE_BEGUN = 18, STATE_ROOT = sizeof(spari_pose) / sizeof(double) };
+enum { STATE_HEAD = 27, STATE_ROTATION = 6, STATE_BEGUN = 18, STATE_ROOT = sizeof(spari_pose) / sizeof(double) };
 
 /* The head, and the states at either end of the step. */
 static int64_t ends_size(const spari_frame *f) {
@@ -394,19 +394,20 @@ static int64_t ends_size(const spari_frame *f) {
 /* Then what the step began with, the root, and the factors if there are any. */
 int64_t spari_frame_state_size(const spar_member *m) {
     const spari_frame *f = m->solution;
-    return ends_size(f) + spari_snapshot_size(&f->before) + spari_solver_state_size(f->carriage->root) +
+    return ends_size(f) + spari_snapshot_size(&f->before) + spari_solver_state_size(f->floating_root->root) +
            (f->factored ? spari_linear_state_size(f->linear) : 0);
 }
 
 void spari_frame_save(const spar_member *m, double *state) {
     const spari_frame *f = m->solution;
-    const double head[STATE_TURN] = {f->n, f->factored, f->kept_cm, f->kept_cv, f->steps.started, f->combined},
+    const double head[STATE_ROTATION] = {f->n,          f->factored,      f->tangent_cm,
+                                         f->tangent_cv, f->steps.started, f->combined},
                  begun[3] = {f->begun.factored, f->begun.cm, f->begun.cv};
     const spari_frame_state *const ends[2] = {&f->begin, &f->to};
-    const spari_solver *root = f->carriage->root;
+    const spari_solver *root = f->floating_root->root;
     memcpy(state, head, sizeof head);
-    memcpy(state + STATE_TURN, f->turn, sizeof f->turn);
-    memcpy(state + STATE_TURN + 6, f->kept_turn, sizeof f->kept_turn);
+    memcpy(state + STATE_ROTATION, f->turn, sizeof f->turn);
+    memcpy(state + STATE_ROTATION + 6, f->tangent_turn, sizeof f->tangent_turn);
     memcpy(state + STATE_BEGUN, begun, sizeof begun);
     memcpy(state + STATE_BEGUN + 3, f->begun.turn, sizeof f->begun.turn);
     double *at = state + STATE_HEAD;
@@ -424,7 +425,7 @@ void spari_frame_save(const spar_member *m, double *state) {
 
 int spari_frame_is_state(const spar_member *m, const double *state, int64_t count) {
     const spari_frame *f = m->solution;
-    const spari_solver *root = f->carriage->root;
+    const spari_solver *root = f->floating_root->root;
     const int64_t at = ends_size(f), expected = factors_size(f), own = spari_solver_state_size(root);
     if (count < at + SPARI_SNAPSHOT_HEAD || state[0] != f->n) {
         return 0;
@@ -440,16 +441,16 @@ int spari_frame_is_state(const spar_member *m, const double *state, int64_t coun
 /* The sums are those of the turn that they were formed for, to the last bit. */
 void spari_frame_load(spar_member *m, const double *state) {
     spari_frame *f = m->solution;
-    spari_solver *root = f->carriage->root;
+    spari_solver *root = f->floating_root->root;
     spari_frame_state *const ends[2] = {&f->begin, &f->to};
     f->factored = state[1] != 0;
-    f->kept_cm = state[2], f->kept_cv = state[3];
+    f->tangent_cm = state[2], f->tangent_cv = state[3];
     f->steps.started = state[4] != 0;
     f->combined = 0;
     if (state[5] != 0) {
-        spari_frame_combine(f, state + STATE_TURN);
+        spari_frame_combine(f, state + STATE_ROTATION);
     }
-    memcpy(f->kept_turn, state + STATE_TURN + 6, sizeof f->kept_turn);
+    memcpy(f->tangent_turn, state + STATE_ROTATION + 6, sizeof f->tangent_turn);
     f->begun.factored = state[STATE_BEGUN] != 0;
     f->begun.cm = state[STATE_BEGUN + 1], f->begun.cv = state[STATE_BEGUN + 2];
     memcpy(f->begun.turn, state + STATE_BEGUN + 3, sizeof f->begun.turn);

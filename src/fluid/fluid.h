@@ -10,7 +10,7 @@
    room. */
 
 /* Workspace per thread, in doubles (base/workspace.h, base/thread_pool.h). */
-int64_t spari_fluid_room(const spar_fluid *fluid);
+int64_t spari_fluid_workspace_size(const spar_fluid *fluid);
 /* Adds the fluid's nodal loads, as last pushed, to load [nodes][6]. */
 void spari_fluid_add_loads(const spar_fluid *fluid, double *load);
 /* The same for reproducible sums. */
@@ -31,7 +31,7 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
 void spari_fluid_accept(spar_fluid *fluid);
 void spari_fluid_reject(spar_fluid *fluid);
 /* Makes the last pushed loads those of t^n, as after a static solution. */
-void spari_fluid_settle(spar_fluid *fluid);
+void spari_fluid_commit_state(spar_fluid *fluid);
 void spari_fluid_free(spar_fluid *fluid);
 spar_fluid *spari_fluid_next(const spar_fluid *fluid); /* in the session's list */
 spar_member *spari_fluid_member(const spar_fluid *fluid);
@@ -54,13 +54,13 @@ int spari_fluid_asked(const spar_fluid *fluid);
 /* Rebuilds the fluid for a trial on a rebuilt member (trial/rebuild.h). Local.
    before: the member as it was
    old: receives the fluid as it was; pass it to spari_fluid_restore, also after a failure unless it is NULL */
-int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid **old);
+int spari_fluid_rebuild(spar_fluid *fluid, const spar_member *before, spar_fluid **old);
 void spari_fluid_restore(spar_fluid *fluid, spar_fluid *old);
 /* Reproducible sums of its loads, of twice the loads on the old nodes: adds them to sums[carried_size], which
    belongs to `before`; and converts them back to the present nodes. NULL: on another rank. */
-int64_t spari_fluid_carried_size(const spar_member *before);
-void spari_fluid_add_carried(const spar_fluid *old, const spar_member *before, spari_bins *sums);
-void spari_fluid_put_carried(spar_fluid *fluid, const spar_member *before, const double *values);
+int64_t spari_fluid_moved_size(const spar_member *before);
+void spari_fluid_add_moved(const spar_fluid *old, const spar_member *before, spari_bins *sums);
+void spari_fluid_put_moved(spar_fluid *fluid, const spar_member *before, const double *values);
 /* Keeps the rebuilt fluid and frees the old one. */
 void spari_fluid_adopt(spar_fluid *fluid, spar_fluid *old);
 /* Whether there are nodes that are not mapped yet. */
@@ -96,8 +96,8 @@ int spari_fluid_take_loads(spar_fluid *fluid, const double *state, int takes_loa
 /* Reads `count` nodes of a state, in consecutive blocks. Nodes are found by their reference positions. */
 void spari_fluid_take_nodes(spar_fluid *fluid, const double *head, int64_t first, int64_t count, const double *rows);
 /* First node here that was not found, or -1; the message says which. */
-int64_t spari_fluid_untaken(spar_fluid *fluid);
-int spari_fluid_taken(spar_fluid *fluid, const char *call);
+int64_t spari_fluid_first_missing(spar_fluid *fluid);
+int spari_fluid_loaded_whole(spar_fluid *fluid, const char *call);
 /* load: puts the new state in force; give_up: discards it. */
 void spari_fluid_load(spar_fluid *fluid);
 void spari_fluid_give_up(spar_fluid *fluid);

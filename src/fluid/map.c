@@ -28,7 +28,7 @@ static int prepare_member(spar_fluid *fluid) {
                {&fluid->load, 6 * nodes},
                {&fluid->load_new, 6 * nodes},
                {&fluid->load_accepted, 6 * nodes}};
-    int whole = fluid->modal && fluid->reference && q && !spari_fluid_keep_room(fluid);
+    int whole = fluid->modal && fluid->reference && q && !spari_fluid_reserve_workspace(fluid);
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         *all[i].to = spari_zalloc(all[i].size, sizeof(double));
         whole = whole && *all[i].to;
@@ -48,30 +48,31 @@ static int prepare_member(spar_fluid *fluid) {
     for (int64_t l = 0; l < nodes; l++) {
         memcpy(q + 7 * l + 3, m->qr + 4 * l, 4 * sizeof *q);
     }
-    spari_field_fill(m->elements, m->per_element, fluid->modal, 0, SPARI_UPTO_PLACE, m->xr, q, NULL, NULL,
+    spari_field_fill(m->elements, m->per_element, fluid->modal, 0, SPARI_UPTO_POSITION, m->xr, q, NULL, NULL,
                      fluid->reference);
     free(q);
     return SPAR_OK;
 }
 
-int64_t spari_fluid_room(const spar_fluid *fluid) {
+int64_t spari_fluid_workspace_size(const spar_fluid *fluid) {
     const spar_member *m = fluid->member;
-    int64_t gather = spari_gather_room(m->elements, m->per_element);
+    int64_t gather = spari_gather_workspace_size(m->elements, m->per_element);
     int64_t pull = (fluid->field[1] ? SPARI_PULL_BOTH : SPARI_PULL_ONE) * SPARI_ROW;
     return gather > pull ? gather : pull;
 }
 
-int spari_fluid_keep_room(const spar_fluid *fluid) {
+int spari_fluid_reserve_workspace(const spar_fluid *fluid) {
     spar_session *s = fluid->member->session;
-    int64_t room = spari_fluid_room(fluid);
-    return spari_room_keep(&s->room, room) || spari_crew_keep(s->crew, room);
+    int64_t doubles = spari_fluid_workspace_size(fluid);
+    return spari_workspace_reserve(&s->workspace, doubles) || spari_thread_pool_reserve(s->pool, doubles);
 }
 
 double *spari_fluid_work(const spar_fluid *fluid, int worker) {
     const spar_session *s = fluid->member->session;
-    int64_t room = spari_fluid_room(fluid);
-    double *work = worker == 0 ? spari_room_at(&s->room, room) : spari_crew_room(s->crew, worker, room);
-    spari_poison(work, room);
+    int64_t doubles = spari_fluid_workspace_size(fluid);
+    double *work = worker == 0 ? spari_workspace_at(&s->workspace, doubles)
+                               : spari_thread_pool_workspace(s->pool, worker, doubles);
+    spari_poison(work, doubles);
     return work;
 }
 
@@ -91,7 +92,7 @@ void spari_fluid_series(const double *c, int modes, int offset, int n, double xi
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]) {
     int modes = fluid->member->per_element;
     const double *c = fluid->reference + (ptrdiff_t)element * modes * SPARI_FIELDS;
-    spari_fluid_series(c, modes, SPARI_F_PLACE, 3, xi, x);
+    spari_fluid_series(c, modes, SPARI_F_POSITION, 3, xi, x);
     spari_fluid_series(c, modes, SPARI_F_QUAT, 4, xi, q);
     spari_quat_normalise(q);
 }
@@ -115,26 +116,26 @@ static int locate(const spar_member *m, double xi, double *local) {
 }
 
 /* Nearest points of a set, by node. */
-typedef struct feet {
+typedef struct points_found {
     int *element;
     double *xi, *con;
     uint8_t *flags;
-} feet;
+} points_found;
 
-static void free_feet(feet *f) {
+static void free_points_found(points_found *f) {
     free(f->element);
     free(f->xi);
     free(f->con);
     free(f->flags);
 }
 
-static int alloc_feet(feet *f, int64_t n) {
-    *f = (feet){spari_zalloc(n, sizeof *f->element), spari_zalloc(n, sizeof *f->xi),
-                spari_zalloc(3 * n, sizeof *f->con), spari_zalloc(n, sizeof *f->flags)};
+static int alloc_points_found(points_found *f, int64_t n) {
+    *f = (points_found){spari_zalloc(n, sizeof *f->element), spari_zalloc(n, sizeof *f->xi),
+                        spari_zalloc(3 * n, sizeof *f->con), spari_zalloc(n, sizeof *f->flags)};
     return f->element && f->xi && f->con && f->flags ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-static void feet_of_sections(const spar_fluid *fluid, const spari_node_set *set, feet *f) {
+static void points_of_sections(const spar_fluid *fluid, const spari_node_set *set, points_found *f) {
     for (int64_t j = 0; j < set->n; j++) {
         double x[3], q[4];
         f->element[j] = locate(fluid->member, set->xi[j], &f->xi[j]);
@@ -143,7 +144,7 @@ static void feet_of_sections(const spar_fluid *fluid, const spari_node_set *set,
     }
 }
 
-static void flag_far(const spar_fluid *fluid, int64_t n, feet *f, int64_t *far) {
+static void flag_far(const spar_fluid *fluid, int64_t n, points_found *f, int64_t *far) {
     for (int64_t j = 0; j < n; j++) {
         if (fluid->max_distance > 0 && spari_norm(f->con + 3 * j) > fluid->max_distance) {
             f->flags[j] |= SPAR_MAP_FAR;
@@ -153,13 +154,13 @@ static void flag_far(const spar_fluid *fluid, int64_t n, feet *f, int64_t *far) 
     }
 }
 
-double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *s) {
+double *spari_fluid_positions(const spar_fluid *fluid, const spari_nodes *s) {
     double *x = spari_zalloc(3 * s->n, sizeof *x);
     for (int64_t p = 0; x && p < s->n; p++) {
-        double foot[3], q[4];
-        spari_fluid_reference(fluid, spari_nodes_element(s, p), spari_nodes_xi(s, p), foot, q);
+        double nearest[3], q[4];
+        spari_fluid_reference(fluid, spari_nodes_element(s, p), spari_nodes_xi(s, p), nearest, q);
         for (int i = 0; i < 3; i++) {
-            x[3 * spari_nodes_node(s, p) + i] = foot[i] + s->con[i][p];
+            x[3 * spari_nodes_node(s, p) + i] = nearest[i] + s->con[i][p];
         }
     }
     return x;
@@ -175,20 +176,20 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
     const spar_member *m = fluid->member;
     const spari_node_set *set = &fluid->set[which];
     int64_t far[2] = {0, 0}, n = set->pending ? set->n : set->nodes->n;
-    feet f;
-    double *again = set->pending ? NULL : spari_fluid_places(fluid, set->nodes);
+    points_found f;
+    double *again = set->pending ? NULL : spari_fluid_positions(fluid, set->nodes);
     *made = spari_nodes_create(n, m->elements, m->per_element);
-    if (alloc_feet(&f, n) != SPAR_OK || !*made || !(set->pending || again)) {
-        free_feet(&f);
+    if (alloc_points_found(&f, n) != SPAR_OK || !*made || !(set->pending || again)) {
+        free_points_found(&f);
         free(again);
         return no_memory_to_map(fluid, caller, n, which);
     }
     const double *x = set->pending ? set->x : again;
     if (set->sections) {
-        feet_of_sections(fluid, set, &f);
+        points_of_sections(fluid, set, &f);
     } else {
-        if (spari_line_project(line, m->session->crew, fluid->method, n, x, f.element, f.xi, f.con, f.flags)) {
-            free_feet(&f);
+        if (spari_line_project(line, m->session->pool, fluid->method, n, x, f.element, f.xi, f.con, f.flags)) {
+            free_points_found(&f);
             free(again);
             return no_memory_to_map(fluid, caller, n, which);
         }
@@ -197,9 +198,9 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
         }
         flag_far(fluid, n, &f, far);
     }
-    (*made)->crew = &m->session->crew;
+    (*made)->pool = &m->session->pool;
     spari_nodes_put(*made, f.element, f.xi, f.con, f.flags);
-    free_feet(&f);
+    free_points_found(&f);
     free(again);
     if (far[0] > 0 && m->session->far_refuse) {
         return spari_fluid_refuse(
@@ -255,7 +256,7 @@ static void take_nodes(spari_node_set *set, spari_nodes *nodes) {
 }
 
 int spar_fluid_map(spar_fluid *fluid) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     const spar_member *m = fluid->member;
     SPARI_FLUID_REQUIRE(fluid, m->committed, SPAR_ERR_STATE,
@@ -339,7 +340,7 @@ int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int6
 }
 
 int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *distance, int *flags) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     const spari_nodes *s;
@@ -362,7 +363,7 @@ int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *d
 }
 
 int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     const spari_nodes *s;
@@ -385,7 +386,7 @@ int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, doubl
 }
 
 int spar_fluid_get_basis(const spar_fluid *fluid, int which, int64_t *first_node, double *phi) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     const spari_nodes *s;

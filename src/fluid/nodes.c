@@ -81,7 +81,7 @@ void spari_taking_free(spari_taking *t) {
     free(t->bins);
     free(t->end_bins);
     free(t->end);
-    free(t->places);
+    free(t->positions);
     free(t->sorted);
     free(t->found);
     free(t);
@@ -298,13 +298,13 @@ static int set_places(spar_fluid *fluid, int which, int64_t n, const double *x, 
 }
 
 int spar_fluid_set_motion_nodes(spar_fluid *fluid, int64_t n, const double *x) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     return set_places(fluid, SPAR_NODES_MOTION, n, x, __func__);
 }
 
 int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     return set_places(fluid, SPAR_NODES_FORCE, n, x, __func__);
 }
@@ -339,7 +339,7 @@ static int copy_sections(const spar_fluid *fluid, int64_t n, const double *xi, c
 }
 
 int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     spari_node_set made;
     SPARI_TRY(copy_sections(fluid, n, xi, offset, &made, __func__));
@@ -353,7 +353,7 @@ int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, cons
 }
 
 int spar_fluid_set_motion_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     spari_node_set made;
     SPARI_TRY(copy_sections(fluid, n, xi, offset, &made, __func__));
@@ -363,7 +363,7 @@ int spar_fluid_set_motion_sections(spar_fluid *fluid, int64_t n, const double *x
 }
 
 int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, method == SPAR_PROJECT_BOUNDED || method == SPAR_PROJECT_RPOLY, SPAR_ERR_ARGUMENT,
@@ -376,7 +376,7 @@ int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance
 }
 
 int spar_fluid_set_interpolation(spar_fluid *fluid, int kind) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, kind == SPAR_INTERPOLATE_NODAL || kind == SPAR_INTERPOLATE_CONSISTENT, SPAR_ERR_ARGUMENT,

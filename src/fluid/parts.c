@@ -64,7 +64,7 @@ static int make_sums(spari_parts *p, int kind, int64_t n) {
     return SPAR_OK;
 }
 
-static int make_room(spar_fluid *fluid, int64_t n, int with_moment) {
+static int reserve_parts(spar_fluid *fluid, int64_t n, int with_moment) {
     SPARI_TRY(spari_parts_prepare(fluid));
     spari_parts *p = fluid->parts;
     if (p->n[FORCE] != n) {
@@ -107,7 +107,7 @@ void spari_parts_see(spari_parts *p, double theta, int at_end) {
 
 int spari_parts_add(spar_fluid *fluid, int64_t n, double theta, spari_source force, spari_source moment) {
     const int has_moment = moment.d || moment.f;
-    SPARI_TRY(make_room(fluid, n, has_moment));
+    SPARI_TRY(reserve_parts(fluid, n, has_moment));
     spari_parts *p = fluid->parts;
     double last = theta > p->theta ? p->theta : 0; /* otherwise the fluid repeats the step */
     int before = last > 0, had_moment = before && p->moment;

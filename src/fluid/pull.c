@@ -27,18 +27,18 @@ static void blend_motion(const spar_member *m, int64_t first, double theta, doub
     const double *q0 = m->now.q + 7 * first, *q1 = m->after.q + 7 * first, *a0 = spari_means_seen(m, 0),
                  *a1 = spari_means_seen(m, 1);
     for (int l = 0; l < m->per_element; l++, q0 += 7, q1 += 7) {
-        double back[4], turn[4], psi[3];
+        double back[4], rotation[4], psi[3];
         for (int i = 0; i < 3; i++) {
             q[l][i] = (1 - theta) * q0[i] + theta * q1[i];
         }
         spari_quat_conj(q0 + 3, back);
-        spari_quat_mul(back, q1 + 3, turn);
-        spari_quat_log(turn, psi);
+        spari_quat_mul(back, q1 + 3, rotation);
+        spari_quat_log(rotation, psi);
         for (int i = 0; i < 3; i++) {
             psi[i] *= theta;
         }
-        spari_quat_exp(psi, turn);
-        spari_quat_mul(q0 + 3, turn, q[l] + 3);
+        spari_quat_exp(psi, rotation);
+        spari_quat_mul(q0 + 3, rotation, q[l] + 3);
         spari_quat_normalise(q[l] + 3);
         for (int i = 0; i < 6; i++) {
             int64_t k = 6 * (first + l) + i;
@@ -96,7 +96,7 @@ static int need_second(spar_fluid *fluid, const char *caller) {
         return SPAR_OK;
     }
     fluid->field[1] = spari_zalloc(m->nodes * SPARI_FIELDS, sizeof *fluid->field[1]);
-    if (!fluid->field[1] || spari_fluid_keep_room(fluid)) {
+    if (!fluid->field[1] || spari_fluid_reserve_workspace(fluid)) {
         free(fluid->field[1]);
         fluid->field[1] = NULL;
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the motion at two times");
@@ -148,7 +148,7 @@ static int what_of(const wanted *w) {
     if (is_wanted(w->accel) || is_wanted(w->alpha)) {
         return SPARI_UPTO_ACCEL | SPARI_POSES;
     }
-    return poses | (is_wanted(w->v) || is_wanted(w->omega) ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE);
+    return poses | (is_wanted(w->v) || is_wanted(w->omega) ? SPARI_UPTO_RATE : SPARI_UPTO_POSITION);
 }
 
 /* Tiles of the one or two states that give a time, and of the reference if poses are requested. */
@@ -238,7 +238,7 @@ static void emit_orientations(const spar_fluid *fluid, const spari_node_set *set
     }
     int count = spari_tile_count(s, first);
     double q[4], m[9];
-    (void)spari_tile_motion(s, first, fluid->reference, 0, SPARI_UPTO_PLACE | SPARI_POSES, t->reference);
+    (void)spari_tile_motion(s, first, fluid->reference, 0, SPARI_UPTO_POSITION | SPARI_POSES, t->reference);
     for (int i = 0; i < count; i++) {
         int64_t node = spari_nodes_node(s, first + i);
         if (i == 0 || s->per_element > 1) { /* otherwise all have the rotation of the one node */
@@ -299,7 +299,7 @@ static states tiles_of(const spar_fluid *fluid, int worker, int n, const double 
 }
 
 /* A weighted node has no unique rotation. */
-static int check_turns(const spar_fluid *fluid, int which, const wanted *w, const char *caller) {
+static int check_rotations(const spar_fluid *fluid, int which, const wanted *w, const char *caller) {
     int turns = is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) || is_wanted(w->alpha);
     if (turns && spari_fluid_set(fluid, which)->weight) {
         return spari_fluid_refuse(fluid, SPAR_ERR_UNSUPPORTED, caller,
@@ -316,7 +316,7 @@ typedef struct pulling {
     const wanted *wanted;
     int what, states, direct;
     double share[2];
-    double least[SPARI_CREW_MOST]; /* smallest |Q|^2 of each thread */
+    double least[SPARI_MOST_THREADS]; /* smallest |Q|^2 of each thread */
 } pulling;
 
 static void pull_tile(pulling *p, int64_t first, const states *t, double *least) {
@@ -329,7 +329,7 @@ static void pull_tile(pulling *p, int64_t first, const states *t, double *least)
     for (int i = 0; i < t->n && p->set->weight; i++) {
         spari_fluid_weigh(p->set, first, p->what & SPARI_UPTO, t->buf[i]);
     }
-    emit(s, first, t, SPARI_R_PLACE, w->x, w->layout);
+    emit(s, first, t, SPARI_R_POSITION, w->x, w->layout);
     emit(s, first, t, SPARI_R_RATE, w->v, w->layout);
     emit(s, first, t, SPARI_R_OMEGA, w->omega, w->layout);
     emit(s, first, t, SPARI_R_ACCEL, w->accel, w->layout);
@@ -365,7 +365,7 @@ static int is_direct(const pulling *p) {
 
 /* All pulls: the nodes of one set at t^n + theta dt. */
 static int pull_set(const spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
-    spari_crew *crew = fluid->member->session->crew;
+    spari_thread_pool *pool = fluid->member->session->pool;
     pulling p = {.fluid = fluid, .set = spari_fluid_set(fluid, which), .wanted = w, .what = what_of(w)};
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));
@@ -379,11 +379,11 @@ static int pull_set(const spar_fluid *fluid, int which, double theta, const want
         return spari_fluid_check_rotation(fluid, spari_carry(s, fluid->field[0], w->x.d, w->v.d), caller);
     }
     p.direct = is_direct(&p);
-    for (int k = 0; k < spari_crew_threads(crew); k++) {
+    for (int k = 0; k < spari_thread_pool_threads(pool); k++) {
         p.least[k] = HUGE_VAL;
     }
-    spari_crew_run(crew, spari_slabs(s->n, SPARI_SLAB), pull_slab, &p);
-    for (int k = 1; k < spari_crew_threads(crew); k++) {
+    spari_thread_pool_run(pool, spari_slabs(s->n, SPARI_SLAB), pull_slab, &p);
+    for (int k = 1; k < spari_thread_pool_threads(pool); k++) {
         p.least[0] = fmin(p.least[0], p.least[k]);
     }
     return spari_fluid_check_rotation(fluid, p.least[0], caller);
@@ -393,7 +393,7 @@ static int pull_set(const spar_fluid *fluid, int which, double theta, const want
 static int pull_nodes(spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
     const spari_nodes *s;
     wanted left = *w;
-    SPARI_TRY(check_turns(fluid, which, w, caller));
+    SPARI_TRY(check_rotations(fluid, which, w, caller));
     left.layout = spari_fluid_layout(fluid, which);
     fluid->asked |= parts_of(w, theta);
     theta = spari_fluid_time(fluid, theta);
@@ -415,14 +415,14 @@ static int pull_motion(spar_fluid *fluid, double theta, const wanted *w, const c
 }
 
 int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.x.d = x, .v.d = v};
     return pull_motion(fluid, theta, &w, __func__);
 }
 
 int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.x.f = x, .v.f = v};
     return pull_motion(fluid, theta, &w, __func__);
@@ -433,7 +433,7 @@ static void longest_way(const spari_nodes *s, int64_t first, const states *t, do
     int count = spari_tile_count(s, first);
     for (int i = 0; i < count; i++) {
         double way = 0;
-        for (int k = SPARI_R_PLACE; k < SPARI_R_PLACE + 3; k++) {
+        for (int k = SPARI_R_POSITION; k < SPARI_R_POSITION + 3; k++) {
             double d = t->buf[1][k][i] - t->buf[0][k][i];
             way += d * d;
         }
@@ -446,7 +446,7 @@ static void longest_way(const spari_nodes *s, int64_t first, const states *t, do
 }
 
 int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     double square = 0, least = HUGE_VAL;
     const spari_nodes *s;
@@ -454,17 +454,17 @@ int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_MOTION, __func__, &s));
     SPARI_TRY(need_second(fluid, __func__));
     if (s && s->n > 0) {
-        fill_one(fluid, 0, SPARI_UPTO_PLACE, fluid->field[0]);
-        fill_one(fluid, 1, SPARI_UPTO_PLACE, fluid->field[1]);
+        fill_one(fluid, 0, SPARI_UPTO_POSITION, fluid->field[0]);
+        fill_one(fluid, 1, SPARI_UPTO_POSITION, fluid->field[1]);
     }
     for (int64_t first = 0; s && first < s->n; first += SPARI_TILE) {
         const states t = tiles_of(fluid, 0, 2, (const double[2]){1, 0});
         for (int i = 0; i < t.n; i++) {
-            double met = spari_tile_motion(s, first, fluid->field[i], fluid->consistent, SPARI_UPTO_PLACE, t.buf[i]);
+            double met = spari_tile_motion(s, first, fluid->field[i], fluid->consistent, SPARI_UPTO_POSITION, t.buf[i]);
             least = fmin(least, met);
         }
         for (int i = 0; i < t.n && fluid->set[SPAR_NODES_MOTION].weight; i++) {
-            spari_fluid_weigh(&fluid->set[SPAR_NODES_MOTION], first, SPARI_UPTO_PLACE, t.buf[i]);
+            spari_fluid_weigh(&fluid->set[SPAR_NODES_MOTION], first, SPARI_UPTO_POSITION, t.buf[i]);
         }
         if (t.buf[1]) { /* see need_second */
             longest_way(s, first, &t, &square, &farthest);
@@ -481,14 +481,14 @@ int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
 }
 
 int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.q.d = q, .omega.d = omega, .accel.d = accel};
     return pull_motion(fluid, theta, &w, __func__);
 }
 
 int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.q.f = q, .omega.f = omega, .accel.f = accel};
     return pull_motion(fluid, theta, &w, __func__);
@@ -496,14 +496,14 @@ int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, floa
 
 int spar_fluid_pull_poses(spar_fluid *fluid, double theta, double *x, double *q, double *v, double *omega,
                           double *accel, double *alpha) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.x.d = x, .q.d = q, .v.d = v, .omega.d = omega, .accel.d = accel, .alpha.d = alpha};
     return pull_motion(fluid, theta, &w, __func__);
 }
 
 int spar_fluid_pull_force_places(spar_fluid *fluid, double theta, double *x, double *v, double *q) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     wanted w = {.x.d = x, .v.d = v, .q.d = q};
     return pull_nodes(fluid, SPAR_NODES_FORCE, theta, &w, __func__);
@@ -520,7 +520,7 @@ static int check_convention(const spar_fluid *fluid, int convention, const char 
 }
 
 int spar_fluid_pull_matrices(spar_fluid *fluid, double theta, int convention, double *matrix) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_convention(fluid, convention, __func__));
     SPARI_FLUID_REQUIRE(fluid, matrix || spari_fluid_set(fluid, SPAR_NODES_MOTION)->n == 0, SPAR_ERR_ARGUMENT,
@@ -571,7 +571,7 @@ static const char *wrong_with(const double m[9], const double right[9]) {
 }
 
 int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *matrix) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_convention(fluid, convention, __func__));
     const spari_nodes *s;
@@ -581,7 +581,7 @@ int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *m
     double *right = spari_zalloc(9 * n, sizeof *right);
     SPARI_FLUID_REQUIRE(fluid, right, SPAR_ERR_MEMORY, "no memory for %lld matrices", (long long)n);
     wanted w = {.matrix.d = right, .convention = convention};
-    int status = check_turns(fluid, SPAR_NODES_MOTION, &w, __func__);
+    int status = check_rotations(fluid, SPAR_NODES_MOTION, &w, __func__);
     status = status != SPAR_OK ? status : pull_set(fluid, SPAR_NODES_MOTION, 1, &w, __func__);
     for (int64_t j = 0; j < n && status == SPAR_OK; j++) {
         const char *why = wrong_with(matrix + 9 * j, right + 9 * j);
@@ -594,17 +594,17 @@ int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *m
     return status;
 }
 
-int spar_fluid_get_places(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *foot) {
-    SPARI_QUIET;
+int spar_fluid_get_places(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *nearest) {
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     wanted w = {.x.d = x, .v.d = v, .q.d = q};
     SPARI_TRY(pull_set(fluid, which, 1, &w, __func__)); /* also fills the coefficients of the motion */
     const spari_nodes *s = spari_fluid_set(fluid, which)->nodes;
-    for (int64_t p = 0; s && foot && p < s->n; p++) {
+    for (int64_t p = 0; s && nearest && p < s->n; p++) {
         const double *c = fluid->field[0] + (ptrdiff_t)spari_nodes_element(s, p) * s->per_element * SPARI_FIELDS;
-        spari_fluid_series(c, s->per_element, SPARI_F_PLACE, 3, spari_nodes_xi(s, p),
-                           foot + 3 * spari_nodes_node(s, p));
+        spari_fluid_series(c, s->per_element, SPARI_F_POSITION, 3, spari_nodes_xi(s, p),
+                           nearest + 3 * spari_nodes_node(s, p));
     }
     return SPAR_OK;
 }

@@ -49,13 +49,13 @@ static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, con
 }
 
 int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *force) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     return pull_forces(fluid, theta, force, NULL, __func__);
 }
 
 int spar_fluid_pull_forces_f32(spar_fluid *fluid, double theta, float *force) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     return pull_forces(fluid, theta, NULL, force, __func__);
 }
@@ -160,7 +160,7 @@ static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source fo
     }
     if (audit || !reproducible) {
         spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent,
-                         audit ? SPARI_UPTO_RATE : SPARI_UPTO_PLACE, m->xr, m->after.q, m->after.v, m->after.a,
+                         audit ? SPARI_UPTO_RATE : SPARI_UPTO_POSITION, m->xr, m->after.q, m->after.v, m->after.a,
                          fluid->field[0]);
         least = spari_gather_loads(s, fluid->modal, fluid->field[0], fluid->consistent, m->after.q, force, moment,
                                    spari_fluid_work(fluid, 0), fluid->load_new, audit);
@@ -269,7 +269,7 @@ static int push_forces(spar_fluid *fluid, spari_source force, spari_source momen
 }
 
 int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     const spari_layout *layout = spari_fluid_layout(fluid, SPAR_NODES_FORCE);
     const spari_source f = {.d = force, .layout = layout}, m = {.d = moment, .layout = layout};
@@ -277,7 +277,7 @@ int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double 
 }
 
 int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const float *moment) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     const spari_layout *layout = spari_fluid_layout(fluid, SPAR_NODES_FORCE);
     const spari_source f = {.f = force, .layout = layout}, m = {.f = moment, .layout = layout};
@@ -336,7 +336,7 @@ static int push_parts(spar_fluid *fluid, const spari_nodes *s, double theta, con
 }
 
 int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_FLUID_REQUIRE(fluid, theta > 0 && theta <= 1, SPAR_ERR_ARGUMENT, "theta is %g; give a number in (0, 1]",
                         theta);
@@ -352,13 +352,13 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
     int moments = (fluid->member->effects & SPAR_EFFECT_FLUID_MOMENT) != 0;
     const spari_layout *layout = spari_fluid_layout(fluid, SPAR_NODES_FORCE);
     const spari_source f = {.d = force, .layout = layout}, m = {.d = moments ? moment : NULL, .layout = layout};
-    int room = spari_parts_add(fluid, s->n, theta, f, m);
-    SPARI_FLUID_REQUIRE(fluid, room == SPAR_OK, room, "no memory for loads over parts of a step");
+    int failed = spari_parts_add(fluid, s->n, theta, f, m);
+    SPARI_FLUID_REQUIRE(fluid, failed == SPAR_OK, failed, "no memory for loads over parts of a step");
     return push_parts(fluid, s, theta, __func__);
 }
 
 int spar_fluid_get_audit(const spar_fluid *fluid, int64_t capacity, double *audit) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_FLUID_REQUIRE(fluid, capacity >= 0 && capacity <= SPARI_MOST, SPAR_ERR_ARGUMENT,
                         "a capacity of %lld; give the length of the array, 0 to 2^40", (long long)capacity);
@@ -409,7 +409,7 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
     }
 }
 
-void spari_fluid_settle(spar_fluid *fluid) {
+void spari_fluid_commit_state(spar_fluid *fluid) {
     spari_history *h = fluid->history;
     spari_fluid_forget_refusal(fluid);
     spari_parts_begin(fluid);

@@ -20,7 +20,7 @@ static int unmap(const spar_fluid *old, int which, spari_node_set *set) {
     }
     *set = (spari_node_set){.pending = 1, .sections = from->sections, .n = s->n};
     if (!from->sections) {
-        set->x = spari_fluid_places(old, s);
+        set->x = spari_fluid_positions(old, s);
         return set->x ? SPAR_OK : no_memory_for_trial(old);
     }
     set->x = spari_zalloc(3 * s->n, sizeof *set->x);
@@ -30,8 +30,8 @@ static int unmap(const spar_fluid *old, int which, spari_node_set *set) {
     }
     for (int64_t p = 0; p < s->n; p++) {
         int64_t j = spari_nodes_node(s, p);
-        double foot[3], q[4], con[3] = {s->con[0][p], s->con[1][p], s->con[2][p]};
-        spari_fluid_frame(old, from, p, foot, q);
+        double nearest[3], q[4], con[3] = {s->con[0][p], s->con[1][p], s->con[2][p]};
+        spari_fluid_frame(old, from, p, nearest, q);
         spari_rotate_back(q, con, set->x + 3 * j);
         set->xi[j] = fmin(fmax(spari_member_xi(old->member, spari_nodes_element(s, p), spari_nodes_xi(s, p)), -1), 1);
     }
@@ -46,10 +46,10 @@ static int keep_frames(spar_fluid *f, const spar_fluid *old, int which) {
     if (!from->sections || !from->nodes) {
         return SPAR_OK;
     }
-    double *place = spari_fluid_places(old, from->nodes);
+    double *position = spari_fluid_positions(old, from->nodes);
     to->frame = spari_zalloc(4 * to->n, sizeof *to->frame);
-    if (!place || !to->frame) {
-        free(place);
+    if (!position || !to->frame) {
+        free(position);
         return no_memory_for_trial(f);
     }
     for (int64_t p = 0; p < to->n; p++) {
@@ -58,13 +58,13 @@ static int keep_frames(spar_fluid *f, const spar_fluid *old, int which) {
     }
     for (int64_t p = 0; p < to->n; p++) {
         int64_t j = spari_nodes_node(to->nodes, p);
-        double foot[3], q[4];
-        spari_fluid_reference(f, spari_nodes_element(to->nodes, p), spari_nodes_xi(to->nodes, p), foot, q);
+        double nearest[3], q[4];
+        spari_fluid_reference(f, spari_nodes_element(to->nodes, p), spari_nodes_xi(to->nodes, p), nearest, q);
         for (int i = 0; i < 3; i++) {
-            to->nodes->con[i][p] = place[3 * j + i] - foot[i];
+            to->nodes->con[i][p] = position[3 * j + i] - nearest[i];
         }
     }
-    free(place);
+    free(position);
     return SPAR_OK;
 }
 
@@ -159,7 +159,7 @@ static int copy_bins(spar_fluid *f, const spar_fluid *old) {
     return SPAR_OK;
 }
 
-int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid **old) {
+int spari_fluid_rebuild(spar_fluid *fluid, const spar_member *before, spar_fluid **old) {
     spar_fluid *copy = spari_zalloc(1, sizeof *copy), was;
     *old = NULL;
     if (!copy) {
@@ -176,25 +176,25 @@ int spari_fluid_remake(spar_fluid *fluid, const spar_member *before, spar_fluid 
     spar_member as_it_was = *before;
     was.member = &as_it_was; /* the map was made on this line */
     const spari_mesh from = spari_member_mesh(before), to = spari_member_mesh(fluid->member);
-    SPARI_TRY(begin(fluid, &was, spari_mesh_alike(from, to)));
+    SPARI_TRY(begin(fluid, &was, spari_mesh_is_equal(from, to)));
     spari_resample_loads(from, to, was.load, fluid->load);
     spari_resample_loads(from, to, was.load_accepted, fluid->load_accepted);
     if (was.parts && fluid->parts) {
         fluid->parts->ended = was.parts->ended;
         spari_resample_loads(from, to, was.parts->end[0], fluid->parts->end[0]);
     }
-    return spari_mesh_alike(from, to) ? copy_bins(fluid, &was) : SPAR_OK;
+    return spari_mesh_is_equal(from, to) ? copy_bins(fluid, &was) : SPAR_OK;
 }
 
 /* ---- reproducible sums on other nodes ---- */
 
 enum { CARRIED = 3 }; /* load, load_accepted, end[0] of parts */
 
-int64_t spari_fluid_carried_size(const spar_member *before) {
+int64_t spari_fluid_moved_size(const spar_member *before) {
     return CARRIED * 6 * before->nodes;
 }
 
-void spari_fluid_add_carried(const spar_fluid *old, const spar_member *before, spari_bins *sums) {
+void spari_fluid_add_moved(const spar_fluid *old, const spar_member *before, spari_bins *sums) {
     const double *value[CARRIED] = {old->load, old->load_accepted, old->parts ? old->parts->end[0] : NULL};
     const spari_bins *bins[CARRIED] = {old->bins[SPARI_OF_PUSHED], old->bins[SPARI_OF_ACCEPTED],
                                        old->parts ? old->bins[SPARI_OF_BEGIN] : NULL};
@@ -210,7 +210,7 @@ void spari_fluid_add_carried(const spar_fluid *old, const spar_member *before, s
     }
 }
 
-void spari_fluid_put_carried(spar_fluid *f, const spar_member *before, const double *values) {
+void spari_fluid_put_moved(spar_fluid *f, const spar_member *before, const double *values) {
     double *to[CARRIED] = {f->load, f->load_accepted, f->parts ? f->parts->end[0] : NULL};
     int64_t n = 6 * before->nodes;
     for (int k = 0; k < CARRIED; k++) {

@@ -106,9 +106,9 @@ static double *put_load_pair(double *at, int64_t n, const double *const value[2]
 static int put_by_node(const spar_fluid *fluid, const char *call, const spari_by_node *by, double *at) {
     const spari_history *h = fluid->history;
     const spari_states *t = fluid->states;
-    double *places = spari_fluid_places(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes);
-    SPARI_FLUID_REQUIRE_OF(fluid, call, places, SPAR_ERR_MEMORY, "no memory to save what it keeps by node");
-    const double *all[SPARI_FLUID_BLOCKS] = {places};
+    double *positions = spari_fluid_positions(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes);
+    SPARI_FLUID_REQUIRE_OF(fluid, call, positions, SPAR_ERR_MEMORY, "no memory to save what it keeps by node");
+    const double *all[SPARI_FLUID_BLOCKS] = {positions};
     int blocks = 1;
     if (h) {
         const double *forces[] = {h->after, h->past[0], h->past[1], h->past[2]};
@@ -127,7 +127,7 @@ static int put_by_node(const spar_fluid *fluid, const char *call, const spari_by
         }
         at += n;
     }
-    free(places);
+    free(positions);
     return SPAR_OK;
 }
 
@@ -187,7 +187,7 @@ static void sum_heads(spari_taking *t, int count, const double *const *heads) {
 }
 
 /* Allocates nodal loads. */
-static int take_load_room(spar_fluid *fluid, const char *call, spari_taking *t) {
+static int alloc_loads(spar_fluid *fluid, const char *call, spari_taking *t) {
     int64_t n = 12 * fluid->member->nodes;
     if (t->head[S_PARTS] != 0 && spari_parts_prepare(fluid) != SPAR_OK) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for loads over parts of a step");
@@ -207,8 +207,8 @@ static int take_load_room(spar_fluid *fluid, const char *call, spari_taking *t) 
 }
 
 /* Sort key of a node: its height along a direction in which no two nodes of a regular grid coincide. */
-static double height_of(const double *place) {
-    return place[0] + 0.7548776662466927 * place[1] + 0.5698402909980532 * place[2];
+static double height_of(const double *position) {
+    return position[0] + 0.7548776662466927 * position[1] + 0.5698402909980532 * position[2];
 }
 
 static int compare_heights(const void *a, const void *b) {
@@ -218,19 +218,19 @@ static int compare_heights(const void *a, const void *b) {
 }
 
 /* Allocates data per node and the search arrays. */
-static int take_nodes_room(spar_fluid *fluid, const char *call, spari_taking *t, const spari_nodes *s) {
+static int alloc_nodes(spar_fluid *fluid, const char *call, spari_taking *t, const spari_nodes *s) {
     int kept = t->head[S_KEPT] != 0, width = (int)t->head[S_WIDTH];
     t->n = s->n;
     t->history = kept ? spari_history_create(s->n, fluid->member->session->predictor) : NULL;
     t->states = width > 0 ? spari_states_create(s->n, width) : NULL;
-    t->places = spari_fluid_places(fluid, s);
+    t->positions = spari_fluid_positions(fluid, s);
     t->sorted = spari_zalloc(s->n, sizeof *t->sorted);
     t->found = spari_zalloc(s->n, 1);
     SPARI_FLUID_REQUIRE_OF(fluid, call,
-                           (t->history || !kept) && (t->states || width == 0) && t->places && t->sorted && t->found,
+                           (t->history || !kept) && (t->states || width == 0) && t->positions && t->sorted && t->found,
                            SPAR_ERR_MEMORY, "no memory for what it keeps by node");
     for (int64_t i = 0; i < s->n; i++) {
-        t->sorted[i] = t->places + 3 * i;
+        t->sorted[i] = t->positions + 3 * i;
     }
     qsort(t->sorted, (size_t)s->n, sizeof *t->sorted, compare_heights);
     return SPAR_OK;
@@ -260,12 +260,12 @@ int spari_fluid_take(spar_fluid *fluid, const char *call, int count, const doubl
     sum_heads(t, count, heads);
     SPARI_FLUID_REQUIRE_OF(fluid, call, t->head[S_MAPPED] == 0 || fluid->load, SPAR_ERR_STATE,
                            "it is not mapped yet; give its nodes and call spar_fluid_map first");
-    SPARI_TRY(take_load_room(fluid, call, t));
+    SPARI_TRY(alloc_loads(fluid, call, t));
     SPARI_FLUID_REQUIRE_OF(
         fluid, call, !fluid->history || !s || s->n == 0 || t->head[S_KEPT] != 0, SPAR_ERR_ARGUMENT,
         "node forces are asked for (SPAR_EFFECT_FLUID_HISTORY), and the saved run did not keep them");
     SPARI_TRY(check_widths(fluid, call, count, heads, s));
-    return (t->head[S_KEPT] != 0 || t->head[S_WIDTH] != 0) && s ? take_nodes_room(fluid, call, t, s) : SPAR_OK;
+    return (t->head[S_KEPT] != 0 || t->head[S_WIDTH] != 0) && s ? alloc_nodes(fluid, call, t, s) : SPAR_OK;
 }
 
 /* ---- loads ---- */
@@ -343,9 +343,9 @@ int spari_fluid_take_loads(spar_fluid *fluid, const double *state, int takes_loa
 
 /* Distance within which a saved node matches. Positions are computed from nearest points and lever arms, which round
    differently on another processor or with other nodes. */
-static double place_reach(const spar_fluid *fluid, const double *place) {
+static double position_tolerance(const spar_fluid *fluid, const double *position) {
     return 1e-9 * spari_member_length(fluid->member) +
-           1e-12 * fmax(fabs(place[0]), fmax(fabs(place[1]), fabs(place[2])));
+           1e-12 * fmax(fabs(position[0]), fmax(fabs(position[1]), fabs(position[2])));
 }
 
 static double distance_between(const double *a, const double *b) {
@@ -353,9 +353,9 @@ static double distance_between(const double *a, const double *b) {
 }
 
 /* Nearest node within this distance that has been found already, or not yet; -1: none. */
-static int64_t find_node(const spar_fluid *fluid, const double *place, int found) {
+static int64_t find_node(const spar_fluid *fluid, const double *position, int found) {
     const spari_taking *t = fluid->taking;
-    double nearest = place_reach(fluid, place), height = height_of(place), most = 3 * nearest;
+    double nearest = position_tolerance(fluid, position), height = height_of(position), most = 3 * nearest;
     int64_t low = 0, high = t->n, n = high, best = -1;
     while (low < high) {
         int64_t middle = low + (high - low) / 2;
@@ -366,8 +366,8 @@ static int64_t find_node(const spar_fluid *fluid, const double *place, int found
         }
     }
     for (; low < n && height_of(t->sorted[low]) <= height + most; low++) {
-        int64_t i = (t->sorted[low] - t->places) / 3;
-        double distance = distance_between(t->sorted[low], place);
+        int64_t i = (t->sorted[low] - t->positions) / 3;
+        double distance = distance_between(t->sorted[low], position);
         if (t->found[i] == found && distance <= nearest && (best < 0 || distance < nearest)) {
             best = i;
             nearest = distance;
@@ -377,11 +377,11 @@ static int64_t find_node(const spar_fluid *fluid, const double *place, int found
 }
 
 /* Data of one node in the blocks after the positions: its forces, then the host's numbers. */
-typedef struct taken_node {
+typedef struct loaded_node {
     const double *force[4], *state[2];
-} taken_node;
+} loaded_node;
 
-static void put_node(spari_taking *t, int64_t to, const taken_node *from) {
+static void put_node(spari_taking *t, int64_t to, const loaded_node *from) {
     for (int k = 0; k < 4; k++) {
         double *row = !t->history ? NULL : k == 0 ? t->history->after : t->history->past[k - 1];
         if (row && from->force[k]) {
@@ -399,9 +399,9 @@ static void put_node(spari_taking *t, int64_t to, const taken_node *from) {
 }
 
 /* Node i of `count` in consecutive blocks. */
-static taken_node node_of_blocks(const double *head, const double *rows, int64_t count, int64_t i) {
+static loaded_node node_of_blocks(const double *head, const double *rows, int64_t count, int64_t i) {
     const spari_by_node by = state_by_node(head);
-    taken_node from = {{NULL}, {NULL}};
+    loaded_node from = {{NULL}, {NULL}};
     int forces = head[S_KEPT] != 0 ? 4 : 0;
     const double *at = rows + 3 * count;
     for (int k = 1; k < by.blocks; k++) {
@@ -414,14 +414,15 @@ static taken_node node_of_blocks(const double *head, const double *rows, int64_t
 
 void spari_fluid_take_nodes(spar_fluid *fluid, const double *head, int64_t first, int64_t count, const double *rows) {
     spari_taking *t = fluid->taking;
-    int64_t here = t->places ? t->n : 0, n = (int64_t)head[S_NODES];
+    int64_t here = t->positions ? t->n : 0, n = (int64_t)head[S_NODES];
     for (int64_t i = 0; i < count && here > 0; i++) {
-        const double *place = rows + 3 * i, *own = n == here ? t->places + 3 * (first + i) : NULL;
+        const double *position = rows + 3 * i, *own = n == here ? t->positions + 3 * (first + i) : NULL;
         /* same nodes in the same order, possibly repeated: no search */
-        int alike = n == here && !t->found[first + i] && distance_between(place, own) <= place_reach(fluid, own);
-        int64_t to = alike ? first + i : find_node(fluid, place, 0);
+        int same =
+            n == here && !t->found[first + i] && distance_between(position, own) <= position_tolerance(fluid, own);
+        int64_t to = same ? first + i : find_node(fluid, position, 0);
         if (to >= 0) {
-            const taken_node from = node_of_blocks(head, rows, count, i);
+            const loaded_node from = node_of_blocks(head, rows, count, i);
             put_node(t, to, &from);
         }
     }
@@ -430,11 +431,11 @@ void spari_fluid_take_nodes(spar_fluid *fluid, const double *head, int64_t first
 /* A node whose position occurred fewer times in the file gets the data of another node at this position. */
 static int share_node(spar_fluid *fluid, int64_t to) {
     spari_taking *t = fluid->taking;
-    int64_t i = find_node(fluid, t->places + 3 * to, 1);
+    int64_t i = find_node(fluid, t->positions + 3 * to, 1);
     if (i < 0) {
         return 0;
     }
-    taken_node from = {{NULL}, {NULL}};
+    loaded_node from = {{NULL}, {NULL}};
     for (int k = 0; k < 4 && t->history; k++) {
         const double *row = k == 0 ? t->history->after : t->history->past[k - 1];
         from.force[k] = row ? row + 3 * i : NULL;
@@ -447,9 +448,9 @@ static int share_node(spar_fluid *fluid, int64_t to) {
     return 1;
 }
 
-int64_t spari_fluid_untaken(spar_fluid *fluid) {
+int64_t spari_fluid_first_missing(spar_fluid *fluid) {
     const spari_taking *t = fluid->taking;
-    for (int64_t i = 0; t->places && i < t->n; i++) {
+    for (int64_t i = 0; t->positions && i < t->n; i++) {
         if (!t->found[i] && !share_node(fluid, i)) {
             return i;
         }
@@ -457,8 +458,8 @@ int64_t spari_fluid_untaken(spar_fluid *fluid) {
     return -1;
 }
 
-int spari_fluid_taken(spar_fluid *fluid, const char *call) {
-    int64_t i = spari_fluid_untaken(fluid);
+int spari_fluid_loaded_whole(spar_fluid *fluid, const char *call) {
+    int64_t i = spari_fluid_first_missing(fluid);
     SPARI_FLUID_REQUIRE_OF(fluid, call, i < 0, SPAR_ERR_ARGUMENT,
                            "force node %lld is not in the saved run; load with the nodes it had", (long long)i);
     return SPAR_OK;

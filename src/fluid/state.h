@@ -61,7 +61,7 @@ typedef struct spari_taking {
     spari_bins *end_bins;          /* of these, if kept */
     int added;                     /* number of states with loads so far */
     int64_t n;
-    double *places;         /* [n][3] of the force nodes here; NULL: nothing is kept per node, or no nodes */
+    double *positions;      /* [n][3] of the force nodes here; NULL: nothing is kept per node, or no nodes */
     const double **sorted;  /* [n] positions, sorted by height */
     char *found;            /* [n] */
     spari_history *history; /* NULL: forces are not kept */
@@ -130,7 +130,7 @@ int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, c
    weights. */
 void spari_fluid_weigh(const spari_node_set *set, int64_t first, int upto, double (*buf)[SPARI_ROW]);
 /* Allocates the workspace of the fluid's calls for all threads. Returns 0, or 1: no memory. */
-int spari_fluid_keep_room(const spar_fluid *fluid);
+int spari_fluid_reserve_workspace(const spar_fluid *fluid);
 /* Workspace of a thread, valid for one call: rows of tiles. */
 double *spari_fluid_work(const spar_fluid *fluid, int worker);
 /* NULL: packed. */
@@ -151,7 +151,7 @@ void spari_fluid_series(const double *c, int modes, int offset, int n, double xi
 /* Reference position and section frame; p: storage position. */
 void spari_fluid_frame(const spar_fluid *fluid, const spari_node_set *set, int64_t p, double x[3], double q[4]);
 /* Reference positions [n][3] of a mapped set, from nearest points and lever arms; free with free(). NULL: no memory. */
-double *spari_fluid_places(const spar_fluid *fluid, const spari_nodes *nodes);
+double *spari_fluid_positions(const spar_fluid *fluid, const spari_nodes *nodes);
 /* Creates reproducible sums for the existing loads and those of parts, unless they exist. SPAR_ERR_MEMORY: nothing
    has changed, no message. */
 int spari_fluid_make_bins(spar_fluid *fluid);

@@ -28,7 +28,7 @@ int spar_fluid_set_states(spar_fluid *fluid, int64_t width) {
 }
 
 int spar_fluid_get_states(const spar_fluid *fluid, int64_t *width, double *dt) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     const spar_session *s = fluid->member->session;
     if (width) {
@@ -55,7 +55,7 @@ static int check_states(const spar_fluid *fluid, int64_t width, int has_place, s
 }
 
 int spar_fluid_pull_states(const spar_fluid *fluid, int64_t width, double *states) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     spari_states *t = NULL;
     SPARI_TRY(check_states(fluid, width, states != NULL, &t, __func__));
@@ -66,7 +66,7 @@ int spar_fluid_pull_states(const spar_fluid *fluid, int64_t width, double *state
 }
 
 int spar_fluid_push_states(spar_fluid *fluid, int64_t width, const double *states) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     const spar_session *session = fluid->member->session;
     int idle = session->phase == SPARI_IDLE;

@@ -28,10 +28,10 @@ static int check_weighable(const spar_fluid *fluid, int64_t n, const char *calle
 
 /* The host's positions as given, or after the map from nearest points and lever arms; free with free(). NULL: no
    memory. */
-static double *reference_places(const spar_fluid *fluid) {
+static double *reference_positions(const spar_fluid *fluid) {
     const spari_node_set *set = &fluid->set[SPAR_NODES_MOTION];
     return set->home    ? spari_copy(set->home, 3 * set->n)
-           : set->nodes ? spari_fluid_places(fluid, set->nodes)
+           : set->nodes ? spari_fluid_positions(fluid, set->nodes)
                         : spari_copy(set->x, 3 * set->n);
 }
 
@@ -43,7 +43,7 @@ static void take_weights(spari_node_set *set, double *weight, double *home) {
 
 /* Takes ownership of the array. */
 static int use_weights(spar_fluid *fluid, double *weight, const char *caller) {
-    double *home = reference_places(fluid);
+    double *home = reference_positions(fluid);
     if (!weight || !home) {
         free(weight);
         free(home);
@@ -55,7 +55,7 @@ static int use_weights(spar_fluid *fluid, double *weight, const char *caller) {
 }
 
 int spar_fluid_set_motion_weights(spar_fluid *fluid, int64_t n, const double *w) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     if (n == 0 && !w) {
         SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
@@ -74,7 +74,7 @@ int spar_fluid_set_motion_weights(spar_fluid *fluid, int64_t n, const double *w)
 }
 
 int spar_fluid_get_motion_weights(const spar_fluid *fluid, double *w) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     const spari_node_set *set = spari_fluid_set(fluid, SPAR_NODES_MOTION);
     SPARI_FLUID_REQUIRE(fluid, set->n == 0 || w, SPAR_ERR_ARGUMENT, "the place for the weights is NULL");
@@ -95,21 +95,23 @@ static int line_distances(const spar_fluid *fluid, double **distance, const char
                                   "spar_member_commit first, or give distances");
     }
     spari_line *line = spari_line_create(m->elements, m->per_element, m->xr);
-    double *x = reference_places(fluid), *foot = spari_zalloc(3 * n, sizeof *foot), *xi = spari_zalloc(n, sizeof *xi);
+    double *x = reference_positions(fluid), *nearest = spari_zalloc(3 * n, sizeof *nearest),
+           *xi = spari_zalloc(n, sizeof *xi);
     int *element = spari_zalloc(n, sizeof *element);
     uint8_t *flags = spari_zalloc(n, sizeof *flags);
-    int whole = line && x && foot && xi && element && flags;
-    whole = whole && !spari_line_project(line, m->session->crew, fluid->method, n, x, element, xi, foot, flags);
+    int whole = line && x && nearest && xi && element && flags;
+    whole = whole && !spari_line_project(line, m->session->pool, fluid->method, n, x, element, xi, nearest, flags);
     if (whole) {
         for (int64_t j = 0; j < n; j++) {
-            double arm[3] = {x[3 * j] - foot[3 * j], x[3 * j + 1] - foot[3 * j + 1], x[3 * j + 2] - foot[3 * j + 2]};
+            double arm[3] = {x[3 * j] - nearest[3 * j], x[3 * j + 1] - nearest[3 * j + 1],
+                             x[3 * j + 2] - nearest[3 * j + 2]};
             xi[j] = spari_norm(arm);
         }
         *distance = xi, xi = NULL;
     }
     spari_line_free(line);
     free(x);
-    free(foot);
+    free(nearest);
     free(xi);
     free(element);
     free(flags);
@@ -125,7 +127,7 @@ static double quintic_fade(double s) {
 
 int spar_fluid_fade_motion(spar_fluid *fluid, double within, double beyond, int64_t n, const double *distance,
                            const int *held) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_weighable(fluid, n, __func__));
     SPARI_FLUID_REQUIRE(fluid, isfinite(within) && isfinite(beyond) && within < beyond, SPAR_ERR_ARGUMENT,
@@ -156,7 +158,7 @@ void spari_fluid_weigh(const spari_node_set *set, int64_t first, int upto, doubl
             continue;
         }
         for (int k = 0; k < 3; k++) {
-            double *x = &buf[SPARI_R_PLACE + k][i], home = set->home[3 * node + k];
+            double *x = &buf[SPARI_R_POSITION + k][i], home = set->home[3 * node + k];
             *x = w == 0 ? home : home + w * (*x - home);
             for (int r = 0; r < moves; r++) {
                 double *rate = &buf[rows[r] + k][i];

@@ -50,21 +50,21 @@ int64_t spari_resample_end(int from, int e, int side, spari_mesh to) {
 }
 
 /* Interpolates the nodes [P] of one element. */
-static void interpolate_nodes(int P, const double *phi, int width, int turn, const double *f, double *t) {
+static void interpolate_nodes(int P, const double *phi, int width, int rotation, const double *f, double *t) {
     memset(t, 0, (size_t)width * sizeof *t);
     for (int l = 0; l < P; l++) {
         const double *fl = f + width * l;
-        double sign = turn >= 0 && spari_quat_dot(f + turn, fl + turn) < 0 ? -1 : 1;
+        double sign = rotation >= 0 && spari_quat_dot(f + rotation, fl + rotation) < 0 ? -1 : 1;
         for (int c = 0; c < width; c++) {
-            t[c] += phi[l] * (turn >= 0 && c >= turn && c < turn + 4 ? sign : 1) * fl[c];
+            t[c] += phi[l] * (rotation >= 0 && c >= rotation && c < rotation + 4 ? sign : 1) * fl[c];
         }
     }
-    if (turn >= 0) {
-        spari_quat_normalise(t + turn);
+    if (rotation >= 0) {
+        spari_quat_normalise(t + rotation);
     }
 }
 
-void spari_resample_values(spari_mesh from, spari_mesh to, int width, int turn, const double *values, double *out) {
+void spari_resample_values(spari_mesh from, spari_mesh to, int width, int rotation, const double *values, double *out) {
     int P = from.per_element, n = to.per_element;
     double x[SPARI_MAX_NODES], phi[SPARI_MAX_NODES], xi;
     places_of(n, x);
@@ -74,7 +74,7 @@ void spari_resample_values(spari_mesh from, spari_mesh to, int width, int turn, 
             if (e == 0 || from.elements != to.elements) {
                 spari_resample_basis(P, xi, phi);
             }
-            interpolate_nodes(P, phi, width, turn, values + (int64_t)width * of * P,
+            interpolate_nodes(P, phi, width, rotation, values + (int64_t)width * of * P,
                               out + (int64_t)width * ((int64_t)e * n + k));
         }
     }
@@ -82,7 +82,7 @@ void spari_resample_values(spari_mesh from, spari_mesh to, int width, int turn, 
 
 void spari_resample_loads(spari_mesh from, spari_mesh to, const double *loads, double *out) {
     int P = from.per_element, n = to.per_element;
-    if (spari_mesh_alike(from, to)) {
+    if (spari_mesh_is_equal(from, to)) {
         memcpy(out, loads, (size_t)(6 * (int64_t)from.elements * P) * sizeof *out);
         return;
     }

@@ -10,7 +10,7 @@ typedef struct spari_mesh {
     int elements, per_element;
 } spari_mesh;
 
-static inline int spari_mesh_alike(spari_mesh a, spari_mesh b) {
+static inline int spari_mesh_is_equal(spari_mesh a, spari_mesh b) {
     return a.elements == b.elements && a.per_element == b.per_element;
 }
 /* Basis values at xi of an element with per_element nodes; 1 for one node. */
@@ -23,7 +23,7 @@ int spari_resample_place(int from, int e, double x, int to, double *xi);
 int64_t spari_resample_end(int from, int e, int side, spari_mesh to);
 /* Interpolates nodal values. Quaternions begin at column `turn` (-1: none); they are brought into one hemisphere and
    normalised. */
-void spari_resample_values(spari_mesh from, spari_mesh to, int width, int turn, const double *values, double *out);
+void spari_resample_values(spari_mesh from, spari_mesh to, int width, int rotation, const double *values, double *out);
 /* Transfers nodal loads of width 6. */
 void spari_resample_loads(spari_mesh from, spari_mesh to, const double *loads, double *out);
 

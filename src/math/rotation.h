@@ -39,10 +39,10 @@ static inline void spari_quat_conj(const double q[4], double c[4]) {
 }
 
 /* turn = b a*: the rotation from a to b, in global axes; turn may be a or b */
-static inline void spari_quat_between(const double a[4], const double b[4], double turn[4]) {
+static inline void spari_quat_between(const double a[4], const double b[4], double rotation[4]) {
     double back[4];
     spari_quat_conj(a, back);
-    spari_quat_mul(b, back, turn);
+    spari_quat_mul(b, back, rotation);
 }
 
 static inline double spari_quat_dot(const double a[4], const double b[4]) {

@@ -58,7 +58,7 @@ static int check_guess(const spar_member *m, const char *call, int64_t n, const 
 }
 
 int spar_member_set_added_mass(spar_member *member, int64_t n, const double *eta, const double *mass) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_open(member, __func__));
     SPARI_TRY(check_guess(member, __func__, n, eta, mass));
     int beam = member->kind == SPARI_BEAM;
@@ -76,7 +76,7 @@ int spar_member_set_added_mass(spar_member *member, int64_t n, const double *eta
 }
 
 int spar_member_get_added_mass(const spar_member *member, int64_t *n, int64_t capacity, double *eta, double *mass) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_member(member, __func__));
     SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
     if (n) {
@@ -118,13 +118,13 @@ static int make_strips_of_beam(const spar_member *m, spari_strips *p) {
     }
     ok = ok && spari_beam_stations(m, p->count, s) == SPAR_OK;
     for (int64_t k = 0; k < p->count && ok; k++) {
-        const double *place = m->xr + 3 * (int64_t)P * (k / points);
+        const double *position = m->xr + 3 * (int64_t)P * (k / points);
         p->eta[k] = 0.5 * (1 + spari_member_xi(m, s[k].element, s[k].xi));
         p->weight[k] = w[k % points] * s[k].jacobian;
         memcpy(p->R + 9 * k, s[k].R, sizeof s[k].R);
         memcpy(p->phi + P * k, s[k].phi, (size_t)P * sizeof *s[k].phi);
         for (int i = 0; i < 3 * P; i++) {
-            p->arm[3 * k + i % 3] += p->phi[P * k + i / 3] * (place[i] - m->xr[i % 3]);
+            p->arm[3 * k + i % 3] += p->phi[P * k + i / 3] * (position[i] - m->xr[i % 3]);
         }
     }
     free(s);
@@ -172,7 +172,7 @@ void spari_added_fill(spar_member *m, int64_t n, const double *eta, const double
     memset(d->mass, 0, (size_t)(36 * points) * sizeof *d->mass);
     for (int64_t k = 0; k < p->count && n > 0; k++) {
         spari_beam_table_at(n, eta, mass, 36, p->eta[k], own);
-        spari_beam_turn_section(p->R + 9 * k, own, section);
+        spari_beam_rotate_section(p->R + 9 * k, own, section);
         for (int i = 0; i < 36; i++) {
             section[i] *= p->weight[k];
         }
@@ -246,28 +246,28 @@ void spari_added_free(spari_added *d) {
 
 /* ---- tangent and forces ---- */
 
-void spari_added_turn(const spar_member *m, int64_t e, const double *phi, double turn[4]) {
+void spari_added_rotation(const spar_member *m, int64_t e, const double *phi, double rotation[4]) {
     const spari_added *d = m->added;
     const double *q = m->now.q + 3;
     double sign = 1;
-    memset(turn, 0, 4 * sizeof *turn);
-    turn[0] = 1;
+    memset(rotation, 0, 4 * sizeof *rotation);
+    rotation[0] = 1;
     if (spari_member_is_linear_in_place(m)) {
         return;
     }
     if (d->per_element == 1 || m->seen == SPARI_SEEN_LINEAR) {
-        memcpy(turn, q, 4 * sizeof *turn);
+        memcpy(rotation, q, 4 * sizeof *rotation);
         return;
     }
-    turn[0] = 0;
+    rotation[0] = 0;
     q += 7 * e * d->per_element;
     for (int l = 0; l < d->per_element; l++) {
         sign = l > 0 && spari_quat_dot(q + 7 * l, q + 7 * l - 7) < 0 ? -sign : sign;
         for (int i = 0; i < 4; i++) {
-            turn[i] += sign * phi[l] * q[7 * l + i];
+            rotation[i] += sign * phi[l] * q[7 * l + i];
         }
     }
-    spari_quat_normalise(turn);
+    spari_quat_normalise(rotation);
 }
 
 /* First node of an element. */
@@ -276,18 +276,18 @@ static int64_t first_node(const spari_added *d, spari_numbering of, int64_t e) {
 }
 
 /* force := mass of a point times an acceleration, in global axes */
-static void times_point(const double turn[4], const double mass[36], const double a[6], double force[6]) {
+static void times_point(const double rotation[4], const double mass[36], const double a[6], double force[6]) {
     double own[6];
-    spari_rotate_back(turn, a, own);
-    spari_rotate_back(turn, a + 3, own + 3);
+    spari_rotate_back(rotation, a, own);
+    spari_rotate_back(rotation, a + 3, own + 3);
     for (int i = 0; i < 6; i++) {
         force[i] = 0;
         for (int j = 0; j < 6; j++) {
             force[i] += mass[6 * i + j] * own[j];
         }
     }
-    spari_rotate(turn, force, force);
-    spari_rotate(turn, force + 3, force + 3);
+    spari_rotate(rotation, force, force);
+    spari_rotate(rotation, force + 3, force + 3);
 }
 
 double spari_added_times(const spar_member *m, spari_numbering from, spari_numbering to, const double *a, double factor,
@@ -298,14 +298,14 @@ double spari_added_times(const spar_member *m, spari_numbering from, spari_numbe
     for (int64_t k = 0; k < (int64_t)d->elements * d->points; k++) {
         int64_t e = k / d->points;
         const double *phi = d->phi + P * k, *in = a + 6 * first_node(d, from, e);
-        double *back = out + 6 * first_node(d, to, e), turn[4], at[6] = {0}, force[6];
-        spari_added_turn(m, e, phi, turn);
+        double *back = out + 6 * first_node(d, to, e), rotation[4], at[6] = {0}, force[6];
+        spari_added_rotation(m, e, phi, rotation);
         for (int l = 0; l < P; l++) {
             for (int i = 0; i < 6; i++) {
                 at[i] += phi[l] * in[6 * l + i];
             }
         }
-        times_point(turn, d->mass + 36 * k, at, force);
+        times_point(rotation, d->mass + 36 * k, at, force);
         for (int l = 0; l < P; l++) {
             for (int i = 0; i < 6; i++) {
                 back[6 * l + i] += factor * phi[l] * force[i];
@@ -319,7 +319,7 @@ double spari_added_times(const spar_member *m, spari_numbering from, spari_numbe
 }
 
 /* X diag(I, T); T NULL: the identity */
-static void turn_columns(const double X[36], const double *T, double out[36]) {
+static void rotate_columns(const double X[36], const double *T, double out[36]) {
     for (int i = 0; i < 36; i++) {
         const double *row = X + 6 * (i / 6) + 3;
         int j = i % 6 - 3;
@@ -342,14 +342,14 @@ void spari_added_tangent(const spar_member *m, int e, double cm, const double *t
     int64_t row = 6 * (int64_t)P, first = first_node(d, SPARI_UNKNOWNS, e);
     for (int64_t k = (int64_t)e * d->points; k < (int64_t)(e + 1) * d->points; k++) {
         const double *phi = d->phi + P * k;
-        double turn[4] = {1, 0, 0, 0}, R[9], X[36], XT[36];
+        double rotation[4] = {1, 0, 0, 0}, R[9], X[36], XT[36];
         if (tinv) {
-            spari_added_turn(m, e, phi, turn);
+            spari_added_rotation(m, e, phi, rotation);
         }
-        spari_quat_matrix(turn, R);
-        spari_beam_turn_section(R, d->mass + 36 * k, X);
+        spari_quat_matrix(rotation, R);
+        spari_beam_rotate_section(R, d->mass + 36 * k, X);
         for (int j = 0; j < P; j++) {
-            turn_columns(X, tinv ? tinv + 9 * (first + j) : NULL, XT);
+            rotate_columns(X, tinv ? tinv + 9 * (first + j) : NULL, XT);
             for (int l = 0; l < P; l++) {
                 double f = cm * phi[l] * phi[j], *to = S + row * 6 * l + 6 * j;
                 add_section_block(f, XT, row, to);

@@ -6,8 +6,8 @@
      forces(q, v, a) + A a = y,     y = loads + A a of the last iterate,
    y in place of the fluids' loads: load_used always, load_pushed from a check to the end of the step. The difference
    between the two is the shift A a(after). */
-#ifndef SPARI_ADDED_H
-#define SPARI_ADDED_H
+#ifndef SPARI_ADDED_MASS_H
+#define SPARI_ADDED_MASS_H
 
 #include "structure.h"
 
@@ -43,7 +43,7 @@ int spari_added_create(spar_member *m, int whole);
 void spari_added_fill(spar_member *m, int64_t n, const double *eta, const double *mass);
 /* Rotation at t^n of the section at a point of element e, as fluids see it: the sum of the nodes' quaternions. Small
    rotations are ignored; a linear member rotates with its root frame. */
-void spari_added_turn(const spar_member *m, int64_t e, const double *phi, double turn[4]);
+void spari_added_rotation(const spar_member *m, int64_t e, const double *phi, double rotation[4]);
 void spari_added_free(spari_added *added);
 
 /* out [n][6] += factor A a, a [n][6]; each by the host's nodes or by unknowns (element boundaries once). Returns the

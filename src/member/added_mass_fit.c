@@ -100,7 +100,7 @@ void spari_learned_free(spari_learned *l) {
 }
 
 int spar_member_learn_added_mass(spar_member *member, int64_t n, const double *eta) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_open(member, __func__));
     SPARI_TRY(check_stations(member, __func__, n, eta));
     spari_learned *l = n > 0 ? create_learned(n, member->kind == SPARI_BEAM ? eta : NULL) : NULL;
@@ -117,7 +117,7 @@ static double spread_of(const spari_learned *l) {
 
 int spar_member_get_learned_added_mass(const spar_member *member, int *used, double *spread, int64_t *n,
                                        int64_t capacity, double *eta, double *mass) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_member(member, __func__));
     SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
     const spari_learned *l = member->learned;
@@ -213,8 +213,8 @@ static void to_metric(const double S[36], const double M[36], double out[36]) {
 /* Eigenvalues of a symmetric A, which is lost, and E, its eigenvectors by columns; no eigenvalues where A is no number.
  */
 static void diagonalise_six(double A[36], double lambda[6], double E[36]) {
-    double room[SPARI_SYMMETRIC_ROOM(6)];
-    if (spari_symmetric(6, A, lambda, room) != SPAR_OK) {
+    double workspace[SPARI_SYMMETRIC_ROOM(6)];
+    if (spari_symmetric(6, A, lambda, workspace) != SPAR_OK) {
         memset(lambda, 0, 6 * sizeof *lambda);
     }
     for (int i = 0; i < 36; i++) {
@@ -271,10 +271,10 @@ int spari_learned_create(spar_member *m) {
 /* own [6] := R^T x, with the section's rotation at t^n */
 static void to_section(const spar_member *m, int64_t e, const double *phi, const double R[9], const double x[6],
                        double own[6]) {
-    double turn[4], back[6];
-    spari_added_turn(m, e, phi, turn);
-    spari_rotate_back(turn, x, back);
-    spari_rotate_back(turn, x + 3, back + 3);
+    double rotation[4], back[6];
+    spari_added_rotation(m, e, phi, rotation);
+    spari_rotate_back(rotation, x, back);
+    spari_rotate_back(rotation, x + 3, back + 3);
     for (int i = 0; i < 6; i++) {
         const double *b = back + i / 3 * 3;
         own[i] = R[i % 3] * b[0] + R[3 + i % 3] * b[1] + R[6 + i % 3] * b[2];

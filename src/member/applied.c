@@ -20,7 +20,7 @@ typedef struct line_load {
     int *first;         /* [elements + 1] */
     double *phi;        /* [points][P] */
     double *load;       /* [points][6] times weight and Jacobian; global axes, at the reference if it follows */
-    double *room;       /* [7 P][4 P] workspace of the tangent */
+    double *workspace;  /* [7 P][4 P] workspace of the tangent */
     int64_t stations;   /* stations as given, for a rebuild with other nodes */
     double *eta, *said; /* [stations], [stations][6] */
 } line_load;
@@ -47,7 +47,7 @@ struct spari_foundation {
     double *pair; /* [elements][P (P + 1) / 2][6] */
 };
 
-static double *room_for(const spar_member *m) {
+static double *has_capacity_for(const spar_member *m) {
     return spari_zalloc(28 * (int64_t)m->per_element * m->per_element, sizeof(double));
 }
 
@@ -55,7 +55,7 @@ static void line_free(line_load *line) {
     free(line->first);
     free(line->phi);
     free(line->load);
-    free(line->room);
+    free(line->workspace);
     free(line->eta);
     free(line->said);
     memset(line, 0, sizeof *line);
@@ -119,7 +119,7 @@ static void element_field(const spar_member *m, const double *q, double z[][4]) 
 }
 
 /* Q/|Q| at a point; returns |Q|. */
-static double point_turn(int P, const double *phi, double z[][4], double r[4]) {
+static double point_rotation(int P, const double *phi, double z[][4], double r[4]) {
     double Q[4] = {0};
     for (int l = 0; l < P; l++) {
         for (int i = 0; i < 4; i++) {
@@ -154,7 +154,7 @@ SPARI_APART static void line_forces(const spar_member *m, const line_load *line,
     int P = m->per_element;
     for (int k = line->first ? line->first[e] : 0; k < (line->first ? line->first[e + 1] : 0); k++) {
         const double *phi = line->phi + (int64_t)k * P;
-        double r[4], f[3], c[3], m4[4], N = point_turn(P, phi, z, r);
+        double r[4], f[3], c[3], m4[4], N = point_rotation(P, phi, z, r);
         load_now(line->load + 6 * (int64_t)k, follows, r, f, c);
         pure_times(c, r, m4);
         for (int l = 0; l < P; l++) {
@@ -418,14 +418,14 @@ static void project_nodes(int P, const double *B, double E[][4][3], double facto
 SPARI_APART static void line_tangent(const spar_member *m, const line_load *line, int follows, int e, double z[][4],
                                      double factor, double *S) {
     int P = m->per_element;
-    double *B = line->room, E[SPARI_MAX_NODES][4][3];
+    double *B = line->workspace, E[SPARI_MAX_NODES][4][3];
     if (!line->first || factor == 0) {
         return;
     }
     memset(B, 0, (size_t)(28 * P * P) * sizeof *B);
     for (int k = line->first[e]; k < line->first[e + 1]; k++) {
         const double *phi = line->phi + (int64_t)k * P;
-        double r[4], X[7][4], N = point_turn(P, phi, z, r);
+        double r[4], X[7][4], N = point_rotation(P, phi, z, r);
         point_tangent(line->load + 6 * (int64_t)k, follows, r, N, X);
         for (int i = 0; i < P; i++) {
             for (int row = 0; row < 7; row++) {
@@ -578,9 +578,9 @@ static void take_line(const spar_member *m, spari_image *image, line_load *line)
     if (!image->failed) {
         line->phi = take(image, points * m->per_element);
         line->load = take(image, points * 6);
-        line->room = room_for(m);
-        image->no_memory |= !line->room;
-        image->failed |= !line->room;
+        line->workspace = has_capacity_for(m);
+        image->no_memory |= !line->workspace;
+        image->failed |= !line->workspace;
         take_stations(image, line);
     }
 }
@@ -736,7 +736,7 @@ static int set_follower(spar_member *member, const char *call, int64_t node, con
 }
 
 int spar_member_set_load(spar_member *member, int64_t node, int kind, const double load[6]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_REQUIRE(member->session, node >= 0 && node < member->nodes, SPAR_ERR_ARGUMENT,
                   "%s: '%s' has nodes 0 to %lld; there is no node %lld", __func__, member->name,
@@ -781,7 +781,7 @@ static int load_points(const spar_member *m, int e, int64_t n, const double *eta
 }
 
 /* Converts stiffnesses along the section's axes, the columns of R, to the six entries of their matrix. */
-static void turn_springs(const double R[9], double k[6]) {
+static void rotate_springs(const double R[9], double k[6]) {
     const double own[3] = {k[0], k[1], k[2]};
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     for (int i = 0; i < 6; i++) {
@@ -801,8 +801,8 @@ static int line_build(const spar_member *m, int kind, int64_t n, const double *e
     line->first = spari_zalloc(E + 1, sizeof *line->first);
     line->phi = spari_zalloc((int64_t)points * P, sizeof *line->phi);
     line->load = spari_zalloc((int64_t)points * 6, sizeof *line->load);
-    line->room = room_for(m);
-    int ok = s && w && line->first && line->phi && line->load && line->room;
+    line->workspace = has_capacity_for(m);
+    int ok = s && w && line->first && line->phi && line->load && line->workspace;
     for (int e = 0; e < E && ok; e++) {
         int k = line->first[e], count = load_points(m, e, n, eta, s + k, w + k, at + k);
         ok = count >= 0;
@@ -822,7 +822,7 @@ static int line_build(const spar_member *m, int kind, int64_t n, const double *e
             }
         }
         if (kind == SPARI_LINE_SPRINGS) {
-            turn_springs(s[k].R, to);
+            rotate_springs(s[k].R, to);
         }
         memcpy(line->phi + (int64_t)k * P, s[k].phi, (size_t)P * sizeof *line->phi);
     }
@@ -850,7 +850,7 @@ static int line_set(const spar_member *m, int kind, int64_t n, const double *eta
 
 /* ---- rebuild with other nodes ---- */
 
-static int remake_loads(const spar_member *from, const spar_member *m, const double *was, double **is) {
+static int rebuild_loads(const spar_member *from, const spar_member *m, const double *was, double **is) {
     *is = was ? spari_zalloc(6 * m->nodes, sizeof **is) : NULL;
     if (*is) {
         spari_resample_loads(spari_member_mesh(from), spari_member_mesh(m), was, *is);
@@ -858,8 +858,8 @@ static int remake_loads(const spar_member *from, const spar_member *m, const dou
     return *is || !was ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-static int remake(const spar_member *from, const spar_member *m, const spari_applied *a, spari_applied *b) {
-    SPARI_TRY(remake_loads(from, m, a->follower, &b->follower));
+static int rebuild(const spar_member *from, const spar_member *m, const spari_applied *a, spari_applied *b) {
+    SPARI_TRY(rebuild_loads(from, m, a->follower, &b->follower));
     for (int k = 0; k < 2; k++) {
         const line_load *line = a->line + k;
         SPARI_TRY(line->first ? line_set(m, k, line->stations, line->eta, line->said, &b->line[k]) : SPAR_OK);
@@ -867,21 +867,21 @@ static int remake(const spar_member *from, const spar_member *m, const spari_app
     return SPAR_OK;
 }
 
-static int remake_ramp(const spar_member *from, spar_member *m) {
+static int rebuild_ramp(const spar_member *from, spar_member *m) {
     spari_ramp *r = m->ramp = spari_zalloc(1, sizeof *r);
-    SPARI_TRY(r ? remake_loads(from, m, from->ramp->dead, &r->dead) : SPAR_ERR_MEMORY);
+    SPARI_TRY(r ? rebuild_loads(from, m, from->ramp->dead, &r->dead) : SPAR_ERR_MEMORY);
     r->changed = from->ramp->changed;
-    return remake(from, m, &from->ramp->before, &r->before);
+    return rebuild(from, m, &from->ramp->before, &r->before);
 }
 
-int spari_applied_remake(const spar_member *from, spar_member *m) {
+int spari_applied_rebuild(const spar_member *from, spar_member *m) {
     int status = SPAR_OK;
     if (from->applied) {
         m->applied = spari_zalloc(1, sizeof *m->applied);
-        status = m->applied ? remake(from, m, from->applied, m->applied) : SPAR_ERR_MEMORY;
+        status = m->applied ? rebuild(from, m, from->applied, m->applied) : SPAR_ERR_MEMORY;
     }
     if (status == SPAR_OK && from->ramp && from->ramp->changed) {
-        status = remake_ramp(from, m);
+        status = rebuild_ramp(from, m);
     }
     SPARI_REQUIRE(m->session, status == SPAR_OK, status, "no memory for the loads of a trial of '%s'", m->name);
     return SPAR_OK;
@@ -985,8 +985,9 @@ static int check_line_load(const spar_member *m, const char *call, int kind, int
 
 static int check_bed(const spar_member *m, const char *call, int64_t n, const double *eta, const double *k) {
     spar_session *s = m->session;
-    SPARI_REQUIRE(s, n >= 0 && n <= SPARI_LUMPS, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld stations; give 0 (none any more) to %d", call, m->name, (long long)n, SPARI_LUMPS);
+    SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST_POINT_MASSES, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld stations; give 0 (none any more) to %d", call, m->name, (long long)n,
+                  SPARI_MOST_POINT_MASSES);
     SPARI_TRY(spari_need_finite(s, call, m->name, "eta", n, eta));
     SPARI_TRY(spari_need_finite(s, call, m->name, "stiffness", 3 * n, k));
     for (int64_t i = 0; i < n; i++) {
@@ -1002,7 +1003,7 @@ static int check_bed(const spar_member *m, const char *call, int64_t n, const do
 }
 
 int spar_beam_set_foundation(spar_member *beam, int64_t n, const double *eta, const double *stiffness) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_TRY(check_bed(beam, __func__, n, eta, stiffness));
     spari_beam *b = beam->beam;
@@ -1011,7 +1012,7 @@ int spar_beam_set_foundation(spar_member *beam, int64_t n, const double *eta, co
 }
 
 int spar_beam_get_foundation(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *stiffness) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_any_beam(beam, __func__));
     const spari_beam *b = beam->beam;
     return spari_give_stations(beam, __func__, 3, b->spring_count, b->spring_eta, b->spring, capacity, n, eta,
@@ -1019,7 +1020,7 @@ int spar_beam_get_foundation(const spar_member *beam, int64_t *n, int64_t capaci
 }
 
 int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double *eta, const double *load) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(need_applied(beam, __func__));
     line_load line = {0};
     int status = check_line_load(beam, __func__, kind, n, eta, load);

@@ -41,7 +41,7 @@ void spari_applied_load(spar_member *member, spari_image *image);
 void spari_applied_free(spari_applied *applied);
 void spari_ramp_free(spari_ramp *ramp);
 /* Copies the loads of `from` to m, the same member with other nodes. */
-int spari_applied_remake(const spar_member *from, spar_member *m);
+int spari_applied_rebuild(const spar_member *from, spar_member *m);
 
 /* Creates the springs of the description if they are in force; nothing if there are none. */
 int spari_foundation_build(spar_member *member);

@@ -22,8 +22,8 @@ void spari_beam_free(spari_beam *beam) {
     free(beam->section_eta);
     free(beam->stiffness);
     free(beam->mass);
-    free(beam->lump_eta);
-    free(beam->lump);
+    free(beam->point_mass_eta);
+    free(beam->point_mass);
     free(beam->spring_eta);
     free(beam->spring);
     free(beam->pre_eta);
@@ -388,7 +388,7 @@ static int check_line(spar_member *member, const double *gll, const double *bary
         length += spari_norm(d);
     }
     for (int k = 0; k < 3; k++) { /* positions lose digits with the distance from the origin */
-        far = fmax(far, fmax(fabs(x[k]), fabs(member->place_x[k])));
+        far = fmax(far, fmax(fabs(x[k]), fabs(member->placed_x[k])));
     }
     SPARI_REQUIRE(member->session, length >= 1e-9 * far && length >= 1e-9, SPAR_ERR_ARGUMENT,
                   "member '%s': its points coincide: its line is %.3g m long; give at least 1e-9 m, and 1e-9 of its "
@@ -418,11 +418,11 @@ int spari_beam_place_nodes(spar_member *member) {
     SPARI_TRY(check_line(member, gll, bary, member->xr, member->qr));
     for (int64_t i = 0; i < member->nodes; i++) {
         double *x = member->xr + 3 * i, *q = member->qr + 4 * i;
-        spari_rotate(member->place_q, x, x);
+        spari_rotate(member->placed_q, x, x);
         for (int c = 0; c < 3; c++) {
-            x[c] += member->place_x[c];
+            x[c] += member->placed_x[c];
         }
-        spari_quat_mul(member->place_q, q, q);
+        spari_quat_mul(member->placed_q, q, q);
         spari_quat_normalise(q);
     }
     return SPAR_OK;
@@ -453,7 +453,7 @@ void spari_beam_section_at(const spari_beam *beam, const double *table, double e
     spari_beam_table_at(beam->section_count, beam->section_eta, table, 36, eta, out);
 }
 
-void spari_beam_turn_section(const double R[9], const double *C, double *out) {
+void spari_beam_rotate_section(const double R[9], const double *C, double *out) {
     double half[36];
     for (int bi = 0; bi < 6; bi += 3) {
         for (int i = 0; i < 3; i++) {
@@ -536,12 +536,13 @@ static void reference_frame(const spar_member *member, const framing *f, const d
                             const double *x, int e, double xi, double R[9]) {
     int P = member->per_element;
     if (!member->beam->node_q) {
-        double own[9], place[9];
+        double own[9], position[9];
         frame_at(member, f, gll, bary, x, e, xi, own);
-        spari_quat_matrix(member->place_q, place);
+        spari_quat_matrix(member->placed_q, position);
         for (int i = 0; i < 3; i++) {
             for (int j = 0; j < 3; j++) {
-                R[3 * i + j] = place[3 * i] * own[j] + place[3 * i + 1] * own[3 + j] + place[3 * i + 2] * own[6 + j];
+                R[3 * i + j] =
+                    position[3 * i] * own[j] + position[3 * i + 1] * own[3 + j] + position[3 * i + 2] * own[6 + j];
             }
         }
         return;
@@ -570,7 +571,7 @@ static double fill_place(const spar_member *member, spari_body *b, int e, int i,
         b->dphi[(int64_t)k * P + l] /= p.jacobian;
     }
     spari_slot_put(b->tangent, 3, b->slot[e] + i, p.t);
-    memcpy(b->place + 3 * (int64_t)k, p.x, sizeof p.x);
+    memcpy(b->position + 3 * (int64_t)k, p.x, sizeof p.x);
     return p.jacobian;
 }
 
@@ -583,7 +584,7 @@ static void fill_point(const spar_member *member, spari_body *b, int e, int i, d
     b->weight[slot] = w * fill_place(member, b, e, i, xi, gll, bary);
     b->length += b->weight[slot];
     spari_beam_section_at(beam, beam->stiffness, eta, section);
-    spari_beam_turn_section(R, section, turned);
+    spari_beam_rotate_section(R, section, turned);
     spari_slot_put(b->C, 36, slot, turned);
     for (int j = 0; j < 6; j++) {
         b->stiffest = fmax(b->stiffest, section[7 * j]);
@@ -592,7 +593,7 @@ static void fill_point(const spar_member *member, spari_body *b, int e, int i, d
         for (int j = 0; j < 36; j++) {
             section[j] *= sqrt(mu[j / 6] * mu[j % 6]);
         }
-        spari_beam_turn_section(R, section, turned);
+        spari_beam_rotate_section(R, section, turned);
         spari_slot_put(b->D, 36, slot, turned);
     }
     if (b->pre) {
@@ -607,29 +608,30 @@ static void fill_point(const spar_member *member, spari_body *b, int e, int i, d
     if (b->mass) {
         double mass[10];
         spari_beam_section_at(beam, beam->mass, eta, section);
-        spari_mass_place(R, section, mass);
+        spari_mass_rotate(R, section, mass);
         spari_slot_put(b->mass, 10, slot, mass);
     }
 }
 
 /* Whether attached masses are quadrature points of the body. */
-static int shows_lumps(const spar_member *member, int massive) {
-    return massive && member->beam->lump_count > 0 && (member->effects & SPAR_EFFECT_MASSES);
+static int shows_point_masses(const spar_member *member, int massive) {
+    return massive && member->beam->point_mass_count > 0 && (member->effects & SPAR_EFFECT_MASSES);
 }
 
 /* Adds the attached masses of element e after its `at` other points: weight 1, no stiffness. */
-static void fill_lumps(const spar_member *member, const framing *f, const double *x, int e, int at, spari_body *b) {
+static void fill_point_masses(const spar_member *member, const framing *f, const double *x, int e, int at,
+                              spari_body *b) {
     double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
     spari_gll(b->per_element, gll, NULL, bary);
-    for (int64_t k = 0; k < member->beam->lump_count; k++) {
+    for (int64_t k = 0; k < member->beam->point_mass_count; k++) {
         double xi, R[9], mass[10];
-        if (spari_lump_element(member, k, &xi) != e) {
+        if (spari_point_mass_element(member, k, &xi) != e) {
             continue;
         }
         (void)fill_place(member, b, e, at, xi, gll, bary);
         b->weight[b->slot[e] + at] = 1;
         reference_frame(member, f, gll, bary, x, e, xi, R);
-        spari_mass_place(R, member->beam->lump + 36 * k, mass);
+        spari_mass_rotate(R, member->beam->point_mass + 36 * k, mass);
         spari_slot_put(b->mass, 10, b->slot[e] + at, mass);
         at++;
     }
@@ -670,7 +672,7 @@ static int fill_body(const spar_member *member, int most, const double mu[6], sp
             fill_point(member, b, e, i, xi[i], w[i], R, gll, bary, mu);
         }
         if (b->first[e + 1] - b->first[e] > n) {
-            fill_lumps(member, &f, x, e, n, b);
+            fill_point_masses(member, &f, x, e, n, b);
         }
     }
     free(xi);
@@ -687,8 +689,8 @@ int spari_beam_build(const spar_member *member, int massive, const double mu[6],
     spari_body *b = NULL;
     if (status == SPAR_OK) {
         massive = massive || (member->beam->mass && (member->effects & (SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY)));
-        for (int e = 0; e < member->elements && shows_lumps(member, massive); e++) {
-            points[e] += spari_lumps_of(member, e);
+        for (int e = 0; e < member->elements && shows_point_masses(member, massive); e++) {
+            points[e] += spari_point_masses_of(member, e);
         }
         b = spari_body_create(member->elements, member->per_element, points, 1, mu != NULL, massive);
         if (b && (member->effects & SPAR_EFFECT_PRETENSION) && spari_body_set_pre(b)) {
@@ -697,7 +699,7 @@ int spari_beam_build(const spar_member *member, int massive, const double mu[6],
         }
         status = b ? fill_body(member, most, mu, b) : no_memory_for(member, "its quadrature points");
         if (b) {
-            b->crew = &member->session->crew;
+            b->pool = &member->session->pool;
         }
     }
     free(points);
@@ -714,13 +716,13 @@ int spari_beam_drag(const spar_member *member, spari_body *body) {
     if (member->beam->drag == 0 || !body->D || !body->mass) {
         return SPAR_OK;
     }
-    int given = spari_member_root_is_given(member);
-    double *place = given ? spari_zalloc(3 * (int64_t)body->unique, sizeof *place) : NULL;
-    for (int i = 0; place && i < body->unique; i++) {
-        memcpy(place + 3 * (int64_t)i, spari_member_place(member, i), 3 * sizeof *place);
+    int given = spari_member_root_is_prescribed(member);
+    double *position = given ? spari_zalloc(3 * (int64_t)body->unique, sizeof *position) : NULL;
+    for (int i = 0; position && i < body->unique; i++) {
+        memcpy(position + 3 * (int64_t)i, spari_member_position(member, i), 3 * sizeof *position);
     }
-    if ((given && !place) || spari_body_set_drag(body, member->beam->drag, place)) {
-        free(place);
+    if ((given && !position) || spari_body_set_drag(body, member->beam->drag, position)) {
+        free(position);
         return no_memory_for(member, "its damping");
     }
     return SPAR_OK;
@@ -734,11 +736,11 @@ int spari_beam_stations(const spar_member *member, int64_t n, spari_station *s) 
         return no_memory_for(member, "its frames");
     }
     spari_gll(P, gll, NULL, bary);
-    spari_quat_conj(member->place_q, back);
+    spari_quat_conj(member->placed_q, back);
     for (int64_t i = 0; i < member->nodes; i++) { /* nodes in the beam's own frame */
         double d[3];
         for (int c = 0; c < 3; c++) {
-            d[c] = member->xr[3 * i + c] - member->place_x[c];
+            d[c] = member->xr[3 * i + c] - member->placed_x[c];
         }
         spari_rotate(back, d, x + 3 * i);
     }

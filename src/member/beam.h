@@ -11,8 +11,8 @@ struct spari_beam {
     double *eta, *xyz, *twist; /* axis points */
     double *node_x, *node_q;   /* nodes, if given instead */
     double *section_eta, *stiffness, *mass;
-    int64_t lump_count; /* attached masses: eta and 6x6 mass of each */
-    double *lump_eta, *lump;
+    int64_t point_mass_count; /* attached masses: eta and 6x6 mass of each */
+    double *point_mass_eta, *point_mass;
     int64_t spring_count; /* stations of springs to the ground: eta and stiffness along the section's axes [3] */
     double *spring_eta, *spring;
     int64_t pre_count; /* stations of pretension: eta and section forces, local axes [6] */
@@ -34,14 +34,14 @@ int spari_beam_build(const spar_member *member, int massive, const double mu[6],
 int spari_beam_drag(const spar_member *member, spari_body *body);
 void spari_beam_free(spari_beam *beam);
 /* Element of attached mass k, and its local coordinate. */
-int spari_lump_element(const spar_member *member, int64_t k, double *xi);
+int spari_point_mass_element(const spar_member *member, int64_t k, double *xi);
 /* Number of attached masses on element e. */
-int spari_lumps_of(const spar_member *member, int e);
+int spari_point_masses_of(const spar_member *member, int e);
 /* Sets their weight in sums over the body's points: 1, or 0 to exclude them. */
-void spari_lumps_weigh(const spar_member *member, double weight);
+void spari_point_masses_weight(const spar_member *member, double weight);
 /* Checks the attached masses at commit. */
-int spari_lumps_check(const spar_member *member);
-enum { SPARI_LUMPS = 10000 }; /* maximum number */
+int spari_point_masses_check(const spar_member *member);
+enum { SPARI_MOST_POINT_MASSES = 10000 }; /* maximum number */
 /* Section forces [6] of the reference at eta, local axes; the beam must have pretension. */
 void spari_pretension_at(const spari_beam *beam, double eta, double out[6]);
 /* Quadrature rule in force. */
@@ -65,7 +65,7 @@ int spari_beam_stations(const spar_member *member, int64_t n, spari_station *s);
 /* out [width]: table [n][width], local axes, at eta. Linear between stations, constant beyond the first and last. */
 void spari_beam_table_at(int64_t n, const double *stations, const double *table, int width, double eta, double *out);
 /* T C T^T with T = diag(R, R) */
-void spari_beam_turn_section(const double R[9], const double *C, double *out);
+void spari_beam_rotate_section(const double R[9], const double *C, double *out);
 /* The section's table of 36 (beam->stiffness or beam->mass) at eta, local axes. */
 void spari_beam_section_at(const spari_beam *beam, const double *table, double eta, double out[36]);
 
@@ -76,6 +76,6 @@ int spari_rigid_build(spar_member *member, spari_body **body);
    Returns NULL, or a text that describes the error. */
 const char *spari_mass_split(const double M[36], double *m, double c[3], double J[6]);
 /* The same, rotated by R (row-major, local to global), as a row of spari_body.mass. */
-void spari_mass_place(const double R[9], const double M[36], double out[10]);
+void spari_mass_rotate(const double R[9], const double M[36], double out[10]);
 
 #endif

@@ -20,35 +20,35 @@ enum { SPARI_LANES = 8 };
 
 typedef struct spari_body {
     int elements, per_element, unique;
-    int *first;      /* [elements + 1] quadrature points of each element */
-    int *slot;       /* [elements + 1] slot of each element's first point, and the end */
-    double *phi;     /* [points][P], not in blocks */
-    double *dphi;    /* [points][P], derivative with respect to arc length */
-    double *shape;   /* [blocks][P][2][lanes]: copy of phi and dphi, by spari_body_complete */
-    double *place;   /* [points][3] reference position, not in blocks */
-    double *weight;  /* [blocks][lanes], quadrature weight times Jacobian */
-    double *tangent; /* [blocks][3][lanes] unit tangent of the reference line, global */
-    double *C;       /* [blocks][36][lanes] stiffness in global axes at the reference; NULL: not elastic */
-    double *D;       /* [blocks][36][lanes] damping likewise; NULL: none */
-    double *pre;     /* [blocks][6][lanes] section forces of the reference, global axes; NULL: none */
-    double pre_part; /* fraction of `pre` in force: 1, or less in load steps */
-    double *mass;    /* [blocks][10][lanes]: m, m c (global at the reference), J (xx, xy, xz, yy, yz, zz); NULL: none */
-    int lanes;       /* maximum number of points at once; 0: as the processor has (tests try all) */
+    int *first;       /* [elements + 1] quadrature points of each element */
+    int *slot;        /* [elements + 1] slot of each element's first point, and the end */
+    double *phi;      /* [points][P], not in blocks */
+    double *dphi;     /* [points][P], derivative with respect to arc length */
+    double *shape;    /* [blocks][P][2][lanes]: copy of phi and dphi, by spari_body_complete */
+    double *position; /* [points][3] reference position, not in blocks */
+    double *weight;   /* [blocks][lanes], quadrature weight times Jacobian */
+    double *tangent;  /* [blocks][3][lanes] unit tangent of the reference line, global */
+    double *C;        /* [blocks][36][lanes] stiffness in global axes at the reference; NULL: not elastic */
+    double *D;        /* [blocks][36][lanes] damping likewise; NULL: none */
+    double *pre;      /* [blocks][6][lanes] section forces of the reference, global axes; NULL: none */
+    double pre_part;  /* fraction of `pre` in force: 1, or less in load steps */
+    double *mass; /* [blocks][10][lanes]: m, m c (global at the reference), J (xx, xy, xz, yy, yz, zz); NULL: none */
+    int lanes;    /* maximum number of points at once; 0: as the processor has (tests try all) */
     double gravity[3];
     double drag; /* 1/s, mass-proportional damping of the motion relative to the first node's rigid motion; needs D,
                     possibly zero */
-    double
-        *node_place; /* [unique][3] reference positions, with drag; NULL: none, or drag acts on absolute velocities */
-    double *seen;    /* [unique][6] workspace, likewise */
+    double *
+        node_position; /* [unique][3] reference positions, with drag; NULL: none, or drag acts on absolute velocities */
+    double *seen;      /* [unique][6] workspace, likewise */
     int gyroscopic;
-    double length;   /* size of the member for tolerances: arc length, or radius of gyration of a rigid body */
-    double stiffest; /* force due to rounding of positions: largest stiffness, and moments divided by this size */
-    double *lines;   /* memory of the blocks, without `pre`, and of an element's workspace */
-    int64_t room;    /* workspace of an element, in doubles */
-    double *scratch; /* workspace of one element, at least 6 doubles per node */
-    double *matrix;  /* [6P][6P] workspace: an element's tangent */
-    double *tally;   /* [tiles][2] workspace of sums over elements */
-    struct spari_crew *const *crew; /* threads for its elements (base/thread_pool.h); NULL: one thread */
+    double length;     /* size of the member for tolerances: arc length, or radius of gyration of a rigid body */
+    double stiffest;   /* force due to rounding of positions: largest stiffness, and moments divided by this size */
+    double *lines;     /* memory of the blocks, without `pre`, and of an element's workspace */
+    int64_t workspace; /* workspace of an element, in doubles */
+    double *scratch;   /* workspace of one element, at least 6 doubles per node */
+    double *matrix;    /* [6P][6P] workspace: an element's tangent */
+    double *tally;     /* [tiles][2] workspace of sums over elements */
+    struct spari_thread_pool *const *pool; /* threads for its elements (base/thread_pool.h); NULL: one thread */
 } spari_body;
 
 /* Allocates zero section forces of the reference. Returns 0, or 1 if there is no memory. */
@@ -62,7 +62,7 @@ static inline spari_body spari_body_in_part(const spari_body *body, double facto
 /* Adds mass-proportional damping to a body with D. place: reference positions of its unique nodes, 3 doubles each,
    which the body owns afterwards; NULL: damping of absolute velocities. Returns 0, or 1 if there is no memory; then
    the caller still owns place. */
-int spari_body_set_drag(spari_body *body, double drag, double *place);
+int spari_body_set_drag(spari_body *body, double drag, double *position);
 /* Velocities on which mass-proportional damping acts, out [unique][6]; q NULL: at the reference. */
 void spari_body_see(const spari_body *body, const double *q, const double *v, double *out);
 /* Workspace in doubles of an element with this many points. */
@@ -85,7 +85,7 @@ static inline int spari_body_tiles(const spari_body *body) {
 typedef void (*spari_body_work)(const spari_body *body, int tile, int from, int to, void *context);
 void spari_body_sweep(const spari_body *body, spari_body_work work, void *context);
 /* Workspace of a thread, in doubles. */
-int64_t spari_body_room(const spari_body *body);
+int64_t spari_body_workspace_size(const spari_body *body);
 
 /* Copies the rows of one slot to and from contiguous numbers x[rows]. */
 static inline void spari_slot_put(double *blocks, int rows, int64_t slot, const double *x) {

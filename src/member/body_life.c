@@ -19,9 +19,9 @@ static int number_points(spari_body *body, const int *points) {
 }
 
 /* Takes n doubles from the memory, aligned to a cache line; NULL: none. */
-static double *carve_aligned(double **room, int64_t n) {
-    double *at = *room;
-    *room += (n + SPARI_LANES - 1) / SPARI_LANES * SPARI_LANES;
+static double *carve_aligned(double **workspace, int64_t n) {
+    double *at = *workspace;
+    *workspace += (n + SPARI_LANES - 1) / SPARI_LANES * SPARI_LANES;
     return n > 0 ? at : NULL;
 }
 
@@ -36,7 +36,7 @@ static int create_blocks(spari_body *body, int64_t slots, int elastic, int dampe
                                   damped ? slots * 36 : 0,
                                   massive ? slots * 10 : 0,
                                   36 * P * P,
-                                  body->room > nodes ? body->room : nodes};
+                                  body->workspace > nodes ? body->workspace : nodes};
     double **part[PARTS] = {&body->shape, &body->weight, &body->tangent, &body->C,
                             &body->D,     &body->mass,   &body->matrix,  &body->scratch};
     int64_t all = SPARI_LANES;
@@ -46,9 +46,9 @@ static int create_blocks(spari_body *body, int64_t slots, int elastic, int dampe
     if (!(body->lines = spari_zalloc(all, sizeof *body->lines))) {
         return 1;
     }
-    double *room = body->lines + spari_to_line(body->lines);
+    double *workspace = body->lines + spari_to_line(body->lines);
     for (int k = 0; k < PARTS; k++) {
-        *part[k] = carve_aligned(&room, count[k]);
+        *part[k] = carve_aligned(&workspace, count[k]);
     }
     return 0;
 }
@@ -70,8 +70,8 @@ spari_body *spari_body_create(int elements, int per_element, const int *points, 
     /* vector loads read past the last row of phi */
     ok = ok && (body->phi = spari_zalloc(n * P + SPARI_LANES, sizeof *body->phi));
     ok = ok && (body->dphi = spari_zalloc(n * P + SPARI_LANES, sizeof *body->dphi));
-    ok = ok && (body->place = spari_zalloc(n * 3, sizeof *body->place));
-    body->room = spari_body_scratch(per_element, most, damped);
+    ok = ok && (body->position = spari_zalloc(n * 3, sizeof *body->position));
+    body->workspace = spari_body_scratch(per_element, most, damped);
     ok = ok && create_blocks(body, slots, elastic, damped, massive) == 0;
     ok = ok && (body->tally = spari_zalloc(2 * (int64_t)spari_body_tiles(body), sizeof *body->tally));
     if (!ok) {
@@ -87,13 +87,13 @@ int spari_body_set_pre(spari_body *body) {
     return body->pre == NULL;
 }
 
-int spari_body_set_drag(spari_body *body, double drag, double *place) {
+int spari_body_set_drag(spari_body *body, double drag, double *position) {
     body->seen = spari_zalloc(6 * (int64_t)body->unique, sizeof *body->seen);
     if (!body->seen) {
         return 1;
     }
     body->drag = drag;
-    body->node_place = place;
+    body->node_position = position;
     return 0;
 }
 
@@ -148,20 +148,21 @@ static void sweep_item(void *context, int64_t item, int worker) {
     const body_sweep *s = context;
     spari_body mine = *s->body;
     if (worker > 0) {
-        mine.scratch = spari_crew_room(*mine.crew, worker, spari_body_room(s->body));
-        mine.matrix = mine.scratch + mine.room;
+        mine.scratch = spari_thread_pool_workspace(*mine.pool, worker, spari_body_workspace_size(s->body));
+        mine.matrix = mine.scratch + mine.workspace;
     }
     sweep_tile(&mine, (int)(2 * item) + s->odd, s->work, s->context);
 }
 
-int64_t spari_body_room(const spari_body *body) {
-    return body->room + 36 * (int64_t)body->per_element * body->per_element;
+int64_t spari_body_workspace_size(const spari_body *body) {
+    return body->workspace + 36 * (int64_t)body->per_element * body->per_element;
 }
 
 void spari_body_sweep(const spari_body *body, spari_body_work work, void *context) {
     int tiles = spari_body_tiles(body);
-    spari_crew *crew = body->crew && tiles > 3 ? *body->crew : NULL; /* with at least two tiles of either parity */
-    if (!spari_crew_is_free(crew) || !spari_crew_room(crew, 1, spari_body_room(body))) {
+    spari_thread_pool *pool =
+        body->pool && tiles > 3 ? *body->pool : NULL; /* with at least two tiles of either parity */
+    if (!spari_thread_pool_is_free(pool) || !spari_thread_pool_workspace(pool, 1, spari_body_workspace_size(body))) {
         for (int tile = 0; tile < tiles; tile++) {
             sweep_tile(body, tile, work, context);
         }
@@ -169,7 +170,7 @@ void spari_body_sweep(const spari_body *body, spari_body_work work, void *contex
     }
     body_sweep s = {.body = body, .work = work, .context = context};
     for (s.odd = 0; s.odd < 2; s.odd++) {
-        spari_crew_run(crew, (tiles + 1 - s.odd) / 2, sweep_item, &s);
+        spari_thread_pool_run(pool, (tiles + 1 - s.odd) / 2, sweep_item, &s);
     }
 }
 
@@ -177,13 +178,13 @@ void spari_body_free(spari_body *body) {
     if (!body) {
         return;
     }
-    free(body->node_place);
+    free(body->node_position);
     free(body->seen);
     free(body->first);
     free(body->slot);
     free(body->phi);
     free(body->dphi);
-    free(body->place);
+    free(body->position);
     free(body->pre);
     free(body->lines);
     free(body->tally);

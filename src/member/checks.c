@@ -101,8 +101,9 @@ int spari_need_increasing(spar_session *session, const char *call, const char *n
     return SPAR_OK;
 }
 
-int spari_member_enter(const spar_member *member, const char *call, const spari_alike *alike, int count, int status) {
+int spari_member_enter(const spar_member *member, const char *call, const spari_agreed *must_agree, int count,
+                       int status) {
     char what[SPARI_MESSAGE_SIZE / 2];
     (void)snprintf(what, sizeof what, "%s: member '%s'", call, member->name);
-    return spari_enter_alike(member->session, what, alike, count, status);
+    return spari_enter_agreed(member->session, what, must_agree, count, status);
 }

@@ -1,7 +1,7 @@
 /* Argument checks shared by the public calls on members. They return 0, or a status with a message that begins with
    the name of the call. */
-#ifndef SPARI_EDGE_H
-#define SPARI_EDGE_H
+#ifndef SPARI_CHECKS_H
+#define SPARI_CHECKS_H
 
 #include "../comm/comm.h"
 #include "structure.h"
@@ -21,8 +21,9 @@ int spari_keep_stations(const spar_member *beam, const char *call, const char *w
 /* Returns stored stations to a host: *count stations (may be NULL), and up to `capacity` of eta and value. */
 int spari_give_stations(const spar_member *beam, const char *call, int width, int64_t kept, const double *kept_eta,
                         const double *kept_value, int64_t capacity, int64_t *count, double *eta, double *value);
-/* Entry of a collective call on one member, as spari_enter_alike. */
-int spari_member_enter(const spar_member *member, const char *call, const spari_alike *alike, int count, int status);
+/* Entry of a collective call on one member, as spari_enter_agreed. */
+int spari_member_enter(const spar_member *member, const char *call, const spari_agreed *must_agree, int count,
+                       int status);
 /* x[n] must be finite and not NULL; `what` names it. */
 int spari_need_finite(spar_session *session, const char *call, const char *name, const char *what, int64_t n,
                       const double *x);

@@ -37,7 +37,7 @@ static int member_create(spar_session *session, const char *call, const char *na
     m->owner = session->member_count % spari_comm_size(session->comm);
     m->root = kind == SPARI_BEAM ? SPAR_ROOT_FIXED : SPAR_ROOT_FREE;
     m->fidelity = SPAR_FIDELITY_EXACT;
-    m->place_q[0] = 1;
+    m->placed_q[0] = 1;
     session->member_count++;
     *end = m;
     *out = m;
@@ -58,17 +58,17 @@ static int check_place(spar_session *session, const char *call, const char *name
 
 static void set_place(spar_member *m, const double x[3], const double q[4]) {
     if (x) {
-        memcpy(m->place_x, x, sizeof m->place_x);
+        memcpy(m->placed_x, x, sizeof m->placed_x);
     }
     if (q) {
-        memcpy(m->place_q, q, sizeof m->place_q);
-        spari_quat_normalise(m->place_q);
+        memcpy(m->placed_q, q, sizeof m->placed_q);
+        spari_quat_normalise(m->placed_q);
     }
 }
 
 int spar_point_create(spar_session *session, const char *name, const double x[3], const double q[4],
                       spar_member **member) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(check_place(session, __func__, name ? name : "", x, q));
     spar_member *m;
@@ -80,7 +80,7 @@ int spar_point_create(spar_session *session, const char *name, const double x[3]
 
 int spar_rigid_create(spar_session *session, const char *name, const double x[3], const double q[4],
                       const double mass[36], spar_member **member) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     const char *label = name ? name : "";
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(check_place(session, __func__, label, x, q));
@@ -125,7 +125,7 @@ int spar_beam_create(spar_session *session, const char *name, int elements, int 
 /* ---- description ---- */
 
 int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const double *xyz, const double *twist) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_beam(beam, __func__));
     spar_session *session = beam->session;
     SPARI_REQUIRE(session, n >= 2 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT,
@@ -152,7 +152,7 @@ int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const do
 }
 
 int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const double *q) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_beam(beam, __func__));
     spar_session *session = beam->session;
     SPARI_REQUIRE(session, n == beam->nodes, SPAR_ERR_ARGUMENT,
@@ -215,7 +215,7 @@ const char *spari_stiffness_fault(const double C[36]) {
 
 int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, const double *stiffness,
                            const double *mass) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_beam(beam, __func__));
     spar_session *session = beam->session;
     SPARI_REQUIRE(session, n >= 1 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT,
@@ -248,7 +248,7 @@ int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, cons
 }
 
 int spar_beam_set_quadrature(spar_member *beam, int rule, int points) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_REQUIRE(beam->session, rule >= SPAR_QUADRATURE_GAUSS && rule <= SPAR_QUADRATURE_SECTIONS, SPAR_ERR_ARGUMENT,
                   "%s: '%s': quadrature rule %d is not known; see SPAR_QUADRATURE_*", __func__, beam->name, rule);
@@ -261,7 +261,7 @@ int spar_beam_set_quadrature(spar_member *beam, int rule, int points) {
 }
 
 int spar_beam_set_damping(spar_member *beam, const double mu[6]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_TRY(spari_need_finite(beam->session, __func__, beam->name, "mu", 6, mu));
     int any = 0;
@@ -276,7 +276,7 @@ int spar_beam_set_damping(spar_member *beam, const double mu[6]) {
 }
 
 int spar_beam_set_mass_damping(spar_member *beam, double alpha) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_REQUIRE(beam->session, isfinite(alpha) && alpha >= 0, SPAR_ERR_ARGUMENT,
                   "%s: '%s': alpha is %g; give a number >= 0, 1/s", __func__, beam->name, alpha);
@@ -285,7 +285,7 @@ int spar_beam_set_mass_damping(spar_member *beam, double alpha) {
 }
 
 int spar_member_set_placement(spar_member *member, const double x[3], const double q[4]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_open(member, __func__));
     SPARI_TRY(check_place(member->session, __func__, member->name, x, q));
     set_place(member, x, q);
@@ -307,7 +307,7 @@ int spar_member_set_external(spar_member *member, int on) {
 }
 
 int spar_member_set_effects(spar_member *member, int effects) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     const int all = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
                     SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK | SPAR_EFFECT_DEFAULT |
                     SPAR_EFFECT_MASSES | SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION,
@@ -376,10 +376,10 @@ int spar_beam_get_mass_damping(const spar_member *beam, double *alpha) {
 int spar_member_get_placement(const spar_member *member, double x[3], double q[4]) {
     SPARI_TRY(spari_need_member(member, __func__));
     if (x) {
-        memcpy(x, member->place_x, sizeof member->place_x);
+        memcpy(x, member->placed_x, sizeof member->placed_x);
     }
     if (q) {
-        memcpy(q, member->place_q, sizeof member->place_q);
+        memcpy(q, member->placed_q, sizeof member->placed_q);
     }
     return SPAR_OK;
 }
@@ -430,7 +430,7 @@ int spar_member_get_owner(const spar_member *member, int *rank) {
 }
 
 /* FNV-1a hash of everything the ranks must agree on. */
-uint64_t spari_member_make(const spar_member *m) {
+uint64_t spari_member_copy_hash(const spar_member *m) {
     uint64_t h = SPARI_HASH_BEGIN;
     int numbers[] = {m->kind,     m->external,    m->root,     m->effects,   m->effects_given,
                      m->elements, m->per_element, m->fidelity, (int)m->modes};
@@ -463,18 +463,18 @@ uint64_t spari_member_make(const spar_member *m) {
             size_t k = (size_t)b->pre_count * d;
             h = spari_hash_bytes(spari_hash_bytes(h, b->pre_eta, k), b->pre, 6 * k);
         }
-        if (b->lump_count > 0) {
-            size_t k = (size_t)b->lump_count * d;
-            h = spari_hash_bytes(spari_hash_bytes(h, b->lump_eta, k), b->lump, 36 * k);
+        if (b->point_mass_count > 0) {
+            size_t k = (size_t)b->point_mass_count * d;
+            h = spari_hash_bytes(spari_hash_bytes(h, b->point_mass_eta, k), b->point_mass, 36 * k);
         }
     }
     return h;
 }
 
 uint64_t spari_member_hash(const spar_member *m) {
-    uint64_t h = spari_hash_bytes(spari_member_make(m), m->name, strlen(m->name));
-    h = spari_hash_bytes(h, m->place_x, sizeof m->place_x);
-    h = spari_hash_bytes(h, m->place_q, sizeof m->place_q);
+    uint64_t h = spari_hash_bytes(spari_member_copy_hash(m), m->name, strlen(m->name));
+    h = spari_hash_bytes(h, m->placed_x, sizeof m->placed_x);
+    h = spari_hash_bytes(h, m->placed_q, sizeof m->placed_q);
     h = spari_hash_bytes(h, &m->velocity_given, sizeof m->velocity_given);
     return spari_hash_bytes(h, m->velocity, sizeof m->velocity);
 }

@@ -30,7 +30,7 @@ static int check_node(const spar_session *s, const char *call, const char *name,
 /* A linear member without a prescribed root gets a floating frame as soon as a joint connects it, not when its
    solver is created. So getters do not depend on which call created the solver. */
 static void let_float(spar_member *m) {
-    if (m && m->committed && m->seen == SPARI_SEEN_LINEAR && !spari_member_root_is_given(m)) {
+    if (m && m->committed && m->seen == SPARI_SEEN_LINEAR && !spari_member_root_is_prescribed(m)) {
         m->floats = 1;
     }
 }
@@ -77,18 +77,18 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
 
 int spar_joint_create(spar_session *session, const char *name, spar_member *a, int64_t node_a, spar_member *b,
                       int64_t node_b, int free_motions, spar_joint **joint) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(session, free_motions >= 0 && free_motions <= ALL_FREE, SPAR_ERR_ARGUMENT,
                   "%s: '%s': free is %d; or SPAR_FREE_* together", __func__, name ? name : "", free_motions);
     SPARI_TRY(joint_create(session, __func__, name, a, node_a, b, node_b, joint));
     spar_joint *j = *joint;
-    j->tie.free = free_motions;
+    j->kinematics.free = free_motions;
     return SPAR_OK;
 }
 
 int spar_line_create(spar_session *session, const char *name, spar_member *a, int64_t node_a, const double point_a[3],
                      spar_member *b, int64_t node_b, const double point_b[3], spar_joint **joint) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     const char *label = name ? name : "";
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_need_finite(session, __func__, label, "point_a", 3, point_a));
@@ -104,8 +104,8 @@ int spar_line_create(spar_session *session, const char *name, spar_member *a, in
     spar_joint *j = *joint;
     memcpy(j->point[0], point_a, sizeof j->point[0]);
     memcpy(j->point[1], point_b, sizeof j->point[1]);
-    j->tie.line = 1;
-    j->tie.free = SPAR_FREE_X;
+    j->kinematics.line = 1;
+    j->kinematics.free = SPAR_FREE_X;
     j->length = spari_norm(way);
     j->drive[0].z[0] = j->drive[1].z[0] = j->now.z[0] = j->after.z[0] = j->length;
     return SPAR_OK;
@@ -134,18 +134,18 @@ static int need_before_start(const spar_joint *j, const char *call) {
 }
 
 int spar_joint_set_frame(spar_joint *joint, const double x[3], const double q[4]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(need_before_start(joint, __func__));
     spar_session *s = joint->session;
-    SPARI_REQUIRE(s, !joint->tie.line, SPAR_ERR_STATE, "%s: '%s' is a line, whose points are its places", __func__,
-                  joint->name);
+    SPARI_REQUIRE(s, !joint->kinematics.line, SPAR_ERR_STATE, "%s: '%s' is a line, whose points are its places",
+                  __func__, joint->name);
     SPARI_TRY(spari_need_finite(s, __func__, joint->name, "x", 3, x));
     if (q) {
         SPARI_TRY(spari_need_finite(s, __func__, joint->name, "q", 4, q));
         SPARI_TRY(spari_need_unit(s, __func__, joint->name, "q", 1, q, 4));
     }
     s->joints_stale = 1;
-    memcpy(joint->place, x, sizeof joint->place);
+    memcpy(joint->position, x, sizeof joint->position);
     joint->frame_given = q ? 2 : 1;
     if (q) {
         memcpy(joint->axes, q, sizeof joint->axes);
@@ -169,7 +169,7 @@ static int check_spring(const spar_joint *j, const char *call, const char *what,
             SPARI_REQUIRE(j->session, fabs(K[6 * i + k] - K[6 * k + i]) <= 1e-9 * size, SPAR_ERR_ARGUMENT,
                           "%s: '%s': %s is not symmetric: entries (%d,%d) and (%d,%d) are %g and %g", call, j->name,
                           what, i, k, k, i, K[6 * i + k], K[6 * k + i]);
-            SPARI_REQUIRE(j->session, K[6 * i + k] == 0 || (j->tie.free >> i & 1), SPAR_ERR_ARGUMENT,
+            SPARI_REQUIRE(j->session, K[6 * i + k] == 0 || (j->kinematics.free >> i & 1), SPAR_ERR_ARGUMENT,
                           "%s: '%s': %s has %g on %s, which the joint holds; springs act on free motions", call,
                           j->name, what, K[6 * i + k], motion_name[i]);
         }
@@ -186,7 +186,7 @@ static int check_springs(const spar_joint *j, const char *call, const double *st
         SPARI_TRY(spari_need_finite(j->session, call, j->name, "preload", 6, preload));
     }
     for (int i = 0; i < 6 && preload; i++) {
-        SPARI_REQUIRE(j->session, preload[i] == 0 || (j->tie.free >> i & 1), SPAR_ERR_ARGUMENT,
+        SPARI_REQUIRE(j->session, preload[i] == 0 || (j->kinematics.free >> i & 1), SPAR_ERR_ARGUMENT,
                       "%s: '%s': preload has %g on %s, which the joint holds", call, j->name, preload[i],
                       motion_name[i]);
     }
@@ -203,10 +203,10 @@ static void take_springs(spar_joint *j, const double *stiffness, const double *d
 
 int spar_joint_set_spring(spar_joint *joint, const double stiffness[36], const double damping[36],
                           const double preload[6]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(need_joint(joint, __func__));
-    SPARI_REQUIRE(joint->session, !joint->tie.line, SPAR_ERR_STATE, "%s: '%s' is a line; call spar_line_set_spring",
-                  __func__, joint->name);
+    SPARI_REQUIRE(joint->session, !joint->kinematics.line, SPAR_ERR_STATE,
+                  "%s: '%s' is a line; call spar_line_set_spring", __func__, joint->name);
     SPARI_TRY(check_springs(joint, __func__, stiffness, damping, preload));
     take_springs(joint, stiffness, damping, preload);
     return SPAR_OK;
@@ -214,7 +214,7 @@ int spar_joint_set_spring(spar_joint *joint, const double stiffness[36], const d
 
 int spar_member_set_spring(spar_member *member, int64_t node, int free_motions, const double stiffness[36],
                            const double damping[36], const double preload[6], spar_joint **joint) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_member(member, __func__));
     spar_session *s = member->session;
     char name[SPARI_MESSAGE_SIZE];
@@ -222,10 +222,10 @@ int spar_member_set_spring(spar_member *member, int64_t node, int free_motions, 
     (void)snprintf(name, sizeof name, "%.1000s.%lld", member->name, (long long)node);
     SPARI_REQUIRE(s, free_motions >= 0 && free_motions <= ALL_FREE, SPAR_ERR_ARGUMENT,
                   "%s: '%s': free is %d; or SPAR_FREE_* together", __func__, name, free_motions);
-    const spar_joint probe = {.session = s, .name = name, .tie.free = free_motions};
+    const spar_joint probe = {.session = s, .name = name, .kinematics.free = free_motions};
     SPARI_TRY(check_springs(&probe, __func__, stiffness, damping, preload));
     SPARI_TRY(joint_create(s, __func__, name, member, node, NULL, 0, &j));
-    j->tie.free = free_motions;
+    j->kinematics.free = free_motions;
     take_springs(j, stiffness, damping, preload);
     if (joint) {
         *joint = j;
@@ -234,11 +234,11 @@ int spar_member_set_spring(spar_member *member, int64_t node, int free_motions, 
 }
 
 int spar_line_set_spring(spar_joint *joint, double stiffness, double damping, double length, int tension_only) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(need_before_start(joint, __func__));
     spar_session *s = joint->session;
-    SPARI_REQUIRE(s, joint->tie.line, SPAR_ERR_STATE, "%s: '%s' is not a line; call spar_joint_set_spring", __func__,
-                  joint->name);
+    SPARI_REQUIRE(s, joint->kinematics.line, SPAR_ERR_STATE, "%s: '%s' is not a line; call spar_joint_set_spring",
+                  __func__, joint->name);
     const double in[3] = {stiffness, damping, length};
     static const char *const name[3] = {"stiffness", "damping", "length"};
     for (int k = 0; k < 3; k++) {
@@ -255,11 +255,12 @@ int spar_line_set_spring(spar_joint *joint, double stiffness, double damping, do
 }
 
 int spar_joint_set_driven(spar_joint *joint, int mask) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(need_before_start(joint, __func__));
-    SPARI_REQUIRE(joint->session, mask >= 0 && mask <= ALL_FREE && (mask & ~joint->tie.free) == 0, SPAR_ERR_ARGUMENT,
+    SPARI_REQUIRE(joint->session, mask >= 0 && mask <= ALL_FREE && (mask & ~joint->kinematics.free) == 0,
+                  SPAR_ERR_ARGUMENT,
                   "%s: '%s': mask is %d, free is %d: what is driven must be among what the joint leaves free", __func__,
-                  joint->name, mask, joint->tie.free);
+                  joint->name, mask, joint->kinematics.free);
     joint->session->joints_stale = 1;
     joint->driven = mask;
     return SPAR_OK;
@@ -272,7 +273,8 @@ static int need_below_half_a_turn(const spar_joint *j, const double motion[6], c
         turn[k] = j->driven >> (3 + k) & 1 ? motion[3 + k] : 0;
     }
     SPARI_REQUIRE(
-        j->session, j->tie.line || spari_tie_angles(j->tie.free) || spari_norm(turn) < M_PI, SPAR_ERR_ARGUMENT,
+        j->session, j->kinematics.line || spari_kinematics_angles(j->kinematics.free) || spari_norm(turn) < M_PI,
+        SPAR_ERR_ARGUMENT,
         "%s: '%s': a turn of %.4g rad; where three rotations are free they are a rotation vector, below half a "
         "turn. Drive a hinge or a universal joint, whose angles count their turns, or the root of the member",
         call, j->name, spari_norm(turn));
@@ -280,7 +282,7 @@ static int need_below_half_a_turn(const spar_joint *j, const double motion[6], c
 }
 
 int spar_joint_drive(spar_joint *joint, const double motion[6], const double rate[6], const double acceleration[6]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     static const double rest[6] = {0};
     SPARI_TRY(need_joint(joint, __func__));
     spar_session *s = joint->session;
@@ -303,11 +305,11 @@ int spar_joint_drive(spar_joint *joint, const double motion[6], const double rat
 }
 
 int spar_joint_set_load(spar_joint *joint, const double load[6]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(need_joint(joint, __func__));
     SPARI_TRY(spari_need_finite(joint->session, __func__, joint->name, "load", 6, load));
     for (int i = 0; i < 6; i++) {
-        SPARI_REQUIRE(joint->session, load[i] == 0 || (joint->tie.free >> i & 1), SPAR_ERR_ARGUMENT,
+        SPARI_REQUIRE(joint->session, load[i] == 0 || (joint->kinematics.free >> i & 1), SPAR_ERR_ARGUMENT,
                       "%s: '%s': load has %g on %s, which the joint holds", __func__, joint->name, load[i],
                       motion_name[i]);
     }
@@ -357,7 +359,7 @@ int spari_member_unique(const spar_member *m, int64_t node) {
     return (int)(m->elements == 1 ? node : node - node / m->per_element);
 }
 
-int spari_member_is_tied(const spar_member *m) {
+int spari_member_has_joints(const spar_member *m) {
     for (const spar_joint *j = m->session->joints; j; j = j->next) {
         if (j->member[0] == m || j->member[1] == m) {
             return 1;
@@ -379,19 +381,19 @@ uint64_t spari_joint_hash(const spar_joint *j) {
                                place_in_session(j->member[1]),
                                j->node[0],
                                j->node[1],
-                               j->tie.free,
-                               j->tie.line,
+                               j->kinematics.free,
+                               j->kinematics.line,
                                j->driven,
                                j->frame_given,
-                               j->tie.line && j->sprung,
+                               j->kinematics.line && j->sprung,
                                j->slack};
     const double unit[4] = {1};
     uint64_t h = spari_hash_bytes(SPARI_HASH_BEGIN, j->name, strlen(j->name));
     h = spari_hash_bytes(h, numbers, sizeof numbers);
-    h = spari_hash_bytes(h, j->place, sizeof j->place);
+    h = spari_hash_bytes(h, j->position, sizeof j->position);
     h = spari_hash_bytes(h, j->frame_given < 2 ? unit : j->axes, sizeof j->axes);
     h = spari_hash_bytes(h, j->point, sizeof j->point);
-    if (j->tie.line) { /* springs of a joint may be replaced at any time */
+    if (j->kinematics.line) { /* springs of a joint may be replaced at any time */
         const double spring[3] = {j->stiffness[0], j->damping[0], j->length};
         h = spari_hash_bytes(h, spring, sizeof spring);
     }
@@ -400,7 +402,7 @@ uint64_t spari_joint_hash(const spar_joint *j) {
 
 uint64_t spari_joint_setting(const spar_joint *j) {
     uint64_t h = spari_hash_bytes(SPARI_HASH_BEGIN, j->given, sizeof j->given);
-    if (!j->tie.line) {
+    if (!j->kinematics.line) {
         h = spari_hash_bytes(h, j->stiffness, sizeof j->stiffness);
         h = spari_hash_bytes(h, j->damping, sizeof j->damping);
         h = spari_hash_bytes(h, j->preload, sizeof j->preload);
@@ -419,8 +421,8 @@ uint64_t spari_joints_setting(const spar_session *s) {
     return h;
 }
 
-int spari_joint_given(const spar_joint *j) {
-    return j->tie.line ? !j->sprung || j->driven : (~j->tie.free & ALL_FREE) | j->driven;
+int spari_joint_constrained(const spar_joint *j) {
+    return j->kinematics.line ? !j->sprung || j->driven : (~j->kinematics.free & ALL_FREE) | j->driven;
 }
 
 double spari_joint_load_at(const spar_joint *j, int k, double left) {
@@ -429,13 +431,13 @@ double spari_joint_load_at(const spar_joint *j, int k, double left) {
 
 int spari_joint_spring(const spar_joint *j, const double z[6], const double rate[6], double speed, double factor,
                        double load[6]) {
-    int given = spari_joint_given(j);
-    if (j->tie.line && !given) {
+    int given = spari_joint_constrained(j);
+    if (j->kinematics.line && !given) {
         double pull = spari_joint_pull(j, z, rate, speed);
         load[0] = factor * spari_joint_load_at(j, 0, j->left) - pull;
         return j->sprung && !(j->slack && pull == 0);
     }
-    if (j->tie.line) {
+    if (j->kinematics.line) {
         return 0;
     }
     for (int i = 0; i < 6; i++) {
@@ -453,7 +455,7 @@ int spari_joint_spring(const spar_joint *j, const double z[6], const double rate
 int spari_joint_check_place(const spar_joint *j) {
     const spar_member *a = j->member[0], *b = j->member[1];
     double apart = 0, size = 0;
-    for (int k = 0; k < 3 && b && !j->tie.line && !j->frame_given; k++) {
+    for (int k = 0; k < 3 && b && !j->kinematics.line && !j->frame_given; k++) {
         double x = a->xr[3 * j->node[0] + k];
         apart = hypot(apart, b->xr[3 * j->node[1] + k] - x);
         size = fmax(size, fabs(x));
@@ -473,24 +475,24 @@ void spari_joint_place(spar_joint *j) {
         j->seat[side] = j->node[side];
         j->unique[side] = j->member[side] ? spari_member_unique(j->member[side], j->node[side]) : 0;
     }
-    if (!j->tie.line && j->frame_given < 2) {
+    if (!j->kinematics.line && j->frame_given < 2) {
         memcpy(j->axes, a->qr + 4 * j->node[0], sizeof j->axes);
     }
-    if (!j->tie.line && !j->frame_given) {
-        memcpy(j->place, x[0], sizeof j->place);
+    if (!j->kinematics.line && !j->frame_given) {
+        memcpy(j->position, x[0], sizeof j->position);
     }
     for (int side = 0; side < 2; side++) {
-        const double *to = j->tie.line ? j->point[side] : j->place;
+        const double *to = j->kinematics.line ? j->point[side] : j->position;
         for (int k = 0; k < 3; k++) {
-            j->tie.arm[side][k] = to[k] - x[side][k];
+            j->kinematics.arm[side][k] = to[k] - x[side][k];
         }
-        memcpy(j->tie.axes[side], j->axes, sizeof j->axes);
+        memcpy(j->kinematics.axes[side], j->axes, sizeof j->axes);
     }
     j->placed = 1;
 }
 
 void spari_joint_count_turns(const spar_joint *j, const double near[6], double z[6]) {
-    int angles = j->tie.line ? 0 : spari_tie_angles(j->tie.free);
+    int angles = j->kinematics.line ? 0 : spari_kinematics_angles(j->kinematics.free);
     const double turn = 6.283185307179586476925;
     for (int k = 0; k < 3; k++) {
         z[3 + k] += angles >> k & 1 ? turn * round((near[3 + k] - z[3 + k]) / turn) : 0;

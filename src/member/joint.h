@@ -28,10 +28,10 @@ struct spar_joint {
     int64_t seat[2]; /* nodes whose motion moves the ends: those given, or the root if one body carries a beam */
     int unique[2];   /* the same as unique nodes; after the members are committed */
     int placed;      /* seats, lever arms and axes are known */
-    spari_tie tie;   /* lever arms and axes: likewise */
+    spari_joint_kinematics kinematics; /* lever arms and axes: likewise */
     int frame_given;
-    double place[3], axes[4]; /* of spar_joint_set_frame */
-    double point[2][3];       /* end points of a link */
+    double position[3], axes[4]; /* of spar_joint_set_frame */
+    double point[2][3];          /* end points of a link */
 
     int sprung, slack;                             /* slack: a link that only pulls */
     double stiffness[36], damping[36], preload[6]; /* on the free motions */
@@ -41,7 +41,7 @@ struct spar_joint {
     int driven;                                    /* mask of driven free motions */
     spari_driven drive[2];                         /* at t^n and t^{n+1} */
     int drive_given;
-    int held; /* mask of constrained motions: not free, or driven, and not redundant */
+    int constrained; /* mask of constrained motions: not free, or driven, and not redundant */
 
     spari_relative now, after; /* at t^n and t^{n+1} */
     double account[3]; /* energy dissipated by dampers, supplied by drives and by the host's load, up to t^n; if kept */
@@ -52,7 +52,7 @@ struct spar_joint {
 /* Unique node of a node in the host's numbering. */
 int spari_member_unique(const spar_member *member, int64_t node);
 /* Whether a joint connects the member. */
-int spari_member_is_tied(const spar_member *member);
+int spari_member_has_joints(const spar_member *member);
 /* The description as one number: all that is said of it before the first step. */
 uint64_t spari_joint_hash(const spar_joint *joint);
 /* Hash of what may change at any time: springs, load, drive. And that of all joints, which the ranks compare before
@@ -60,7 +60,7 @@ uint64_t spari_joint_hash(const spar_joint *joint);
 uint64_t spari_joint_setting(const spar_joint *joint);
 uint64_t spari_joints_setting(const spar_session *session);
 /* Mask of the constrained motions: not free, or driven. */
-int spari_joint_given(const spar_joint *joint);
+int spari_joint_constrained(const spar_joint *joint);
 /* The host's load on motion k with the fraction `left` of a step remaining: linear in the step, constant in the
    first step. */
 double spari_joint_load_at(const spar_joint *joint, int k, double left);
@@ -94,7 +94,7 @@ void spari_joint_reject(spar_joint *joint);
 /* Makes the computed initial conditions those of t^0. */
 void spari_joint_end_start(spar_joint *joint);
 /* Positions of its two nodes in the motion `after`. */
-void spari_joint_places(const spar_joint *joint, spari_place place[2]);
+void spari_joint_poses(const spar_joint *joint, spari_node_pose position[2]);
 /* Second derivatives of its coordinates in the motion `after`; 0 before this is computed. */
 void spari_joint_acceleration(const spar_joint *joint, double acceleration[6]);
 /* load[6] += loads of the joints on a node of a member, in the motion `after`. */
@@ -104,8 +104,8 @@ void spari_joints_on(const spar_member *member, int64_t node, double load[6]);
 void spari_joints_on_external(const spar_member *member, double *load);
 /* Whether joints connect members whose motion the host may set during the iteration (external members, points); then
    the other members must be solved again. And whether it has been set in this step. */
-int spari_joints_tie_given(const spar_session *session);
-int spari_joints_tie_moved(const spar_session *session);
+int spari_joints_hold_prescribed(const spar_session *session);
+int spari_joints_hold_moved(const spar_session *session);
 void spari_joint_free(spar_joint *joint);
 
 #endif

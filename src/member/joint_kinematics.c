@@ -6,7 +6,7 @@
 #include <spar/spar.h>
 #include <string.h>
 
-int spari_tie_axis(int free) {
+int spari_kinematics_free_axis(int free) {
     switch (free & (SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ)) {
     case SPAR_FREE_RX:
         return 0;
@@ -19,11 +19,11 @@ int spari_tie_axis(int free) {
     }
 }
 
-enum { FREE_TURNS = SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ };
+enum { FREE_ROTATIONS = SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ };
 
 /* Constrained axis of a joint with two free rotations; otherwise -1. */
-static int axis_without_turn(int free) {
-    switch (free & FREE_TURNS) {
+static int axis_without_rotation(int free) {
+    switch (free & FREE_ROTATIONS) {
     case SPAR_FREE_RY | SPAR_FREE_RZ:
         return 0;
     case SPAR_FREE_RX | SPAR_FREE_RZ:
@@ -35,16 +35,16 @@ static int axis_without_turn(int free) {
     }
 }
 
-int spari_tie_angles(int free) {
-    return (free & FREE_TURNS) == FREE_TURNS ? 0 : (free & FREE_TURNS) / SPAR_FREE_RX;
+int spari_kinematics_angles(int free) {
+    return (free & FREE_ROTATIONS) == FREE_ROTATIONS ? 0 : (free & FREE_ROTATIONS) / SPAR_FREE_RX;
 }
 
 /* One end of a joint. */
-typedef struct tie_end {
+typedef struct joint_end {
     double arm[3], axes[4]; /* from the node, present configuration */
-} tie_end;
+} joint_end;
 
-static void carry_end(const spari_tie *t, int side, const spari_place *at, tie_end *e) {
+static void carry_end(const spari_joint_kinematics *t, int side, const spari_node_pose *at, joint_end *e) {
     spari_rotate(at->q, t->arm[side], e->arm);
     spari_quat_mul(at->q, t->axes[side], e->axes);
 }
@@ -82,28 +82,29 @@ static double angle_of(const double c[3], int q, int r, double sign, double row[
 
 /* The cross of a universal joint has two perpendicular arms: axis p of b and axis q of a; r is the third. r[4]
    rotates b's p by the first angle, then a's q by the second. */
-static void universal(int without, const double turn[4], double z[3], double D[9]) {
+static void universal(int without, const double rotation[4], double z[3], double D[9]) {
     int r = without, p = r == 0 ? 1 : 0, q = 3 - p - r;
     double sign = r == 1 ? -1 : 1, e[3] = {0}, f[3] = {0}, c[3], d[3], row[3];
     e[q] = f[p] = 1;
-    spari_rotate(turn, e, c);
+    spari_rotate(rotation, e, c);
     z[p] = angle_of(c, q, r, sign, D + 3 * p);
     z[r] = -sign * c[p]; /* dc = phi x c */
     spari_cross(c, f, D + 3 * r);
     for (int m = 0; m < 3; m++) {
         D[3 * r + m] *= -sign;
     }
-    spari_rotate_back(turn, f, d); /* b's p, in a's axes, rotates with -phi */
+    spari_rotate_back(rotation, f, d); /* b's p, in a's axes, rotates with -phi */
     z[q] = angle_of(d, p, r, sign, row);
-    spari_rotate(turn, row, D + 3 * q);
+    spari_rotate(rotation, row, D + 3 * q);
     for (int m = 0; m < 3; m++) {
         D[3 * q + m] = -D[3 * q + m];
     }
 }
 
 /* The three rotations z, and D[3][3]: their change with a small rotation phi of a relative to b, in b's axes. */
-static void rotations(const spari_tie *t, const double r[4], double z[3], double D[9]) {
-    int i = spari_tie_axis(t->free), rotations_free = t->free & FREE_TURNS, without = axis_without_turn(t->free);
+static void rotations(const spari_joint_kinematics *t, const double r[4], double z[3], double D[9]) {
+    int i = spari_kinematics_free_axis(t->free), rotations_free = t->free & FREE_ROTATIONS,
+        without = axis_without_rotation(t->free);
     double sign = r[0] < 0 ? -1 : 1;
     if (rotations_free == 0) { /* z = 2 r_v, dr_v = (r0 phi + phi x r_v) / 2 */
         for (int k = 0; k < 3; k++) {
@@ -138,7 +139,7 @@ static void rotations(const spari_tie *t, const double r[4], double z[3], double
     }
 }
 
-static void line_motion(const tie_end e[2], const double w[3], double z[6], double B[6][12]) {
+static void line_motion(const joint_end e[2], const double w[3], double z[6], double B[6][12]) {
     double n[3];
     memset(z, 0, 6 * sizeof *z);
     z[0] = spari_norm(w);
@@ -151,8 +152,9 @@ static void line_motion(const tie_end e[2], const double w[3], double z[6], doub
     }
 }
 
-void spari_tie_motion(const spari_tie *t, const spari_place *a, const spari_place *b, double z[6], double B[6][12]) {
-    tie_end e[2];
+void spari_kinematics_motion(const spari_joint_kinematics *t, const spari_node_pose *a, const spari_node_pose *b,
+                             double z[6], double B[6][12]) {
+    joint_end e[2];
     double w[3], back[4], r[4], D[9], reach[3];
     carry_end(t, 0, a, &e[0]);
     carry_end(t, 1, b, &e[1]);
@@ -170,16 +172,16 @@ void spari_tie_motion(const spari_tie *t, const spari_place *a, const spari_plac
     rotations(t, r, z + 3, D);
     for (int m = 0; m < 3 && B; m++) {
         const double none[3] = {0};
-        double axis[3] = {0}, turn[3];
+        double axis[3] = {0}, rotation[3];
         axis[m] = 1;
         spari_rotate(e[1].axes, axis, axis);
         set_way(B[m], axis, e[0].arm, reach); /* in b's axes, which rotate: a's point moves with b */
-        spari_rotate(e[1].axes, D + 3 * m, turn);
-        set_row(B[3 + m], none, turn, turn);
+        spari_rotate(e[1].axes, D + 3 * m, rotation);
+        set_row(B[3 + m], none, rotation, rotation);
     }
 }
 
-void spari_tie_forces(double B[6][12], const double load[6], double f[12]) {
+void spari_kinematics_forces(double B[6][12], const double load[6], double f[12]) {
     for (int j = 0; j < 12; j++) {
         f[j] = 0;
         for (int k = 0; k < 6; k++) {
@@ -189,8 +191,8 @@ void spari_tie_forces(double B[6][12], const double load[6], double f[12]) {
 }
 
 /* Displaces (du, dtheta) of one of the two nodes, counted as the entries of K and B */
-static void nudge(spari_place *a, spari_place *b, int j, double by) {
-    spari_place *at = j < 6 ? a : b;
+static void nudge(spari_node_pose *a, spari_node_pose *b, int j, double by) {
+    spari_node_pose *at = j < 6 ? a : b;
     if (j % 6 < 3) {
         at->x[j % 6] += by;
     } else {
@@ -202,7 +204,7 @@ static void nudge(spari_place *a, spari_place *b, int j, double by) {
 }
 
 /* Step of the central differences: the size of the geometry, for an accuracy of about 1e-10. */
-static double size_of_tie(const spari_tie *t, const spari_place *a, const spari_place *b) {
+static double size_of_joint(const spari_joint_kinematics *t, const spari_node_pose *a, const spari_node_pose *b) {
     double w[3];
     for (int k = 0; k < 3; k++) {
         w[k] = a->x[k] - b->x[k];
@@ -211,16 +213,16 @@ static double size_of_tie(const spari_tie *t, const spari_place *a, const spari_
     return size > 0 ? size : 1;
 }
 
-void spari_tie_tangent(const spari_tie *t, const spari_place *a, const spari_place *b, const double load[6],
-                       double K[12][12]) {
-    const double turn = 1e-5, way = turn * size_of_tie(t, a, b);
+void spari_kinematics_tangent(const spari_joint_kinematics *t, const spari_node_pose *a, const spari_node_pose *b,
+                              const double load[6], double K[12][12]) {
+    const double rotation = 1e-5, way = rotation * size_of_joint(t, a, b);
     for (int j = 0; j < 12; j++) {
-        double f[2][12], z[6], B[6][12], by = j % 6 < 3 ? way : turn;
+        double f[2][12], z[6], B[6][12], by = j % 6 < 3 ? way : rotation;
         for (int side = 0; side < 2; side++) {
-            spari_place at = *a, bt = *b;
+            spari_node_pose at = *a, bt = *b;
             nudge(&at, &bt, j, side ? -by : by);
-            spari_tie_motion(t, &at, &bt, z, B);
-            spari_tie_forces(B, load, f[side]);
+            spari_kinematics_motion(t, &at, &bt, z, B);
+            spari_kinematics_forces(B, load, f[side]);
         }
         for (int i = 0; i < 12; i++) {
             K[i][j] += (f[0][i] - f[1][i]) / (2 * by);
@@ -228,15 +230,15 @@ void spari_tie_tangent(const spari_tie *t, const spari_place *a, const spari_pla
     }
 }
 
-void spari_tie_rates(const spari_tie *t, const spari_place *a, const spari_place *b, const double v[12],
-                     double R[6][12]) {
-    const double turn = 1e-5, way = turn * size_of_tie(t, a, b);
+void spari_kinematics_rates(const spari_joint_kinematics *t, const spari_node_pose *a, const spari_node_pose *b,
+                            const double v[12], double R[6][12]) {
+    const double rotation = 1e-5, way = rotation * size_of_joint(t, a, b);
     for (int j = 0; j < 12; j++) {
-        double by = j % 6 < 3 ? way : turn, z[6], B[2][6][12];
+        double by = j % 6 < 3 ? way : rotation, z[6], B[2][6][12];
         for (int side = 0; side < 2; side++) {
-            spari_place at = *a, bt = *b;
+            spari_node_pose at = *a, bt = *b;
             nudge(&at, &bt, j, side ? -by : by);
-            spari_tie_motion(t, &at, &bt, z, B[side]);
+            spari_kinematics_motion(t, &at, &bt, z, B[side]);
         }
         for (int i = 0; i < 6; i++) {
             R[i][j] = 0;
@@ -247,26 +249,26 @@ void spari_tie_rates(const spari_tie *t, const spari_place *a, const spari_place
     }
 }
 
-void spari_tie_drift(const spari_tie *t, const spari_place *a, const spari_place *b, const double v[12],
-                     double rate[6]) {
-    double fastest = 0, size = size_of_tie(t, a, b), z[6], B[2][6][12];
+void spari_kinematics_drift(const spari_joint_kinematics *t, const spari_node_pose *a, const spari_node_pose *b,
+                            const double v[12], double rate[6]) {
+    double fastest = 0, size = size_of_joint(t, a, b), z[6], B[2][6][12];
     for (int j = 0; j < 12; j++) {
         fastest = fmax(fastest, fabs(v[j]) / (j % 6 < 3 ? size : 1));
     }
     double s = fastest > 0 ? 1e-5 / fastest : 0;
     for (int side = 0; side < 2; side++) {
-        spari_place at = *a, bt = *b;
+        spari_node_pose at = *a, bt = *b;
         for (int n = 0; n < 2; n++) {
-            spari_place *p = n ? &bt : &at;
-            double psi[3], turn[4], by = side ? -s : s;
+            spari_node_pose *p = n ? &bt : &at;
+            double psi[3], rotation[4], by = side ? -s : s;
             for (int k = 0; k < 3; k++) {
                 p->x[k] += by * v[6 * n + k];
                 psi[k] = by * v[6 * n + 3 + k];
             }
-            spari_quat_exp(psi, turn);
-            spari_quat_mul(turn, p->q, p->q);
+            spari_quat_exp(psi, rotation);
+            spari_quat_mul(rotation, p->q, p->q);
         }
-        spari_tie_motion(t, &at, &bt, z, B[side]);
+        spari_kinematics_motion(t, &at, &bt, z, B[side]);
     }
     for (int k = 0; k < 6; k++) {
         rate[k] = 0;

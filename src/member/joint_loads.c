@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-static void place_of_seat(const spar_joint *j, int side, spari_place *p) {
+static void pose_of_seat(const spar_joint *j, int side, spari_node_pose *p) {
     const spar_member *m = j->member[side];
-    *p = (spari_place){.q = {1, 0, 0, 0}};
+    *p = (spari_node_pose){.q = {1, 0, 0, 0}};
     if (m) {
         const double *q = m->after.q + 7 * j->seat[side];
         for (int k = 0; k < 3; k++) {
@@ -15,9 +15,9 @@ static void place_of_seat(const spar_joint *j, int side, spari_place *p) {
     }
 }
 
-void spari_joint_places(const spar_joint *j, spari_place place[2]) {
-    place_of_seat(j, 0, &place[0]);
-    place_of_seat(j, 1, &place[1]);
+void spari_joint_poses(const spar_joint *j, spari_node_pose pose[2]) {
+    pose_of_seat(j, 0, &pose[0]);
+    pose_of_seat(j, 1, &pose[1]);
 }
 
 void spari_joints_on(const spar_member *m, int64_t node, double load[6]) {
@@ -26,11 +26,11 @@ void spari_joints_on(const spar_member *m, int64_t node, double load[6]) {
             if (!j->placed || j->member[side] != m || j->seat[side] != node) {
                 continue;
             }
-            spari_place place[2];
+            spari_node_pose pose[2];
             double z[6], B[6][12], f[12];
-            spari_joint_places(j, place);
-            spari_tie_motion(&j->tie, &place[0], &place[1], z, B);
-            spari_tie_forces(B, j->after.load, f);
+            spari_joint_poses(j, pose);
+            spari_kinematics_motion(&j->kinematics, &pose[0], &pose[1], z, B);
+            spari_kinematics_forces(B, j->after.load, f);
             for (int k = 0; k < 6; k++) {
                 load[k] += f[6 * side + k];
             }
@@ -48,26 +48,26 @@ static int is_given(const spar_member *m) {
     return m && (m->external || m->kind == SPARI_POINT);
 }
 
-int spari_joints_tie_given(const spar_session *s) {
-    int ties = 0;
-    for (const spar_joint *j = s->joints; j && !ties; j = j->next) {
-        ties = is_given(j->member[0]) || is_given(j->member[1]);
+int spari_joints_hold_prescribed(const spar_session *s) {
+    int count = 0;
+    for (const spar_joint *j = s->joints; j && !count; j = j->next) {
+        count = is_given(j->member[0]) || is_given(j->member[1]);
     }
-    return ties;
+    return count;
 }
 
-int spari_joints_tie_moved(const spar_session *s) {
-    int ties = 0;
-    for (const spar_joint *j = s->joints; j && !ties; j = j->next) {
+int spari_joints_hold_moved(const spar_session *s) {
+    int count = 0;
+    for (const spar_joint *j = s->joints; j && !count; j = j->next) {
         for (int side = 0; side < 2; side++) {
-            ties = ties || (is_given(j->member[side]) && j->member[side]->motion_given);
+            count = count || (is_given(j->member[side]) && j->member[side]->motion_given);
         }
     }
-    return ties;
+    return count;
 }
 
 void spari_joint_acceleration(const spar_joint *j, double acceleration[6]) {
-    spari_place place[2];
+    spari_node_pose pose[2];
     double z[6], B[6][12], v[12] = {0}, a[12] = {0};
     memset(acceleration, 0, 6 * sizeof *acceleration);
     if (j->after.found == 0) { /* whether it is placed does not affect the run */
@@ -80,9 +80,9 @@ void spari_joint_acceleration(const spar_joint *j, double acceleration[6]) {
             memcpy(a + 6 * side, m->after.a + 6 * j->seat[side], 6 * sizeof *a);
         }
     }
-    spari_joint_places(j, place);
-    spari_tie_motion(&j->tie, &place[0], &place[1], z, B);
-    spari_tie_drift(&j->tie, &place[0], &place[1], v, acceleration);
+    spari_joint_poses(j, pose);
+    spari_kinematics_motion(&j->kinematics, &pose[0], &pose[1], z, B);
+    spari_kinematics_drift(&j->kinematics, &pose[0], &pose[1], v, acceleration);
     for (int k = 0; k < 72; k++) {
         acceleration[k / 12] += B[k / 12][k % 12] * a[k % 12];
     }

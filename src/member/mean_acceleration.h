@@ -4,8 +4,8 @@
      with an acceleration of the wrong sign, and an added mass that responds to it would amplify the mode. A member
      with an added mass in its equations has it in every stage and does not need this. A member that learns its added
      mass needs it until the mass is known. */
-#ifndef SPARI_MEANS_H
-#define SPARI_MEANS_H
+#ifndef SPARI_MEAN_ACCELERATION_H
+#define SPARI_MEAN_ACCELERATION_H
 
 #include "structure.h"
 

@@ -60,7 +60,7 @@ static void give(double *to, const double *from, int64_t n) {
 }
 
 int spar_member_get_reference(const spar_member *member, double *x, double *q) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_committed(member, __func__));
     give(x, member->xr, 3 * member->nodes);
     give(q, member->qr, 4 * member->nodes);
@@ -68,7 +68,7 @@ int spar_member_get_reference(const spar_member *member, double *x, double *q) {
 }
 
 int spar_member_get_motion(const spar_member *member, double *q, double *v, double *a) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_committed(member, __func__));
     give(q, member->after.q, 7 * member->nodes);
     give(v, member->after.v, 6 * member->nodes);
@@ -77,7 +77,7 @@ int spar_member_get_motion(const spar_member *member, double *q, double *v, doub
 }
 
 int spar_member_get_loads(const spar_member *member, double *load) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "%s: '%s': load is NULL", __func__, member->name);
     const spar_session *s = member->session;
@@ -170,7 +170,7 @@ void spari_member_gather(const spar_member *m, const double *nodal, double *uniq
 
 void spari_member_even_loads(const spar_member *m, double *load) {
     int P = m->per_element;
-    memset(load, 0, (size_t)spari_member_held(m) * sizeof *load);
+    memset(load, 0, (size_t)spari_member_constrained(m) * sizeof *load);
     for (int64_t e = 1; e < m->elements; e++) {
         double *left = load + 6 * (e * P - 1), *right = left + 6;
         for (int k = 0; k < 6; k++) {

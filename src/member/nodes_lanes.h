@@ -21,9 +21,9 @@ HERE void NAME(get_row)(const int n, int row, const double *z, L *x) {
 /* Positions and quaternions, and their rates: q' = 1/2 w q, q'' = 1/2 alpha q + 1/2 w q'. */
 HERE void NAME(put_fields)(const int whole, const int64_t *at, const double *q, const double *v, const double *a,
                            double *z) {
-    L place[7], rate[6], half[3], turn[4], spin[4];
-    NAME(pick_rows)(whole, at, 7, 7, q, place);
-    NAME(put_row)(7, U, place, z);
+    L position[7], rate[6], half[3], rotation[4], spin[4];
+    NAME(pick_rows)(whole, at, 7, 7, q, position);
+    NAME(put_row)(7, U, position, z);
     if (!v) {
         return;
     }
@@ -31,23 +31,23 @@ HERE void NAME(put_fields)(const int whole, const int64_t *at, const double *q, 
     for (int i = 0; i < 3; i++) {
         half[i] = 0.5 * rate[3 + i];
     }
-    NAME(vec_quat)(half, place + Q, turn);
+    NAME(vec_quat)(half, position + Q, rotation);
     NAME(put_row)(3, UD, rate, z);
-    NAME(put_row)(4, QD, turn, z);
+    NAME(put_row)(4, QD, rotation, z);
     if (!a) {
         return;
     }
-    NAME(vec_quat)(half, turn, spin);
+    NAME(vec_quat)(half, rotation, spin);
     NAME(pick_rows)(whole, at, 6, 6, a, rate);
     for (int i = 0; i < 3; i++) {
         half[i] = 0.5 * rate[3 + i];
     }
-    NAME(vec_quat)(half, place + Q, turn);
+    NAME(vec_quat)(half, position + Q, rotation);
     for (int i = 0; i < 4; i++) {
-        turn[i] = turn[i] + spin[i];
+        rotation[i] = rotation[i] + spin[i];
     }
     NAME(put_row)(3, UDD, rate, z);
-    NAME(put_row)(4, QDD, turn, z);
+    NAME(put_row)(4, QDD, rotation, z);
 }
 
 /* Whether one of W quaternions from `first` on is in the other hemisphere than the one before it. Entries beyond
@@ -82,15 +82,15 @@ TARGET static int NAME(gather_nodes)(int first, int left, const double *q, const
 /* Nodal forces from the seven field forces: delta q . g = delta theta . 1/2 Im(g q*). Lanes past the last node are
    overwritten. */
 HERE void NAME(add_block)(const int whole, const int64_t *at, const double *g, const double *z, double *r) {
-    L q[4], back[BACK], turn[4], sum[6];
+    L q[4], back[BACK], rotation[4], sum[6];
     NAME(get_row)(BACK, 0, g, back);
     NAME(get_row)(4, Q, z, q);
     const L conj[4] = {q[0], -q[1], -q[2], -q[3]};
-    NAME(quat_mul)(back + 3, conj, turn);
+    NAME(quat_mul)(back + 3, conj, rotation);
     NAME(pick_rows)(whole, at, 6, 6, r, sum);
     for (int i = 0; i < 3; i++) {
         sum[i] = sum[i] + back[i];
-        sum[3 + i] = sum[3 + i] + 0.5 * turn[1 + i];
+        sum[3 + i] = sum[3 + i] + 0.5 * rotation[1 + i];
     }
     NAME(drop_rows)(whole, at, 6, 6, r, sum);
 }

@@ -4,12 +4,12 @@
 /* Velocity of a node relative to the rigid motion of the first; without positions, its absolute velocity. */
 static void see_node(const spari_body *body, int64_t node, const double *q, const double *v, double out[6]) {
     double arm[3], carried[3];
-    if (!body->node_place) {
+    if (!body->node_position) {
         memcpy(out, v + 6 * node, 6 * sizeof *out);
         return;
     }
     for (int i = 0; i < 3; i++) {
-        arm[i] = body->node_place[3 * node + i] - body->node_place[i] + (q ? q[7 * node + i] - q[i] : 0);
+        arm[i] = body->node_position[3 * node + i] - body->node_position[i] + (q ? q[7 * node + i] - q[i] : 0);
     }
     spari_cross(v + 3, arm, carried);
     for (int i = 0; i < 3; i++) {
@@ -34,7 +34,7 @@ static void add_drag(const spari_body *body, int e, const double *q, const doubl
             zn[SPARI_MAX_NODES * (UDD + i)] += body->drag * seen[i];
             half[1 + i] = 0.5 * body->drag * seen[3 + i];
         }
-        spari_point_turn(z, l, at);
+        spari_point_rotation(z, l, at);
         spari_quat_mul(half, at, turned);
         for (int i = 0; i < 4; i++) {
             zn[SPARI_MAX_NODES * (QDD + i)] += turned[i];
@@ -46,8 +46,8 @@ static void add_drag(const spari_body *body, int e, const double *q, const doubl
 static void chain_nodes(int P, double *z) {
     for (int l = 1; l < P; l++) {
         double before[4], here[4];
-        spari_point_turn(z, l - 1, before);
-        spari_point_turn(z, l, here);
+        spari_point_rotation(z, l - 1, before);
+        spari_point_rotation(z, l, here);
         for (int i = 0; i < 4 && spari_quat_dot(before, here) < 0; i++) {
             z[SPARI_MAX_NODES * (Q + i) + l] *= -1;
             z[SPARI_MAX_NODES * (QD + i) + l] *= -1;

@@ -59,7 +59,7 @@ typedef struct spari_tally {
 } spari_tally;
 
 /* Quaternion of a node. */
-static inline void spari_point_turn(const double *z, int node, double q[4]) {
+static inline void spari_point_rotation(const double *z, int node, double q[4]) {
     for (int i = 0; i < 4; i++) {
         q[i] = z[SPARI_MAX_NODES * (Q + i) + node];
     }

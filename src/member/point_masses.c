@@ -7,44 +7,46 @@
 #include <math.h>
 #include <stdlib.h>
 
-int spari_lump_element(const spar_member *member, int64_t k, double *xi) {
-    double along = member->beam->lump_eta[k] * member->elements;
+int spari_point_mass_element(const spar_member *member, int64_t k, double *xi) {
+    double along = member->beam->point_mass_eta[k] * member->elements;
     int e = (int)ceil(along - 1e-9) - 1; /* an element boundary belongs to the element before it */
     e = e < 0 ? 0 : e > member->elements - 1 ? member->elements - 1 : e;
     *xi = fmin(fmax(2 * (along - e) - 1, -1), 1);
     return e;
 }
 
-int spari_lumps_of(const spar_member *member, int e) {
+int spari_point_masses_of(const spar_member *member, int e) {
     int n = 0;
-    for (int64_t k = 0; k < member->beam->lump_count; k++) {
+    for (int64_t k = 0; k < member->beam->point_mass_count; k++) {
         double xi;
-        n += spari_lump_element(member, k, &xi) == e;
+        n += spari_point_mass_element(member, k, &xi) == e;
     }
     return n;
 }
 
-void spari_lumps_weigh(const spar_member *member, double weight) {
+void spari_point_masses_weight(const spar_member *member, double weight) {
     spari_body *b = member->body;
     for (int e = 0; e < b->elements; e++) {
-        int n = b->first[e + 1] - b->first[e], lumps = spari_lumps_of(member, e);
-        for (int k = n - lumps; k < n; k++) {
+        int n = b->first[e + 1] - b->first[e], point_masses = spari_point_masses_of(member, e);
+        for (int k = n - point_masses; k < n; k++) {
             b->weight[b->slot[e] + k] = weight;
         }
     }
 }
 
-int spari_lumps_check(const spar_member *member) {
-    SPARI_REQUIRE(member->session, member->beam->lump_count == 0 || member->external || member->beam->mass,
+int spari_point_masses_check(const spar_member *member) {
+    SPARI_REQUIRE(member->session, member->beam->point_mass_count == 0 || member->external || member->beam->mass,
                   SPAR_ERR_STATE,
                   "member '%s' has bodies on it, and sections without mass; give its sections mass, if only a little",
                   member->name);
     return SPAR_OK;
 }
 
-static int check_lumps(const spar_member *beam, const char *call, int64_t n, const double *eta, const double *mass) {
-    SPARI_REQUIRE(beam->session, n >= 0 && n <= SPARI_LUMPS, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld bodies; give 0 (none any more) to %d", call, beam->name, (long long)n, SPARI_LUMPS);
+static int check_point_masses(const spar_member *beam, const char *call, int64_t n, const double *eta,
+                              const double *mass) {
+    SPARI_REQUIRE(beam->session, n >= 0 && n <= SPARI_MOST_POINT_MASSES, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld bodies; give 0 (none any more) to %d", call, beam->name, (long long)n,
+                  SPARI_MOST_POINT_MASSES);
     SPARI_TRY(spari_need_finite(beam->session, call, beam->name, "eta", n, eta));
     SPARI_TRY(spari_need_finite(beam->session, call, beam->name, "mass", 36 * n, mass));
     for (int64_t i = 0; i < n; i++) {
@@ -60,16 +62,18 @@ static int check_lumps(const spar_member *beam, const char *call, int64_t n, con
 }
 
 int spar_beam_set_masses(spar_member *beam, int64_t n, const double *eta, const double *mass) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_beam(beam, __func__));
-    SPARI_TRY(check_lumps(beam, __func__, n, eta, mass));
+    SPARI_TRY(check_point_masses(beam, __func__, n, eta, mass));
     spari_beam *b = beam->beam;
-    return spari_keep_stations(beam, __func__, "bodies", n, 36, eta, mass, &b->lump_count, &b->lump_eta, &b->lump);
+    return spari_keep_stations(beam, __func__, "bodies", n, 36, eta, mass, &b->point_mass_count, &b->point_mass_eta,
+                               &b->point_mass);
 }
 
 int spar_beam_get_masses(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *mass) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_any_beam(beam, __func__));
     const spari_beam *b = beam->beam;
-    return spari_give_stations(beam, __func__, 36, b->lump_count, b->lump_eta, b->lump, capacity, n, eta, mass);
+    return spari_give_stations(beam, __func__, 36, b->point_mass_count, b->point_mass_eta, b->point_mass, capacity, n,
+                               eta, mass);
 }

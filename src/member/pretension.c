@@ -7,8 +7,9 @@
 
 static int check_pretension(const spar_member *m, const char *call, int64_t n, const double *eta, const double *force) {
     spar_session *s = m->session;
-    SPARI_REQUIRE(s, n >= 0 && n <= SPARI_LUMPS, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld stations; give 0 (none any more) to %d", call, m->name, (long long)n, SPARI_LUMPS);
+    SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST_POINT_MASSES, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld stations; give 0 (none any more) to %d", call, m->name, (long long)n,
+                  SPARI_MOST_POINT_MASSES);
     SPARI_TRY(spari_need_finite(s, call, m->name, "eta", n, eta));
     SPARI_TRY(spari_need_finite(s, call, m->name, "force", 6 * n, force));
     for (int64_t i = 0; i < n; i++) {
@@ -20,7 +21,7 @@ static int check_pretension(const spar_member *m, const char *call, int64_t n, c
 }
 
 int spar_beam_set_pretension(spar_member *beam, int64_t n, const double *eta, const double *force) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_TRY(check_pretension(beam, __func__, n, eta, force));
     spari_beam *b = beam->beam;
@@ -28,7 +29,7 @@ int spar_beam_set_pretension(spar_member *beam, int64_t n, const double *eta, co
 }
 
 int spar_beam_get_pretension(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *force) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_any_beam(beam, __func__));
     const spari_beam *b = beam->beam;
     return spari_give_stations(beam, __func__, 6, b->pre_count, b->pre_eta, b->pre, capacity, n, eta, force);

@@ -294,7 +294,7 @@ static int describe_blade(spar_member *m, const spari_reader *r, blade *b) {
 }
 
 int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const char *blade_path) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_REQUIRE(beam->session, primary_path, SPAR_ERR_ARGUMENT, "%s: '%s': primary_path is NULL", __func__,
                   beam->name);

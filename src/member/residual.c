@@ -49,7 +49,7 @@ double spari_body_residual(const spari_body *body, const double *q, const double
                            double *r, double *power) {
     force_state s = {.how = spari_point_regime(body, v, a, factor), .q = q, .v = v, .a = a, .r = r};
     double scale = 0, damped = 0;
-    spari_crew_spread(body->crew ? *body->crew : NULL, body->unique, CLEARED, clear_forces, r);
+    spari_thread_pool_spread(body->pool ? *body->pool : NULL, body->unique, CLEARED, clear_forces, r);
     spari_body_sweep(body, add_forces, &s);
     for (int64_t tile = 0; tile < spari_body_tiles(body); tile++) {
         const double *sum = body->tally + 2 * tile;

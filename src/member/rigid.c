@@ -58,7 +58,7 @@ const char *spari_mass_split(const double M[36], double *m, double c[3], double 
     return NULL;
 }
 
-void spari_mass_place(const double R[9], const double M[36], double out[10]) {
+void spari_mass_rotate(const double R[9], const double M[36], double out[10]) {
     double m, c[3], J[6], half[3][3], g[3][3];
     spari_mass_split(M, &m, c, J);
     double full[3][3] = {{J[0], J[1], J[2]}, {J[1], J[3], J[4]}, {J[2], J[4], J[5]}};
@@ -85,10 +85,10 @@ int spari_rigid_build(spar_member *member, spari_body **body) {
     }
     b->phi[0] = b->weight[0] = 1;
     spari_quat_matrix(member->qr, R);
-    spari_mass_place(R, member->mass, m);
+    spari_mass_rotate(R, member->mass, m);
     spari_slot_put(b->mass, 10, 0, m);
     spari_body_complete(b);
-    memcpy(b->place, member->xr, 3 * sizeof *b->place);
+    memcpy(b->position, member->xr, 3 * sizeof *b->position);
     double gyration = m[0] > 0 ? sqrt((m[4] + m[7] + m[9]) / m[0]) : 0;
     b->length = gyration > 0 ? gyration : 1;
     *body = b;

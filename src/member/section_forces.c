@@ -67,7 +67,7 @@ static void add_about(const double center[3], const double x[3], const double f[
 
 /* The motion as in the equilibrium equations; for linear members in a fixed frame, accelerations at the reference. */
 typedef struct inertial {
-    double *q, *v, *a, *room; /* [unique] 7, 6, 6, 6 */
+    double *q, *v, *a, *workspace; /* [unique] 7, 6, 6, 6 */
     int still;
 } inertial;
 
@@ -84,12 +84,12 @@ static void fill_motion(const spar_member *m, inertial *w) {
     }
     if (body->drag > 0 && !w->still) { /* the inertia of an acceleration: drag times its velocity */
         if (is_standing(m)) {
-            memcpy(w->room, w->v, (size_t)(6 * n) * sizeof *w->room);
+            memcpy(w->workspace, w->v, (size_t)(6 * n) * sizeof *w->workspace);
         } else {
-            spari_body_see(body, w->q, w->v, w->room);
+            spari_body_see(body, w->q, w->v, w->workspace);
         }
         for (int64_t i = 0; i < 6 * n; i++) {
-            w->a[i] += body->drag * w->room[i];
+            w->a[i] += body->drag * w->workspace[i];
         }
     }
     if (is_standing(m)) {
@@ -105,7 +105,7 @@ static void element_inertia(const spari_body *body, const inertial *w, int e, do
     part.first += e, part.slot += e;
     part.C = part.D = part.pre = NULL;
     part.drag = 0;
-    part.crew = NULL;
+    part.pool = NULL;
     part.weight = weights;
     (void)spari_body_residual(&part, w->q + 7 * first, w->still ? NULL : w->v + 6 * first,
                               w->still ? NULL : w->a + 6 * first, 1, r, NULL);
@@ -115,12 +115,13 @@ static void element_inertia(const spari_body *body, const inertial *w, int e, do
 static void take_masses(spari_beyond *b, const inertial *w, int e, double *weights) {
     const spar_member *m = b->member;
     const spari_body *body = m->body;
-    const int P = m->per_element, points = body->first[e + 1] - body->first[e], lumps = spari_lumps_of(m, e);
+    const int P = m->per_element, points = body->first[e + 1] - body->first[e],
+              point_masses = spari_point_masses_of(m, e);
     double *at = weights + body->slot[e], r[6 * SPARI_MAX_NODES], phi[SPARI_MAX_NODES];
-    int next = points - lumps;
-    for (int64_t k = 0; k < m->beam->lump_count && next < points; k++) {
+    int next = points - point_masses;
+    for (int64_t k = 0; k < m->beam->point_mass_count && next < points; k++) {
         double xi;
-        if (spari_lump_element(m, k, &xi) != e) {
+        if (spari_point_mass_element(m, k, &xi) != e) {
             continue;
         }
         point_force *p = b->mass + b->masses++;
@@ -149,12 +150,13 @@ static int add_inertia(spari_beyond *b) {
     const spar_member *m = b->member;
     const spari_body *body = m->body;
     const int64_t n = body->unique, slots = body->slot[body->elements];
-    const int lumped = m->beam->lump_count > 0 && (m->effects & SPAR_EFFECT_MASSES) && body->mass;
-    double *room = spari_zalloc(25 * n + 2 * slots, sizeof *room), *weights = room + 25 * n;
-    if (!room) {
+    const int lumped = m->beam->point_mass_count > 0 && (m->effects & SPAR_EFFECT_MASSES) && body->mass;
+    double *workspace = spari_zalloc(25 * n + 2 * slots, sizeof *workspace), *weights = workspace + 25 * n;
+    if (!workspace) {
         return SPAR_ERR_MEMORY;
     }
-    inertial w = {room, room + 7 * n, room + 13 * n, room + 19 * n, !(m->effects & SPAR_EFFECT_INERTIA)};
+    inertial w = {workspace, workspace + 7 * n, workspace + 13 * n, workspace + 19 * n,
+                  !(m->effects & SPAR_EFFECT_INERTIA)};
     fill_motion(m, &w);
     memcpy(weights, body->weight, (size_t)slots * sizeof *weights);
     for (int e = 0; e < m->elements && body->mass; e++) {
@@ -167,7 +169,7 @@ static int add_inertia(spari_beyond *b) {
             to[i] -= r[i];
         }
     }
-    free(room);
+    free(workspace);
     return SPAR_OK;
 }
 
@@ -234,7 +236,7 @@ spari_beyond *spari_beyond_create(const spar_member *m) {
     b->spread = spari_zalloc(6 * m->nodes, sizeof *b->spread);
     b->point = spari_zalloc(6 * m->nodes, sizeof *b->point);
     b->sum = spari_zalloc(6 * ((int64_t)m->elements + 1), sizeof *b->sum);
-    b->mass = spari_zalloc(m->beam->lump_count + 1, sizeof *b->mass);
+    b->mass = spari_zalloc(m->beam->point_mass_count + 1, sizeof *b->mass);
     if (!b->x || !b->spread || !b->point || !b->sum || !b->mass) {
         spari_beyond_free(b);
         return NULL;

@@ -84,18 +84,18 @@ HERE void NAME(fields)(int moving, const double *f, NAME(point) * s) {
 
 /* Strain rates, and the section forces of damping D. */
 HERE void NAME(strain_rate)(const double *D, NAME(point) * s) {
-    L turn[3], a[3], b[3], sd[6];
+    L rotation[3], a[3], b[3], sd[6];
     for (int i = 0; i < 4; i++) {
         s->z[i] = ROW_OF(s->f, DQD + i) * s->over;
     }
     NAME(rows)(3, s->f + SPARI_LANES * DUD, s->t_rate);
     NAME(rotate_back)(s->r, s->t_rate, s->t_rate);
-    NAME(cross)(s->T, s->omega, turn);
+    NAME(cross)(s->T, s->omega, rotation);
     NAME(imag_conj_mul)(s->d, s->p, a);
     NAME(imag_conj_mul)(s->r, s->z, b);
     for (int i = 0; i < 3; i++) {
         s->kd0[i] = 2.0 * (a[i] + b[i]);
-        s->ed[i] = s->t_rate[i] + turn[i];
+        s->ed[i] = s->t_rate[i] + rotation[i];
         s->ed[3 + i] = s->kd0[i] - 2.0 * s->e[3 + i] * s->b;
     }
     NAME(matrix6_times)(D, s->ed, sd);

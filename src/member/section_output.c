@@ -148,12 +148,12 @@ static void forces_of_balance(const spari_beyond *beyond, const spar_member *m, 
 }
 
 /* Requested results at each position; may be NULL. */
-typedef struct section_wish {
+typedef struct section_request {
     double *strain, *force, *x, *q;
-} section_wish;
+} section_request;
 
 static void section_output(const spar_member *m, const spari_station *s, double eta, const spari_beyond *beyond,
-                           int64_t i, const section_wish *to) {
+                           int64_t i, const section_request *to) {
     section_field f;
     double e[6], ed[6], local[6], rate[6], q0[4];
     section_at(m, s, &f);
@@ -183,7 +183,7 @@ static void section_output(const spar_member *m, const spari_station *s, double 
 }
 
 static int section_outputs(const spar_member *m, int64_t n, const spari_station *s, const double *eta,
-                           const section_wish *to) {
+                           const section_request *to) {
     const int balanced = to->force && spari_beyond_is_known(m);
     spari_beyond *beyond = balanced ? spari_beyond_create(m) : NULL;
     int status = balanced && !beyond ? SPAR_ERR_MEMORY : SPAR_OK;
@@ -197,7 +197,7 @@ static int section_outputs(const spar_member *m, int64_t n, const spari_station 
 
 int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                           double *x, double *q) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *session = beam->session;
     SPARI_REQUIRE(session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", __func__,
@@ -223,7 +223,7 @@ int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta,
         s[i].xi = fmin(fmax(2 * (eta[i] * E - e) - 1, -1), 1);
     }
     int status = spari_beam_stations(beam, n, s);
-    const section_wish to = {strain, force, x, q};
+    const section_request to = {strain, force, x, q};
     status = status == SPAR_OK ? section_outputs(beam, n, s, eta, &to) : status;
     free(s);
     return status;

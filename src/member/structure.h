@@ -22,23 +22,23 @@ typedef struct spari_motion {
     double *q, *v, *a;
 } spari_motion;
 
-typedef struct spari_beam spari_beam;             /* src/member/beam.h: description of a beam */
+typedef struct spari_beam spari_beam;             /* member/beam.h: description of a beam */
 typedef struct spari_assembly spari_assembly;     /* src/assembly/assembly.h: members connected by joints */
-typedef struct spari_work spari_work;             /* src/solve/work.h: work done on a member */
-typedef struct spari_applied spari_applied;       /* src/member/applied.h: follower and distributed loads */
-typedef struct spari_ramp spari_ramp;             /* src/member/applied.h: replaced loads at t^n */
-typedef struct spari_foundation spari_foundation; /* src/member/applied.h: springs along the line */
-typedef struct spari_remake spari_remake;         /* src/trial/rebuild.h: a member rebuilt for a trial */
+typedef struct spari_work spari_work;             /* solve/work.h: work done on a member */
+typedef struct spari_applied spari_applied;       /* member/applied.h: follower and distributed loads */
+typedef struct spari_ramp spari_ramp;             /* member/applied.h: replaced loads at t^n */
+typedef struct spari_foundation spari_foundation; /* member/applied.h: springs along the line */
+typedef struct spari_rebuild spari_rebuild;       /* src/trial/rebuild.h: a member rebuilt for a trial */
 typedef struct spari_means spari_means;           /* src/member/mean_acceleration.h: accelerations for fluids */
 typedef struct spari_added spari_added;           /* src/member/added_mass.h: known added mass */
 typedef struct spari_learned spari_learned;       /* src/member/added_mass_fit.h: identified added mass */
-typedef struct spari_body spari_body;             /* src/member/body.h: discretised member, on every rank */
+typedef struct spari_body spari_body;             /* member/body.h: discretised member, on every rank */
 
 /* Frame of reference of a member's deformation. */
 typedef enum spari_view {
-    SPARI_SEEN_FIXED,   /* inertial frame */
-    SPARI_SEEN_CARRIED, /* frame of a prescribed root */
-    SPARI_SEEN_LINEAR   /* floating frame, small deformation: linear */
+    SPARI_SEEN_FIXED,      /* inertial frame */
+    SPARI_SEEN_PRESCRIBED, /* frame of a prescribed root */
+    SPARI_SEEN_LINEAR      /* floating frame, small deformation: linear */
 } spari_view;
 
 /* Binary tree of the halvings of a step's substeps: bits of substeps that were halved. They stay halved until the
@@ -55,7 +55,7 @@ struct spar_member {
     char *name;
     int kind, external, root, owner, committed;
     int owner_given;                  /* by the host; otherwise the least loaded rank is chosen, */
-    int settled;                      /* and this is set */
+    int owner_assigned;               /* and this is set */
     int effects;                      /* SPAR_EFFECT_*: requested; after commit those in force */
     int effects_given;                /* 0: with those implied by the description */
     int effects_asked;                /* as requested, also if the present fidelity has no use for them */
@@ -72,7 +72,7 @@ struct spar_member {
     int elements, per_element;
     int64_t nodes;
     double *xr, *qr; /* reference positions [n][3] and orientations [n][4], placed; after commit */
-    double place_x[3], place_q[4];
+    double placed_x[3], placed_q[4];
     double mass[36];     /* rigid */
     int64_t guess_count; /* stations of the host's added mass (a rigid body: 1); 0: none */
     double *guess_eta, *guess;
@@ -118,15 +118,16 @@ struct spar_member {
     int64_t pack_at;                    /* offset of its loads in the vector that the ranks sum */
     double dissipated, dissipated_step; /* energy dissipated by damping up to t^n, and in this step */
     double step_error, speed;           /* with a tolerance: error of the last step, m, and largest speed so far, m/s */
-    double jerk, swing; /* option newton.stop = tied: relative to the length, rate of change of the acceleration in the
-                           last steps, 1/s^3, and acceleration, 1/s^2 (time/newton_stop.h); 0: unknown */
-    void *solution;     /* solver data of its fidelity; NULL: none, or not on this rank */
+    double jerk,
+        acceleration_scale; /* option newton.stop = tied: relative to the length, rate of change of the acceleration in
+                  the last steps, 1/s^3, and acceleration, 1/s^2 (time/newton_stop.h); 0: unknown */
+    void *solution;         /* solver data of its fidelity; NULL: none, or not on this rank */
     spari_assembly *assembly; /* solved as part of it; NULL: alone */
     spari_work *work;         /* NULL: not requested */
     spari_added *added;       /* NULL: no added mass; otherwise the loads above follow added_mass.h */
     spari_cuts cuts;          /* of this step; for connected members, those of the first one */
     spari_means *means;       /* accelerations for fluids with substeps; NULL: those of the motion */
-    spari_remake *advice;     /* of spar_session_advise; NULL: none */
+    spari_rebuild *advice;    /* of spar_session_advise; NULL: none */
 };
 
 /* Table of the nodal arrays, used by everything that allocates, frees, saves, loads or copies a member. */
@@ -159,7 +160,7 @@ static inline int spari_gravity_changes(const spar_session *session) {
 /* Hash of the description without the owner. */
 uint64_t spari_member_hash(const spar_member *member);
 /* Hash without name, placement and initial velocity: equal for identical members. */
-uint64_t spari_member_make(const spar_member *member);
+uint64_t spari_member_copy_hash(const spar_member *member);
 /* Converts arrays of `width` doubles per node from host nodes (element boundaries twice) to unique nodes (once), and
    back. */
 void spari_member_to_unique(const spar_member *m, int width, const double *nodes, double *unique);
@@ -167,15 +168,15 @@ void spari_member_from_unique(const spar_member *m, int width, const double *uni
 /* Converts q, v, a of unique nodes to a motion of the host's nodes. */
 void spari_member_publish(const spar_member *m, const double *q, const double *v, const double *a, spari_motion *to);
 /* Reference position of a unique node, and its lever arm from the root. */
-static inline const double *spari_member_place(const spar_member *member, int unique) {
+static inline const double *spari_member_position(const spar_member *member, int unique) {
     int P = member->per_element;
     return member->xr +
            3 * (unique + (P > 1 && unique > 0 ? (unique - 1) / (P - 1) : 0)); /* element boundaries are stored twice */
 }
 static inline void spari_member_arm(const spar_member *member, int unique, double arm[3]) {
-    const double *place = spari_member_place(member, unique);
+    const double *position = spari_member_position(member, unique);
     for (int k = 0; k < 3; k++) {
-        arm[k] = place[k] - member->xr[k];
+        arm[k] = position[k] - member->xr[k];
     }
 }
 /* Sums host nodal loads to unique nodes. */
@@ -183,7 +184,7 @@ void spari_member_gather(const spar_member *m, const double *nodal, double *uniq
 /* Processes the numbers 0 to n - 1 of this member in spans, with the session's threads (base/thread_pool.h). */
 enum { SPARI_MEMBER_SPAN = 512 };
 static inline void spari_member_spread(const spar_member *m, int64_t n, spari_span work, void *context) {
-    spari_crew_spread(m->session->crew, n, SPARI_MEMBER_SPAN, work, context);
+    spari_thread_pool_spread(m->session->pool, n, SPARI_MEMBER_SPAN, work, context);
 }
 /* Redistributes loads of the nodes [nodes][6] without changing their effect: halves the sum between the two nodes of
    an element boundary, and removes loads on constrained degrees of freedom of the root. */
@@ -191,15 +192,15 @@ void spari_member_even_loads(const spar_member *m, double *load);
 /* Length of a member: of its body, or of the line through its nodes; 1 if it has none. */
 double spari_member_length(const spar_member *member);
 /* Whether the root's motion is prescribed; otherwise it is unknown. */
-static inline int spari_member_root_is_given(const spar_member *member) {
+static inline int spari_member_root_is_prescribed(const spar_member *member) {
     return member->root == SPAR_ROOT_FIXED || member->root == SPAR_ROOT_DRIVEN;
 }
 /* Whether the member is linear about its reference: linear or modal, with a root that nothing carries. */
 static inline int spari_member_is_linear_in_place(const spar_member *member) {
-    return member->seen == SPARI_SEEN_LINEAR && !spari_member_root_is_given(member) && !member->floats;
+    return member->seen == SPARI_SEEN_LINEAR && !spari_member_root_is_prescribed(member) && !member->floats;
 }
 /* How many of the root's six unknowns its root condition holds: the first. */
-static inline int spari_member_held(const spar_member *member) {
+static inline int spari_member_constrained(const spar_member *member) {
     return member->root == SPAR_ROOT_FREE ? 0 : member->root == SPAR_ROOT_PINNED ? 3 : 6;
 }
 /* Elements and nodes of its line. */

@@ -39,21 +39,22 @@ int64_t spari_body_scratch(int P, int points, int damped) {
 }
 
 /* Takes n doubles from the workspace. */
-static double *take_room(double **room, int64_t n) {
-    double *at = *room;
-    *room += n;
+static double *take_workspace(double **workspace, int64_t n) {
+    double *at = *workspace;
+    *workspace += n;
     return at;
 }
 
-static spari_pair_sums take_sums(double **room, int64_t stride, int elastic, int whole) {
-    spari_pair_sums s = {.by_q = take_room(room, SLOPE_BY_Q * stride), .whole = whole};
+static spari_pair_sums take_sums(double **workspace, int64_t stride, int elastic, int whole) {
+    spari_pair_sums s = {.by_q = take_workspace(workspace, SLOPE_BY_Q * stride), .whole = whole};
     if (elastic) {
-        s.from[0] = take_room(room, SLOPES * stride);
-        s.from[1] = take_room(room, SLOPES * stride);
-        s.slopes = take_room(room, (whole ? Q_BY_SLOPE - SLOPE_BY_SLOPE : HALF_ROWS - SLOPE_BY_SLOPE) * stride);
+        s.from[0] = take_workspace(workspace, SLOPES * stride);
+        s.from[1] = take_workspace(workspace, SLOPES * stride);
+        s.slopes =
+            take_workspace(workspace, (whole ? Q_BY_SLOPE - SLOPE_BY_SLOPE : HALF_ROWS - SLOPE_BY_SLOPE) * stride);
         /* for a symmetric matrix, the transpose of the other block */
-        s.across[0] = whole ? take_room(room, SLOPES * stride) : s.from[1];
-        s.across[1] = whole ? take_room(room, SLOPES * stride) : s.from[0];
+        s.across[0] = whole ? take_workspace(workspace, SLOPES * stride) : s.from[1];
+        s.across[1] = whole ? take_workspace(workspace, SLOPES * stride) : s.from[0];
     }
     return s;
 }
@@ -61,24 +62,24 @@ static spari_pair_sums take_sums(double **room, int64_t stride, int elastic, int
 static spari_tangent_work begin_tangent(const spari_body *body, int e, const spari_regime *how, int masses, int rates) {
     int P = body->per_element, points = body->first[e + 1] - body->first[e];
     spari_tangent_work t = {.P = P, .points = points, .slots = body->slot[e + 1] - body->slot[e], .masses = masses};
-    double *room = body->scratch;
+    double *workspace = body->scratch;
     t.pairs = (int64_t)P * (P + 1) / 2, t.stride = row_of_pairs(P), t.map_stride = P + SPARI_LANES;
     t.rates = rates, t.elastic = body->C != NULL, t.damped = t.elastic && body->D && rates, t.whole = how->damped;
-    t.z = take_room(&room, ROW * SPARI_MAX_NODES);
-    t.g = take_room(&room, BACK * SPARI_MAX_NODES);
-    t.f = take_room(&room, SPARI_LANES * POINT_ROWS);
-    t.back = take_room(&room, t.slots * BACK_ROWS);
-    t.K = take_room(&room, (t.whole ? WHOLE_ROWS : HALF_ROWS) * t.slots);
-    t.B = take_room(&room, (t.damped ? HALF_ROWS : SLOPE_BY_Q) * t.slots);
-    t.M = take_room(&room, MASS_ROWS * t.slots);
-    t.products = take_room(&room, PRODUCTS * t.stride * points);
-    t.of_K = take_sums(&room, t.stride, t.elastic, t.whole);
-    t.of_B = take_sums(&room, t.stride, t.damped, 0);
-    t.of_M = take_room(&room, MASS_ROWS * t.stride);
-    t.maps = take_room(&room, 36 * t.map_stride);
-    t.ends[0] = take_room(&room, 36 * t.stride);
-    t.ends[1] = take_room(&room, 36 * t.stride);
-    assert(room - body->scratch <= spari_body_scratch(P, points, body->D != NULL));
+    t.z = take_workspace(&workspace, ROW * SPARI_MAX_NODES);
+    t.g = take_workspace(&workspace, BACK * SPARI_MAX_NODES);
+    t.f = take_workspace(&workspace, SPARI_LANES * POINT_ROWS);
+    t.back = take_workspace(&workspace, t.slots * BACK_ROWS);
+    t.K = take_workspace(&workspace, (t.whole ? WHOLE_ROWS : HALF_ROWS) * t.slots);
+    t.B = take_workspace(&workspace, (t.damped ? HALF_ROWS : SLOPE_BY_Q) * t.slots);
+    t.M = take_workspace(&workspace, MASS_ROWS * t.slots);
+    t.products = take_workspace(&workspace, PRODUCTS * t.stride * points);
+    t.of_K = take_sums(&workspace, t.stride, t.elastic, t.whole);
+    t.of_B = take_sums(&workspace, t.stride, t.damped, 0);
+    t.of_M = take_workspace(&workspace, MASS_ROWS * t.stride);
+    t.maps = take_workspace(&workspace, 36 * t.map_stride);
+    t.ends[0] = take_workspace(&workspace, 36 * t.stride);
+    t.ends[1] = take_workspace(&workspace, 36 * t.stride);
+    assert(workspace - body->scratch <= spari_body_scratch(P, points, body->D != NULL));
     return t;
 }
 
@@ -129,12 +130,12 @@ static void node_maps(const double *z, int node, const double *v, const double *
                       const double *tinv, double E[4][3], double F[4][3], double H[4][3]) {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     const double *T = tinv ? tinv : identity;
-    double by_rate[4][3], turn[4], rate[4];
-    spari_point_turn(z, node, turn);
+    double by_rate[4][3], rotation[4], rate[4];
+    spari_point_rotation(z, node, rotation);
     for (int i = 0; i < 4; i++) {
         rate[i] = z[SPARI_MAX_NODES * (QD + i) + node];
     }
-    half_turns(turn, E);
+    half_turns(rotation, E);
     half_turns(rate, by_rate);
     add_maps(cv, E, T, v ? v + 3 : NULL, E, F);
     add_maps(cm, E, T, a ? a + 3 : NULL, E, H);
@@ -178,7 +179,7 @@ static void add_turned_forces(const spari_body *body, int e, const spari_tangent
     spari_lanes_collect(body, e, t->back, t->g);
     for (int l = 0; l < t->P; l++) {
         double g[4], q[4];
-        spari_point_turn(t->z, l, q);
+        spari_point_rotation(t->z, l, q);
         for (int i = 0; i < 4; i++) {
             g[i] = t->g[SPARI_MAX_NODES * (3 + i) + l];
         }

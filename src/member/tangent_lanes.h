@@ -25,17 +25,17 @@ HERE void NAME(right_matrix)(const L *s, L (*m)[4]) {
 
 /* Derivatives of rotations with respect to Q, by columns: rotation in section axes, 2/N L(r), and body rate at fixed
    Qd. */
-typedef struct NAME(point_turns) {
-    L turn[4][3], rate[4][3];
-} NAME(point_turns);
+typedef struct NAME(point_rotations) {
+    L rotation[4][3], rate[4][3];
+} NAME(point_rotations);
 
-TARGET static void NAME(turns)(const NAME(point) * s, NAME(point_turns) * by) {
+TARGET static void NAME(turns)(const NAME(point) * s, NAME(point_rotations) * by) {
     L l[4][3];
-    NAME(spins)(s->r, by->turn);
+    NAME(spins)(s->r, by->rotation);
     NAME(spins)(s->d, l);
     for (int j = 0; j < 4; j++) {
         for (int i = 0; i < 3; i++) {
-            by->turn[j][i] *= 2.0 * s->over;
+            by->rotation[j][i] *= 2.0 * s->over;
             by->rate[j][i] = -2.0 * s->over * (l[j][i] + s->omega[i] * s->r[j]);
         }
     }
@@ -46,7 +46,7 @@ typedef struct NAME(gradient) {
     L q[4][6], du[3][3], dq[4][3];
 } NAME(gradient);
 
-TARGET SPARI_APART static void NAME(strain_gradient)(const NAME(point) * s, const NAME(point_turns) * by,
+TARGET SPARI_APART static void NAME(strain_gradient)(const NAME(point) * s, const NAME(point_rotations) * by,
                                                      NAME(gradient) * J) {
     const L *r = s->r, twice[3] = {2.0 * r[1], 2.0 * r[2], 2.0 * r[3]};
     const L xx = twice[0] * r[1], yy = twice[1] * r[2], zz = twice[2] * r[3], xy = twice[0] * r[2],
@@ -57,9 +57,9 @@ TARGET SPARI_APART static void NAME(strain_gradient)(const NAME(point) * s, cons
     L l[4][3];
     NAME(spins)(s->p, l);
     memcpy(J->du, R, sizeof R);
-    memcpy(J->dq, by->turn, sizeof by->turn);
+    memcpy(J->dq, by->rotation, sizeof by->rotation);
     for (int j = 0; j < 4; j++) {
-        NAME(cross)(s->T, by->turn[j], J->q[j]);
+        NAME(cross)(s->T, by->rotation[j], J->q[j]);
         for (int i = 0; i < 3; i++) {
             J->q[j][3 + i] = -2.0 * s->over * (l[j][i] + s->e[3 + i] * r[j]);
         }
@@ -67,7 +67,7 @@ TARGET SPARI_APART static void NAME(strain_gradient)(const NAME(point) * s, cons
 }
 
 /* The same for strain rates, at fixed rates of the fields. */
-TARGET SPARI_APART static void NAME(strain_rate_gradient)(const NAME(point) * s, const NAME(point_turns) * by,
+TARGET SPARI_APART static void NAME(strain_rate_gradient)(const NAME(point) * s, const NAME(point_rotations) * by,
                                                           const NAME(gradient) * J, NAME(gradient) * G) {
     L ld[4][3], lz[4][3], x[3];
     NAME(spins)(s->d, ld);
@@ -77,7 +77,7 @@ TARGET SPARI_APART static void NAME(strain_rate_gradient)(const NAME(point) * s,
     }
     for (int j = 0; j < 4; j++) {
         L along = s->d[j] - 2.0 * s->b * s->r[j];
-        NAME(cross)(s->t_rate, by->turn[j], G->q[j]);
+        NAME(cross)(s->t_rate, by->rotation[j], G->q[j]);
         NAME(cross)(s->T, by->rate[j], x);
         for (int i = 0; i < 3; i++) {
             G->q[j][i] += x[i];
@@ -174,8 +174,8 @@ HERE void NAME(turned_moment)(const NAME(point) * s, const L (*right)[4], const 
 }
 
 /* Geometric stiffness: second derivative of s . e(y) at fixed s, added to A. */
-TARGET SPARI_APART static void NAME(add_geometric)(const NAME(point) * s, const NAME(point_turns) * by, const L *weight,
-                                                   int whole, int64_t ld, double *A) {
+TARGET SPARI_APART static void NAME(add_geometric)(const NAME(point) * s, const NAME(point_rotations) * by,
+                                                   const L *weight, int whole, int64_t ld, double *A) {
     const L w = *weight;
     const L none = {0}, in2 = s->over * s->over, F = NAME(dot)(s->s, s->T) + NAME(dot)(s->s + 3, s->e + 3);
     L right[4][4], rk[4], grad[4], t[3], x[4], y[4];
@@ -195,7 +195,7 @@ TARGET SPARI_APART static void NAME(add_geometric)(const NAME(point) * s, const 
     for (int j = 0; j < 4; j++) {
         double *down = A + ld * (SLOPE_BY_Q + 7 * j), *across = A + ld * (Q_BY_SLOPE + 7 * j);
         L column[7];
-        NAME(cross)(by->turn[j], s->s, column);
+        NAME(cross)(by->rotation[j], s->s, column);
         NAME(rotate)(s->r, column, column);
         NAME(turned_moment)(s, (const L(*)[4])right, rk, j, column + 3);
         for (int i = 0; i < 7; i++) {
@@ -215,7 +215,7 @@ TARGET SPARI_APART static void NAME(add_geometric)(const NAME(point) * s, const 
 /* Derivative of the inertia force f and moment m, in section axes, with respect to angular acceleration a, body rate
    w and rotation of the section (NULL: none). */
 HERE void NAME(inertia_change)(const double *mass, int gyroscopic, const NAME(point) * s, const NAME(point_inertia) * n,
-                               const L *a, const L *w, const L *turn, L *f, L *m) {
+                               const L *a, const L *w, const L *rotation, L *f, L *m) {
     const double *J = mass + SPARI_LANES * 4;
     L mc[3], x[3], y[3] = {0}, g[3] = {0};
     NAME(rows)(3, mass + SPARI_LANES, mc);
@@ -235,9 +235,9 @@ HERE void NAME(inertia_change)(const double *mass, int gyroscopic, const NAME(po
             m[i] += x[i] + y[i];
         }
     }
-    if (turn) {
-        NAME(cross)(turn, n->y, x);
-        NAME(cross)(n->h, turn, y);
+    if (rotation) {
+        NAME(cross)(rotation, n->y, x);
+        NAME(cross)(n->h, rotation, y);
         NAME(cross)(mc, y, g);
         for (int i = 0; i < 3; i++) {
             f[i] += x[i], m[i] += g[i];
@@ -246,7 +246,7 @@ HERE void NAME(inertia_change)(const double *mass, int gyroscopic, const NAME(po
 }
 
 /* Column j of the derivative of the (u, Q) forces with respect to Q, through force f and moment m. */
-HERE void NAME(add_by_q)(const NAME(point) * s, const NAME(point_turns) * by, L w, const L *f, const L *m, int j,
+HERE void NAME(add_by_q)(const NAME(point) * s, const NAME(point_rotations) * by, L w, const L *f, const L *m, int j,
                          int64_t ld, double *A) {
     L global[3];
     NAME(rotate)(s->r, f, global);
@@ -254,7 +254,7 @@ HERE void NAME(add_by_q)(const NAME(point) * s, const NAME(point_turns) * by, L 
         NAME(add_row)(A + ld * (BY_Q + 4 * i + j), w * global[i]);
     }
     for (int i = 0; i < 4; i++) {
-        NAME(add_row)(A + ld * (Q_BY_Q + 4 * i + j), w * NAME(dot)(by->turn[i], m));
+        NAME(add_row)(A + ld * (Q_BY_Q + 4 * i + j), w * NAME(dot)(by->rotation[i], m));
     }
 }
 
@@ -273,7 +273,7 @@ HERE void NAME(add_turned_moment)(const NAME(point) * s, const L *mb, L w, int64
 
 /* Inertia: derivatives with respect to displacements, rates and accelerations. */
 TARGET SPARI_APART static void NAME(add_inertia)(const double *mass, int gyroscopic, const NAME(point) * s,
-                                                 const NAME(point_turns) * by, const NAME(point_inertia) * n,
+                                                 const NAME(point_rotations) * by, const NAME(point_inertia) * n,
                                                  const L *weight, int64_t ld, double *K, double *B, double *M) {
     const L w = *weight;
     L rdd[4], ldd[4][3], f[3], m[3];
@@ -285,31 +285,32 @@ TARGET SPARI_APART static void NAME(add_inertia)(const double *mass, int gyrosco
     for (int j = 0; j < 4; j++) {
         L by_q[3], by_qd[3], along = s->d[j] - 2.0 * s->b * s->r[j];
         for (int i = 0; i < 3; i++) {
-            by_qd[i] = -2.0 * (s->over * s->omega[i] * s->r[j] + s->b * by->turn[j][i]);
+            by_qd[i] = -2.0 * (s->over * s->omega[i] * s->r[j] + s->b * by->rotation[j][i]);
             by_q[i] =
                 -2.0 * s->over * (ldd[j][i] + n->A0[i] * s->r[j] + s->omega[i] * along) - 2.0 * s->b * by->rate[j][i];
         }
-        NAME(inertia_change)(mass, gyroscopic, s, n, by->turn[j], NULL, NULL, f, m);
+        NAME(inertia_change)(mass, gyroscopic, s, n, by->rotation[j], NULL, NULL, f, m);
         NAME(add_by_q)(s, by, w, f, m, j, ld, M);
         if (B) {
-            NAME(inertia_change)(mass, gyroscopic, s, n, by_qd, by->turn[j], NULL, f, m);
+            NAME(inertia_change)(mass, gyroscopic, s, n, by_qd, by->rotation[j], NULL, f, m);
             NAME(add_by_q)(s, by, w, f, m, j, ld, B);
         }
-        NAME(inertia_change)(mass, gyroscopic, s, n, by_q, by->rate[j], by->turn[j], f, m);
+        NAME(inertia_change)(mass, gyroscopic, s, n, by_q, by->rate[j], by->rotation[j], f, m);
         NAME(add_by_q)(s, by, w, f, m, j, ld, K);
     }
     NAME(add_turned_moment)(s, n->mb, w, ld, K);
 }
 
 /* Weight alone: its moment about the node changes with the rotation of the section. */
-TARGET SPARI_APART static void NAME(add_weight)(const double *mass, const NAME(point) * s, const NAME(point_turns) * by,
-                                                const NAME(point_inertia) * n, const L *weight, int64_t ld, double *K) {
+TARGET SPARI_APART static void NAME(add_weight)(const double *mass, const NAME(point) * s,
+                                                const NAME(point_rotations) * by, const NAME(point_inertia) * n,
+                                                const L *weight, int64_t ld, double *K) {
     const L w = *weight;
     const L none[3] = {0};
     L mc[3], m[3];
     NAME(rows)(3, mass + SPARI_LANES, mc);
     for (int j = 0; j < 4; j++) {
-        NAME(cross)(n->h, by->turn[j], m);
+        NAME(cross)(n->h, by->rotation[j], m);
         NAME(cross)(mc, m, m);
         NAME(add_by_q)(s, by, w, none, m, j, ld, K);
     }
@@ -324,8 +325,8 @@ HERE void NAME(clear_rows)(int rows, int64_t ld, double *A) {
 }
 
 TARGET SPARI_APART static void NAME(elastic_matrices)(const spari_body *body, int64_t slot, const spari_tangent_work *t,
-                                                      const NAME(point) * s, const NAME(point_turns) * by, const L *w,
-                                                      int64_t at) {
+                                                      const NAME(point) * s, const NAME(point_rotations) * by,
+                                                      const L *w, int64_t at) {
     const double *C = SPARI_BLOCK(body->C, 36, slot), *D = t->damped ? SPARI_BLOCK(body->D, 36, slot) : NULL;
     NAME(gradient) J, G;
     NAME(strain_gradient)(s, by, &J);
@@ -359,7 +360,7 @@ HERE void NAME(point_matrices)(const spari_body *body, int64_t slot, const spari
     const L w = NAME(get)(body->weight + slot);
     L value[7] = {0}, slope[7] = {0}, force[3];
     NAME(point) s;
-    NAME(point_turns) by;
+    NAME(point_rotations) by;
     NAME(point_inertia) n;
     NAME(fields)(how->moving, f, &s);
     NAME(no_strain_rate)(&s);

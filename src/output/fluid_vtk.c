@@ -121,7 +121,7 @@ static int draw(const spar_fluid *fluid, const sketch *s, spar_session *session,
 }
 
 int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it first", __func__);
     sketch s = {0};
     spar_member *member;

@@ -25,7 +25,7 @@ enum {
     MOMENT = 30,
     NODE = 33,
     BENT = 34,
-    TURN = 37,
+    ROTATION = 37,
     INNER = 40,
     COLUMNS = 46
 };
@@ -45,7 +45,7 @@ static const struct {
                 {"nodal_moment", MOMENT, 3},
                 {"node", NODE, 1},
                 {"deflection", BENT, 3},
-                {"rotation", TURN, 3},
+                {"rotation", ROTATION, 3},
                 {"section_force", INNER, 3},
                 {"section_moment", INNER + 3, 3}}; /* these two only if section forces are known */
 enum { FIELDS = sizeof field_of / sizeof field_of[0] };
@@ -86,15 +86,15 @@ static void blend(int n, const double *phi, int stride, const double *from, int 
 static void put_axes(const sampled *s, int64_t sample, int n, const double *phi, const double *chain,
                      const double *frame) {
     static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    double turn[4], at_rest[4], now[4];
-    blend(n, phi, 4, chain, 4, turn);
+    double rotation[4], at_rest[4], now[4];
+    blend(n, phi, 4, chain, 4, rotation);
     blend(n, phi, 4, frame, 4, at_rest);
-    spari_quat_normalise(turn);
-    spari_quat_mul(turn, at_rest, now);
+    spari_quat_normalise(rotation);
+    spari_quat_mul(rotation, at_rest, now);
     spari_quat_normalise(now);
     double angle[3];
-    spari_quat_log(turn, angle);
-    put_columns(s, TURN, 3, sample, angle);
+    spari_quat_log(rotation, angle);
+    put_columns(s, ROTATION, 3, sample, angle);
     for (int i = 0; i < 3; i++) {
         double axis[3];
         spari_rotate(now, unit[i], axis);
@@ -255,7 +255,7 @@ static int write_picture(const spar_member *member, nodal *at, spar_session *ses
 }
 
 int spar_member_write_vtk(const spar_member *member, const char *path) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *session;
     nodal at = {0};

@@ -66,7 +66,7 @@ static int put_index(FILE *old, FILE *to, double time, int part, const char *fil
 }
 
 int spar_vtk_series_add(const char *path, double time, int part, const char *file) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     char why[SPARI_MESSAGE_SIZE / 2];
     spari_file index;
     SPARI_REQUIRE(NULL, path && path[0] && file && file[0], SPAR_ERR_ARGUMENT,

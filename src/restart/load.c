@@ -38,9 +38,9 @@ typedef struct reading {
     int status; /* status of reading here, */
     char why[SPARI_MESSAGE_SIZE / 2];
     spari_saved common;
-    spari_image index; /* index of the rest, rank by rank, without states */
-    double **solution; /* [members] state of each member solved here; NULL: not here */
-    double **tied;     /* [joints] the same for assemblies; NULL: none */
+    spari_image index;  /* index of the rest, rank by rank, without states */
+    double **solution;  /* [members] state of each member solved here; NULL: not here */
+    double **assembled; /* [joints] the same for assemblies; NULL: none */
     solver_record *solvers;
     int64_t solver_count;
     fluid_record *fluids; /* of all ranks */
@@ -59,11 +59,11 @@ static void end_loading(const spar_session *s, reading *l) {
     for (int k = 0; l->solution && k < s->member_count; k++) {
         free(l->solution[k]);
     }
-    for (int k = 0; l->tied && k < s->joint_count; k++) {
-        free(l->tied[k]);
+    for (int k = 0; l->assembled && k < s->joint_count; k++) {
+        free(l->assembled[k]);
     }
     free(l->solution);
-    free(l->tied);
+    free(l->assembled);
     free(l->solvers);
     free(l->fluids);
     free(l->taker);
@@ -223,7 +223,7 @@ static int read_common(spar_session *s, reading *l) {
             return spari_saved_no_memory(s);
         }
         SPARI_TRY(tell_why(s, l, spari_loading_read(&l->source, 0, n, image->word, l->why, sizeof l->why)));
-        image->count = image->room = n;
+        image->count = image->capacity = n;
         int status = spari_saved_check(s, &l->common);
         if (status == SPAR_OK) {
             image->count = image->at;
@@ -349,8 +349,8 @@ static int read_index(spar_session *s, reading *l) {
 /* Grows the records to the next power of two with room for one more; NULL: no memory, records unchanged. */
 static void *grow_records(void *records, int64_t count, size_t size) {
     int full = count == 0 || (count >= 8 && (count & (count - 1)) == 0);
-    int64_t room = count < 8 ? 8 : 2 * count;
-    return full ? realloc(records, (size_t)room * size) : records;
+    int64_t capacity = count < 8 ? 8 : 2 * count;
+    return full ? realloc(records, (size_t)capacity * size) : records;
 }
 
 static const spar_member *member_at(const spar_session *s, int64_t k) {
@@ -544,13 +544,13 @@ static int take_fluid(spar_session *s, reading *l, spar_fluid *f, const double *
 }
 
 /* Allocates the solver states needed here; each is in the file once. */
-static int make_solver_room(spar_session *s, reading *l) {
+static int alloc_solvers(spar_session *s, reading *l) {
     l->solution = spari_zalloc(s->member_count, sizeof *l->solution);
-    l->tied = spari_zalloc(s->joint_count, sizeof *l->tied);
-    int ok = l->solution && l->tied, twice = 0;
+    l->assembled = spari_zalloc(s->joint_count, sizeof *l->assembled);
+    int ok = l->solution && l->assembled, twice = 0;
     for (int64_t i = 0; i < l->solver_count && ok && !twice; i++) {
         const solver_record *r = l->solvers + i;
-        double **to = (r->assembly ? l->tied : l->solution) + r->index;
+        double **to = (r->assembly ? l->assembled : l->solution) + r->index;
         int wanted = r->assembly ? spari_assembly_state_size(assembly_at(s, r->index)) > 0
                                  : spari_fidelity_state_size(member_at(s, r->index)) > 0;
         twice = wanted && *to;
@@ -562,12 +562,12 @@ static int make_solver_room(spar_session *s, reading *l) {
 }
 
 static int prepare(spar_session *s, reading *l) {
-    int64_t room = PIECE;
+    int64_t capacity = PIECE;
     for (int64_t i = 0; i < l->fluid_count; i++) {
-        room = l->fluids[i].loads > room ? l->fluids[i].loads : room;
+        capacity = l->fluids[i].loads > capacity ? l->fluids[i].loads : capacity;
     }
-    l->buffer = spari_zalloc(room, sizeof *l->buffer);
-    int status = l->buffer ? make_solver_room(s, l) : spari_saved_no_memory(s);
+    l->buffer = spari_zalloc(capacity, sizeof *l->buffer);
+    int status = l->buffer ? alloc_solvers(s, l) : spari_saved_no_memory(s);
     return agree_to_load(s, status == SPAR_OK ? find_keys(s, l) : status);
 }
 
@@ -578,7 +578,7 @@ static int fetch_solvers(spar_session *s, reading *l) {
     int broken = 0;
     for (int64_t i = 0; i < l->solver_count; i++) {
         const solver_record *r = l->solvers + i;
-        double *to = (r->assembly ? l->tied : l->solution)[r->index];
+        double *to = (r->assembly ? l->assembled : l->solution)[r->index];
         SPARI_TRY(fetch_words(s, l, EACH, to != NULL, r->at, r->count, (uint64_t *)(void *)to));
         if (to && l->status == SPAR_OK) {
             const spar_member *m = r->assembly ? NULL : member_at(s, r->index);
@@ -677,7 +677,7 @@ static int load_fluids(spar_session *s, reading *l) {
     if (l->exact) {
         SPARI_TRY(fetch_fluids(s, l));
         for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-            lost |= spari_fluid_untaken(f) >= 0;
+            lost |= spari_fluid_first_missing(f) >= 0;
         }
         SPARI_TRY(is_any(s, lost, &other));
         if (!other) {
@@ -688,7 +688,7 @@ static int load_fluids(spar_session *s, reading *l) {
     SPARI_TRY(find_takers(s, l));
     SPARI_TRY(fetch_fluids(s, l));
     for (spar_fluid *f = s->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
-        status = spari_fluid_taken(f, l->call);
+        status = spari_fluid_loaded_whole(f, l->call);
     }
     return agree_to_load(s, status);
 }
@@ -705,7 +705,7 @@ static void put_in_force(spar_session *s, reading *l) {
     }
     k = 0;
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a), k++) {
-        spari_assembly_load(a, l->tied[k]);
+        spari_assembly_load(a, l->assembled[k]);
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_load(f);
@@ -713,7 +713,7 @@ static void put_in_force(spar_session *s, reading *l) {
 }
 
 int spar_session_load(spar_session *session, const char *path) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     reading l = {.call = __func__};
@@ -721,7 +721,7 @@ int spar_session_load(spar_session *session, const char *path) {
     if (status == SPAR_OK && s->phase != SPARI_IDLE) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", __func__);
     }
-    SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, status));
+    SPARI_TRY(spari_enter_agreed(s, __func__, NULL, 0, status));
     status = open_file(s, &l, path); /* without a file, nothing of the joints is created */
     status = status == SPAR_OK ? spari_solvers_place(s, __func__) : status;
     int (*const parts[])(spar_session *, reading *) = {load_common, load_index, prepare, load_solvers, load_fluids};

@@ -27,7 +27,7 @@ static int member_index(const spar_session *s, const spar_member *member) {
 }
 
 /* Makes room for the n numbers of a state, preceded by their count. */
-static double *put_room(spari_image *image, int64_t n) {
+static double *put_reserved(spari_image *image, int64_t n) {
     spari_image_put_int(image, n);
     return (double *)(void *)spari_image_add(image, n);
 }
@@ -43,7 +43,7 @@ static void put_assemblies(spari_image *image, const spar_session *s) {
         int64_t n = spari_assembly_state_size(a);
         if (n > 0) {
             spari_image_put_int(image, k);
-            double *state = put_room(image, n);
+            double *state = put_reserved(image, n);
             if (state) {
                 spari_assembly_save(a, state);
             }
@@ -66,7 +66,7 @@ static int put_own(spari_image *image, const spar_session *s, const char *call) 
         int64_t n = spari_fidelity_state_size(m);
         if (n > 0) {
             spari_image_put_int(image, k);
-            double *state = put_room(image, n);
+            double *state = put_reserved(image, n);
             if (state) {
                 m->row->save(m, state);
             }
@@ -77,7 +77,7 @@ static int put_own(spari_image *image, const spar_session *s, const char *call) 
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_image_put_int(image, member_index(s, spari_fluid_member(f)));
         spari_image_put_text(image, spar_fluid_get_name(f));
-        double *state = put_room(image, spari_fluid_state_size(f));
+        double *state = put_reserved(image, spari_fluid_state_size(f));
         if (state) {
             SPARI_TRY(spari_fluid_save(f, call, state));
         }
@@ -105,7 +105,7 @@ typedef struct save_plan {
     char why[SPARI_MESSAGE_SIZE / 2];
     char temporary[SPARI_MESSAGE_SIZE]; /* current path of its bytes, for all ranks; empty: not available */
     uint64_t mark;                      /* by which they recognise it */
-    uint64_t room[PIECE];               /* for pieces sent through rank 0: too large for a small stack */
+    uint64_t piece[PIECE];              /* for pieces sent through rank 0: too large for a small stack */
 } save_plan;
 enum { PART_COUNT, PART_SUM, PART_STATUS, PART_WORDS };
 
@@ -223,10 +223,10 @@ static int send_own_part(spar_session *s, save_plan *p, const spari_image *own) 
     for (int r = 1; r < spari_comm_size(s->comm); r++) {
         for (int64_t at = 0; at < part_count(p, r) && (rank == 0 || rank == r); at += PIECE) {
             int64_t n = part_count(p, r) - at < PIECE ? part_count(p, r) - at : PIECE;
-            SPARI_TRY(spari_comm_move(s->comm, r, 0, rank == r ? own->word + at : p->room, 8 * n, s->message,
+            SPARI_TRY(spari_comm_move(s->comm, r, 0, rank == r ? own->word + at : p->piece, 8 * n, s->message,
                                       sizeof s->message));
             if (rank == 0) {
-                spari_saving_put(&p->file, p->room, n);
+                spari_saving_put(&p->file, p->piece, n);
             }
         }
     }
@@ -283,14 +283,14 @@ static int write_file(spar_session *s, spari_image *own, const char *path) {
 }
 
 int spar_session_save(const spar_session *session, const char *path) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = (spar_session *)(uintptr_t)session; /* writes its message; the state is not changed */
     spari_image own = {0};
     int status = spari_saved_check_call(s, __func__, path);
     status = status == SPAR_OK ? spari_session_pushes(s, __func__) : status;
-    SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, status));
-    status = spari_members_retie(s);
+    SPARI_TRY(spari_enter_agreed(s, __func__, NULL, 0, status));
+    status = spari_members_renew_joints(s);
     status = status == SPAR_OK ? put_own(&own, s, __func__) : status;
     status = agree_to_save(s, status == SPAR_OK && own.failed ? spari_saved_no_memory(s) : status);
     status = status == SPAR_OK ? write_file(s, &own, path) : status;

@@ -84,7 +84,7 @@ static void pass_numbers(passage *t, double *words, int64_t n) {
 }
 
 /* Data of step-size control. */
-static void pass_pace(passage *t, spari_pace *p) {
+static void pass_step_control(passage *t, spari_step_control *p) {
     pass_numbers(t, &p->ratio, 1);
     pass_numbers(t, &p->last, 1);
     pass_numbers(t, &p->next, 1);
@@ -109,7 +109,7 @@ static void pass_clock(passage *t, spar_session *s) {
     pass_int(t, &s->started);
     pass_int(t, &phase);
     pass(t, s->gravity_before, 3);
-    pass_pace(t, &s->own->pace);
+    pass_step_control(t, &s->own->step_control);
     if (t->mode == READ) {
         s->phase = (spari_phase)phase;
         s->past = s->past < s->predictor ? s->past : s->predictor;
@@ -259,7 +259,7 @@ static void pass_member(passage *t, spar_member *m) {
     pass_numbers(t, &m->step_error, 1);
     pass_numbers(t, &m->speed, 1);
     pass_numbers(t, &m->jerk, 1);
-    pass_numbers(t, &m->swing, 1);
+    pass_numbers(t, &m->acceleration_scale, 1);
     pass_int(t, &m->balanced[0]);
     pass_int(t, &m->balanced[1]);
     pass_int(t, &m->motion_given);
@@ -290,10 +290,10 @@ static void pass_joint(passage *t, spar_joint *j) {
                {&j->after, sizeof j->after},        {&j->described, sizeof j->described},
                {j->drive, sizeof j->drive},         {j->given, sizeof j->given},
                {j->before, sizeof j->before}};
-    for (size_t k = j->tie.line ? SPRING : 0; k < sizeof all / sizeof *all; k++) {
+    for (size_t k = j->kinematics.line ? SPRING : 0; k < sizeof all / sizeof *all; k++) {
         pass_numbers(t, all[k].words, (int64_t)(all[k].size / sizeof(double)));
     }
-    if (!j->tie.line) {
+    if (!j->kinematics.line) {
         pass_int(t, &j->sprung);
     }
     pass_int(t, &j->drive_given);
@@ -312,8 +312,8 @@ static void pass_coupling(passage *t, spari_coupling *c) {
     pass(t, &c->defect, 1);
     pass_count(t, &c->grown);
     pass_int(t, &c->warned);
-    pass_count(t, &c->turns);
-    pass_count(t, &c->calm);
+    pass_count(t, &c->alternations);
+    pass_count(t, &c->steps_unwarned);
     pass_int(t, &c->unconverged);
     pass_count(t, &c->in_row);
     pass(t, &c->log_growth, 1);
@@ -387,7 +387,7 @@ void spari_saved_put(spari_image *image, spar_session *s) {
 
 /* ---- from a file ---- */
 
-static int compare_scene(spar_session *s, spari_saved *l) {
+static int compare_session(spar_session *s, spari_saved *l) {
     l->ranks = (int)spari_image_get_int(&l->image);
     int64_t members = spari_image_get_int(&l->image);
     SPARI_REQUIRE(s, members == s->member_count, SPAR_ERR_ARGUMENT,
@@ -484,7 +484,7 @@ int spari_saved_check(spar_session *s, spari_saved *l) {
     l->image.at = 0;
     l->image.failed = l->image.no_memory = 0;
     spari_coupling_free(&l->coupling);
-    SPARI_TRY(compare_scene(s, l));
+    SPARI_TRY(compare_session(s, l));
     l->clock = l->image.at;
     SPARI_TRY(check_clock(s, l));
     for (spar_member *m = s->members; m; m = m->next) {

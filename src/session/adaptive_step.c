@@ -12,7 +12,7 @@
 static int check_within(spar_session *s, const char *call, const double *dt, double first) {
     SPARI_REQUIRE(s, dt, SPAR_ERR_ARGUMENT, "%s: dt is NULL", call);
     SPARI_TRY(spari_need_dt(s, call, first));
-    SPARI_REQUIRE(s, spari_pace_is_set(s), SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, spari_step_control_is_set(s), SPAR_ERR_STATE,
                   "%s: no tolerance is set; call spar_session_set_tolerance first", call);
     SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
     SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
@@ -56,31 +56,31 @@ static int fail_within(const spar_session *s, const char *call, const tries *t) 
 }
 
 int spar_step_within(spar_session *session, double *dt, spar_before_step before, spar_fluid_solver solve, void *context,
-                     double *taken) {
-    SPARI_QUIET;
+                     double *dt_done) {
+    SPARI_GUARD_ENVIRONMENT;
     enum { TRIES = 12, STUCK = 7 };
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    SPARI_TRY(spari_lend_refuse(s, __func__));
+    SPARI_TRY(spari_callback_refuse(s, __func__));
     double none = 0, *next = dt ? dt : &none, h = *next;
-    const spari_alike alike[] = {spari_real("dt", h), spari_given("before", before != NULL)};
-    SPARI_TRY(spari_enter_alike(s, __func__, alike, 2, check_within(s, __func__, dt, h)));
+    const spari_agreed must_agree[] = {spari_real("dt", h), spari_given("before", before != NULL)};
+    SPARI_TRY(spari_enter_agreed(s, __func__, must_agree, 2, check_within(s, __func__, dt, h)));
     tries done = {0};
     for (int k = 0; k < TRIES && done.stuck < STUCK && (k == 0 || h > clock_resolves * fabs(s->time)); k++) {
-        SPARI_TRY(spari_named(s, __func__, spari_lend_before(s, before, h, context)));
+        SPARI_TRY(spari_named(s, __func__, spari_callback_before_step(s, before, h, context)));
         SPARI_TRY(spari_named(s, __func__, spar_step_begin(s, h)));
         SPARI_TRY(spari_step_run(s, __func__, solve, context));
-        count_try(&done, h, spari_pace_judge(s));
+        count_try(&done, h, spari_step_control_ratio(s));
         if (done.ratio <= 1) {
             SPARI_TRY(spari_named(s, __func__, spar_step_accept(s)));
-            *next = s->own->pace.next;
-            if (taken) {
-                *taken = h;
+            *next = s->own->step_control.next;
+            if (dt_done) {
+                *dt_done = h;
             }
             return SPAR_OK;
         }
         SPARI_TRY(spari_named(s, __func__, spar_step_reject(s)));
-        h = s->own->pace.next;
+        h = s->own->step_control.next;
     }
     return fail_within(s, __func__, &done);
 }

@@ -4,15 +4,15 @@
 #include "../base/environment.h"
 #include "../comm/comm.h"
 
-int spari_lend_refuse(spar_session *s, const char *call) {
-    SPARI_REQUIRE(s, !s->lent, SPAR_ERR_STATE,
+int spari_callback_refuse(spar_session *s, const char *call) {
+    SPARI_REQUIRE(s, !s->in_callback, SPAR_ERR_STATE,
                   "%s: %s is under way and has called this fluid solver; pull, push and return from it, or make the "
                   "step by spar_step_begin, spar_step_solve, spar_step_check, spar_step_accept",
-                  call, s->lent);
+                  call, s->in_callback);
     return SPAR_OK;
 }
 
-int spari_lend(spar_session *s, const char *lender, spar_fluid_solver solve, double dt, void *context) {
+int spari_callback_run(spar_session *s, const char *lender, spar_fluid_solver solve, double dt, void *context) {
     if (!solve) {
         return SPAR_OK;
     }
@@ -20,22 +20,22 @@ int spari_lend(spar_session *s, const char *lender, spar_fluid_solver solve, dou
     spari_host host;
     s->calls_differ = 0;
     spari_host_begin(&host);
-    s->lent = lender;
-    int answer = solve(s, s->time, dt, s->iteration, context);
-    s->lent = NULL;
+    s->in_callback = lender;
+    int result = solve(s, s->time, dt, s->iteration, context);
+    s->in_callback = NULL;
     spari_host_end(&host);
     if (s->calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
-    if (answer == 0) {
+    if (result == 0) {
         return SPAR_OK;
     }
     int told = s->failures != failures; /* the failure there */
-    return spari_fail(s, SPAR_ERR_USER, "%s: the fluid solver returned %d in iteration %d%s%.800s", lender, answer,
+    return spari_fail(s, SPAR_ERR_USER, "%s: the fluid solver returned %d in iteration %d%s%.800s", lender, result,
                       s->iteration, told ? ": " : "", told ? s->message : "");
 }
 
-int spari_lend_before(spar_session *s, spar_before_step before, double dt, void *context) {
+int spari_callback_before_step(spar_session *s, spar_before_step before, double dt, void *context) {
     if (!before) {
         return SPAR_OK;
     }
@@ -43,14 +43,14 @@ int spari_lend_before(spar_session *s, spar_before_step before, double dt, void 
     s->calls_differ = 0;
     spari_host host;
     spari_host_begin(&host);
-    int answer = before(s, s->time, dt, context), status = SPAR_OK;
+    int result = before(s, s->time, dt, context), status = SPAR_OK;
     spari_host_end(&host);
     if (s->calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
-    if (answer != 0 && s->failures == failures) {
-        status = spari_fail(s, SPAR_ERR_USER, "the host's call before a step returned %d", answer);
-    } else if (answer != 0) {
+    if (result != 0 && s->failures == failures) {
+        status = spari_fail(s, SPAR_ERR_USER, "the host's call before a step returned %d", result);
+    } else if (result != 0) {
         status = SPAR_ERR_USER;
     }
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
@@ -68,17 +68,17 @@ static int ask_host(spar_session *s, const spari_progress *p, double done, doubl
     s->calls_differ = 0;
     spari_host_begin(&host);
     s->trial = 1;
-    int answer = p->tell(s, done, expected, p->context);
+    int result = p->tell(s, done, expected, p->context);
     s->trial = 0;
     spari_host_end(&host);
     if (s->calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
-    int status = answer == 0 ? SPAR_OK
+    int status = result == 0 ? SPAR_OK
                              : spari_fail(s, SPAR_ERR_USER,
                                           "%s: the host has stopped it: its progress call returned %d, after %.3g of "
                                           "%.3g trials expected",
-                                          p->call, answer, done, expected);
+                                          p->call, result, done, expected);
     return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
 }
 

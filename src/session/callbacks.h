@@ -8,12 +8,12 @@
 
 /* Refuses, while it runs, a call that would end or move on what is under way, which belongs to the call that runs it.
    Before the ranks meet: the others are not in this call. Local. */
-int spari_lend_refuse(spar_session *session, const char *call);
+int spari_callback_refuse(spar_session *session, const char *call);
 /* Calls the solver for the step of dt from t^n; solve may be NULL. SPAR_ERR_COMM: the solver made a collective call
    on this rank alone, and the others noticed. Other failures are this rank's own. Local. */
-int spari_lend(spar_session *session, const char *lender, spar_fluid_solver solve, double dt, void *context);
+int spari_callback_run(spar_session *session, const char *lender, spar_fluid_solver solve, double dt, void *context);
 /* Calls the host's function before a step of dt; NULL on all ranks: nothing to call. Collective. */
-int spari_lend_before(spar_session *session, spar_before_step before, double dt, void *context);
+int spari_callback_before_step(spar_session *session, spar_before_step before, double dt, void *context);
 
 /* ---- progress: the host hears how far a call that makes trials is, ahead of each of its runs, and may stop it ---- */
 

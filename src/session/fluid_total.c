@@ -39,16 +39,16 @@ static int add_loads(const spar_fluid *fluid, const double point[3], const char 
 }
 
 /* Collective. point NULL: the origin. claim[count]: further arguments that must agree. */
-static int sum_over_ranks(const spar_fluid *fluid, const char *call, const double *point, const spari_alike *claim,
+static int sum_over_ranks(const spar_fluid *fluid, const char *call, const double *point, const spari_agreed *claim,
                           int count, int status, double total[TOTALS + 1]) {
     static const double origin[3] = {0, 0, 0};
     const spar_member *m = spari_fluid_member(fluid);
     spar_session *s = m->session;
     const double *about = point ? point : origin;
-    spari_alike alike[16] = {spari_real("point (x)", about[0]), spari_real("point (y)", about[1]),
-                             spari_real("point (z)", about[2])};
+    spari_agreed must_agree[16] = {spari_real("point (x)", about[0]), spari_real("point (y)", about[1]),
+                                   spari_real("point (z)", about[2])};
     for (int i = 0; i < count; i++) {
-        alike[3 + i] = claim[i];
+        must_agree[3 + i] = claim[i];
     }
     memset(total, 0, (TOTALS + 1) * sizeof *total);
     char what[SPARI_MESSAGE_SIZE / 2];
@@ -58,14 +58,14 @@ static int sum_over_ranks(const spar_fluid *fluid, const char *call, const doubl
                             about[1], about[2]);
     }
     status = status == SPAR_OK ? add_loads(fluid, about, call, total) : status;
-    SPARI_TRY(spari_enter_alike(s, what, alike, 3 + count, status));
+    SPARI_TRY(spari_enter_agreed(s, what, must_agree, 3 + count, status));
     return spari_named(s, call, spari_comm_sum(s->comm, total, TOTALS, SPAR_OK, s->message, sizeof s->message));
 }
 
 int spar_fluid_get_total(const spar_fluid *fluid, const double point[3], double force[3], double moment[3]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it with spar_fluid_create", __func__);
-    SPARI_TRY(spari_lend_refuse(spari_fluid_member(fluid)->session, __func__));
+    SPARI_TRY(spari_callback_refuse(spari_fluid_member(fluid)->session, __func__));
     double total[TOTALS + 1];
     SPARI_TRY(sum_over_ranks(fluid, __func__, point, NULL, 0, SPAR_OK, total));
     if (force) {
@@ -112,15 +112,15 @@ static int compare(const spar_fluid *fluid, const char *call, const char *what, 
 
 int spar_fluid_check_total(const spar_fluid *fluid, const double point[3], const double force[3],
                            const double moment[3], double rtol) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it with spar_fluid_create", __func__);
-    SPARI_TRY(spari_lend_refuse(spari_fluid_member(fluid)->session, __func__));
+    SPARI_TRY(spari_callback_refuse(spari_fluid_member(fluid)->session, __func__));
     static const double none[3] = {0, 0, 0};
     const double *f = force ? force : none, *t = moment ? moment : none;
-    const spari_alike claim[] = {spari_real("force (x)", f[0]),  spari_real("force (y)", f[1]),
-                                 spari_real("force (z)", f[2]),  spari_real("moment (x)", t[0]),
-                                 spari_real("moment (y)", t[1]), spari_real("moment (z)", t[2]),
-                                 spari_real("rtol", rtol),       spari_given("moment", moment != NULL)};
+    const spari_agreed claim[] = {spari_real("force (x)", f[0]),  spari_real("force (y)", f[1]),
+                                  spari_real("force (z)", f[2]),  spari_real("moment (x)", t[0]),
+                                  spari_real("moment (y)", t[1]), spari_real("moment (z)", t[2]),
+                                  spari_real("rtol", rtol),       spari_given("moment", moment != NULL)};
     double total[TOTALS + 1];
     SPARI_TRY(sum_over_ranks(fluid, __func__, point, claim, sizeof claim / sizeof *claim,
                              check_claim(fluid, __func__, force, moment, rtol), total));

@@ -16,26 +16,27 @@ static int check_sum(spar_session *s, const char *call, int status, int64_t n, c
 }
 
 int spar_session_sum(spar_session *session, int status, int64_t n, double *x) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    double *room = NULL; /* one more: see comm.h */
+    double *workspace = NULL; /* one more: see comm.h */
     int own = check_sum(s, __func__, status, n, x);
     if (own == SPAR_OK) {
-        room = spari_zalloc(n + 1, sizeof *room);
-        own = room ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for %lld numbers", __func__, (long long)n);
+        workspace = spari_zalloc(n + 1, sizeof *workspace);
+        own = workspace ? SPAR_OK
+                        : spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for %lld numbers", __func__, (long long)n);
     }
-    if (room && n > 0) {
-        memcpy(room, x, (size_t)n * sizeof *x);
+    if (workspace && n > 0) {
+        memcpy(workspace, x, (size_t)n * sizeof *x);
     }
-    const spari_alike alike[] = {spari_whole("n", n)};
-    int answer = spari_enter_alike(s, __func__, alike, 1, own);
-    if (answer == SPAR_OK) {
-        answer = spari_comm_sum(s->comm, room, n, SPAR_OK, s->message, sizeof s->message);
+    const spari_agreed must_agree[] = {spari_whole("n", n)};
+    int result = spari_enter_agreed(s, __func__, must_agree, 1, own);
+    if (result == SPAR_OK) {
+        result = spari_comm_sum(s->comm, workspace, n, SPAR_OK, s->message, sizeof s->message);
     }
-    if (answer == SPAR_OK && room && n > 0) {
-        memcpy(x, room, (size_t)n * sizeof *x);
+    if (result == SPAR_OK && workspace && n > 0) {
+        memcpy(x, workspace, (size_t)n * sizeof *x);
     }
-    free(room);
-    return answer;
+    free(workspace);
+    return result;
 }

@@ -35,9 +35,9 @@ static void copy_start_loads(const spar_member *m, const double *from, double *t
 
 int spari_start_begin(spar_session *s, const char *call, double dt) {
     static const double last[2] = {1, 1};
-    const spari_alike alike[] = {spari_real("dt", dt),
-                                 spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
-    SPARI_TRY(spari_enter_alike(s, call, alike, 2, check_start(s, call, dt)));
+    const spari_agreed must_agree[] = {spari_real("dt", dt),
+                                       spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
+    SPARI_TRY(spari_enter_agreed(s, call, must_agree, 2, check_start(s, call, dt)));
     SPARI_TRY(spari_named(s, call, spari_solvers_place(s, call)));
     int status = SPAR_OK;
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
@@ -46,7 +46,7 @@ int spari_start_begin(spar_session *s, const char *call, double dt) {
     SPARI_TRY(spari_named(s, call, spari_session_seal(s, status)));
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     int scheme = spari_coupling_scheme_of(s->scheme)->iterates ? s->scheme : SPAR_COUPLING_IQN_ILS;
-    SPARI_TRY(spari_named(s, call, spari_coupling_lay_aside(s, scheme)));
+    SPARI_TRY(spari_named(s, call, spari_coupling_suspend(s, scheme)));
     for (spar_member *m = s->members; m; m = m->next) {
         copy_start_loads(m, m->load_pushed, m->load_before);
         spari_session_take_loads(s, m, m->load_used);
@@ -125,7 +125,7 @@ void spari_start_accept(spar_session *s) {
         spari_joint_end_start(j);
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_settle(f);
+        spari_fluid_commit_state(f);
     }
     spari_coupling_keep(s);
     s->past = 0;
@@ -144,7 +144,7 @@ void spari_start_reject(spar_session *s) {
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_reject(f);
     }
-    spari_coupling_take_back(s);
+    spari_coupling_resume(s);
     end_start(s);
 }
 

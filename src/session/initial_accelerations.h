@@ -1,6 +1,6 @@
 /* Consistent initial conditions, in the parts of a step: see initial_accelerations.c. */
-#ifndef SPARI_START_H
-#define SPARI_START_H
+#ifndef SPARI_INITIAL_ACCELERATIONS_H
+#define SPARI_INITIAL_ACCELERATIONS_H
 
 #include "../base/session.h"
 

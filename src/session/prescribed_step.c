@@ -34,7 +34,7 @@ int spari_forced_step(spar_session *s, const char *call, double dt, spar_fluid_s
     s->order = s->iteration = s->iterating = s->failed = 0;
     s->started = 1;
     s->phase = SPARI_SOLVED;
-    int status = spari_lend(s, call, solve, dt, context);
+    int status = spari_callback_run(s, call, solve, dt, context);
     if (status == SPAR_ERR_COMM) {
         return status;
     }

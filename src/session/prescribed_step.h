@@ -1,6 +1,6 @@
 /* Steps of a trial with prescribed motion: only the fluid responds. */
-#ifndef SPARI_FORCED_H
-#define SPARI_FORCED_H
+#ifndef SPARI_PRESCRIBED_STEP_H
+#define SPARI_PRESCRIBED_STEP_H
 
 #include "../base/session.h"
 

@@ -17,13 +17,13 @@
 
 static spar_session *session_new(void) {
     struct whole {
-        spar_session scene;
+        spar_session initial;
         spari_own own;
     } *whole = spari_zalloc(1, sizeof *whole);
     if (!whole) {
         return NULL;
     }
-    spar_session *s = &whole->scene; /* first member: freed as one */
+    spar_session *s = &whole->initial; /* first member: freed as one */
     s->own = &whole->own;
     spari_settings_default(s);
     return s;
@@ -80,10 +80,10 @@ void spar_session_destroy(spar_session **session) {
         spari_member_free(m);
     }
     spari_threads_free(s);
-    spari_room_free(&s->room);
+    spari_workspace_free(&s->workspace);
     spari_comm_destroy(&s->comm);
     spari_coupling_free(&s->own->coupling);
-    spari_coupling_free(&s->own->aside);
+    spari_coupling_free(&s->own->suspended);
     if (s->own->kept) {
         s->own->free_kept(s->own->kept);
     }
@@ -111,7 +111,7 @@ int spar_session_set_progress(spar_session *session, spar_progress progress, voi
 }
 
 int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     if (t) {
         *t = session->time;
@@ -126,12 +126,12 @@ int spar_session_get_time(const spar_session *session, double *t, int64_t *step,
 }
 
 int spar_session_get_phase(const spar_session *session, int *phase) {
-    static const int answer[] = {
+    static const int result[] = {
         [SPARI_BEGUN] = SPAR_PHASE_BEGUN, [SPARI_SOLVED] = SPAR_PHASE_SOLVED, [SPARI_CHECKED] = SPAR_PHASE_CHECKED};
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     if (phase) {
         int rest = session->started ? SPAR_PHASE_BETWEEN : SPAR_PHASE_START;
-        *phase = session->phase == SPARI_IDLE ? rest : answer[session->phase];
+        *phase = session->phase == SPARI_IDLE ? rest : result[session->phase];
     }
     return SPAR_OK;
 }

@@ -32,7 +32,7 @@ enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REP
 #define ALONG(key, axis)                                                                                               \
     {                                                                                                                  \
         key, key, FIELD(gravity) + (axis) * sizeof(double), SPARI_IS_REAL, GRAVITY, -DBL_MAX, DBL_MAX,                 \
-            "a finite number", {NULL, NULL}, 0, SPARI_ALIKE                                                            \
+            "a finite number", {NULL, NULL}, 0, SPARI_AGREED                                                           \
     }
 #define WHOLE(by, setter, key, field, least, most, range, initial, flags)                                              \
     {                                                                                                                  \
@@ -49,7 +49,7 @@ enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REP
             0, flags                                                                                                   \
     }
 #define STATE(name, field)                                                                                             \
-    { name, NULL, FIELD(field), SPARI_IS_WHOLE, NOBODY, 0, 0, NULL, {NULL, NULL}, 0, SPARI_ALIKE }
+    { name, NULL, FIELD(field), SPARI_IS_WHOLE, NOBODY, 0, 0, NULL, {NULL, NULL}, 0, SPARI_AGREED }
 
 static const char not_negative[] = "a finite number >= 0", one_or_more[] = "at least 1";
 
@@ -59,50 +59,50 @@ static const spari_setting settings[] = {
     ALONG("gravity (x)", 0),
     ALONG("gravity (y)", 1),
     ALONG("gravity (z)", 2),
-    REAL(INTEGRATOR, "integrator", "rho_inf", rho_inf, 0, 1, "0 (most damping) to 1 (none)", 0.9, SPARI_ALIKE),
-    WHOLE(INTEGRATOR, "integrator", "substeps", substeps, 1, INT32_MAX, one_or_more, 1, SPARI_ALIKE | SPARI_VARIED),
-    REAL(NEWTON, "newton", "atol", newton_atol, 0, DBL_MAX, not_negative, 1e-15, SPARI_ALIKE),
-    REAL(NEWTON, "newton", "rtol", newton_rtol, 0, DBL_MAX, not_negative, 1e-12, SPARI_ALIKE | SPARI_VARIED),
-    WHOLE(NEWTON, "newton", "max_iterations", newton_max, 1, INT32_MAX, one_or_more, 50, SPARI_ALIKE),
-    WHOLE(PREDICTOR, "predictor", "order", predictor, 0, 2, "0, 1 or 2", 1, SPARI_ALIKE | SPARI_VARIED),
+    REAL(INTEGRATOR, "integrator", "rho_inf", rho_inf, 0, 1, "0 (most damping) to 1 (none)", 0.9, SPARI_AGREED),
+    WHOLE(INTEGRATOR, "integrator", "substeps", substeps, 1, INT32_MAX, one_or_more, 1, SPARI_AGREED | SPARI_VARIED),
+    REAL(NEWTON, "newton", "atol", newton_atol, 0, DBL_MAX, not_negative, 1e-15, SPARI_AGREED),
+    REAL(NEWTON, "newton", "rtol", newton_rtol, 0, DBL_MAX, not_negative, 1e-12, SPARI_AGREED | SPARI_VARIED),
+    WHOLE(NEWTON, "newton", "max_iterations", newton_max, 1, INT32_MAX, one_or_more, 50, SPARI_AGREED),
+    WHOLE(PREDICTOR, "predictor", "order", predictor, 0, 2, "0, 1 or 2", 1, SPARI_AGREED | SPARI_VARIED),
     WHOLE(COUPLING, "coupling", "scheme", scheme, 0, SPARI_SCHEME_COUNT - 1, "a SPAR_COUPLING_*",
-          SPAR_COUPLING_EXPLICIT, SPARI_ALIKE | SPARI_OF_COUPLING | SPARI_VARIED),
-    REAL(COUPLING, "coupling", "atol", coupling_atol, 0, DBL_MAX, not_negative, 1e-9, SPARI_ALIKE),
-    REAL(COUPLING, "coupling", "rtol", coupling_rtol, 0, DBL_MAX, not_negative, 1e-6, SPARI_ALIKE | SPARI_VARIED),
+          SPAR_COUPLING_EXPLICIT, SPARI_AGREED | SPARI_OF_COUPLING | SPARI_VARIED),
+    REAL(COUPLING, "coupling", "atol", coupling_atol, 0, DBL_MAX, not_negative, 1e-9, SPARI_AGREED),
+    REAL(COUPLING, "coupling", "rtol", coupling_rtol, 0, DBL_MAX, not_negative, 1e-6, SPARI_AGREED | SPARI_VARIED),
     WHOLE(COUPLING, "coupling", "max_iterations", coupling_max, 1, INT32_MAX, one_or_more, 50,
-          SPARI_ALIKE | SPARI_OF_COUPLING),
+          SPARI_AGREED | SPARI_OF_COUPLING),
     REAL(RELAXATION, "relaxation", "omega", relaxation, DBL_MIN, 2, "a number in (0, 2]", 1,
-         SPARI_ALIKE | SPARI_OF_COUPLING),
-    WHOLE(REPRODUCIBLE, "reproducible", "on", reproducible, 0, 1, "0 or 1", 0, SPARI_ALIKE),
-    REAL(TOLERANCE, "tolerance", "drift", tolerance_drift, 0, DBL_MAX, not_negative, 0, SPARI_ALIKE),
-    REAL(TOLERANCE, "tolerance", "rtol", tolerance_rtol, 0, 1, "a number from 0 to 1", 0, SPARI_ALIKE),
+         SPARI_AGREED | SPARI_OF_COUPLING),
+    WHOLE(REPRODUCIBLE, "reproducible", "on", reproducible, 0, 1, "0 or 1", 0, SPARI_AGREED),
+    REAL(TOLERANCE, "tolerance", "drift", tolerance_drift, 0, DBL_MAX, not_negative, 0, SPARI_AGREED),
+    REAL(TOLERANCE, "tolerance", "rtol", tolerance_rtol, 0, 1, "a number from 0 to 1", 0, SPARI_AGREED),
     WHOLE(GOAL, "goal", "goals", goals, 1, 31, "SPAR_GOAL_* or-ed, one of them at least", SPAR_GOAL_MOTION,
-          SPARI_ALIKE),
-    OPTION_WORD("newton.stop", newton_strict, "tied", "strict", SPARI_ALIKE | SPARI_VARIED),
-    OPTION_WORD("coupling.unconverged", accept_unconverged, "error", "accept", SPARI_ALIKE),
+          SPARI_AGREED),
+    OPTION_WORD("newton.stop", newton_strict, "tied", "strict", SPARI_AGREED | SPARI_VARIED),
+    OPTION_WORD("coupling.unconverged", accept_unconverged, "error", "accept", SPARI_AGREED),
     OPTION_WHOLE("coupling.patience", coupling_patience, 1, 1000000, "a whole number from 1 to 1000000", 3,
-                 SPARI_ALIKE),
-    OPTION_WORD("coupling.norm", norm_of_loads, "motion", "loads", SPARI_ALIKE | SPARI_OF_COUPLING),
-    OPTION_WORD("fluid.added_mass", added_by_velocity, "acceleration", "velocity", SPARI_ALIKE),
-    OPTION_WORD("coupling.estimate", coupling_estimate, "off", "on", SPARI_ALIKE | SPARI_OF_COUPLING),
+                 SPARI_AGREED),
+    OPTION_WORD("coupling.norm", norm_of_loads, "motion", "loads", SPARI_AGREED | SPARI_OF_COUPLING),
+    OPTION_WORD("fluid.added_mass", added_by_velocity, "acceleration", "velocity", SPARI_AGREED),
+    OPTION_WORD("coupling.estimate", coupling_estimate, "off", "on", SPARI_AGREED | SPARI_OF_COUPLING),
     OPTION_WHOLE("coupling.columns", coupling_columns, 1, 10000, "a whole number from 1 to 10000", 30,
-                 SPARI_ALIKE | SPARI_OF_COUPLING),
+                 SPARI_AGREED | SPARI_OF_COUPLING),
     OPTION_WHOLE("coupling.reuse", coupling_reuse, 0, 10000, "a whole number from 0 to 10000", 5,
-                 SPARI_ALIKE | SPARI_OF_COUPLING),
+                 SPARI_AGREED | SPARI_OF_COUPLING),
     OPTION_REAL("coupling.filter", coupling_filter, 0, 0.5, "a number from 0 to 0.5", 1e-4,
-                SPARI_ALIKE | SPARI_OF_COUPLING),
+                SPARI_AGREED | SPARI_OF_COUPLING),
     OPTION_REAL("coupling.motion_atol", motion_atol, 0, 1e300, "a number >= 0 (metres)", 0,
-                SPARI_ALIKE | SPARI_OF_COUPLING),
-    OPTION_REAL("coupling.motion_rtol", motion_rtol, 0, 1, "a number from 0 to 1", 0, SPARI_ALIKE | SPARI_OF_COUPLING),
-    OPTION_WORD("fluid.theta", theta_on_group, "average", "group", SPARI_ALIKE),
+                SPARI_AGREED | SPARI_OF_COUPLING),
+    OPTION_REAL("coupling.motion_rtol", motion_rtol, 0, 1, "a number from 0 to 1", 0, SPARI_AGREED | SPARI_OF_COUPLING),
+    OPTION_WORD("fluid.theta", theta_on_group, "average", "group", SPARI_AGREED),
     OPTION_WORD("fluid.far", far_refuse, "take", "refuse", 0),
     OPTION_WORD("fluid.audit", audit_off, "on", "off", 0),
-    OPTION_WORD("advise.dt", keep_dt, "vary", "keep", SPARI_ALIKE),
-    OPTION_WORD("advise.nodes", keep_nodes, "vary", "keep", SPARI_ALIKE),
-    OPTION_WORD("advise.fidelity", keep_fidelity, "vary", "keep", SPARI_ALIKE),
-    OPTION_WORD("advise.coupling", keep_coupling, "vary", "keep", SPARI_ALIKE),
-    OPTION_REAL("advise.limit", advise_limit, 0, 1e300, "a number >= 0 (trials)", 0, SPARI_ALIKE),
-    OPTION_REAL("advise.fluid_cost", fluid_cost, 0, 1e300, "a number >= 0 (seconds)", 0, SPARI_ALIKE),
+    OPTION_WORD("advise.dt", keep_dt, "vary", "keep", SPARI_AGREED),
+    OPTION_WORD("advise.nodes", keep_nodes, "vary", "keep", SPARI_AGREED),
+    OPTION_WORD("advise.fidelity", keep_fidelity, "vary", "keep", SPARI_AGREED),
+    OPTION_WORD("advise.coupling", keep_coupling, "vary", "keep", SPARI_AGREED),
+    OPTION_REAL("advise.limit", advise_limit, 0, 1e300, "a number >= 0 (trials)", 0, SPARI_AGREED),
+    OPTION_REAL("advise.fluid_cost", fluid_cost, 0, 1e300, "a number >= 0 (seconds)", 0, SPARI_AGREED),
     STATE("numbers of members", member_count),
     STATE("numbers of joints", joint_count),
     STATE("calls that set the coupling", coupling_stale),
@@ -204,7 +204,7 @@ static void store_given(spar_session *session, int by, const double *given) {
 }
 
 static int set(spar_session *session, const char *call, int by, const double *given) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(check_given(session, call, by, given));
     store_given(session, by, given);
     return SPAR_OK;
@@ -231,7 +231,7 @@ static int get(const spar_session *session, const char *call, int by, int n, voi
 /* clang-format on */
 
 int spar_session_set_gravity(spar_session *session, const double g[3]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(settable(session, __func__));
     SPARI_REQUIRE(session, g, SPAR_ERR_ARGUMENT, "%s: the vector of gravity is NULL", __func__);
     SPARI_TRY(set(session, __func__, GRAVITY, g));
@@ -248,7 +248,7 @@ int spar_session_get_gravity(const spar_session *session, double g[3]) {
 }
 
 int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     const double given[] = {rho_inf, substeps};
     SPARI_TRY(check_given(session, __func__, INTEGRATOR, given));
     int status = SPAR_OK, before = session->substeps;
@@ -277,7 +277,7 @@ int spar_session_get_newton(const spar_session *session, double *atol, double *r
 }
 
 int spar_session_set_predictor(spar_session *session, int order) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(check_given(session, __func__, PREDICTOR, (const double[]){order}));
     int status = SPAR_OK;
     for (spar_member *m = session->members; m && status == SPAR_OK; m = m->next) {
@@ -330,7 +330,7 @@ int spar_session_get_goal(const spar_session *session, int *goals) {
 }
 
 int spar_session_set_tolerance(spar_session *session, double drift, double rtol) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     const double given[] = {drift, rtol};
     SPARI_TRY(check_given(session, __func__, TOLERANCE, given));
     SPARI_REQUIRE(
@@ -369,7 +369,7 @@ static int read_value(const spari_setting *of, const char *text, double *x) {
 }
 
 int spar_session_set_option(spar_session *session, const char *key, const char *value) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(settable(session, __func__));
     SPARI_REQUIRE(session, key && value, SPAR_ERR_ARGUMENT, "%s: key or value is NULL", __func__);
     const spari_setting *of = find_option(key);
@@ -382,7 +382,7 @@ int spar_session_set_option(spar_session *session, const char *key, const char *
 }
 
 int spar_session_get_option(const spar_session *session, const char *key, int64_t capacity, char *text) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_REQUIRE(session, key && text, SPAR_ERR_ARGUMENT, "%s: key or text is NULL", __func__);
     const spari_setting *of = find_option(key);

@@ -26,7 +26,7 @@ static int check_held(const spar_member *m, const char *call) {
     spar_session *s = m->session;
     SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first",
                   call, m->name);
-    int loose = !spari_member_is_tied(m) &&
+    int loose = !spari_member_has_joints(m) &&
                 (m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C));
     SPARI_REQUIRE(s, !loose || !m->row->rest, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root",
                   call, m->name);
@@ -60,11 +60,11 @@ static const double *used(const spar_member *m) {
     return m->load_used;
 }
 
-static int solve_tied_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps, int onward,
-                             const spar_session *s) {
+static int solve_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps,
+                                 int onward, const spar_session *s) {
     SPARI_TRY(spari_assembly_static(a, fluid, load_steps, onward));
     for (const spar_member *m = s->members; m; m = m->next) {
-        SPARI_TRY(m->assembly == a ? spari_member_check_turns(m) : SPAR_OK);
+        SPARI_TRY(m->assembly == a ? spari_member_check_rotations(m) : SPAR_OK);
     }
     return SPAR_OK;
 }
@@ -72,13 +72,13 @@ static int solve_tied_static(spari_assembly *a, const double *(*fluid)(const spa
 /* Solves the motion `after` of a member, on its owner. */
 static int solve_member_static(spar_member *m, const double *fluid, int load_steps, int onward) {
     if (m->assembly) {
-        return solve_tied_static(m->assembly, pushed, load_steps, onward, m->session);
+        return solve_assembly_static(m->assembly, pushed, load_steps, onward, m->session);
     }
     if (!m->row->rest || !spari_fidelity_is_here(m)) {
         return SPAR_OK;
     }
     SPARI_TRY(m->row->rest(m, fluid, load_steps, onward));
-    return spari_member_check_turns(m);
+    return spari_member_check_rotations(m);
 }
 
 static void copy_loads(const spar_member *m, const double *from, double *to) {
@@ -89,7 +89,7 @@ static int is_of(const spar_member *only, const spari_assembly *a) {
     return !only || only->assembly == a;
 }
 
-static int64_t size_aside(const spar_session *s, const spar_member *only) {
+static int64_t size_of_saved(const spar_session *s, const spar_member *only) {
     int64_t n = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
         n += is_with(only, m) ? 1 + spari_fidelity_state_size(m) : 0;
@@ -102,8 +102,8 @@ static int64_t size_aside(const spar_session *s, const spar_member *only) {
 
 /* Copies the solver data of the owner's members (of one with all that joints connect to it, or of all), to be
    restored without an equilibrium: each with its length in front. */
-static int put_aside(spar_session *s, const spar_member *only, double **aside) {
-    double *at = *aside = spari_zalloc(size_aside(s, only), sizeof *at);
+static int save_state(spar_session *s, const spar_member *only, double **saved_state) {
+    double *at = *saved_state = spari_zalloc(size_of_saved(s, only), sizeof *at);
     SPARI_REQUIRE(s, at, SPAR_ERR_MEMORY, "no memory to put the state of the members aside");
     for (const spar_member *m = s->members; m; m = m->next) {
         if (!is_with(only, m)) {
@@ -128,32 +128,32 @@ static int put_aside(spar_session *s, const spar_member *only, double **aside) {
     return SPAR_OK;
 }
 
-static void put_back(spar_session *s, const spar_member *only, const double *aside) {
+static void put_back(spar_session *s, const spar_member *only, const double *saved_state) {
     for (spar_member *m = s->members; m; m = m->next) {
         if (!is_with(only, m)) {
             continue;
         }
-        if (*aside > 0) {
-            m->row->load(m, aside + 1);
+        if (*saved_state > 0) {
+            m->row->load(m, saved_state + 1);
         }
-        aside += 1 + (int64_t)*aside;
+        saved_state += 1 + (int64_t)*saved_state;
     }
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         if (!is_of(only, a)) {
             continue;
         }
-        if (*aside > 0) {
-            spari_assembly_load(a, aside + 1);
+        if (*saved_state > 0) {
+            spari_assembly_load(a, saved_state + 1);
         }
-        aside += 1 + (int64_t)*aside;
+        saved_state += 1 + (int64_t)*saved_state;
     }
 }
 
 /* Makes the motion `after`, under `fluid` loads, the state at t^n. */
-static void settle_member(spar_member *m, const double *fluid) {
+static void commit_member(spar_member *m, const double *fluid) {
     m->dissipated_step = 0;
     spari_member_solved(m, fluid);
-    spari_member_settle(m);
+    spari_member_commit_state(m);
     memcpy(m->session->gravity_before, m->session->gravity, sizeof m->session->gravity_before);
 }
 
@@ -171,38 +171,38 @@ static int find_rest(spar_member *m, int load_steps) {
 }
 
 /* Accepts the equilibrium as the state at t^n, or restores everything. */
-static void end_member_static(spar_member *member, int status, const double *aside) {
+static void end_member_static(spar_member *member, int status, const double *saved_state) {
     for (spar_member *m = member->session->members; m; m = m->next) {
         if (!is_with(member, m)) {
             continue;
         }
         if (status == SPAR_OK) {
-            settle_member(m, m->load_pushed);
+            commit_member(m, m->load_pushed);
         } else {
             spari_member_reject(m);
             copy_loads(m, m->load_before, m->load_pushed);
         }
     }
     if (status != SPAR_OK) {
-        put_back(member->session, member, aside);
+        put_back(member->session, member, saved_state);
         for (spari_assembly *a = member->session->assemblies; a; a = spari_assembly_next(a)) {
-            spari_assembly_leave(a);
+            spari_assembly_discard(a);
         }
     } else if (member->assembly) {
-        spari_assembly_settle(member->assembly);
+        spari_assembly_commit_state(member->assembly);
     }
 }
 
 int spar_member_solve_static(spar_member *member, int load_steps) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *s = member->session;
-    const spari_alike alike[] = {spari_whole("load_steps", load_steps),
-                                 spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
-    SPARI_TRY(spari_member_enter(member, __func__, alike, 2, check_member_static(member, __func__, load_steps)));
-    double *aside = NULL;
+    const spari_agreed must_agree[] = {spari_whole("load_steps", load_steps),
+                                       spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
+    SPARI_TRY(spari_member_enter(member, __func__, must_agree, 2, check_member_static(member, __func__, load_steps)));
+    double *saved_state = NULL;
     int status = spari_solvers_place(s, __func__);
-    status = status == SPAR_OK ? spari_session_seal(s, put_aside(s, member, &aside)) : status;
+    status = status == SPAR_OK ? spari_session_seal(s, save_state(s, member, &saved_state)) : status;
     if (status == SPAR_OK) {
         for (spar_member *m = s->members; m; m = m->next) {
             if (is_with(member, m)) {
@@ -210,9 +210,9 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
             }
         }
         status = find_rest(member, load_steps);
-        end_member_static(member, status, aside);
+        end_member_static(member, status, saved_state);
     }
-    free(aside);
+    free(saved_state);
     return spari_named(s, __func__, status);
 }
 
@@ -258,30 +258,30 @@ static void end_static(spar_session *s) {
     s->standing = 0;
 }
 
-static void settle_all(spar_session *s) {
+static void commit_all(spar_session *s) {
     for (spar_member *m = s->members; m; m = m->next) {
         copy_loads(m, m->load_pushed, m->load_history[0]);
         copy_loads(m, m->load_pushed, m->load_before);
         m->motion_given = 0;
-        settle_member(m, m->load_pushed);
+        commit_member(m, m->load_pushed);
     }
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
-        spari_assembly_settle(a);
+        spari_assembly_commit_state(a);
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_settle(f);
+        spari_fluid_commit_state(f);
     }
     s->past = 0; /* the past is no basis for extrapolation */
 }
 
-static void leave_as_it_was(spar_session *s, const double *aside) {
+static void discard_static(spar_session *s, const double *saved_state) {
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
         copy_loads(m, m->load_before, m->load_pushed);
     }
-    put_back(s, NULL, aside);
+    put_back(s, NULL, saved_state);
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
-        spari_assembly_leave(a);
+        spari_assembly_discard(a);
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_reject(f);
@@ -295,7 +295,7 @@ static int solve_all(spar_session *s, int load_steps, int onward) {
         status = m->assembly ? SPAR_OK : solve_member_static(m, m->load_used, load_steps, onward);
     }
     for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
-        status = solve_tied_static(a, used, load_steps, onward, s);
+        status = solve_assembly_static(a, used, load_steps, onward, s);
     }
     SPARI_TRY(spari_session_share_motion(s, status));
     for (spar_member *m = s->members; m; m = m->next) {
@@ -332,7 +332,7 @@ static const char *cure_for(const spar_session *s) {
 }
 
 /* why: message of the cause, of this rank or a peer; NULL: the iteration limit. */
-static int not_settled(spar_session *s, const char *call, int status, const char *why) {
+static int not_committed(spar_session *s, const char *call, int status, const char *why) {
     const spari_coupling *c = s->own->coupling;
     int n = c->iterations, last = n - 1, half = last / 2;
     /* mean factor from iteration to iteration in the later half of them; 0: too few to tell */
@@ -358,12 +358,12 @@ static int not_settled(spar_session *s, const char *call, int status, const char
 static int not_solved(spar_session *s, const char *call, int status) {
     char why[SPARI_MESSAGE_SIZE];
     memcpy(why, s->message, sizeof why);
-    return status == SPAR_ERR_COMM ? status : not_settled(s, call, status, why);
+    return status == SPAR_ERR_COMM ? status : not_committed(s, call, status, why);
 }
 
 /* Fluid loads on these shapes, from all ranks. */
 static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve, void *context) {
-    int status = spari_lend(s, call, solve, 0, context);
+    int status = spari_callback_run(s, call, solve, 0, context);
     if (status == SPAR_ERR_COMM) {
         return status;
     }
@@ -399,7 +399,7 @@ static void warn_of_divergence(const spar_session *s, const char *call) {
 }
 
 /* Whether the shapes were solved with exactly the returned loads; otherwise puts these in use. */
-static int stands_under_answer(spar_session *s) {
+static int stands_under_response(spar_session *s) {
     int same = 1;
     for (spar_member *m = s->members; m; m = m->next) {
         same &= memcmp(m->load_used, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double)) == 0;
@@ -418,38 +418,38 @@ static int find_equilibrium(spar_session *s, const char *call, int load_steps, s
         SPARI_TRY(ask_fluid(s, call, solve, context));
         status = spari_coupling_compare(s, &agreed);
         if (status != SPAR_OK) {
-            return not_settled(s, call, status, "they are beyond the range of numbers");
+            return not_committed(s, call, status, "they are beyond the range of numbers");
         }
         if (!spari_coupling_scheme_of(s->scheme)->iterates) {
             break;
         }
         if (!agreed && s->iteration >= s->coupling_max) {
-            return not_settled(s, call, SPAR_ERR_NUMERIC, NULL);
+            return not_committed(s, call, SPAR_ERR_NUMERIC, NULL);
         }
         if (!agreed) {
             SPARI_TRY(spari_coupling_next(s));
         }
     }
     warn_of_divergence(s, call);
-    int status = stands_under_answer(s) ? SPAR_OK : solve_all(s, load_steps, 1);
+    int status = stands_under_response(s) ? SPAR_OK : solve_all(s, load_steps, 1);
     return status == SPAR_OK ? SPAR_OK : not_solved(s, call, status);
 }
 
 int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_solver solve, void *context,
                               int *iterations) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    SPARI_TRY(spari_lend_refuse(s, __func__));
-    const spari_alike alike[] = {spari_whole("load_steps", load_steps),
-                                 spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
-    SPARI_TRY(spari_enter_alike(s, __func__, alike, 2, check_session_static(s, __func__, load_steps)));
-    double *aside = NULL;
+    SPARI_TRY(spari_callback_refuse(s, __func__));
+    const spari_agreed must_agree[] = {spari_whole("load_steps", load_steps),
+                                       spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
+    SPARI_TRY(spari_enter_agreed(s, __func__, must_agree, 2, check_session_static(s, __func__, load_steps)));
+    double *saved_state = NULL;
     int status = spari_solvers_place(s, __func__);
-    status = status == SPAR_OK ? spari_session_seal(s, put_aside(s, NULL, &aside)) : status;
-    status = status == SPAR_OK ? spari_coupling_lay_aside(s, s->scheme) : status;
+    status = status == SPAR_OK ? spari_session_seal(s, save_state(s, NULL, &saved_state)) : status;
+    status = status == SPAR_OK ? spari_coupling_suspend(s, s->scheme) : status;
     if (status != SPAR_OK) {
-        free(aside);
+        free(saved_state);
         return spari_named(s, __func__, status);
     }
     status = begin_static(s);
@@ -458,13 +458,13 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
         *iterations = s->iteration;
     }
     if (status == SPAR_OK) {
-        settle_all(s);
+        commit_all(s);
         spari_coupling_keep(s);
     } else {
-        leave_as_it_was(s, aside);
-        spari_coupling_take_back(s);
+        discard_static(s, saved_state);
+        spari_coupling_resume(s);
     }
     end_static(s);
-    free(aside);
+    free(saved_state);
     return spari_named(s, __func__, status);
 }

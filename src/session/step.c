@@ -39,7 +39,7 @@ static int wrong_phase(spar_session *s, const char *call, const char *cure) {
 
 /* Whether fluids are to see mean accelerations from the step dt on (member/mean_acceleration.h). */
 static int is_uneven(const spar_session *s, double dt) {
-    return s->uneven[0] || !spari_steps_even(s, dt) || spari_scheme_turns(s, dt);
+    return s->uneven[0] || !spari_steps_even(s, dt) || spari_scheme_rotates(s, dt);
 }
 
 /* uneven: result of is_uneven. */
@@ -125,14 +125,14 @@ static int begin_loads(spar_session *s) {
 }
 
 int spar_step_begin(spar_session *session, double dt) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    SPARI_TRY(spari_lend_refuse(s, __func__));
+    SPARI_TRY(spari_callback_refuse(s, __func__));
     int anew = !spari_coupling_fits(s), uneven = is_uneven(s, dt);
-    const spari_alike alike[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew),
-                                 spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
-    SPARI_TRY(spari_enter_alike(s, __func__, alike, 3, check_begin(s, __func__, dt, uneven)));
+    const spari_agreed must_agree[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew),
+                                       spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
+    SPARI_TRY(spari_enter_agreed(s, __func__, must_agree, 3, check_begin(s, __func__, dt, uneven)));
     if (!s->started) {
         SPARI_TRY(spari_named(s, __func__, spari_solvers_place(s, __func__)));
     }
@@ -171,9 +171,9 @@ int spar_step_begin(spar_session *session, double dt) {
 }
 
 int spar_step_begin_start(spar_session *session, double dt) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    SPARI_TRY(spari_lend_refuse(session, __func__));
+    SPARI_TRY(spari_callback_refuse(session, __func__));
     return spari_start_begin(session, __func__, dt);
 }
 
@@ -201,10 +201,10 @@ static void reject_joints(spar_session *s) {
 }
 
 int spar_step_solve(spar_session *session) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    SPARI_TRY(spari_lend_refuse(s, __func__));
+    SPARI_TRY(spari_callback_refuse(s, __func__));
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "call spar_step_begin first") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
     if (s->standing) {
@@ -269,9 +269,9 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
 }
 
 int spar_step_check(spar_session *session, int *done) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    SPARI_TRY(spari_lend_refuse(session, __func__));
+    SPARI_TRY(spari_callback_refuse(session, __func__));
     return check_iteration(session, __func__, SPAR_OK, done);
 }
 
@@ -323,10 +323,10 @@ static void learn_added(spar_session *s) {
 }
 
 int spar_step_accept(spar_session *session) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    SPARI_TRY(spari_lend_refuse(s, __func__));
+    SPARI_TRY(spari_callback_refuse(s, __func__));
     int status = SPAR_OK;
     if (s->phase != SPARI_CHECKED && s->phase != SPARI_SOLVED) {
         status = wrong_phase(s, __func__, "begin and solve a step first");
@@ -349,7 +349,7 @@ int spar_step_accept(spar_session *session) {
         spari_work_of_joint(j);
     }
     spari_threads_each(s, shift_history, s);
-    spari_pace_accept(s);
+    spari_step_control_accept(s);
     spari_threads_each(s, accept_member, NULL);
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         spari_assembly_accept(a);
@@ -379,7 +379,7 @@ static void reject(spar_session *s) {
         return;
     }
     spari_coupling_reject(s);
-    spari_pace_reject(s);
+    spari_step_control_reject(s);
     s->uneven[1] = s->uneven[0];
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
@@ -397,10 +397,10 @@ static void reject(spar_session *s) {
 }
 
 int spar_step_reject(spar_session *session) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    SPARI_TRY(spari_lend_refuse(s, __func__));
+    SPARI_TRY(spari_callback_refuse(s, __func__));
     int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "there is nothing to reject") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
     reject(s);
@@ -421,11 +421,12 @@ static int iterate(spar_session *s, const char *call, spar_fluid_solver solve, v
     int done = 0;
     while (!done) {
         SPARI_TRY(solve_for(s, call));
-        int status = spari_lend(s, call, solve, s->standing ? 0 : s->dt, context);
+        int status = spari_callback_run(s, call, solve, s->standing ? 0 : s->dt, context);
         if (status == SPAR_ERR_COMM) {
             return status;
         }
-        if (spari_joints_tie_given(s)) { /* the host may have moved tied members: joints' loads are of that motion */
+        if (spari_joints_hold_prescribed(
+                s)) { /* the host may have moved tied members: joints' loads are of that motion */
             int moved = 0;
             SPARI_TRY(spari_enter(s, call, status));
             SPARI_TRY(spari_session_moved(s, &moved));
@@ -462,16 +463,16 @@ static int run_begun(spar_session *s, const char *call, spar_fluid_solver solve,
 }
 
 int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
-    SPARI_QUIET;
-    SPARI_TRY(session ? spari_lend_refuse(session, __func__) : SPAR_OK);
+    SPARI_GUARD_ENVIRONMENT;
+    SPARI_TRY(session ? spari_callback_refuse(session, __func__) : SPAR_OK);
     SPARI_TRY(spar_step_begin(session, dt));
     return run_begun(session, __func__, solve, context, iterations);
 }
 
 int spar_session_start(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    SPARI_TRY(spari_lend_refuse(session, __func__));
+    SPARI_TRY(spari_callback_refuse(session, __func__));
     SPARI_TRY(spari_start_begin(session, __func__, dt));
     return run_begun(session, __func__, solve, context, iterations);
 }

@@ -14,16 +14,16 @@
 static double find_error(const spar_member *m, double *speed) {
     const spar_session *s = m->session;
     *speed = 0;
-    if (!spari_change_is(m)) {
+    if (!spari_step_error_applies(m)) {
         return 0;
     }
     const spari_scheme c = spari_scheme_of(m, 0, s->dt / s->substeps);
-    const spari_change of = spari_change_of(m, 1);
+    const spari_step_change of = spari_step_change_of(m, 1);
     *speed = of.speed;
-    return spari_change_tells(s) ? spari_change_error(&c, of.change) : 0;
+    return spari_step_error_is_known(s) ? spari_step_error(&c, of.change) : 0;
 }
 
-double spari_pace_error(const spar_member *m) {
+double spari_step_control_error(const spar_member *m) {
     double speed;
     return find_error(m, &speed);
 }
@@ -40,14 +40,14 @@ static double judge_member(const spar_member *m, double *error, double *speed) {
 
 /* Decays the last ratio: at a turning point the acceleration is stationary and the error is in the velocity, so the
    present error is too small. */
-static double fade(const spari_pace *p, double ratio) {
+static double fade(const spari_step_control *p, double ratio) {
     return fmax(fmax(ratio, 0.85 * p->ratio), 1e-6);
 }
 
 /* PI control (Gustafsson, ACM TOMS 17, 1991), (E2). Small changes of dt are not worth a new tangent. */
 static double next_dt(const spar_session *s, double ratio) {
     static const double safety = 0.9, integral = 0.35, proportional = 0.2, most = 2, least = 0.2, up = 1.2;
-    const spari_pace *p = &s->own->pace;
+    const spari_step_control *p = &s->own->step_control;
     ratio = fade(p, ratio);
     double by = safety / sqrt(ratio);
     if (ratio <= 1 && p->ratio > 0) {
@@ -61,7 +61,7 @@ static double next_dt(const spar_session *s, double ratio) {
     return s->dt * fmax(by, least);
 }
 
-double spari_pace_judge(const spar_session *s) {
+double spari_step_control_ratio(const spar_session *s) {
     double ratio = 0, error, speed;
     for (const spar_member *m = s->members; m; m = m->next) {
         ratio = fmax(ratio, judge_member(m, &error, &speed));
@@ -69,28 +69,28 @@ double spari_pace_judge(const spar_session *s) {
     return ratio;
 }
 
-void spari_pace_accept(spar_session *s) {
-    if (!spari_pace_is_set(s) || s->trial) {
+void spari_step_control_accept(spar_session *s) {
+    if (!spari_step_control_is_set(s) || s->trial) {
         return;
     }
-    spari_pace *p = &s->own->pace;
+    spari_step_control *p = &s->own->step_control;
     double ratio = 0, speed;
     for (spar_member *m = s->members; m; m = m->next) {
         ratio = fmax(ratio, judge_member(m, &m->step_error, &speed));
         m->speed = speed;
     }
-    p->next = spari_change_tells(s) ? next_dt(s, ratio) : s->dt;
-    p->ratio = spari_change_tells(s) ? fade(p, ratio) : 0;
+    p->next = spari_step_error_is_known(s) ? next_dt(s, ratio) : s->dt;
+    p->ratio = spari_step_error_is_known(s) ? fade(p, ratio) : 0;
     p->last = ratio;
     p->cut = 0;
 }
 
-void spari_pace_reject(spar_session *s) {
-    if (!spari_pace_is_set(s) || s->trial || s->phase < SPARI_SOLVED || s->failed || s->standing) {
+void spari_step_control_reject(spar_session *s) {
+    if (!spari_step_control_is_set(s) || s->trial || s->phase < SPARI_SOLVED || s->failed || s->standing) {
         return;
     }
-    spari_pace *p = &s->own->pace;
-    double ratio = spari_pace_judge(s);
+    spari_step_control *p = &s->own->step_control;
+    double ratio = spari_step_control_ratio(s);
     if (ratio > 1) {
         p->rejected++;
         p->next = next_dt(s, ratio);
@@ -99,22 +99,22 @@ void spari_pace_reject(spar_session *s) {
 }
 
 int spar_session_get_pace(const spar_session *session, int64_t capacity, double *pace) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     const spar_session *s = session;
-    const spari_pace *p = &s->own->pace;
-    SPARI_REQUIRE(s, spari_pace_is_set(s), SPAR_ERR_STATE,
+    const spari_step_control *p = &s->own->step_control;
+    SPARI_REQUIRE(s, spari_step_control_is_set(s), SPAR_ERR_STATE,
                   "%s: no tolerance is set, and steps are not judged; call spar_session_set_tolerance first", __func__);
     SPARI_TRY(spari_need_capacity(s, __func__, capacity));
     int judged = s->phase >= SPARI_SOLVED && !s->standing && !s->trial;
     SPARI_REQUIRE(s, judged || p->next > 0, SPAR_ERR_STATE,
                   "%s: no step has been solved since the tolerance was set; make one first", __func__);
-    double ratio = judged ? spari_pace_judge(s) : p->last;
+    double ratio = judged ? spari_step_control_ratio(s) : p->last;
     const double all[SPAR_PACE_COUNT] = {
         [SPAR_PACE_RATIO] = ratio,
-        [SPAR_PACE_NEXT_DT] = !judged                 ? p->next
-                              : spari_change_tells(s) ? next_dt(s, ratio)
-                                                      : s->dt,
+        [SPAR_PACE_NEXT_DT] = !judged                        ? p->next
+                              : spari_step_error_is_known(s) ? next_dt(s, ratio)
+                                                             : s->dt,
         [SPAR_PACE_REJECT] = judged && ratio > 1,
         [SPAR_PACE_REJECTED] = (double)p->rejected,
     };

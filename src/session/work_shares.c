@@ -37,7 +37,7 @@ static int check_motion(const spar_member *m) {
             "at its loads, gravity and the motion of its root, or at their units",
             m->name, (long long)(bad / all[k].width), m->session->time);
     }
-    return spari_member_check_turns(m);
+    return spari_member_check_rotations(m);
 }
 
 static int solve_unit(spar_session *s, spar_member *m, spari_assembly *a) {
@@ -53,8 +53,8 @@ static int is_unit(const spar_member *m) {
 }
 
 /* Members with prescribed motion come first, because assemblies read it. */
-static int is_told(const spar_member *m) {
-    return !m->row->limb;
+static int is_prescribed(const spar_member *m) {
+    return !m->row->component;
 }
 
 /* ---- sequential ---- */
@@ -65,15 +65,15 @@ static int solve_next(spar_session *s, spar_member *m, spari_assembly *a, int st
     if (status == SPAR_OK) {
         return solve_unit(s, m, a);
     }
-    (void)spari_messages_aside(unheard);
+    (void)spari_messages_redirect(unheard);
     (void)solve_unit(s, m, a);
-    (void)spari_messages_aside(NULL);
+    (void)spari_messages_redirect(NULL);
     return status;
 }
 
 static int solve_in_turn(spar_session *s, int status) {
     for (spar_member *m = s->members; m; m = m->next) {
-        status = is_unit(m) && !is_told(m) ? solve_next(s, m, NULL, status) : status;
+        status = is_unit(m) && !is_prescribed(m) ? solve_next(s, m, NULL, status) : status;
     }
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         status = solve_next(s, NULL, a, status);
@@ -87,15 +87,15 @@ static void solve_item(void *context, int64_t item, int worker) {
     spar_session *s = context;
     spari_unit *u = s->own->unit + item;
     (void)worker;
-    (void)spari_messages_aside(u->message);
+    (void)spari_messages_redirect(u->message);
     u->status = solve_unit(s, u->member, u->assembly);
-    (void)spari_messages_aside(NULL);
+    (void)spari_messages_redirect(NULL);
 }
 
 static int64_t list_units(const spar_session *s, spari_unit *unit) {
     int64_t n = 0;
     for (spar_member *m = s->members; m; m = m->next) {
-        if (is_unit(m) && !is_told(m)) {
+        if (is_unit(m) && !is_prescribed(m)) {
             unit[n].member = m, unit[n++].assembly = NULL;
         }
     }
@@ -107,16 +107,16 @@ static int64_t list_units(const spar_session *s, spari_unit *unit) {
 
 /* With fewer units than threads the elements of each unit are distributed instead (spari_body_sweep). */
 static int solve_units(spar_session *s) {
-    int ready = s->crew && s->own->listed == s->member_count; /* not in a step that came from a file */
+    int ready = s->pool && s->own->listed == s->member_count; /* not in a step that came from a file */
     int64_t n = ready ? list_units(s, s->own->unit) : 0;
     int status = SPAR_OK;
     for (spar_member *m = s->members; m; m = m->next) {
-        status = is_unit(m) && is_told(m) ? solve_next(s, m, NULL, status) : status;
+        status = is_unit(m) && is_prescribed(m) ? solve_next(s, m, NULL, status) : status;
     }
-    if (n < 2 || n < spari_crew_threads(s->crew)) {
+    if (n < 2 || n < spari_thread_pool_threads(s->pool)) {
         return solve_in_turn(s, status);
     }
-    spari_crew_run(s->crew, n, solve_item, s);
+    spari_thread_pool_run(s->pool, n, solve_item, s);
     for (const spari_unit *u = s->own->unit; u < s->own->unit + n && status == SPAR_OK; u++) {
         SPARI_REQUIRE(s, u->status == SPAR_OK, u->status, "%s", u->message);
     }
@@ -131,7 +131,7 @@ int spari_threads_solve(spar_session *s) {
     return SPAR_OK;
 }
 
-static int make_unit_room(spar_session *s, int64_t most) {
+static int make_units(spar_session *s, int64_t most) {
     spari_unit *unit = spari_zalloc(most, sizeof *unit);
     spar_member **member = spari_zalloc(most, sizeof(spar_member *));
     if (!unit || !member) {
@@ -141,17 +141,17 @@ static int make_unit_room(spar_session *s, int64_t most) {
     }
     free(s->own->unit);
     free(s->own->member);
-    s->own->unit = unit, s->own->member = member, s->own->unit_room = most;
+    s->own->unit = unit, s->own->member = member, s->own->unit_capacity = most;
     return SPAR_OK;
 }
 
 int spari_threads_prepare(spar_session *s) {
     int64_t most = (int64_t)s->member_count + s->joint_count; /* a joint between driven nodes is a unit of its own */
     s->own->listed = 0;
-    if (!s->crew) {
+    if (!s->pool) {
         return SPAR_OK;
     }
-    SPARI_TRY(most > s->own->unit_room ? make_unit_room(s, most) : SPAR_OK);
+    SPARI_TRY(most > s->own->unit_capacity ? make_units(s, most) : SPAR_OK);
     for (spar_member *m = s->members; m; m = m->next) {
         s->own->member[s->own->listed++] = m;
     }
@@ -163,22 +163,23 @@ int spari_threads_prepare(spar_session *s) {
 /* Members per thread item. */
 enum { BATCH = 16 };
 
-typedef struct members_alike {
+typedef struct member_batch {
     spar_member **member;
     spari_member_task task;
     const void *context;
-} members_alike;
+} member_batch;
 
 static void do_batch(void *context, int64_t from, int64_t to) {
-    const members_alike *t = context;
+    const member_batch *t = context;
     for (int64_t k = from; k < to; k++) {
         t->task(t->member[k], t->context);
     }
 }
 
 void spari_threads_each(spar_session *s, spari_member_task task, const void *context) {
-    if (s->crew && s->own->listed == s->member_count && s->own->listed > BATCH) {
-        spari_crew_spans(s->crew, s->own->listed, BATCH, do_batch, &(members_alike){s->own->member, task, context});
+    if (s->pool && s->own->listed == s->member_count && s->own->listed > BATCH) {
+        spari_thread_pool_run_spans(s->pool, s->own->listed, BATCH, do_batch,
+                                    &(member_batch){s->own->member, task, context});
         return;
     }
     for (spar_member *m = s->members; m; m = m->next) {
@@ -187,53 +188,53 @@ void spari_threads_each(spar_session *s, spari_member_task task, const void *con
 }
 
 void spari_threads_free(spar_session *s) {
-    spari_crew_free(s->crew);
+    spari_thread_pool_free(s->pool);
     free(s->own->unit);
     free(s->own->member);
-    s->crew = NULL;
-    s->own->unit = NULL, s->own->member = NULL, s->own->unit_room = s->own->listed = 0;
+    s->pool = NULL;
+    s->own->unit = NULL, s->own->member = NULL, s->own->unit_capacity = s->own->listed = 0;
 }
 
 /* ---- public calls ---- */
 
 /* Allocates the threads' workspace for the largest element and for the fluids' tiles. */
-static int keep_room(const spar_session *s, spari_crew *crew) {
+static int reserve_workspace(const spar_session *s, spari_thread_pool *pool) {
     int failed = 0;
     for (const spar_member *m = s->members; m && !failed; m = m->next) {
-        failed = m->body && spari_crew_keep(crew, spari_body_room(m->body));
+        failed = m->body && spari_thread_pool_reserve(pool, spari_body_workspace_size(m->body));
     }
     for (const spar_fluid *f = s->fluids; f && !failed; f = spari_fluid_next(f)) {
-        failed = spari_crew_keep(crew, spari_fluid_room(f));
+        failed = spari_thread_pool_reserve(pool, spari_fluid_workspace_size(f));
     }
     return failed;
 }
 
 int spar_session_set_threads(spar_session *session, int threads) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is under way; change the number of threads between steps", __func__);
-    SPARI_REQUIRE(s, threads >= 1 && threads <= SPARI_CREW_MOST, SPAR_ERR_ARGUMENT, "%s: %d threads; give 1 to %d",
-                  __func__, threads, SPARI_CREW_MOST);
-    if (threads == spari_crew_threads(s->crew)) {
+    SPARI_REQUIRE(s, threads >= 1 && threads <= SPARI_MOST_THREADS, SPAR_ERR_ARGUMENT, "%s: %d threads; give 1 to %d",
+                  __func__, threads, SPARI_MOST_THREADS);
+    if (threads == spari_thread_pool_threads(s->pool)) {
         return SPAR_OK;
     }
-    spari_crew *crew = threads > 1 ? spari_crew_create(threads) : NULL;
-    if (threads > 1 && (!crew || keep_room(s, crew))) {
-        spari_crew_free(crew);
+    spari_thread_pool *pool = threads > 1 ? spari_thread_pool_create(threads) : NULL;
+    if (threads > 1 && (!pool || reserve_workspace(s, pool))) {
+        spari_thread_pool_free(pool);
         return spari_fail(s, SPAR_ERR_MEMORY, "%s: the system has no memory or no room for %d threads; ask for fewer",
                           __func__, threads);
     }
     spari_threads_free(s);
-    s->crew = crew;
+    s->pool = pool;
     return SPAR_OK;
 }
 
 int spar_session_get_threads(const spar_session *session, int *threads) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     if (threads) {
-        *threads = spari_crew_threads(session->crew);
+        *threads = spari_thread_pool_threads(session->pool);
     }
     return SPAR_OK;
 }

@@ -1,6 +1,6 @@
 /* Solves the members and assemblies of this rank with one or several threads. */
-#ifndef SPARI_THREADS_H
-#define SPARI_THREADS_H
+#ifndef SPARI_WORK_SHARES_H
+#define SPARI_WORK_SHARES_H
 
 #include "../base/session.h"
 

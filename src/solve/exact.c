@@ -105,10 +105,10 @@ static int exact_felt(spar_member *m, double *load) {
     return SPAR_OK;
 }
 
-static int exact_answer(spar_member *m, const double *load, double *motion) {
+static int exact_response(spar_member *m, const double *load, double *motion) {
     spari_solver *s = m->solution;
     exact_take_more(m, load, s->r);
-    if (spari_solver_answer(s, m, s->r, s->dx)) {
+    if (spari_solver_response(s, m, s->r, s->dx)) {
         return 1;
     }
     exact_show_more(m, s->dx, motion);
@@ -134,7 +134,7 @@ static int exact_rest(spar_member *m, const double *fluid, int load_steps, int o
 /* ---- modes ---- */
 
 static int64_t exact_unknowns(const spar_member *m) {
-    return 6 * (int64_t)m->body->unique - spari_member_held(m);
+    return 6 * (int64_t)m->body->unique - spari_member_constrained(m);
 }
 
 static int exact_problem(const spar_member *m, double *K, double *M) {
@@ -144,15 +144,15 @@ static int exact_problem(const spar_member *m, double *K, double *M) {
     if (!q) {
         return SPAR_ERR_MEMORY;
     }
-    spari_turn turn;
-    int turning = spari_turn_of(m, m->after.v, m->after.a, &turn);
+    spari_steady_rotation rotation;
+    int rotating = spari_steady_rotation_of(m, m->after.v, m->after.a, &rotation);
     spari_member_to_unique(m, 7, m->after.q, q);
-    if (turning) {
-        spari_turn_rates(m, &turn, q, v, a);
+    if (rotating) {
+        spari_steady_rotation_rates(m, &rotation, q, v, a);
     }
     for (int e = 0; e < m->elements; e++) {
-        int at = 6 * e * (m->per_element - 1) - spari_member_held(m);
-        spari_turn_tangent(m->body, turning ? &turn : NULL, e, q, v, a, 1, S, mass);
+        int at = 6 * e * (m->per_element - 1) - spari_member_constrained(m);
+        spari_steady_rotation_tangent(m->body, rotating ? &rotation : NULL, e, q, v, a, 1, S, mass);
         if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, S);
         }
@@ -179,7 +179,7 @@ static int exact_left(const spar_member *m, const double *q, const double *v, co
             to->scale = fmax(to->scale, fabs(sum[i]));
         }
         to->noise = fmax(to->noise, m->body->stiffest);
-        spari_pencil_leave(to, -spari_member_held(m), (int)(6 * u), r);
+        spari_pencil_set_forces(to, -spari_member_constrained(m), (int)(6 * u), r);
     }
     free(load);
     return status;
@@ -192,31 +192,31 @@ static int exact_linearise(const spar_member *m, const double w[3], spari_pencil
     if (!q) {
         return SPAR_ERR_MEMORY;
     }
-    spari_turn turn;
-    int turning = spari_turn_of(m, m->after.v, m->after.a, &turn) || spari_norm(w) > 0;
+    spari_steady_rotation rotation;
+    int rotating = spari_steady_rotation_of(m, m->after.v, m->after.a, &rotation) || spari_norm(w) > 0;
     spari_member_to_unique(m, 7, m->after.q, q);
-    if (turning) {
-        spari_turn_rates(m, &turn, q, v, a);
+    if (rotating) {
+        spari_steady_rotation_rates(m, &rotation, q, v, a);
     } else {
         v = a = NULL;
     }
     for (int e = 0; e < m->elements; e++) {
-        spari_turn_pencil(m->body, w, turn.w, e, q, v, a, K, C, M);
+        spari_steady_rotation_pencil(m->body, w, rotation.w, e, q, v, a, K, C, M);
         if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, K);
         }
-        spari_pencil_add(to, 6 * e * (m->per_element - 1) - spari_member_held(m), (int)n, n, K, C, M);
+        spari_pencil_add(to, 6 * e * (m->per_element - 1) - spari_member_constrained(m), (int)n, n, K, C, M);
     }
     int status = exact_left(m, q, v, a, to);
     free(q);
     return status;
 }
 
-static void exact_shape(const spar_member *m, const double *x, double *room, double *nodes) {
-    int64_t held = spari_member_held(m);
-    memset(room, 0, (size_t)held * sizeof *room);
-    memcpy(room + held, x, (size_t)exact_unknowns(m) * sizeof *room);
-    spari_member_from_unique(m, 6, room, nodes);
+static void exact_shape(const spar_member *m, const double *x, double *workspace, double *nodes) {
+    int64_t constrained = spari_member_constrained(m);
+    memset(workspace, 0, (size_t)constrained * sizeof *workspace);
+    memcpy(workspace + constrained, x, (size_t)exact_unknowns(m) * sizeof *workspace);
+    spari_member_from_unique(m, 6, workspace, nodes);
 }
 
 /* ---- save and load ---- */
@@ -249,21 +249,21 @@ const spari_fidelity spari_fidelity_exact = {
     .restart = exact_restart,
     .advance = exact_advance,
     .balance = exact_balance,
-    .answer = exact_answer,
+    .response = exact_response,
     .felt = exact_felt,
     .begin = exact_begin,
     .accept = exact_accept,
     .reject = exact_reject,
     .effort = exact_effort,
     .rest = exact_rest,
-    .reaction_room = spari_reaction_at_root_room,
+    .reaction_size = spari_reaction_at_root_size,
     .reaction = spari_reaction_at_root,
     .energy = spari_energy_of_body,
     .unknowns = exact_unknowns,
     .problem = exact_problem,
     .shape = exact_shape,
     .linearise = exact_linearise,
-    .limb = &spari_limb_nodes,
+    .component = &spari_component_body,
     .solver = exact_solver,
     .take_loads = exact_take_loads,
     .take_rest = exact_take_rest,

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static int given_advance(spar_member *m, double dt) {
+static int host_advance(spar_member *m, double dt) {
     const spari_pose *to = &m->drive[1];
     (void)dt; /* where it goes is given */
     if (m->kind == SPARI_POINT && !m->motion_given && !m->external && m->drive_given) {
@@ -16,5 +16,5 @@ static int given_advance(spar_member *m, double dt) {
 
 const spari_fidelity spari_fidelity_given = {
     .seen = SPARI_SEEN_FIXED,
-    .advance = given_advance,
+    .advance = host_advance,
 };

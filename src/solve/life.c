@@ -40,8 +40,8 @@ static int rigid_field(spar_member *m) {
         }
     }
     if (m->row->moves && m->root != SPAR_ROOT_DRIVEN) { /* what stands has no velocity */
-        memset(m->now.v, 0, (size_t)spari_member_held(m) * sizeof(double));
-        memset(m->now.a, 0, (size_t)spari_member_held(m) * sizeof(double));
+        memset(m->now.v, 0, (size_t)spari_member_constrained(m) * sizeof(double));
+        memset(m->now.a, 0, (size_t)spari_member_constrained(m) * sizeof(double));
     }
     int finite = spari_first_nonfinite(m->now.v, 6 * m->nodes) < 0 && spari_first_nonfinite(m->now.a, 6 * m->nodes) < 0;
     SPARI_REQUIRE(
@@ -65,7 +65,8 @@ static void copy_motion(const spar_member *m, const spari_motion *from, spari_mo
     spari_member_spread(m, m->nodes, copy_nodes, motion);
 }
 
-/* Before the first step those accelerations count that a balanced start begins with, not those that it has found. */
+/* Before the first step those accelerations count that a start with initial accelerations begins with, not those that
+ * it has found. */
 static void restart_solution(spar_member *m) {
     double *found = m->now.a;
     if (m->row->restart && spari_fidelity_is_here(m)) {
@@ -84,7 +85,7 @@ static void forget_begun(spar_member *m) {
 void spari_member_restart(spar_member *m) {
     forget_begun(m);
     m->balanced[0] = m->balanced[1] = 0;
-    m->jerk = m->swing = 0;
+    m->jerk = m->acceleration_scale = 0;
     spari_means_forget(m);
     copy_motion(m, &m->now, &m->after);
     for (int k = 0; k < (m->drive_given ? 1 : 2); k++) { /* where it is to be driven to stays */
@@ -127,15 +128,15 @@ void spari_member_solved(spar_member *m, const double *fluid) {
     spari_member_spread(m, m->nodes, add_load_span, &(two_loads){m->dead, fluid, m->load_solved[1]});
 }
 
-int spari_member_check_turns(const spar_member *m) {
+int spari_member_check_rotations(const spar_member *m) {
     SPARI_REQUIRE(m->session, m->seen != SPARI_SEEN_LINEAR || !m->overturned, SPAR_ERR_NUMERIC,
                   "member '%s' is linear and turns by half a turn against %s, where rotation vectors end; take "
                   "SPAR_FIDELITY_EXACT, or drive its root",
-                  m->name, spari_member_root_is_given(m) || m->floats ? "its root" : "its reference");
+                  m->name, spari_member_root_is_prescribed(m) || m->floats ? "its root" : "its reference");
     return SPAR_OK;
 }
 
-void spari_member_settle(spar_member *m) {
+void spari_member_commit_state(spar_member *m) {
     copy_motion(m, &m->after, &m->now);
     copy_solved(m, 1, 0);
     spari_applied_accept(m);
@@ -156,7 +157,7 @@ void spari_member_accept(spar_member *m) {
     if (m->means) {
         spari_means_accept(m);
     }
-    spari_leave_accept(m);
+    spari_newton_stop_accept(m);
     copy_motion(m, &m->after, &m->now);
     copy_solved(m, 1, 0);
     m->balanced[0] = m->balanced[1];
@@ -240,7 +241,7 @@ void spari_member_end_start(spar_member *m, int found) {
 
 int spar_member_set_initial_velocity(spar_member *member, const double x0[3], const double v0[3],
                                      const double omega[3]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     static const double zero[3] = {0, 0, 0};
     SPARI_TRY(spari_need_member(member, __func__));
     SPARI_REQUIRE(member->session, !member->session->started, SPAR_ERR_STATE,
@@ -277,9 +278,9 @@ static int check_complete(spar_member *m) {
                       "member '%s' has no line; call spar_beam_set_axis or spar_beam_set_nodes", m->name);
         SPARI_REQUIRE(m->session, m->external || m->beam->stiffness, SPAR_ERR_STATE,
                       "member '%s' has no sections; call spar_beam_set_sections", m->name);
-        SPARI_TRY(spari_lumps_check(m));
+        SPARI_TRY(spari_point_masses_check(m));
         SPARI_REQUIRE(m->session,
-                      m->beam->drag == 0 || m->fidelity != SPAR_FIDELITY_RIGID || spari_member_root_is_given(m),
+                      m->beam->drag == 0 || m->fidelity != SPAR_FIDELITY_RIGID || spari_member_root_is_prescribed(m),
                       SPAR_ERR_UNSUPPORTED,
                       "member '%s' is rigid, and has damping by mass, which would brake it, its root being free or "
                       "pinned; leave that out, choose another fidelity, or fix or drive the root",
@@ -301,7 +302,7 @@ int spari_member_effects(const spar_member *m) {
     possible |= solved && massive ? SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY : 0;
     possible |= solved && massive && (e & SPAR_EFFECT_INERTIA) ? SPAR_EFFECT_GYROSCOPIC : 0;
     possible |= solved && m->beam && (m->beam->damped || m->beam->drag > 0) ? SPAR_EFFECT_DAMPING : 0;
-    possible |= solved && massive && m->beam && m->beam->lump_count > 0 ? SPAR_EFFECT_MASSES : 0;
+    possible |= solved && massive && m->beam && m->beam->point_mass_count > 0 ? SPAR_EFFECT_MASSES : 0;
     possible |= solved && m->beam && m->beam->spring_count > 0 ? SPAR_EFFECT_FOUNDATION : 0;
     possible |= solved && !row->whole && m->beam && m->beam->pre_count > 0 ? SPAR_EFFECT_PRETENSION : 0;
     possible |= SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK; /* unasked, a history comes with fluids of sections */
@@ -370,8 +371,8 @@ void spari_member_end_move(spar_member *m, int owner, void *before, int back) {
     }
 }
 
-void spari_member_set_aside(spar_member *m, spar_member *aside) {
-    *aside = *m;
+void spari_member_detach(spar_member *m, spar_member *detached) {
+    *detached = *m;
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
         *spari_nodal_array(m, k) = NULL;
     }
@@ -387,9 +388,9 @@ void spari_member_set_aside(spar_member *m, spar_member *aside) {
     m->assembly = NULL;
 }
 
-void spari_member_take_back(spar_member *m, const spar_member *aside) {
+void spari_member_take_back(spar_member *m, const spar_member *detached) {
     spari_member_release(m);
-    *m = *aside;
+    *m = *detached;
     spari_learned_take_back(m);
 }
 
@@ -398,8 +399,8 @@ static int build_body(spar_member *m) {
     SPARI_TRY(m->kind == SPARI_BEAM ? spari_beam_build(m, m->row->massive, damped ? m->beam->mu : NULL, &m->body)
                                     : spari_rigid_build(m, &m->body));
     SPARI_TRY(damped ? spari_beam_drag(m, m->body) : SPAR_OK);
-    SPARI_REQUIRE(m->session, !spari_crew_keep(m->session->crew, spari_body_room(m->body)), SPAR_ERR_MEMORY,
-                  "no memory for what the threads do of '%s'", m->name);
+    SPARI_REQUIRE(m->session, !spari_thread_pool_reserve(m->session->pool, spari_body_workspace_size(m->body)),
+                  SPAR_ERR_MEMORY, "no memory for what the threads do of '%s'", m->name);
     m->body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;
     spari_member_gravity(m);
     return SPAR_OK;
@@ -413,8 +414,8 @@ int spari_member_build(spar_member *m) {
     if (m->kind == SPARI_BEAM) {
         SPARI_TRY(spari_beam_place_nodes(m));
     } else {
-        memcpy(m->xr, m->place_x, sizeof m->place_x);
-        memcpy(m->qr, m->place_q, sizeof m->place_q);
+        memcpy(m->xr, m->placed_x, sizeof m->placed_x);
+        memcpy(m->qr, m->placed_q, sizeof m->placed_q);
     }
     for (int64_t i = 0; i < m->nodes; i++) {
         m->now.q[7 * i + 3] = 1;
@@ -460,7 +461,7 @@ static int place_of(const spar_member *member) {
 }
 
 int spar_member_commit(spar_member *member) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_member(member, __func__));
     spar_session *s = member->session;
     int asked = member->effects, status;
@@ -476,11 +477,11 @@ int spar_member_commit(spar_member *member) {
             }
         }
     }
-    const spari_alike alike[] = {spari_whole("places of it in the order of creation", place_of(member)),
-                                 spari_whole("owners of it", member->owner),
-                                 spari_given("owners of it, given or not", member->owner_given),
-                                 spari_hash("descriptions of it", spari_member_hash(member))};
-    int agreed = spari_member_enter(member, __func__, alike, 4, status);
+    const spari_agreed must_agree[] = {spari_whole("places of it in the order of creation", place_of(member)),
+                                       spari_whole("owners of it", member->owner),
+                                       spari_given("owners of it, given or not", member->owner_given),
+                                       spari_hash("descriptions of it", spari_member_hash(member))};
+    int agreed = spari_member_enter(member, __func__, must_agree, 4, status);
     if (agreed != SPAR_OK) {
         if (status == SPAR_OK) {
             spari_member_release(member);
@@ -512,7 +513,7 @@ void spari_member_free(spar_member *member) {
 }
 
 int spar_member_set_motion(spar_member *member, const double *q, const double *v, const double *a) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_committed(member, __func__));
     spar_session *s = member->session;
     int64_t n = member->nodes;
@@ -553,7 +554,7 @@ int spar_member_set_motion(spar_member *member, const double *q, const double *v
 }
 
 int spar_member_drive_root(spar_member *member, const double q[7], const double v[6], const double a[6]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     static const double rest[6] = {0};
     SPARI_TRY(spari_need_committed(member, __func__));
     spar_session *s = member->session;

@@ -14,27 +14,27 @@ void spari_member_release(spar_member *m);
    without a message. Then the end of it: what is not wanted any more goes. back: it stays with its owner of before. */
 int spari_member_move(spar_member *m, int owner, void **before);
 void spari_member_end_move(spar_member *m, int owner, void *before, int back);
-/* Sets aside what has been made of the description: `aside` is the member as it was and owns all of it, `m` has the
+/* Detaches what has been made of the description: `detached` is the member as it was and owns all of it, `m` has the
    description and nothing made of it. And the way back: what has been made since goes. */
-void spari_member_set_aside(spar_member *m, spar_member *aside);
-void spari_member_take_back(spar_member *m, const spar_member *aside);
+void spari_member_detach(spar_member *m, spar_member *detached);
+void spari_member_take_back(spar_member *m, const spar_member *detached);
 /* SPAR_EFFECT_* in force: what was asked for (or everything), as far as the description gives it something to do. */
 int spari_member_effects(const spar_member *m);
 /* The motion now has been set anew: the latest iterate, the root and the solver start from it. */
 void spari_member_restart(spar_member *m);
 /* Whether the rotations of the motion after are ones that a linear member's rotation vectors can tell: SPAR_OK, or
    SPAR_ERR_NUMERIC with a message. */
-int spari_member_check_turns(const spar_member *m);
+int spari_member_check_rotations(const spar_member *m);
 /* The motion after has been found under dead and `fluid` loads: the reaction is what they leave to the root. */
 void spari_member_solved(spar_member *member, const double *fluid);
 /* The latest iterate becomes the motion the clock stands at, as after a static solution. */
-void spari_member_settle(spar_member *member);
+void spari_member_commit_state(spar_member *member);
 /* A step begins. It is accepted, or given up. */
 void spari_member_begin(spar_member *member);
 void spari_member_accept(spar_member *member);
 void spari_member_reject(spar_member *member);
-/* A balanced start: room for the accelerations that it begins with; back to these, but for what the host gives of an
-   external member; those found are those of t^0, or all is as it was. */
+/* A start with initial accelerations: room for the accelerations that it begins with; back to these, but for what the
+   host gives of an external member; those found are those of t^0, or all is as it was. */
 int spari_member_begin_start(spar_member *member);
 void spari_member_again(spar_member *member);
 void spari_member_end_start(spar_member *member, int found);

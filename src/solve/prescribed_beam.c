@@ -1,11 +1,11 @@
 /* The prescribed beam: its nodes follow a root that is given, as one rigid body without mass. */
 #include "../base/session.h"
-#include "rigid_nodes.h"
 #include "../time/fidelity.h"
 #include "reaction.h"
+#include "rigid_nodes.h"
 
 static int prescribed_check(const spar_member *m) {
-    SPARI_REQUIRE(m->session, spari_member_root_is_given(m), SPAR_ERR_STATE,
+    SPARI_REQUIRE(m->session, spari_member_root_is_prescribed(m), SPAR_ERR_STATE,
                   "member '%s' is prescribed and its root is free or pinned: nothing says where it goes; fix or drive "
                   "its root, or make it rigid",
                   m->name);
@@ -14,19 +14,19 @@ static int prescribed_check(const spar_member *m) {
 
 static int prescribed_advance(spar_member *m, double dt) {
     const double rest[6] = {0};
-    const spari_pose held = spari_pose_of(m->now.q, rest, rest);
+    const spari_pose constrained = spari_pose_of(m->now.q, rest, rest);
     (void)dt; /* where it goes is given */
-    spari_carried_move(m, m->root == SPAR_ROOT_DRIVEN ? &m->drive[1] : &held, &m->after);
+    spari_rigid_nodes_move(m, m->root == SPAR_ROOT_DRIVEN ? &m->drive[1] : &constrained, &m->after);
     return SPAR_OK;
 }
 
 const spari_fidelity spari_fidelity_prescribed = {
     .moves = 1,
-    .given_root = 1,
-    .seen = SPARI_SEEN_CARRIED,
+    .prescribed_root = 1,
+    .seen = SPARI_SEEN_PRESCRIBED,
     .check = prescribed_check,
     .advance = prescribed_advance,
-    .rest = spari_carried_rest,
-    .reaction_room = spari_reaction_of_whole_room,
+    .rest = spari_rigid_nodes_rest,
+    .reaction_size = spari_reaction_of_whole_size,
     .reaction = spari_reaction_of_whole,
 };

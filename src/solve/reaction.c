@@ -13,38 +13,38 @@
 #include <string.h>
 
 int spar_member_get_reaction(const spar_member *member, double load[6]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "%s: '%s': load is NULL", __func__, member->name);
     return spari_named(member->session, __func__, spari_member_reaction(member, load));
 }
 
-int64_t spari_member_reaction_room(const spar_member *m) {
-    return m->row->reaction_room ? m->row->reaction_room(m) : 0;
+int64_t spari_member_reaction_size(const spar_member *m) {
+    return m->row->reaction_size ? m->row->reaction_size(m) : 0;
 }
 
-void spari_member_reaction_in(const spar_member *m, double *room, double load[6]) {
+void spari_member_reaction_in(const spar_member *m, double *workspace, double load[6]) {
     if (m->row->reaction) {
-        m->row->reaction(m, room, load);
+        m->row->reaction(m, workspace, load);
     } else {
         memset(load, 0, 6 * sizeof *load);
     }
 }
 
-int64_t spari_reaction_at_root_room(const spar_member *m) {
+int64_t spari_reaction_at_root_size(const spar_member *m) {
     return 25 * (int64_t)m->body->unique;
 }
 
-void spari_reaction_at_root(const spar_member *m, double *room, double load[6]) {
+void spari_reaction_at_root(const spar_member *m, double *workspace, double load[6]) {
     memset(load, 0, 6 * sizeof *load);
     const spari_body *b = m->body;
-    int held = spari_member_held(m);
-    if (held == 0) {
+    int constrained = spari_member_constrained(m);
+    if (constrained == 0) {
         return;
     }
     int64_t n = b->unique;
     int still = !(m->effects & SPAR_EFFECT_INERTIA);
-    double *q = room, *v = q + 7 * n, *a = v + 6 * n, *r = a + 6 * n;
+    double *q = workspace, *v = q + 7 * n, *a = v + 6 * n, *r = a + 6 * n;
     spari_member_to_unique(m, 7, m->after.q, q);
     spari_member_to_unique(m, 6, m->after.v, v);
     spari_member_to_unique(m, 6, m->after.a, a);
@@ -52,23 +52,24 @@ void spari_reaction_at_root(const spar_member *m, double *room, double load[6]) 
     if (spari_carries_loads(m)) {
         spari_applied_residual(m, q, 1, r);
     }
-    double tied[6] = {0};
-    spari_joints_on(m, 0, tied);
-    for (int i = 0; i < held; i++) { /* the root is node 0, which no element shares */
-        load[i] = r[i] - m->load_solved[1][i] - tied[i];
+    double joint_load[6] = {0};
+    spari_joints_on(m, 0, joint_load);
+    for (int i = 0; i < constrained; i++) { /* the root is node 0, which no element shares */
+        load[i] = r[i] - m->load_solved[1][i] - joint_load[i];
     }
 }
 
-int64_t spari_reaction_of_whole_room(const spar_member *m) {
+int64_t spari_reaction_of_whole_size(const spar_member *m) {
     return (m->body ? 25 * (int64_t)m->body->unique : 0) + 12 * m->nodes;
 }
 
-void spari_reaction_of_whole(const spar_member *m, double *room, double load[6]) {
+void spari_reaction_of_whole(const spar_member *m, double *workspace, double load[6]) {
     int64_t n = m->body ? m->body->unique : 0;
     int still = !(m->effects & SPAR_EFFECT_INERTIA);
-    double *q = room, *v = q + 7 * n, *a = v + 6 * n, *r = a + 6 * n, *sum = r + 6 * n, *extra = sum + 6 * m->nodes;
+    double *q = workspace, *v = q + 7 * n, *a = v + 6 * n, *r = a + 6 * n, *sum = r + 6 * n,
+           *extra = sum + 6 * m->nodes;
     memset(load, 0, 6 * sizeof *load);
-    memset(room, 0, (size_t)spari_reaction_of_whole_room(m) * sizeof *room);
+    memset(workspace, 0, (size_t)spari_reaction_of_whole_size(m) * sizeof *workspace);
     int standing = m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN && !m->floats;
     int undeformed = standing && !(m->body && m->body->pre);
     if (m->body) {
@@ -102,12 +103,12 @@ void spari_reaction_of_whole(const spar_member *m, double *room, double load[6])
         }
     }
     for (int64_t i = 0; i < m->nodes; i++) {
-        double r_i[3], moment[3], f[6], tied[6] = {0};
+        double r_i[3], moment[3], f[6], joint_load[6] = {0};
         if (!m->external) { /* its loads have them */
-            spari_joints_on(m, i, tied);
+            spari_joints_on(m, i, joint_load);
         }
         for (int k = 0; k < 6; k++) {
-            f[k] = sum[6 * i + k] - m->load_solved[1][6 * i + k] - tied[k];
+            f[k] = sum[6 * i + k] - m->load_solved[1][6 * i + k] - joint_load[k];
         }
         for (int k = 0; k < 3; k++) {
             r_i[k] = m->xr[3 * i + k] - m->xr[k] + (undeformed ? 0 : m->after.q[7 * i + k] - m->after.q[k]);
@@ -118,15 +119,15 @@ void spari_reaction_of_whole(const spar_member *m, double *room, double load[6])
             load[3 + k] += f[3 + k] + moment[k];
         }
     }
-    int held = spari_member_held(m);
-    memset(load + held, 0, (size_t)(6 - held) * sizeof *load);
+    int constrained = spari_member_constrained(m);
+    memset(load + constrained, 0, (size_t)(6 - constrained) * sizeof *load);
 }
 
 int spari_member_reaction(const spar_member *m, double load[6]) {
-    double *room = spari_zalloc(spari_member_reaction_room(m), sizeof *room);
-    SPARI_REQUIRE(m->session, room, SPAR_ERR_MEMORY, "member '%s': no memory for its reaction", m->name);
-    spari_member_reaction_in(m, room, load);
-    free(room);
+    double *workspace = spari_zalloc(spari_member_reaction_size(m), sizeof *workspace);
+    SPARI_REQUIRE(m->session, workspace, SPAR_ERR_MEMORY, "member '%s': no memory for its reaction", m->name);
+    spari_member_reaction_in(m, workspace, load);
+    free(workspace);
     return SPAR_OK;
 }
 
@@ -144,7 +145,7 @@ int spari_energy_of_body(const spar_member *m, double energy[4]) {
 }
 
 int spar_member_get_energy(const spar_member *member, int64_t capacity, double *energy) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
     double found[SPAR_ENERGY_COUNT] = {0};

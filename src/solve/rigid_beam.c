@@ -1,16 +1,16 @@
 /* The rigid beam: its nodes follow one body with the mass of the whole, which the solver of rigid bodies advances. */
 #include "rigid_beam.h"
 
+#include "../algebra/eigen.h"
+#include "../algebra/pencil.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
-#include "rigid_nodes.h"
-#include "../algebra/eigen.h"
-#include "../time/fidelity.h"
 #include "../time/component.h"
-#include "../algebra/pencil.h"
-#include "reaction.h"
+#include "../time/fidelity.h"
 #include "../time/steady_rotation.h"
+#include "reaction.h"
+#include "rigid_nodes.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -54,7 +54,7 @@ static void whole_mass(const spari_body *beam, const double root[3], double out[
             int64_t slot = beam->slot[e] + k - beam->first[e];
             double m[10];
             spari_slot_get(beam->mass, 10, slot, m);
-            add_mass(beam->weight[slot], m, beam->place + 3 * (int64_t)k, root, out);
+            add_mass(beam->weight[slot], m, beam->position + 3 * (int64_t)k, root, out);
         }
     }
 }
@@ -77,16 +77,16 @@ static int rigid_create(spar_member *m) {
     body->phi[0] = body->weight[0] = 1;
     body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;
     body->length = m->body->length;
-    memcpy(body->place, m->xr, 3 * sizeof(double));
+    memcpy(body->position, m->xr, 3 * sizeof(double));
     if (m->body->mass) { /* else neither inertia nor weight is in force */
         double mass[10];
         whole_mass(m->body, m->xr, mass);
         spari_slot_put(body->mass, 10, 0, mass);
     }
     spari_body_complete(body);
-    b->arms.gravity = body->gravity;
+    b->offset_loads.gravity = body->gravity;
     if (spari_fidelity_is_here(m)) {
-        b->solver = spari_solver_create(m, body, &b->arms);
+        b->solver = spari_solver_create(m, body, &b->offset_loads);
         return b->solver ? SPAR_OK : SPAR_ERR_MEMORY;
     }
     return SPAR_OK;
@@ -95,7 +95,7 @@ static int rigid_create(spar_member *m) {
 /* ---- time ---- */
 
 /* Nodal loads as force and moment on the root, and the first moments of the forces over the arms. */
-static void sum_on_root(const spar_member *m, const double *load, double sum[6], double arms[9]) {
+static void sum_on_root(const spar_member *m, const double *load, double sum[6], double moments[9]) {
     for (int64_t i = 0; i < m->nodes; i++) {
         const double *f = load + 6 * i;
         for (int k = 0; k < 6; k++) {
@@ -104,7 +104,7 @@ static void sum_on_root(const spar_member *m, const double *load, double sum[6],
         for (int r = 0; r < 3; r++) {
             double arm = m->xr[3 * i + r] - m->xr[r];
             for (int c = 0; c < 3; c++) {
-                arms[3 * r + c] += arm * f[c];
+                moments[3 * r + c] += arm * f[c];
             }
         }
     }
@@ -129,28 +129,28 @@ static void rigid_restart(spar_member *m) {
 /* Loads at one end of the step, `left` of which is still to come, as load [6] on the root and on the arms: of the
    fluids, dead ones, and those that the member carries where the motion q of its nodes is. */
 static void loads_on_root(const spar_member *m, const double *fluid, double left, const double *q, double *load,
-                          double arms[9]) {
-    double dead[6] = {0}, dead_arms[9] = {0}, *room = m->body->scratch; /* the beam's own body is not in use */
+                          double moments[9]) {
+    double dead[6] = {0}, dead_moments[9] = {0}, *workspace = m->body->scratch; /* the beam's own body is not in use */
     memset(load, 0, 6 * sizeof *load);
-    memset(arms, 0, 9 * sizeof *arms);
-    sum_on_root(m, left > 0 ? spari_dead_before(m) : m->dead, dead, dead_arms);
-    sum_on_root(m, fluid, load, arms);
+    memset(moments, 0, 9 * sizeof *moments);
+    sum_on_root(m, left > 0 ? spari_dead_before(m) : m->dead, dead, dead_moments);
+    sum_on_root(m, fluid, load, moments);
     if (m->applied) {
-        memset(room, 0, (size_t)(6 * m->nodes) * sizeof *room);
+        memset(workspace, 0, (size_t)(6 * m->nodes) * sizeof *workspace);
         spari_applied_at(m, left);
-        spari_applied_nodal(m, q, room);
+        spari_applied_nodal(m, q, workspace);
         spari_applied_at(m, 0);
-        sum_on_root(m, room, load, arms);
+        sum_on_root(m, workspace, load, moments);
     }
     for (int k = 0; k < 6; k++) {
         load[k] += dead[k];
     }
     for (int k = 0; k < 9; k++) {
-        arms[k] += dead_arms[k];
+        moments[k] += dead_moments[k];
     }
 }
 
-/* Loads that follow the nodes are taken where the last pass has put them; a few passes find them. */
+/* Loads that follow the nodes are evaluated where the last pass has put them; a few passes find them. */
 enum { PASSES = 20 };
 
 static int rigid_advance(spar_member *m, double dt) {
@@ -158,14 +158,14 @@ static int rigid_advance(spar_member *m, double dt) {
     spari_solver *s = b->solver;
     double before[7], *q = s->begin.q, change = 1;
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    loads_on_root(m, m->load_history[0], 1, m->now.q, s->steps.load0, b->arms.begin);
+    loads_on_root(m, m->load_history[0], 1, m->now.q, s->steps.load0, b->offset_loads.begin);
     for (int pass = 0; pass < PASSES && change >= 1e-13; pass++) {
         memcpy(before, q, sizeof before);
         if (m->applied) {
             const spari_pose last = spari_pose_of(q, s->to.v, s->to.a);
-            spari_carried_move(m, &last, &m->after);
+            spari_rigid_nodes_move(m, &last, &m->after);
         }
-        loads_on_root(m, m->load_used, 0, m->after.q, s->steps.load1, b->arms.end);
+        loads_on_root(m, m->load_used, 0, m->after.q, s->steps.load1, b->offset_loads.end);
         SPARI_TRY(spari_solver_advance(s, m, dt));
         q = s->to.q;
         change = 0;
@@ -174,7 +174,7 @@ static int rigid_advance(spar_member *m, double dt) {
         }
     }
     const spari_pose root = spari_pose_of(q, s->to.v, s->to.a);
-    spari_carried_move(m, &root, &m->after);
+    spari_rigid_nodes_move(m, &root, &m->after);
     return SPAR_OK;
 }
 
@@ -187,9 +187,9 @@ static void arm_after(const spar_member *m, int64_t node, double arm[3]) {
 
 /* More force and moment on the root, the latter by the arms as they are turned. */
 static void rigid_take_more(spar_member *m, const double *load, double *sum) {
-    double arms[9] = {0};
+    double moments[9] = {0};
     memset(sum, 0, 6 * sizeof *sum);
-    sum_on_root(m, load, sum, arms);
+    sum_on_root(m, load, sum, moments);
     for (int64_t i = 0; i < m->nodes; i++) {
         double arm[3], moment[3];
         arm_after(m, i, arm);
@@ -201,14 +201,14 @@ static void rigid_take_more(spar_member *m, const double *load, double *sum) {
 }
 
 static void rigid_show_more(spar_member *m, const double *root, double *motion) {
-    spari_carried_displace(m, root, motion);
+    spari_rigid_nodes_displace(m, root, motion);
 }
 
-static int rigid_answer(spar_member *m, const double *load, double *motion) {
+static int rigid_response(spar_member *m, const double *load, double *motion) {
     const spari_rigid_beam *b = m->solution;
     double sum[6], root[6];
     rigid_take_more(m, load, sum);
-    if (spari_solver_answer(b->solver, m, sum, root)) {
+    if (spari_solver_response(b->solver, m, sum, root)) {
         return 1;
     }
     rigid_show_more(m, root, motion);
@@ -219,7 +219,7 @@ static int rigid_answer(spar_member *m, const double *load, double *motion) {
 static int rigid_felt(spar_member *m, double *load) {
     double sum[6], middle[3] = {0}, moment[3];
     rigid_take_more(m, load, sum);
-    memset(sum, 0, (size_t)spari_member_held(m) * sizeof *sum);
+    memset(sum, 0, (size_t)spari_member_constrained(m) * sizeof *sum);
     for (int64_t i = 0; i < m->nodes; i++) {
         double arm[3];
         arm_after(m, i, arm);
@@ -261,21 +261,21 @@ static spari_solver *solver_of(const spar_member *m) {
 static void rigid_take_loads(spar_member *m) {
     spari_rigid_beam *b = m->solution;
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    loads_on_root(m, m->load_history[0], 1, m->now.q, b->solver->steps.load0, b->arms.begin);
-    loads_on_root(m, m->load_used, 0, m->after.q, b->solver->steps.load1, b->arms.end);
+    loads_on_root(m, m->load_history[0], 1, m->now.q, b->solver->steps.load0, b->offset_loads.begin);
+    loads_on_root(m, m->load_used, 0, m->after.q, b->solver->steps.load1, b->offset_loads.end);
 }
 
 static void rigid_take_rest(spar_member *m, const double *fluid) {
     spari_rigid_beam *b = m->solution;
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    loads_on_root(m, fluid, 0, m->now.q, b->solver->steps.load, b->arms.end);
-    memset(b->arms.begin, 0, sizeof b->arms.begin);
+    loads_on_root(m, fluid, 0, m->now.q, b->solver->steps.load, b->offset_loads.end);
+    memset(b->offset_loads.begin, 0, sizeof b->offset_loads.begin);
 }
 
 static void rigid_publish(spar_member *m) {
     const spari_solver *s = solver_of(m);
     const spari_pose root = spari_pose_of(s->to.q, s->to.v, s->to.a);
-    spari_carried_move(m, &root, &m->after);
+    spari_rigid_nodes_move(m, &root, &m->after);
 }
 
 static int rigid_balance(spar_member *m, double dt) {
@@ -295,70 +295,72 @@ static int rigid_energy(const spar_member *m, double energy[4]) {
 }
 
 static int64_t rigid_unknowns(const spar_member *m) {
-    return 6 - spari_member_held(m);
+    return 6 - spari_member_constrained(m);
 }
 
 static int rigid_problem(const spar_member *m, double *K, double *M) {
     const spari_rigid_beam *b = m->solution;
     double *load = spari_zalloc(6 * m->nodes, sizeof *load), sum[6] = {0}, v[6], a[6], S[36], mass[36];
-    spari_arms arms = {0};
-    spari_turn turn;
+    spari_offset_loads moments = {0};
+    spari_steady_rotation rotation;
     if (!load) {
         return SPAR_ERR_MEMORY;
     }
     int status = spar_member_get_loads(m, load);
-    sum_on_root(m, load, sum, arms.Z);
+    sum_on_root(m, load, sum, moments.Z);
     free(load);
     SPARI_TRY(status);
-    int turning = spari_turn_of(m, m->after.v, m->after.a, &turn), held = spari_member_held(m);
+    int rotating = spari_steady_rotation_of(m, m->after.v, m->after.a, &rotation),
+        constrained = spari_member_constrained(m);
     for (int k = 0; k < 3; k++) {
-        v[k] = turn.v0[k], v[3 + k] = turn.w[k];
-        a[k] = turn.a0[k], a[3 + k] = 0;
+        v[k] = rotation.v0[k], v[3 + k] = rotation.w[k];
+        a[k] = rotation.a0[k], a[3 + k] = 0;
     }
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    spari_turn_tangent(b->body, turning ? &turn : NULL, 0, m->after.q, v, a, 1, S, mass);
-    spari_arms_tangent(&arms, m->after.q + 3, S);
-    spari_eigen_add(-held, 6, S, 1, rigid_unknowns(m), K);
-    spari_eigen_add(-held, 6, mass, 1, rigid_unknowns(m), M);
+    spari_steady_rotation_tangent(b->body, rotating ? &rotation : NULL, 0, m->after.q, v, a, 1, S, mass);
+    spari_offset_loads_tangent(&moments, m->after.q + 3, S);
+    spari_eigen_add(-constrained, 6, S, 1, rigid_unknowns(m), K);
+    spari_eigen_add(-constrained, 6, mass, 1, rigid_unknowns(m), M);
     return SPAR_OK;
 }
 
 static int rigid_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
     const spari_rigid_beam *b = m->solution;
     double *load = spari_zalloc(6 * m->nodes, sizeof *load), sum[6] = {0}, v[6], a[6], K[36], C[36], M[36], r[6];
-    spari_arms arms = {0};
-    spari_turn turn;
+    spari_offset_loads moments = {0};
+    spari_steady_rotation rotation;
     if (!load) {
         return SPAR_ERR_MEMORY;
     }
-    int status = spar_member_get_loads(m, load), held = spari_member_held(m);
-    sum_on_root(m, load, sum, arms.Z);
+    int status = spar_member_get_loads(m, load), constrained = spari_member_constrained(m);
+    sum_on_root(m, load, sum, moments.Z);
     free(load);
     SPARI_TRY(status);
-    int turning = spari_turn_of(m, m->after.v, m->after.a, &turn) || spari_norm(w) > 0;
+    int rotating = spari_steady_rotation_of(m, m->after.v, m->after.a, &rotation) || spari_norm(w) > 0;
     for (int k = 0; k < 3; k++) {
-        v[k] = turn.v0[k], v[3 + k] = turn.w[k];
-        a[k] = turn.a0[k], a[3 + k] = 0;
+        v[k] = rotation.v0[k], v[3 + k] = rotation.w[k];
+        a[k] = rotation.a0[k], a[3 + k] = 0;
     }
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    spari_turn_pencil(b->body, w, turn.w, 0, m->after.q, turning ? v : NULL, turning ? a : NULL, K, C, M);
-    spari_arms_tangent(&arms, m->after.q + 3, K);
-    spari_pencil_add(to, -held, 6, 6, K, C, M);
+    spari_steady_rotation_pencil(b->body, w, rotation.w, 0, m->after.q, rotating ? v : NULL, rotating ? a : NULL, K, C,
+                                 M);
+    spari_offset_loads_tangent(&moments, m->after.q + 3, K);
+    spari_pencil_add(to, -constrained, 6, 6, K, C, M);
     to->scale =
-        fmax(to->scale, spari_body_residual(b->body, m->after.q, turning ? v : NULL, turning ? a : NULL, 1, r, NULL));
-    spari_arms_residual(&arms, m->after.q + 3, r + 3);
+        fmax(to->scale, spari_body_residual(b->body, m->after.q, rotating ? v : NULL, rotating ? a : NULL, 1, r, NULL));
+    spari_offset_loads_residual(&moments, m->after.q + 3, r + 3);
     for (int k = 0; k < 6; k++) {
         r[k] -= sum[k];
         to->scale = fmax(to->scale, fabs(sum[k]));
     }
-    spari_pencil_leave(to, -held, 6, r);
+    spari_pencil_set_forces(to, -constrained, 6, r);
     return SPAR_OK;
 }
 
-static void rigid_shape(const spar_member *m, const double *x, double *room, double *nodes) {
-    memset(room, 0, 6 * sizeof *room);
-    memcpy(room + spari_member_held(m), x, (size_t)rigid_unknowns(m) * sizeof *room);
-    spari_carried_displace(m, room, nodes);
+static void rigid_shape(const spar_member *m, const double *x, double *workspace, double *nodes) {
+    memset(workspace, 0, 6 * sizeof *workspace);
+    memcpy(workspace + spari_member_constrained(m), x, (size_t)rigid_unknowns(m) * sizeof *workspace);
+    spari_rigid_nodes_displace(m, workspace, nodes);
 }
 
 /* ---- save and load ---- */
@@ -387,7 +389,7 @@ const spari_fidelity spari_fidelity_rigid = {
     .moves = 1,
     .solved = 1,
     .whole = 1,
-    .seen = SPARI_SEEN_CARRIED,
+    .seen = SPARI_SEEN_PRESCRIBED,
     .check = rigid_check,
     .effects = rigid_effects,
     .create = rigid_create,
@@ -396,22 +398,22 @@ const spari_fidelity spari_fidelity_rigid = {
     .restart = rigid_restart,
     .advance = rigid_advance,
     .balance = rigid_balance,
-    .answer = rigid_answer,
+    .response = rigid_response,
     .felt = rigid_felt,
     .felt_here = 1,
     .begin = rigid_begin,
     .accept = rigid_accept,
     .reject = rigid_reject,
     .effort = rigid_effort,
-    .rest = spari_carried_rest,
-    .reaction_room = spari_reaction_of_whole_room,
+    .rest = spari_rigid_nodes_rest,
+    .reaction_size = spari_reaction_of_whole_size,
     .reaction = spari_reaction_of_whole,
     .energy = rigid_energy,
     .unknowns = rigid_unknowns,
     .problem = rigid_problem,
     .shape = rigid_shape,
     .linearise = rigid_linearise,
-    .limb = &spari_limb_nodes,
+    .component = &spari_component_body,
     .solver = solver_of,
     .take_loads = rigid_take_loads,
     .take_rest = rigid_take_rest,

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-void spari_carried_move(const spar_member *m, const spari_pose *root, spari_motion *to) {
+void spari_rigid_nodes_move(const spar_member *m, const spari_pose *root, spari_motion *to) {
     const double *q = root->q, *v = root->v, *a = root->a;
     for (int64_t i = 0; i < m->nodes; i++) {
         double arm[3], r[3], c1[3], c2[3], c3[3];
@@ -27,7 +27,7 @@ void spari_carried_move(const spar_member *m, const spari_pose *root, spari_moti
     }
 }
 
-void spari_carried_displace(const spar_member *m, const double root[6], double *nodes) {
+void spari_rigid_nodes_displace(const spar_member *m, const double root[6], double *nodes) {
     for (int64_t i = 0; i < m->nodes; i++) {
         double *x = nodes + 6 * i, r[3];
         for (int k = 0; k < 3; k++) {
@@ -41,7 +41,7 @@ void spari_carried_displace(const spar_member *m, const double root[6], double *
     }
 }
 
-int spari_carried_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
+int spari_rigid_nodes_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
     const double none[6] = {0};
     spari_pose root = spari_pose_of(m->now.q, none, none);
     (void)fluid, (void)load_steps, (void)onward; /* whatever the loads, the root does not yield */
@@ -49,6 +49,6 @@ int spari_carried_rest(spar_member *m, const double *fluid, int load_steps, int 
         memcpy(root.v, m->now.v, sizeof root.v); /* turning steadily, as the members that are solved for */
         memcpy(root.a, m->now.a, 3 * sizeof *root.a);
     }
-    spari_carried_move(m, &root, &m->after);
+    spari_rigid_nodes_move(m, &root, &m->after);
     return SPAR_OK;
 }

@@ -17,42 +17,42 @@ struct spari_work {
     int reaction_lacks; /* 1: it was found before the fluids' loads at t = 0 were known */
     double *fluid;      /* [nodes][6] fluid loads at t^n */
     double *load;       /* [nodes][6] scratch */
-    double *room;       /* for the reaction */
+    double *workspace;  /* for the reaction */
 };
 
 void spari_work_free(spari_work *work) {
     if (work) {
         free(work->fluid);
         free(work->load);
-        free(work->room);
+        free(work->workspace);
         free(work);
     }
 }
 
 /* Whether moments do their work on the change of the rotation vector, as where a member is linear in axes that stand.
  */
-static int turns_linearly(const spar_member *m) {
+static int rotates_linearly(const spar_member *m) {
     return m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN && !m->floats;
 }
 
 /* Displacement and rotation vector of node i over the step; linearly: the change of its rotation vector. */
 static void increment(const spar_member *m, int64_t i, int linearly, double d[6]) {
     const double *from = m->now.q + 7 * i, *to = m->after.q + 7 * i;
-    double turn[4];
+    double rotation[4];
     for (int c = 0; c < 3; c++) {
         d[c] = to[c] - from[c];
     }
     if (linearly) {
         double before[3];
         spari_quat_log(from + 3, before);
-        spari_quat_log(to + 3, turn);
+        spari_quat_log(to + 3, rotation);
         for (int c = 0; c < 3; c++) {
-            d[3 + c] = turn[c] - before[c];
+            d[3 + c] = rotation[c] - before[c];
         }
         return;
     }
-    spari_quat_between(from + 3, to + 3, turn);
-    spari_quat_log(turn, d + 3);
+    spari_quat_between(from + 3, to + 3, rotation);
+    spari_quat_log(rotation, d + 3);
 }
 
 static double dot6(const double *a, const double *b) {
@@ -73,27 +73,27 @@ void spari_work_step(spar_member *m) {
     }
     for (int64_t i = 0; i < n; i++) {
         double fluid[6], kept[6],
-            tied[6] = {0}; /* of an external member the loads it is solved with have the joints' */
+            joint_load[6] = {0}; /* of an external member the loads it is solved with have the joints' */
         if (m->external) {
-            spari_joints_on(m, i, tied);
+            spari_joints_on(m, i, joint_load);
         }
         for (int c = 0; c < 6; c++) {
-            double now = m->load_solved[1][6 * i + c] - m->dead[6 * i + c] - tied[c];
+            double now = m->load_solved[1][6 * i + c] - m->dead[6 * i + c] - joint_load[c];
             fluid[c] = 0.5 * (w->fluid[6 * i + c] + now);
             kept[c] = 0.5 * (dead[6 * i + c] + m->dead[6 * i + c] + w->load[6 * i + c]);
             w->fluid[6 * i + c] = now;
         }
-        increment(m, i, turns_linearly(m), d);
+        increment(m, i, rotates_linearly(m), d);
         w->sum[SPAR_WORK_LOADS] += dot6(kept, d);
         w->sum[SPAR_WORK_FLUID] += dot6(fluid, d);
     }
     if (m->root == SPAR_ROOT_DRIVEN) {
-        spari_member_reaction_in(m, w->room, reaction);
+        spari_member_reaction_in(m, w->workspace, reaction);
         if (w->reaction_lacks) { /* that of the first step's end stands for it: of second order in dt, once */
             memcpy(w->reaction, reaction, sizeof reaction);
             w->reaction_lacks = 0;
         }
-        increment(m, 0, turns_linearly(m), d);
+        increment(m, 0, rotates_linearly(m), d);
         w->sum[SPAR_WORK_ROOT] += 0.5 * (dot6(w->reaction, d) + dot6(reaction, d));
         memcpy(w->reaction, reaction, sizeof reaction);
     }
@@ -108,22 +108,22 @@ static int keeps_account(const spar_joint *j) {
 /* The coordinates of a joint and its forces on its two nodes, f[12], at t^n or, at the end, in the motion after. */
 static void joint_at(const spar_joint *j, int end, double z[6], double f[12]) {
     const spari_relative *at = end ? &j->after : &j->now;
-    spari_place place[2];
+    spari_node_pose pose[2];
     double B[6][12];
     for (int side = 0; side < 2; side++) {
         const spar_member *m = j->member[side];
-        place[side] = (spari_place){.q = {1, 0, 0, 0}};
+        pose[side] = (spari_node_pose){.q = {1, 0, 0, 0}};
         if (m) {
             const double *q = (end ? m->after.q : m->now.q) + 7 * j->seat[side];
             for (int k = 0; k < 3; k++) {
-                place[side].x[k] = m->xr[3 * j->seat[side] + k] + q[k];
+                pose[side].x[k] = m->xr[3 * j->seat[side] + k] + q[k];
             }
-            memcpy(place[side].q, q + 3, sizeof place[side].q);
+            memcpy(pose[side].q, q + 3, sizeof pose[side].q);
         }
     }
-    spari_tie_motion(&j->tie, &place[0], &place[1], z, B);
+    spari_kinematics_motion(&j->kinematics, &pose[0], &pose[1], z, B);
     spari_joint_count_turns(j, at->z, z);
-    spari_tie_forces(B, at->load, f);
+    spari_kinematics_forces(B, at->load, f);
 }
 
 /* What a line's pull has beside its spring's. */
@@ -136,7 +136,7 @@ static double damper_of_line(const spar_joint *j, const spari_relative *at) {
  */
 static void add_to_account(spar_joint *j, const double from[6], const double z[6]) {
     const spari_relative *now = &j->now, *to = &j->after;
-    int given = spari_joint_given(j), most = j->tie.line ? 1 : 6;
+    int given = spari_joint_constrained(j), most = j->kinematics.line ? 1 : 6;
     for (int k = 0; k < most; k++) {
         double way = z[k] - from[k], damper = 0;
         if (j->driven >> k & 1) {
@@ -145,10 +145,10 @@ static void add_to_account(spar_joint *j, const double from[6], const double z[6
         if (given >> k & 1) {
             continue;
         }
-        for (int i = 0; i < most && j->sprung && !j->tie.line; i++) {
+        for (int i = 0; i < most && j->sprung && !j->kinematics.line; i++) {
             damper += 0.5 * j->damping[6 * k + i] * (now->rate[i] + to->rate[i]);
         }
-        if (j->tie.line && j->sprung) {
+        if (j->kinematics.line && j->sprung) {
             damper = 0.5 * (damper_of_line(j, now) + damper_of_line(j, to));
         }
         j->account[0] += damper * way;
@@ -178,11 +178,11 @@ void spari_work_of_joint(spar_joint *j) {
 static double spring_energy(const spar_joint *j) {
     const double *z = j->after.z;
     double sum = 0;
-    if (j->tie.line) {
+    if (j->kinematics.line) {
         double stretch = z[0] - j->length;
-        return spari_joint_given(j) || (j->slack && stretch < 0) ? 0 : 0.5 * j->stiffness[0] * stretch * stretch;
+        return spari_joint_constrained(j) || (j->slack && stretch < 0) ? 0 : 0.5 * j->stiffness[0] * stretch * stretch;
     }
-    int given = spari_joint_given(j);
+    int given = spari_joint_constrained(j);
     for (int i = 0; i < 6; i++) {
         for (int k = 0; k < 6 && !(given >> i & 1); k++) {
             sum += given >> k & 1 ? 0 : 0.5 * j->stiffness[6 * i + k] * z[i] * z[k];
@@ -193,7 +193,7 @@ static double spring_energy(const spar_joint *j) {
 }
 
 int spar_joint_get_energy(const spar_joint *joint, int64_t capacity, double *energy) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, joint, SPAR_ERR_ARGUMENT, "%s: the joint is NULL; create it first", __func__);
     SPARI_TRY(spari_need_capacity(joint->session, __func__, capacity));
     SPARI_REQUIRE(joint->session, keeps_account(joint), SPAR_ERR_STATE,
@@ -218,7 +218,7 @@ void spari_work_restart(spar_member *m) {
     memset(w->sum, 0, sizeof w->sum);
     w->reaction_lacks = 0;
     memcpy(w->fluid, m->load_history[0], (size_t)(6 * m->nodes) * sizeof *w->fluid);
-    spari_member_reaction_in(m, w->room, w->reaction);
+    spari_member_reaction_in(m, w->workspace, w->reaction);
 }
 
 void spari_work_begin(spar_member *m) {
@@ -233,7 +233,7 @@ int spari_work_create(spar_member *m) {
     spari_work *w = m->work = spari_zalloc(1, sizeof *w); /* loads along the line may come later: room for them too */
     int ok = w && (w->fluid = spari_zalloc(6 * m->nodes, sizeof *w->fluid)) &&
              (w->load = spari_zalloc(6 * m->nodes, sizeof *w->load)) &&
-             (w->room = spari_zalloc(spari_member_reaction_room(m) + 6 * m->nodes, sizeof *w->room));
+             (w->workspace = spari_zalloc(spari_member_reaction_size(m) + 6 * m->nodes, sizeof *w->workspace));
     SPARI_REQUIRE(m->session, ok, SPAR_ERR_MEMORY, "no memory for the work of '%s'", m->name);
     return SPAR_OK;
 }
@@ -245,7 +245,7 @@ void spari_work_carry(const spar_member *from, spar_member *m) {
 }
 
 int spar_member_get_work(const spar_member *member, int64_t capacity, double *work) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
     SPARI_REQUIRE(member->session, member->work, SPAR_ERR_STATE,

@@ -20,20 +20,20 @@ static const int64_t most_memory = 1000000;
 static const double most_misfit = 1e-3;
 
 typedef struct coupled_ask {
-    spari_answer_ask fluid;
+    spari_response_query fluid;
     int64_t n;
     double complex shift;
     double *eigenvalue, *shapes; /* of the host */
 } coupled_ask;
 
 /* M, C, K of the shapes. room [size] */
-static void reduce_structure(const spari_swing *w, const double *shape, double *room, spari_reduced *r) {
+static void reduce_structure(const spari_small_motions *w, const double *shape, double *workspace, spari_reduced *r) {
     double *to[3] = {r->K, r->C, r->M};
     for (int kind = 0; kind < 3; kind++) {
         for (int j = 0; j < r->n; j++) {
-            spari_shapes_times(&w->pencil, kind, shape + (int64_t)w->size * j, room);
+            spari_shapes_times(&w->pencil, kind, shape + (int64_t)w->size * j, workspace);
             for (int i = 0; i < r->n; i++) {
-                to[kind][r->n * i + j] = spari_shapes_product(w->size, shape + (int64_t)w->size * i, room);
+                to[kind][r->n * i + j] = spari_shapes_product(w->size, shape + (int64_t)w->size * i, workspace);
             }
         }
     }
@@ -42,14 +42,14 @@ static void reduce_structure(const spari_swing *w, const double *shape, double *
 /* ---- the call ---- */
 
 typedef struct coupled {
-    spari_swing swing;
+    spari_small_motions motions;
     spari_reduced reduced;
-    double *shape, *rate, *nodes, *room;
+    double *shape, *rate, *nodes, *workspace;
     double complex *value, *x;
 } coupled;
 
 static void coupled_free(coupled *c) {
-    spari_swing_free(&c->swing);
+    spari_small_motions_free(&c->motions);
     spari_reduced_free(&c->reduced);
     free(c->shape);
     free(c->nodes);
@@ -60,25 +60,25 @@ static void coupled_free(coupled *c) {
 static int find_structure(spar_session *s, const coupled_ask *ask, coupled *c) {
     int64_t modes = ask->fluid.modes, n = ask->n;
     SPARI_TRY(spari_joints_place(s));
-    SPARI_TRY(spari_swing_create(&c->swing, s, NULL));
-    SPARI_REQUIRE(s, c->swing.parts > 0, SPAR_ERR_UNSUPPORTED, "there is no member that spar solves for");
-    SPARI_REQUIRE(s, modes <= c->swing.size, SPAR_ERR_ARGUMENT, "%lld modes; there are %d unknowns", (long long)modes,
-                  c->swing.size);
+    SPARI_TRY(spari_small_motions_create(&c->motions, s, NULL));
+    SPARI_REQUIRE(s, c->motions.parts > 0, SPAR_ERR_UNSUPPORTED, "there is no member that spar solves for");
+    SPARI_REQUIRE(s, modes <= c->motions.size, SPAR_ERR_ARGUMENT, "%lld modes; there are %d unknowns", (long long)modes,
+                  c->motions.size);
     c->reduced = (spari_reduced){.n = (int)modes, .dt = ask->fluid.run.dt, .memory = ask->fluid.memory};
-    c->shape = spari_zalloc((modes + 1) * c->swing.size + modes, sizeof *c->shape);
+    c->shape = spari_zalloc((modes + 1) * c->motions.size + modes, sizeof *c->shape);
     c->nodes = spari_zalloc(6 * modes * ask->fluid.nodes, sizeof *c->nodes);
     c->value = spari_zalloc(n + n * modes, sizeof *c->value);
     int there = c->shape && c->nodes && c->value && spari_reduced_create(&c->reduced) == SPAR_OK;
     SPARI_REQUIRE(s, there, SPAR_ERR_MEMORY, "no memory for %lld modes", (long long)modes);
-    c->room = c->shape + modes * c->swing.size;
-    c->rate = c->room + c->swing.size;
+    c->workspace = c->shape + modes * c->motions.size;
+    c->rate = c->workspace + c->motions.size;
     c->x = c->value + n;
-    SPARI_TRY(spari_shapes_find(&c->swing, (int)modes, c->shape, c->rate));
+    SPARI_TRY(spari_shapes_find(&c->motions, (int)modes, c->shape, c->rate));
     for (int k = 0; k < modes; k++) {
         c->reduced.fastest = fmax(c->reduced.fastest, c->rate[k]);
     }
-    spari_shapes_show(&c->swing, (int)modes, c->shape, c->nodes);
-    reduce_structure(&c->swing, c->shape, c->room, &c->reduced);
+    spari_shapes_show(&c->motions, (int)modes, c->shape, c->nodes);
+    reduce_structure(&c->motions, c->shape, c->workspace, &c->reduced);
     return SPAR_OK;
 }
 
@@ -129,10 +129,10 @@ static int solve_coupled(spar_session *s, const char *call, coupled_ask *ask, do
     int status = find_structure(s, ask, &c);
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
     if (status == SPAR_OK) {
-        ask->fluid.swing = &c.swing;
+        ask->fluid.motions = &c.motions;
         ask->fluid.shape = c.nodes;
         ask->fluid.rate = c.rate;
-        status = spari_answer_find(s, call, &ask->fluid, &c.reduced.answer);
+        status = spari_fluid_response_find(s, call, &ask->fluid, &c.reduced.response);
     }
     if (status == SPAR_OK) {
         status = find_eigenvalues(s, ask, &c);
@@ -141,7 +141,7 @@ static int solve_coupled(spar_session *s, const char *call, coupled_ask *ask, do
     if (status == SPAR_OK) {
         hand_eigenvalues(ask, &c);
         if (frame) {
-            memcpy(frame, c.swing.w, sizeof c.swing.w);
+            memcpy(frame, c.motions.w, sizeof c.motions.w);
         }
     }
     coupled_free(&c);
@@ -164,7 +164,7 @@ static int check_memory(spar_session *s, const char *call) {
 
 static int check_coupled(spar_session *s, const char *call, const coupled_ask *ask, int64_t nodes,
                          const double shift[2], const double *eigenvalue) {
-    const spari_answer_ask *f = &ask->fluid;
+    const spari_response_query *f = &ask->fluid;
     SPARI_TRY(spari_trial_check(s, call, &f->run));
     SPARI_TRY(s->started ? SPAR_OK : spari_session_pushes(s, call));
     SPARI_REQUIRE(s, f->run.solve, SPAR_ERR_UNSUPPORTED,
@@ -193,12 +193,12 @@ int spar_session_solve_eigenvalues(spar_session *session, double dt, int64_t mem
                                    spar_before_step before, spar_fluid_solver solve, void *context, int64_t modes,
                                    int64_t n, const double shift[2], double *eigenvalue, int64_t nodes, double *shapes,
                                    double frame[3]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     coupled_ask ask = {.n = n, .shift = shift ? CMPLX(shift[0], fabs(shift[1])) : 0};
     ask.eigenvalue = eigenvalue, ask.shapes = shapes;
-    ask.fluid = (spari_answer_ask){.run = {.dt = dt, .steps = SPARI_MULTIPLE}, .memory = memory};
+    ask.fluid = (spari_response_query){.run = {.dt = dt, .steps = SPARI_MULTIPLE}, .memory = memory};
     ask.fluid.run.before = before, ask.fluid.run.solve = solve, ask.fluid.run.context = context;
     ask.fluid.amplitude = amplitude == 0 ? common_amplitude : amplitude;
     ask.fluid.modes = modes >= 1 && modes <= SPARI_SHAPES_MOST ? (int)modes : 0;
@@ -206,15 +206,15 @@ int spar_session_solve_eigenvalues(spar_session *session, double dt, int64_t mem
     spari_progress progress = spari_progress_of(s, __func__);
     ask.fluid.run.progress = &progress;
     int status = check_coupled(s, __func__, &ask, nodes, shift, eigenvalue);
-    const spari_alike alike[] = {spari_real("dt", dt),
-                                 spari_whole("memory", memory),
-                                 spari_real("amplitude", amplitude),
-                                 spari_given("before", before != NULL),
-                                 spari_given("solve", solve != NULL),
-                                 spari_given("progress call", progress.tell != NULL),
-                                 spari_whole("modes", modes),
-                                 spari_whole("n", n)};
-    SPARI_TRY(spari_enter_alike(s, __func__, alike, sizeof alike / sizeof *alike, status));
+    const spari_agreed must_agree[] = {spari_real("dt", dt),
+                                       spari_whole("memory", memory),
+                                       spari_real("amplitude", amplitude),
+                                       spari_given("before", before != NULL),
+                                       spari_given("solve", solve != NULL),
+                                       spari_given("progress call", progress.tell != NULL),
+                                       spari_whole("modes", modes),
+                                       spari_whole("n", n)};
+    SPARI_TRY(spari_enter_agreed(s, __func__, must_agree, sizeof must_agree / sizeof *must_agree, status));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
     SPARI_TRY(spari_named(s, __func__, spari_progress_ends(&progress, solve_coupled(s, __func__, &ask, frame))));

@@ -1,5 +1,5 @@
 /* The call for modes, and those of an assembly: the parts' problems side by side, springs and the turning of the
-   joints' loads between them, and what joints hold taken out. Of the constraints G x = 0, orthonormal rows Q of which
+   joints' loads between them, and what joints hold eliminated. Of the constraints G x = 0, orthonormal rows Q of which
    the first span the rows of G: the others are a basis of the motions that the constraints allow, on which stiffness
    and mass are projected, so that no multiplier or penalty is left in the eigenproblem, and holds that say a thing
    twice do no harm. */
@@ -26,7 +26,7 @@ typedef struct modal_part {
     int64_t at, size; /* position and number of its unknowns */
 } modal_part;
 
-typedef struct tied_modes {
+typedef struct joined_modes {
     modal_part *part;
     int parts;
     int64_t size, holds; /* unknowns; rows of G */
@@ -34,18 +34,18 @@ typedef struct tied_modes {
     double *G;           /* [holds][size] */
     double *Q;           /* [size][size] orthonormal rows; the first `rank` are the motions that the holds take away */
     int64_t rank;
-    double *room; /* of a shape, twice */
-} tied_modes;
+    double *workspace; /* of a shape, twice */
+} joined_modes;
 
-static void tied_modes_free(tied_modes *t) {
+static void joined_modes_free(joined_modes *t) {
     free(t->part);
-    free(t->room);
+    free(t->workspace);
     free(t->K);
 }
 
 /* ---- members of the assembly ---- */
 
-static const modal_part *modal_part_of(const tied_modes *t, const spar_member *m) {
+static const modal_part *modal_part_of(const joined_modes *t, const spar_member *m) {
     for (int i = 0; i < t->parts; i++) {
         if (t->part[i].member == m) {
             return t->part + i;
@@ -54,7 +54,7 @@ static const modal_part *modal_part_of(const tied_modes *t, const spar_member *m
     return NULL;
 }
 
-static int add_modal_part(tied_modes *t, const spar_member *m) {
+static int add_modal_part(joined_modes *t, const spar_member *m) {
     SPARI_TRY(spari_modes_need_mass(m));
     t->part[t->parts++] = (modal_part){m, 0, m->row->unknowns(m)};
     return SPAR_OK;
@@ -62,7 +62,7 @@ static int add_modal_part(tied_modes *t, const spar_member *m) {
 
 /* The unknowns are in the order of creation, so that the modes have the same bits for whichever member they are
    requested. */
-static void order_parts(tied_modes *t, const spar_session *s) {
+static void order_parts(joined_modes *t, const spar_session *s) {
     int placed = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
         for (int i = placed; i < t->parts; i++) {
@@ -78,7 +78,7 @@ static void order_parts(tied_modes *t, const spar_session *s) {
 }
 
 /* Members connected by joints that spar solves, and the number of constraints. */
-static int gather_parts(tied_modes *t, const spar_member *first) {
+static int gather_parts(joined_modes *t, const spar_member *first) {
     spar_session *s = first->session;
     t->part = spari_zalloc(s->member_count, sizeof *t->part);
     SPARI_REQUIRE(s, t->part, SPAR_ERR_MEMORY, "no memory for the modes of '%s'", first->name);
@@ -87,7 +87,8 @@ static int gather_parts(tied_modes *t, const spar_member *first) {
         for (const spar_joint *j = s->joints; j; j = j->next) {
             for (int side = 0; side < 2; side++) {
                 const spar_member *other = j->member[1 - side];
-                if (j->member[side] == t->part[i].member && other && other->row->limb && !modal_part_of(t, other)) {
+                if (j->member[side] == t->part[i].member && other && other->row->component &&
+                    !modal_part_of(t, other)) {
                     SPARI_TRY(add_modal_part(t, other));
                 }
             }
@@ -97,7 +98,7 @@ static int gather_parts(tied_modes *t, const spar_member *first) {
     for (const spar_joint *j = s->joints; j; j = j->next) {
         int here = modal_part_of(t, j->member[0]) || modal_part_of(t, j->member[1]);
         for (int k = 0; k < 6 && here; k++) {
-            t->holds += spari_joint_given(j) >> k & 1;
+            t->holds += spari_joint_constrained(j) >> k & 1;
         }
     }
     return SPAR_OK;
@@ -106,9 +107,9 @@ static int gather_parts(tied_modes *t, const spar_member *first) {
 /* ---- joints ---- */
 
 /* Motion of a node by the unknowns of its part: S [6][size], column by column from shapes of unit unknowns. */
-static void motion_of_node(const modal_part *p, int64_t node, double *room, double *S) {
+static void motion_of_node(const modal_part *p, int64_t node, double *workspace, double *S) {
     const spar_member *m = p->member;
-    double *unit = room, *work = unit + p->size, *nodes = work + 6 * (int64_t)m->body->unique;
+    double *unit = workspace, *work = unit + p->size, *nodes = work + 6 * (int64_t)m->body->unique;
     memset(unit, 0, (size_t)p->size * sizeof *unit);
     for (int64_t c = 0; c < p->size; c++) {
         unit[c] = 1;
@@ -122,17 +123,17 @@ static void motion_of_node(const modal_part *p, int64_t node, double *room, doub
 
 /* Stiffness of a joint's springs and geometric stiffness of its load, for its two nodes. */
 static void stiffness_of_joint(const spar_joint *j, double K[12][12], double B[6][12]) {
-    spari_place place[2];
+    spari_node_pose pose[2];
     spari_relative at = j->after;
-    int given = spari_joint_given(j);
-    double turning[12][12] = {{0}};
-    spari_joint_places(j, place);
-    spari_tie_motion(&j->tie, &place[0], &place[1], at.z, B);
+    int given = spari_joint_constrained(j);
+    double joint_tangent[12][12] = {{0}};
+    spari_joint_poses(j, pose);
+    spari_kinematics_motion(&j->kinematics, &pose[0], &pose[1], at.z, B);
     spari_joint_count_turns(j, j->after.z, at.z);
     int springs = spari_joint_spring(j, at.z, at.rate, INFINITY, 1, at.load);
-    spari_tie_tangent(&j->tie, &place[0], &place[1], at.load, turning);
+    spari_kinematics_tangent(&j->kinematics, &pose[0], &pose[1], at.load, joint_tangent);
     for (int i = 0; i < 144; i++) {
-        double sum = -0.5 * (turning[i / 12][i % 12] + turning[i % 12][i / 12]);
+        double sum = -0.5 * (joint_tangent[i / 12][i % 12] + joint_tangent[i % 12][i / 12]);
         for (int pq = 0; pq < 36 && springs; pq++) {
             int p = pq / 6, q = pq % 6, off = (given >> p & 1) || (given >> q & 1);
             sum += off ? 0 : j->stiffness[pq] * B[p][i / 12] * B[q][i % 12];
@@ -170,7 +171,7 @@ static void add_hold(double *G, const modal_part *p, const double *S, const doub
     }
 }
 
-static int add_joint_to_modes(tied_modes *t, const spar_joint *j, int64_t *holds) {
+static int add_joint_to_modes(joined_modes *t, const spar_joint *j, int64_t *holds) {
     const modal_part *of[2] = {modal_part_of(t, j->member[0]), modal_part_of(t, j->member[1])};
     double K[12][12], B[6][12], *S[2] = {NULL, NULL};
     if (!of[0] && !of[1]) {
@@ -182,7 +183,7 @@ static int add_joint_to_modes(tied_modes *t, const spar_joint *j, int64_t *holds
     S[0] = block, S[1] = block + 6 * size[0];
     for (int side = 0; side < 2; side++) {
         if (of[side]) {
-            motion_of_node(of[side], j->seat[side], t->room, S[side]);
+            motion_of_node(of[side], j->seat[side], t->workspace, S[side]);
         }
     }
     stiffness_of_joint(j, K, B);
@@ -193,12 +194,12 @@ static int add_joint_to_modes(tied_modes *t, const spar_joint *j, int64_t *holds
         }
     }
     for (int k = 0; k < 6; k++) {
-        for (int side = 0; side < 2 && (spari_joint_given(j) >> k & 1); side++) {
+        for (int side = 0; side < 2 && (spari_joint_constrained(j) >> k & 1); side++) {
             if (of[side]) {
                 add_hold(t->G + t->size * *holds, of[side], S[side], B[k] + 6 * side);
             }
         }
-        *holds += spari_joint_given(j) >> k & 1;
+        *holds += spari_joint_constrained(j) >> k & 1;
     }
     free(block);
     return SPAR_OK;
@@ -206,26 +207,26 @@ static int add_joint_to_modes(tied_modes *t, const spar_joint *j, int64_t *holds
 
 /* ---- assembly of the matrices ---- */
 
-static int alloc_tied_modes(tied_modes *t) {
+static int alloc_joined_modes(joined_modes *t) {
     int64_t most = 0, square = t->size * t->size;
     for (int i = 0; i < t->parts; i++) {
         const spar_member *m = t->part[i].member;
-        int64_t room = 2 * t->part[i].size * t->part[i].size, shape = t->part[i].size + 6 * m->body->unique;
+        int64_t workspace = 2 * t->part[i].size * t->part[i].size, shape = t->part[i].size + 6 * m->body->unique;
         shape += 6 * m->nodes;
-        most = room > most ? room : most;
+        most = workspace > most ? workspace : most;
         most = shape > most ? shape : most;
     }
-    t->room = spari_zalloc(most, sizeof *t->room);
+    t->workspace = spari_zalloc(most, sizeof *t->workspace);
     t->K = spari_zalloc(3 * square + t->holds * t->size, sizeof *t->K);
     t->M = t->K + square, t->Q = t->M + square, t->G = t->Q + square;
-    return t->room && t->K;
+    return t->workspace && t->K;
 }
 
-static int fill_tied_modes(tied_modes *t, const spar_session *s) {
+static int fill_joined_modes(joined_modes *t, const spar_session *s) {
     int64_t holds = 0;
     for (int i = 0; i < t->parts; i++) {
         const modal_part *p = t->part + i;
-        double *K = t->room, *M = K + p->size * p->size;
+        double *K = t->workspace, *M = K + p->size * p->size;
         memset(K, 0, (size_t)(2 * p->size * p->size) * sizeof *K);
         SPARI_TRY(p->member->row->problem(p->member, K, M));
         for (int64_t k = 0; k < p->size * p->size; k++) {
@@ -243,7 +244,7 @@ static int fill_tied_modes(tied_modes *t, const spar_session *s) {
 /* ---- constraints ---- */
 
 /* Scales rows of G to 1, then replaces G^T by Q and R. */
-static int factor_holds(tied_modes *t) {
+static int factor_holds(joined_modes *t) {
     int *order = spari_zalloc(t->holds + 1, sizeof *order), n = (int)t->size;
     if (order && t->holds > 0) {
         t->rank = spari_independent_rows((int)t->holds, n, t->G, dependent_row, order, n, t->Q);
@@ -257,7 +258,7 @@ static int factor_holds(tied_modes *t) {
 }
 
 /* The part of a symmetric A that the holds leave, Q A Q^T by the last rows of Q, into B; half [size][size]: room. */
-static void onto_allowed(const tied_modes *t, const double *A, double *half, double *B) {
+static void onto_allowed(const joined_modes *t, const double *A, double *half, double *B) {
     int n = (int)t->size, left = n - (int)t->rank;
     const double *Q = t->Q + t->size * t->rank;
     SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, left, n, n, 1, Q, n, A, n, 0, half, n));
@@ -271,7 +272,7 @@ static void onto_allowed(const tied_modes *t, const double *A, double *half, dou
 }
 
 /* x [size]: room */
-static void give_shapes(const tied_modes *t, spari_modal *p, const spar_member *m, int64_t n, double *x,
+static void give_shapes(const joined_modes *t, spari_modal *p, const spar_member *m, int64_t n, double *x,
                         double *shapes) {
     const modal_part *own = modal_part_of(t, m);
     int size = (int)t->size;
@@ -279,13 +280,13 @@ static void give_shapes(const tied_modes *t, spari_modal *p, const spar_member *
         const double *mode = spari_modal_mode(p, k);
         SPARI_BLAS(
             cblas_dgemv(CblasRowMajor, CblasTrans, p->size, size, 1, t->Q + t->size * t->rank, size, mode, 1, 0, x, 1));
-        m->row->shape(m, x + own->at, t->room, shapes + 6 * m->nodes * k);
+        m->row->shape(m, x + own->at, t->workspace, shapes + 6 * m->nodes * k);
     }
 }
 
-static int solve_tied_modes(tied_modes *t, spar_member *m, int64_t n, double *frequency, double *shapes) {
+static int solve_joined_modes(joined_modes *t, spar_member *m, int64_t n, double *frequency, double *shapes) {
     spar_session *s = m->session;
-    int status = alloc_tied_modes(t) ? fill_tied_modes(t, s) : SPAR_ERR_MEMORY;
+    int status = alloc_joined_modes(t) ? fill_joined_modes(t, s) : SPAR_ERR_MEMORY;
     status = status == SPAR_OK ? factor_holds(t) : status;
     SPARI_REQUIRE(s, status == SPAR_OK, status, "no memory for the modes of what joints tie to '%s'", m->name);
     int64_t left = t->size - t->rank;
@@ -295,42 +296,42 @@ static int solve_tied_modes(tied_modes *t, spar_member *m, int64_t n, double *fr
         return SPAR_OK;
     }
     spari_modal p = {0};
-    double *room = spari_zalloc(t->size * t->size, sizeof *room);
-    status = spari_modal_alloc(&p, (int)left) && room ? SPAR_OK : SPAR_ERR_MEMORY;
+    double *workspace = spari_zalloc(t->size * t->size, sizeof *workspace);
+    status = spari_modal_alloc(&p, (int)left) && workspace ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
-        onto_allowed(t, t->K, room, p.K);
-        onto_allowed(t, t->M, room, p.M);
+        onto_allowed(t, t->K, workspace, p.K);
+        onto_allowed(t, t->M, workspace, p.M);
         status = spari_modal_solve(&p, m, "what joints tie to", n, frequency);
         if (status == SPAR_OK && shapes) {
-            give_shapes(t, &p, m, n, room, shapes);
+            give_shapes(t, &p, m, n, workspace, shapes);
         }
     } else {
         status = spari_fail(s, status, "no memory for the modes of what joints tie to '%s'", m->name);
     }
-    free(room);
+    free(workspace);
     spari_modal_free(&p);
     return status;
 }
 
 static int modes_of_assembly(spar_member *m, int64_t n, double *frequency, double *shapes) {
-    tied_modes t = {0};
+    joined_modes t = {0};
     SPARI_TRY(spari_joints_place(m->session));
     int status = gather_parts(&t, m);
-    status = status == SPAR_OK ? solve_tied_modes(&t, m, n, frequency, shapes) : status;
-    tied_modes_free(&t);
+    status = status == SPAR_OK ? solve_joined_modes(&t, m, n, frequency, shapes) : status;
+    joined_modes_free(&t);
     return status;
 }
 
 int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_committed(member, __func__));
     spar_session *s = member->session;
     SPARI_TRY(spari_named(s, __func__, spari_modes_need_mass(member)));
     SPARI_REQUIRE(s, n >= 0, SPAR_ERR_ARGUMENT, "%s: '%s': %lld modes", __func__, member->name, (long long)n);
     SPARI_REQUIRE(s, frequency_hz || n == 0, SPAR_ERR_ARGUMENT, "%s: '%s': frequency_hz is NULL", __func__,
                   member->name);
-    int status = spari_member_is_tied(member) ? modes_of_assembly(member, n, frequency_hz, shapes)
-                 : n == 0                     ? SPAR_OK
-                                              : spari_modes_of_member(member, n, frequency_hz, shapes);
+    int status = spari_member_has_joints(member) ? modes_of_assembly(member, n, frequency_hz, shapes)
+                 : n == 0                        ? SPAR_OK
+                                                 : spari_modes_of_member(member, n, frequency_hz, shapes);
     return spari_named(s, __func__, status);
 }

@@ -33,8 +33,8 @@ typedef struct floquet {
     int64_t nodes; /* of all members */
     int modes;
     double amplitude;
-    spari_swing swing;   /* its parts have shapes */
-    double *shape;       /* [modes][nodes][6] */
+    spari_small_motions motions; /* its parts have shapes */
+    double *shape;               /* [modes][nodes][6] */
     double *rate, *unit; /* [modes]: 1/s; of a shape that moves its nodes by one length of their member or one radian */
     double *base;        /* [nodes][13]: motion at the beginning of the period, one step from here */
     double *gram;        /* [modes][modes] products of shapes, factored */
@@ -46,7 +46,7 @@ typedef struct floquet {
 } floquet;
 
 static void floquet_free(floquet *f) {
-    spari_swing_free(&f->swing);
+    spari_small_motions_free(&f->motions);
     free(f->shape);
     free(f->gram);
 }
@@ -68,21 +68,21 @@ static void displace(spar_session *s, const floquet *f, double way, double speed
     for (spar_member *m = s->members; m; m = m->next) {
         const double *own = base + 10;
         for (int64_t i = 0; i < m->nodes; i++, shape += 6, base += NODE) {
-            double turn[3], p[4], along[3], *q = m->now.q + 7 * i, *v = m->now.v + 6 * i;
+            double rotation[3], p[4], along[3], *q = m->now.q + 7 * i, *v = m->now.v + 6 * i;
             for (int k = 0; k < 3; k++) {
-                turn[k] = way * shape[3 + k];
+                rotation[k] = way * shape[3 + k];
                 along[k] = way * shape[k];
                 q[k] += along[k];
                 v[3 + k] += speed * shape[3 + k];
             }
-            spari_quat_exp(turn, p);
+            spari_quat_exp(rotation, p);
             spari_quat_mul(p, q + 3, q + 3);
-            spari_cross(own, along, turn);
+            spari_cross(own, along, rotation);
             for (int k = 0; k < 3; k++) {
-                v[k] += speed * shape[k] + turn[k];
+                v[k] += speed * shape[k] + rotation[k];
             }
         }
-        if (spari_swing_part(&f->swing, m)) {
+        if (spari_small_motions_part(&f->motions, m)) {
             spari_member_restart(m);
         }
     }
@@ -90,9 +90,9 @@ static void displace(spar_session *s, const floquet *f, double way, double speed
 
 /* Change of a node since the beginning: displacement, rotation, and their velocities, in these axes. */
 static void look_at_change(const double *base, const double own[3], const double *q, const double *v, double x[12]) {
-    double turn[4], carried[3];
-    spari_quat_between(base + 3, q + 3, turn);
-    spari_quat_log(turn, x + 3);
+    double rotation[4], carried[3];
+    spari_quat_between(base + 3, q + 3, rotation);
+    spari_quat_log(rotation, x + 3);
     for (int k = 0; k < 3; k++) {
         x[k] = q[k] - base[k];
     }
@@ -125,7 +125,7 @@ static void look_at_state(const spar_session *s, floquet *f, double *row) {
                 row[k] += product_at(length, shape, x);
                 row[n + k] += product_at(length, shape, x + 6);
             }
-            if (spari_swing_part(&f->swing, m)) {
+            if (spari_small_motions_part(&f->motions, m)) {
                 f->drift = fmax(f->drift, fmax(spari_norm(x) / length, spari_norm(x + 3)));
                 f->drift = fmax(f->drift, radian * fmax(spari_norm(x + 6) / length, spari_norm(x + 9)));
             }
@@ -150,7 +150,7 @@ static int run_period(spar_session *s, void *self) {
     s->started = 0;
     SPARI_TRY(spar_session_start(s, run->dt, run->solve, run->context, &iterations));
     for (int64_t i = 0; i <= f->steps; i++) {
-        SPARI_TRY(spari_lend_before(s, run->before, run->dt, run->context));
+        SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->context));
         SPARI_TRY(spar_step(s, run->dt, run->solve, run->context, &iterations));
         if (i == 0 && f->mode < 0) {
             keep_motion(s, f->base);
@@ -164,20 +164,20 @@ static int run_period(spar_session *s, void *self) {
 
 /* ---- all trials ---- */
 
-static int try_period(spar_session *s, floquet *f, const spari_wish *wish, int done) {
+static int try_period(spar_session *s, floquet *f, const spari_trial_settings *trial_settings, int done) {
     spari_record none;
     spari_run run = f->run;
     run.instead = run_period;
     run.of = f;
     SPARI_TRY(spari_progress_tell(s, run.progress, done, 4 * f->modes + 1));
-    (void)spari_trial_run(s, &run, wish, &none);
+    (void)spari_trial_run(s, &run, trial_settings, &none);
     return none.own;
 }
 
-static int find_columns_of_map(spar_session *s, floquet *f, const spari_wish *wish) {
+static int find_columns_of_map(spar_session *s, floquet *f, const spari_trial_settings *trial_settings) {
     int n = f->modes, done = 0;
     f->mode = -1;
-    SPARI_TRY(try_period(s, f, wish, done++));
+    SPARI_TRY(try_period(s, f, trial_settings, done++));
     SPARI_REQUIRE(s, f->drift <= periodic, SPAR_ERR_STATE,
                   "the state is not periodic with %lld steps of %g s: after them it is %.2g of a member's length, or "
                   "rad, from where it was; let the run go on until it repeats, or give the whole of its period",
@@ -187,7 +187,7 @@ static int find_columns_of_map(spar_session *s, floquet *f, const spari_wish *wi
         f->kind = column / n;
         for (int side = 0; side < 2; side++) {
             f->size = (side ? -1 : 1) * f->amplitude * f->unit[f->mode];
-            SPARI_TRY(try_period(s, f, wish, done++));
+            SPARI_TRY(try_period(s, f, trial_settings, done++));
             for (int end = 0; end < 2; end++) {
                 for (int i = 0; i < 2 * n; i++) {
                     f->Y[end][end ? 2 * n * i + column : 2 * n * column + i] +=
@@ -226,18 +226,19 @@ static int solve_map(floquet *f, double complex *z, int *count) {
 static int find_shapes_of_period(spar_session *s, floquet *f) {
     int n = f->modes;
     SPARI_TRY(spari_joints_place(s));
-    SPARI_TRY(spari_swing_create_loose(&f->swing, s));
-    SPARI_REQUIRE(s, f->swing.parts > 0, SPAR_ERR_UNSUPPORTED, "there is no member that spar solves for");
-    SPARI_REQUIRE(s, n <= f->swing.size, SPAR_ERR_ARGUMENT, "%d modes; there are %d unknowns", n, f->swing.size);
+    SPARI_TRY(spari_small_motions_create_loose(&f->motions, s));
+    SPARI_REQUIRE(s, f->motions.parts > 0, SPAR_ERR_UNSUPPORTED, "there is no member that spar solves for");
+    SPARI_REQUIRE(s, n <= f->motions.size, SPAR_ERR_ARGUMENT, "%d modes; there are %d unknowns", n, f->motions.size);
     int64_t square = (int64_t)n * n;
-    f->shape = spari_zalloc(6 * n * f->nodes + 2 * n + NODE * f->nodes + (int64_t)n * f->swing.size, sizeof *f->shape);
+    f->shape =
+        spari_zalloc(6 * n * f->nodes + 2 * n + NODE * f->nodes + (int64_t)n * f->motions.size, sizeof *f->shape);
     f->gram = spari_zalloc(9 * square + 4 * n, sizeof *f->gram);
     SPARI_REQUIRE(s, f->shape && f->gram, SPAR_ERR_MEMORY, "no memory for %d modes", n);
     f->Y[0] = f->gram + square, f->Y[1] = f->Y[0] + 4 * square, f->change = f->Y[1] + 4 * square;
     f->rate = f->shape + 6 * n * f->nodes, f->unit = f->rate + n, f->base = f->unit + n;
     double *x = f->base + NODE * f->nodes;
-    SPARI_TRY(spari_shapes_find(&f->swing, n, x, f->rate));
-    spari_shapes_show(&f->swing, n, x, f->shape);
+    SPARI_TRY(spari_shapes_find(&f->motions, n, x, f->rate));
+    spari_shapes_show(&f->motions, n, x, f->shape);
     keep_motion(s, f->base);
     return SPAR_OK;
 }
@@ -284,11 +285,11 @@ static int solve_floquet(spar_session *s, floquet *f, int64_t n, double *eigenva
     int status = find_shapes_of_period(s, f);
     status = status == SPAR_OK ? weigh_shapes(s, f) : status;
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
-    spari_wish wish = {.member = NULL};
-    status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
+    spari_trial_settings trial_settings = {.member = NULL};
+    status = status == SPAR_OK ? spari_trial_settings_create(s, &trial_settings) : status;
     if (status == SPAR_OK) {
-        status = find_columns_of_map(s, f, &wish);
-        spari_wish_free(&wish);
+        status = find_columns_of_map(s, f, &trial_settings);
+        spari_trial_settings_free(&trial_settings);
     }
     if (status == SPAR_OK) {
         status = find_multipliers(s, f, n, eigenvalue);
@@ -317,7 +318,7 @@ static int check_floquet(spar_session *s, const floquet *f, int64_t modes, int64
 int spar_session_solve_floquet(spar_session *session, double dt, int64_t steps, double amplitude,
                                spar_before_step before, spar_fluid_solver solve, void *context, int64_t modes,
                                int64_t n, double *eigenvalue) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     spari_progress progress = spari_progress_of(s, __func__);
@@ -327,16 +328,16 @@ int spar_session_solve_floquet(spar_session *session, double dt, int64_t steps, 
     f.run.progress = &progress;
     f.amplitude = amplitude == 0 ? usual_amplitude : amplitude;
     f.nodes = spari_shapes_nodes(s);
-    const spari_alike alike[] = {spari_real("dt", dt),
-                                 spari_whole("steps", steps),
-                                 spari_real("amplitude", amplitude),
-                                 spari_given("before", before != NULL),
-                                 spari_given("solve", solve != NULL),
-                                 spari_given("progress call", progress.tell != NULL),
-                                 spari_whole("modes", modes),
-                                 spari_whole("n", n)};
+    const spari_agreed must_agree[] = {spari_real("dt", dt),
+                                       spari_whole("steps", steps),
+                                       spari_real("amplitude", amplitude),
+                                       spari_given("before", before != NULL),
+                                       spari_given("solve", solve != NULL),
+                                       spari_given("progress call", progress.tell != NULL),
+                                       spari_whole("modes", modes),
+                                       spari_whole("n", n)};
     int status = check_floquet(s, &f, modes, n, eigenvalue);
-    SPARI_TRY(spari_enter_alike(s, __func__, alike, sizeof alike / sizeof *alike, status));
+    SPARI_TRY(spari_enter_agreed(s, __func__, must_agree, sizeof must_agree / sizeof *must_agree, status));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
     status = solve_floquet(s, &f, n, eigenvalue);

@@ -16,29 +16,29 @@ static const double same_loads = 1e-3;
 /* Loads below this, relative to the structure's forces in a trial, count as zero. */
 static const double no_load = 1e-6;
 
-void spari_answer_free(spari_answer *answer) {
-    free(answer->load);
-    answer->load = NULL;
+void spari_fluid_response_free(spari_fluid_response *response) {
+    free(response->load);
+    response->load = NULL;
 }
 
 /* Amplitude, velocity and acceleration along a shape. */
-typedef struct answer_law {
+typedef struct response_law {
     double x, v, a;
-} answer_law;
+} response_law;
 
 /* One trial. */
-typedef struct answer_trial {
-    const spari_answer_ask *ask;
+typedef struct response_trial {
+    const spari_response_query *ask;
     const char *call;
     const double *base; /* [nodes][13]: displacement, quaternion, velocity, angular velocity at the beginning */
-    const spari_answer *answer;
+    const spari_fluid_response *response;
     int mode, kind; /* kind: without memory 0: displacement, 1: velocity, 2: acceleration */
     double size;    /* amplitude of the motion, signed */
     double *load;   /* [count][modes], out */
     double *scale;  /* [modes] sums of the sizes of the loads' parts: maximum of all trials so far, */
     double *left;   /* and the difference between the loads without motion and those in use */
     int done, all;  /* trials made, and in total */
-} answer_trial;
+} response_trial;
 
 /* ---- motion ---- */
 
@@ -57,15 +57,15 @@ static void turn_on(const double w[3], double t, const double v[3], double q[4],
 
 /* Position of a node after steady motion for t. own: angular velocity of its member. */
 static void move_steadily(const double *base, const double own[3], double t, double q[7], double v[6], double a[6]) {
-    double turn[4], way[3];
-    turn_on(own, t, base + 7, turn, way);
+    double rotation[4], way[3];
+    turn_on(own, t, base + 7, rotation, way);
     for (int k = 0; k < 3; k++) {
         q[k] = base[k] + way[k];
         a[3 + k] = 0;
     }
-    spari_quat_mul(turn, base + 3, q + 3);
-    spari_rotate(turn, base + 7, v);
-    spari_rotate(turn, base + 10, v + 3);
+    spari_quat_mul(rotation, base + 3, q + 3);
+    spari_rotate(rotation, base + 7, v);
+    spari_rotate(rotation, base + 10, v + 3);
     spari_cross(own, v, a);
 }
 
@@ -80,7 +80,7 @@ static void add_cross(double f, const double a[3], const double b[3], double c[3
 
 /* Adds motion along a shape, (W1) and (W2) of docs/theory.md, in the axes of the frame at t. frame: its rotation; w:
    its angular velocity; s: that of the member relative to it. */
-static void add_motion(const double shape[6], answer_law at, const double frame[4], const double w[3],
+static void add_motion(const double shape[6], response_law at, const double frame[4], const double w[3],
                        const double s[3], double q[7], double v[6], double a[6]) {
     double d[3][6] = {{0}}, once[3], turned[4], old[4], ws[3] = {w[0] - s[0], w[1] - s[1], w[2] - s[2]};
     for (int k = 0; k < 6; k++) {
@@ -111,13 +111,13 @@ static void add_motion(const double shape[6], answer_law at, const double frame[
 }
 
 /* Places all members at time t, with their mode at `law`. */
-static void place_members(spar_session *s, const answer_trial *of, double t, answer_law law, int after) {
-    const spari_swing *w = of->ask->swing;
+static void place_members(spar_session *s, const response_trial *of, double t, response_law law, int after) {
+    const spari_small_motions *w = of->ask->motions;
     const double zero[3] = {0, 0, 0}, *base = of->base, *shape = of->ask->shape + 6 * of->ask->nodes * of->mode;
     double frame[4], way[3];
     turn_on(w->w, t, zero, frame, way);
     for (spar_member *m = s->members; m; m = m->next) {
-        const swing_part *part = spari_swing_part(w, m);
+        const spari_motion_part *part = spari_small_motions_part(w, m);
         const spari_motion *to = after ? &m->after : &m->now;
         double own[3], seen[3];
         memcpy(own, base + 10, sizeof own);
@@ -137,8 +137,8 @@ static void place_members(spar_session *s, const answer_trial *of, double t, ans
 /* ---- loads ---- */
 
 /* Generalised loads on all shapes at t, and the sizes of their parts. */
-static void see_loads(const spar_session *s, const spari_answer_ask *ask, double t, double *load, double *scale) {
-    const spari_swing *w = ask->swing;
+static void see_loads(const spar_session *s, const spari_response_query *ask, double t, double *load, double *scale) {
+    const spari_small_motions *w = ask->motions;
     const double zero[3] = {0, 0, 0};
     double frame[4], way[3];
     turn_on(w->w, t, zero, frame, way);
@@ -158,33 +158,33 @@ static void see_loads(const spar_session *s, const spari_answer_ask *ask, double
     }
 }
 
-static answer_law bell(int64_t sample) {
+static response_law bell(int64_t sample) {
     double u = ((double)sample - SPARI_PULSE_MIDDLE) / bell_width, x = exp(-0.5 * u * u);
-    return fabs(u) < 8 ? (answer_law){x, -u / bell_width * x, (u * u - 1) / (bell_width * bell_width) * x}
-                       : (answer_law){0, 0, 0};
+    return fabs(u) < 8 ? (response_law){x, -u / bell_width * x, (u * u - 1) / (bell_width * bell_width) * x}
+                       : (response_law){0, 0, 0};
 }
 
 /* Motion at the end of a step, or at its beginning (before = 1). */
-static answer_law law_of(const answer_trial *of, int64_t sample, int before) {
+static response_law law_of(const response_trial *of, int64_t sample, int before) {
     double dt = of->ask->run.dt, rate = of->ask->rate[of->mode], size = of->size;
     if (of->ask->memory > 0) {
-        answer_law at = bell(sample - before);
-        return (answer_law){size * at.x, size * at.v / dt, size * at.a / (dt * dt)};
+        response_law at = bell(sample - before);
+        return (response_law){size * at.x, size * at.v / dt, size * at.a / (dt * dt)};
     }
     double v = of->kind == 1 ? size * rate : 0, a = of->kind == 2 ? size * rate * rate : 0, t = before ? -dt : 0;
-    return (answer_law){(of->kind == 0 ? size : 0) + v * t + 0.5 * a * t * t, v + a * t, a};
+    return (response_law){(of->kind == 0 ? size : 0) + v * t + 0.5 * a * t * t, v + a * t, a};
 }
 
 /* The trial itself. */
 static int move_there(spar_session *s, void *self) {
-    const answer_trial *of = self;
-    const spari_answer_ask *ask = of->ask;
-    int64_t steps = ask->memory > 0 ? of->answer->count : 1;
+    const response_trial *of = self;
+    const spari_response_query *ask = of->ask;
+    int64_t steps = ask->memory > 0 ? of->response->count : 1;
     place_members(s, of, 0, law_of(of, 0, 1), 0);
     place_members(s, of, 0, law_of(of, 0, 1), 1);
     for (int64_t i = 0; i < steps; i++) {
         double t = ask->run.dt * (double)(i + 1);
-        SPARI_TRY(spari_lend_before(s, ask->run.before, ask->run.dt, ask->run.context));
+        SPARI_TRY(spari_callback_before_step(s, ask->run.before, ask->run.dt, ask->run.context));
         place_members(s, of, t, law_of(of, i, 0), 1);
         SPARI_TRY(spari_forced_step(s, of->call, ask->run.dt, ask->run.solve, ask->run.context));
         see_loads(s, ask, t, of->load + ask->modes * i, of->scale);
@@ -196,10 +196,10 @@ static int move_there(spar_session *s, void *self) {
 
 /* Half the difference of two trials, divided by the unit of their motion, into column `mode`. Their mean is the load
    without motion. */
-static void take_trials(const spari_answer_ask *ask, const answer_trial *of, const double *in_use, const double *plus,
-                        const double *minus, double unit, double *to) {
+static void take_trials(const spari_response_query *ask, const response_trial *of, const double *in_use,
+                        const double *plus, const double *minus, double unit, double *to) {
     int n = ask->modes;
-    int64_t steps = ask->memory > 0 ? of->answer->count : 1;
+    int64_t steps = ask->memory > 0 ? of->response->count : 1;
     for (int64_t k = 0; k < steps; k++) {
         for (int i = 0; i < n; i++) {
             double mean = 0.5 * (plus[n * k + i] + minus[n * k + i]);
@@ -210,7 +210,7 @@ static void take_trials(const spari_answer_ask *ask, const answer_trial *of, con
 }
 
 /* Amplitude of the shape that moves its nodes by one member length, or one radian. */
-static double unit_of(const spar_session *s, const spari_answer_ask *ask, int mode) {
+static double unit_of(const spar_session *s, const spari_response_query *ask, int mode) {
     const double *shape = ask->shape + 6 * ask->nodes * mode;
     double most = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -222,9 +222,9 @@ static double unit_of(const spar_session *s, const spari_answer_ask *ask, int mo
 }
 
 /* Both trials of a mode and kind. room [2][count][modes], scale [modes]. */
-static int try_mode(spar_session *s, answer_trial *of, const spari_wish *wish, const double *in_use, double *room,
-                    double *to) {
-    const spari_answer_ask *ask = of->ask;
+static int try_mode(spar_session *s, response_trial *of, const spari_trial_settings *trial_settings,
+                    const double *in_use, double *workspace, double *to) {
+    const spari_response_query *ask = of->ask;
     double size = ask->amplitude * unit_of(s, ask, of->mode);
     double unit = ask->memory > 0 || of->kind == 0 ? size : size * pow(ask->rate[of->mode], of->kind);
     spari_run run = ask->run;
@@ -234,12 +234,12 @@ static int try_mode(spar_session *s, answer_trial *of, const spari_wish *wish, c
     for (int side = 0; side < 2; side++) {
         spari_record none;
         of->size = side ? -size : size;
-        of->load = room + side * of->answer->count * ask->modes;
+        of->load = workspace + side * of->response->count * ask->modes;
         SPARI_TRY(spari_progress_tell(s, run.progress, of->done++, of->all));
-        (void)spari_trial_run(s, &run, wish, &none);
+        (void)spari_trial_run(s, &run, trial_settings, &none);
         SPARI_TRY(none.own);
     }
-    take_trials(ask, of, in_use, room, room + of->answer->count * ask->modes, unit, to);
+    take_trials(ask, of, in_use, workspace, workspace + of->response->count * ask->modes, unit, to);
     return SPAR_OK;
 }
 
@@ -252,11 +252,12 @@ static void keep_base(const spar_session *s, double *base) {
     }
 }
 
-static int run_trials(spar_session *s, const char *call, const spari_answer_ask *ask, const spari_wish *wish,
-                      spari_answer *answer, double *room) {
+static int run_trials(spar_session *s, const char *call, const spari_response_query *ask,
+                      const spari_trial_settings *trial_settings, spari_fluid_response *response, double *workspace) {
     int n = ask->modes;
-    double *base = room, *in_use = base + 13 * ask->nodes, *scale = in_use + n, *left = scale + n, *both = left + n;
-    answer_trial of = {.ask = ask, .call = call, .base = base, .answer = answer, .scale = scale, .left = left};
+    double *base = workspace, *in_use = base + 13 * ask->nodes, *scale = in_use + n, *left = scale + n,
+           *both = left + n;
+    response_trial of = {.ask = ask, .call = call, .base = base, .response = response, .scale = scale, .left = left};
     double worst = 0;
     int kinds = ask->memory > 0 ? 1 : 3;
     of.all = 2 * kinds * n;
@@ -264,8 +265,8 @@ static int run_trials(spar_session *s, const char *call, const spari_answer_ask 
     see_loads(s, ask, 0, in_use, scale);
     for (of.mode = 0; of.mode < n; of.mode++) {
         for (of.kind = 0; of.kind < kinds; of.kind++) {
-            double *to = answer->load + (int64_t)n * n * of.kind;
-            SPARI_TRY(try_mode(s, &of, wish, in_use, both, to));
+            double *to = response->load + (int64_t)n * n * of.kind;
+            SPARI_TRY(try_mode(s, &of, trial_settings, in_use, both, to));
         }
     }
     for (int i = 0; i < n; i++) {
@@ -279,24 +280,26 @@ static int run_trials(spar_session *s, const char *call, const spari_answer_ask 
     return SPAR_OK;
 }
 
-int spari_answer_find(spar_session *s, const char *call, const spari_answer_ask *ask, spari_answer *answer) {
+int spari_fluid_response_find(spar_session *s, const char *call, const spari_response_query *ask,
+                              spari_fluid_response *response) {
     int64_t n = ask->modes;
-    *answer = (spari_answer){.count = ask->memory > 0 ? SPARI_PULSE + ask->memory : 3};
+    *response = (spari_fluid_response){.count = ask->memory > 0 ? SPARI_PULSE + ask->memory : 3};
     for (int k = 0; k < SPARI_PULSE; k++) {
-        answer_law at = bell(k);
-        answer->x[k] = at.x, answer->v[k] = at.v / ask->run.dt, answer->a[k] = at.a / (ask->run.dt * ask->run.dt);
+        response_law at = bell(k);
+        response->x[k] = at.x, response->v[k] = at.v / ask->run.dt, response->a[k] = at.a / (ask->run.dt * ask->run.dt);
     }
-    answer->load = spari_zalloc(answer->count * n * n, sizeof *answer->load);
-    double *room = spari_zalloc(13 * ask->nodes + 3 * n + 2 * answer->count * n, sizeof *room);
-    int status = answer->load && room ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the fluid's answer");
+    response->load = spari_zalloc(response->count * n * n, sizeof *response->load);
+    double *workspace = spari_zalloc(13 * ask->nodes + 3 * n + 2 * response->count * n, sizeof *workspace);
+    int status =
+        response->load && workspace ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the fluid's answer");
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
-    spari_wish wish = {.member = NULL};
-    status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
+    spari_trial_settings trial_settings = {.member = NULL};
+    status = status == SPAR_OK ? spari_trial_settings_create(s, &trial_settings) : status;
     if (status == SPAR_OK) {
-        SPARI_VARY(wish.setting, substeps, 1);
-        status = run_trials(s, call, ask, &wish, answer, room);
-        spari_wish_free(&wish);
+        SPARI_VARY(trial_settings.setting, substeps, 1);
+        status = run_trials(s, call, ask, &trial_settings, response, workspace);
+        spari_trial_settings_free(&trial_settings);
     }
-    free(room);
+    free(workspace);
     return status;
 }

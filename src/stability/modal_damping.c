@@ -200,7 +200,7 @@ static int check_pair(const spar_member *m, const int64_t mode[2], const double 
 }
 
 int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const double ratio[2], double mu[6]) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *s = beam->session;
     double found[6];
@@ -216,10 +216,10 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
         memcpy(body->gravity, beam->body->gravity, sizeof body->gravity);
     }
     int given = mode && ratio;
-    const spari_alike alike[] = {
+    const spari_agreed must_agree[] = {
         spari_whole("mode[0]", given ? mode[0] : 0), spari_whole("mode[1]", given ? mode[1] : 0),
         spari_real("ratio[0]", given ? ratio[0] : 0), spari_real("ratio[1]", given ? ratio[1] : 0)};
-    status = spari_member_enter(beam, __func__, alike, 4, status);
+    status = spari_member_enter(beam, __func__, must_agree, 4, status);
     if (status != SPAR_OK) {
         spari_body_free(body);
         return spari_named(s, __func__, status);

@@ -140,18 +140,18 @@ static int check_count(const spar_member *m, int64_t n, int64_t free_unknowns) {
 }
 
 static int find_modes(const spar_member *m, int64_t n, spari_modal *p, double *frequency, double *shapes) {
-    double *room = spari_zalloc(6 * (int64_t)m->body->unique, sizeof *room);
+    double *workspace = spari_zalloc(6 * (int64_t)m->body->unique, sizeof *workspace);
     int status =
-        room && spari_modal_alloc(p, (int)m->row->unknowns(m)) ? m->row->problem(m, p->K, p->M) : SPAR_ERR_MEMORY;
+        workspace && spari_modal_alloc(p, (int)m->row->unknowns(m)) ? m->row->problem(m, p->K, p->M) : SPAR_ERR_MEMORY;
     if (status != SPAR_OK) {
-        free(room);
+        free(workspace);
         return spari_fail(m->session, status, "no memory for the modes of '%s'", m->name);
     }
     status = spari_modal_solve(p, m, "member", n, frequency);
     for (int64_t k = 0; k < n && shapes && status == SPAR_OK; k++) {
-        m->row->shape(m, spari_modal_mode(p, k), room, shapes + 6 * m->nodes * k);
+        m->row->shape(m, spari_modal_mode(p, k), workspace, shapes + 6 * m->nodes * k);
     }
-    free(room);
+    free(workspace);
     return status;
 }
 

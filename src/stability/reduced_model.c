@@ -33,7 +33,7 @@ int spari_reduced_create(spari_reduced *r) {
 void spari_reduced_free(spari_reduced *r) {
     free(r->M);
     r->M = NULL;
-    spari_answer_free(&r->answer);
+    spari_fluid_response_free(&r->response);
     spari_decay_free(&r->tail);
 }
 
@@ -43,13 +43,13 @@ void spari_reduced_free(spari_reduced *r) {
 static double complex transform(const spari_reduced *r, double complex s) {
     double complex sum = 0, back = cexp(-s * r->dt), factor = cexp(s * r->dt * SPARI_PULSE_MIDDLE);
     for (int k = 0; k < SPARI_PULSE; k++, factor *= back) {
-        sum += r->answer.x[k] * factor;
+        sum += r->response.x[k] * factor;
     }
     return sum;
 }
 
 /* A(s) [n][n] */
-static void find_answer(const spari_reduced *r, double complex s, double complex *A) {
+static void find_response(const spari_reduced *r, double complex s, double complex *A) {
     int size = r->n * r->n;
     double complex back = cexp(-s * r->dt), factor = cexp(s * r->dt * SPARI_PULSE_MIDDLE), pulse = transform(r, s);
     if (r->memory == 0) {
@@ -60,7 +60,7 @@ static void find_answer(const spari_reduced *r, double complex s, double complex
     }
     memset(A, 0, (size_t)size * sizeof *A);
     for (int k = 0; k < SPARI_PULSE; k++, factor *= back) {
-        const double *load = r->answer.load + (int64_t)size * k;
+        const double *load = r->response.load + (int64_t)size * k;
         for (int i = 0; i < size; i++) {
             A[i] += load[i] * factor / pulse;
         }
@@ -94,13 +94,13 @@ static int find_poles(const spari_reduced *r, reduced_pole *pole) {
 }
 
 /* Approximates A(i w) beside the poles by a0 - w^2 a2 + i w a1, by least squares. */
-static void fit_answer(spari_reduced *r, int poles, const reduced_pole *pole, double complex *A) {
+static void fit_response(spari_reduced *r, int poles, const reduced_pole *pole, double complex *A) {
     double top = fmin(fmax(1.5 * r->fastest, 0.1 / r->dt), shown / r->dt), s0 = 0, s2 = 0, s4 = 0;
     int n = r->n, size = n * n;
     double *const *a = r->A;
     for (int j = 0; j < NEAREST; j++) {
         double w = top * j / (NEAREST - 1), u = w / top;
-        find_answer(r, CMPLX(0, w), A);
+        find_response(r, CMPLX(0, w), A);
         s0 += 1, s2 += u * u, s4 += u * u * u * u;
         for (int i = 0; i < size; i++) {
             double complex left = A[i];
@@ -123,25 +123,25 @@ static void fit_answer(spari_reduced *r, int poles, const reduced_pole *pole, do
 }
 
 int spari_reduced_prepare(spari_reduced *r) {
-    int64_t size = (int64_t)r->n * r->n, count = r->answer.count;
+    int64_t size = (int64_t)r->n * r->n, count = r->response.count;
     double most = 0;
     for (int64_t i = 0; i < count * size; i++) {
-        most = fmax(most, fabs(r->answer.load[i]));
+        most = fmax(most, fabs(r->response.load[i]));
     }
     if (r->memory == 0) {
         for (int k = 0; k < 3; k++) {
-            memcpy(r->A[k], r->answer.load + size * k, (size_t)size * sizeof(double));
+            memcpy(r->A[k], r->response.load + size * k, (size_t)size * sizeof(double));
         }
         return isfinite(most) ? SPAR_OK : SPAR_ERR_NUMERIC;
     }
-    const double *tail = r->answer.load + size * SPARI_PULSE;
+    const double *tail = r->response.load + size * SPARI_PULSE;
     SPARI_TRY(spari_decay_fit(r->n, r->memory, tail, 1e-8 * most, &r->tail));
     r->misfit = most > 0 ? r->tail.misfit * r->tail.largest / most : 0;
     double complex *A = spari_zalloc(size, sizeof *A);
     reduced_pole *pole = spari_zalloc(r->tail.order, sizeof *pole);
     int status = A && pole ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
-        fit_answer(r, find_poles(r, pole), pole, A);
+        fit_response(r, find_poles(r, pole), pole, A);
     }
     free(A);
     free(pole);
@@ -161,7 +161,7 @@ typedef struct reduced_root {
 typedef struct reduced_work {
     int n, N, roots;
     reduced_pole *pole;
-    double complex *S, *Q, *room;      /* [N][N] twice, [4 N] */
+    double complex *S, *Q, *workspace; /* [N][N] twice, [4 N] */
     double complex *T, *D, *X, *Y, *w; /* [n][n] four times, [4 n] */
     double complex *x;                 /* [N][n] */
     reduced_root *root;                /* [N] */
@@ -186,7 +186,7 @@ static int work_create(reduced_work *w, const spari_reduced *r) {
     if (!w->pole || !w->S || !w->T || !w->root) {
         return SPAR_ERR_MEMORY;
     }
-    w->Q = w->S + N * N, w->room = w->Q + N * N, w->x = w->room + 4 * N;
+    w->Q = w->S + N * N, w->workspace = w->Q + N * N, w->x = w->workspace + 4 * N;
     w->D = w->T + n * n, w->X = w->D + n * n, w->Y = w->X + n * n, w->w = w->Y + n * n;
     return SPAR_OK;
 }
@@ -226,7 +226,7 @@ static int form_matrix(const spari_reduced *r, reduced_work *w, double unit) {
 static int find_starts(const spari_reduced *r, reduced_work *w) {
     double unit = r->fastest;
     int n = r->n, N = w->N;
-    if (form_matrix(r, w, unit) || spari_schur(N, w->S, w->Q, 0, w->room)) {
+    if (form_matrix(r, w, unit) || spari_schur(N, w->S, w->Q, 0, w->workspace)) {
         return SPAR_ERR_NUMERIC;
     }
     for (int k = 0; k < N; k++) {
@@ -236,8 +236,8 @@ static int find_starts(const spari_reduced *r, reduced_work *w) {
         }
         reduced_root *root = w->root + w->roots;
         *root = (reduced_root){.s = s, .begun = s, .x = w->x + n * w->roots++};
-        spari_schur_vector(N, w->S, w->Q, k, w->room, w->room + N);
-        memcpy(root->x, w->room, (size_t)n * sizeof *root->x);
+        spari_schur_vector(N, w->S, w->Q, k, w->workspace, w->workspace + N);
+        memcpy(root->x, w->workspace, (size_t)n * sizeof *root->x);
     }
     return SPAR_OK;
 }
@@ -246,12 +246,12 @@ static int find_starts(const spari_reduced *r, reduced_work *w) {
 static void find_matrix(const spari_reduced *r, const reduced_work *w, double complex s) {
     int size = r->n * r->n;
     double step = 1e-5 * (cabs(s) + 1e-3 * r->fastest);
-    find_answer(r, s + step, w->X);
-    find_answer(r, s - step, w->Y);
+    find_response(r, s + step, w->X);
+    find_response(r, s - step, w->Y);
     for (int i = 0; i < size; i++) {
         w->D[i] = 2 * s * r->M[i] + r->C[i] - (w->X[i] - w->Y[i]) / (2 * step);
     }
-    find_answer(r, s, w->X);
+    find_response(r, s, w->X);
     for (int i = 0; i < size; i++) {
         w->T[i] = s * (s * r->M[i] + r->C[i]) + r->K[i] - w->X[i];
     }
@@ -268,8 +268,8 @@ static int bring_nearer(const spari_reduced *r, const reduced_work *w, reduced_r
             return 1;
         }
         int best = 0;
-        for (int rank = 0, taken = -1; rank <= copy; rank++, taken = best) {
-            double least = INFINITY, beyond = taken >= 0 ? cabs(w->T[(n + 1) * taken]) : -1;
+        for (int rank = 0, reached = -1; rank <= copy; rank++, reached = best) {
+            double least = INFINITY, beyond = reached >= 0 ? cabs(w->T[(n + 1) * reached]) : -1;
             for (int k = 0; k < n; k++) {
                 double size = cabs(w->T[(n + 1) * k]);
                 if (size < least && size > beyond) {
@@ -318,7 +318,7 @@ static int is_of_structure(const spari_reduced *r, const reduced_work *w, const 
 
 /* Refines in the order of distance from the shift, until no other can be among the n nearest. */
 static void bring_all_nearer(const spari_reduced *r, reduced_work *w, int n) {
-    double slack = 1 / (r->dt * (double)(r->answer.count + 1));
+    double slack = 1 / (r->dt * (double)(r->response.count + 1));
     for (int k = 0, enough = 0; k < w->roots; k++) {
         reduced_root *root = w->root + k;
         int copy = 0, known = 0;

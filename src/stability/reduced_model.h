@@ -1,6 +1,6 @@
 /* Eigenvalues of structure and fluid in a few shapes: (s^2 M + s C + K - A(s)) x = 0, A the response of the fluid. */
-#ifndef SPARI_REDUCED_H
-#define SPARI_REDUCED_H
+#ifndef SPARI_REDUCED_MODEL_H
+#define SPARI_REDUCED_MODEL_H
 
 #include "../algebra/prony.h"
 #include "fluid_response.h"
@@ -12,7 +12,7 @@ typedef struct spari_reduced {
     double *M, *C, *K; /* [n][n] */
     double *A[3];      /* [n][n] response to displacement, velocity and acceleration: exact, or the closest fit */
     double fastest;    /* largest rate of the shapes, 1/s */
-    spari_answer answer;
+    spari_fluid_response response;
     spari_decay tail; /* memory > 0: decay of the loads after the motion has ended, */
     double misfit;    /* and its deviation from the loads, relative to the largest */
 } spari_reduced;

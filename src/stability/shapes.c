@@ -42,8 +42,8 @@ static int symmetric_part(const spari_pencil *p, double more, spari_pencil *to) 
         spari_pencil_put(to, (spari_pencil_entry){e->row, e->column, k, 0, m});
         spari_pencil_put(to, (spari_pencil_entry){e->column, e->row, k, 0, m});
     }
-    for (int64_t i = 0; i < p->ties; i++) {
-        spari_pencil_hold_at(to, p->tie[i]);
+    for (int64_t i = 0; i < p->rows_held; i++) {
+        spari_pencil_hold_at(to, p->row_held[i]);
     }
     return to->full ? SPAR_ERR_MEMORY : SPAR_OK;
 }
@@ -51,9 +51,9 @@ static int symmetric_part(const spari_pencil *p, double more, spari_pencil *to) 
 /* Orthogonalises x, or its imaginary part, against the `count` existing shapes; appends the rest if it is not zero.
    room [2 n] */
 static int add_shape(const spari_pencil *p, const double complex *x, int imaginary, int count, double *shape,
-                     double *room) {
+                     double *workspace) {
     int n = p->n;
-    double *at = shape + (int64_t)n * count, *Mx = room;
+    double *at = shape + (int64_t)n * count, *Mx = workspace;
     for (int i = 0; i < n; i++) {
         at[i] = imaginary ? cimag(x[i]) : creal(x[i]);
     }
@@ -96,8 +96,8 @@ static double some_stiffness(const spari_pencil *p, double *diagonal) {
 /* `modes` shapes of unit mass [modes][size] and their rates; *count: their number. A shape with negative omega^2, as
    in rotation beyond the frequency of a support, has two eigenvalues that count, so more are requested. value: room
    for 2 modes, and as many vectors. */
-static int search_shapes(const spari_swing *w, int modes, double more, double complex *value, double *shape,
-                         double *rate, double *room, int *count) {
+static int search_shapes(const spari_small_motions *w, int modes, double more, double complex *value, double *shape,
+                         double *rate, double *workspace, int *count) {
     spari_pencil part = {0};
     int n = w->size, found = 0, status = symmetric_part(&w->pencil, more, &part);
     double complex *x = value + 2 * modes;
@@ -107,7 +107,7 @@ static int search_shapes(const spari_swing *w, int modes, double more, double co
         status = spari_spectrum(&part, 2 * modes, 0, SPARI_SPECTRUM_CHOICE, &found, value, x);
     }
     for (int k = 0; k < 2 * found && *count < modes && status == SPAR_OK; k++) {
-        if (add_shape(&w->pencil, x + (int64_t)n * (k / 2), k % 2, *count, shape, room)) {
+        if (add_shape(&w->pencil, x + (int64_t)n * (k / 2), k % 2, *count, shape, workspace)) {
             double square = fabs(creal(value[k / 2] * value[k / 2]) + more);
             rate[(*count)++] = square > 1e-3 * more ? sqrt(square) : 0;
         }
@@ -116,15 +116,15 @@ static int search_shapes(const spari_swing *w, int modes, double more, double co
     return status;
 }
 
-int spari_shapes_find(spari_swing *w, int modes, double *shape, double *rate) {
+int spari_shapes_find(spari_small_motions *w, int modes, double *shape, double *rate) {
     int64_t n = w->size;
     int count = 0;
     double complex *value = spari_zalloc(2 * modes * (n + 1), sizeof *value);
-    double *room = spari_zalloc(2 * n, sizeof *room), most = 0;
-    int status = value && room ? SPAR_OK : SPAR_ERR_MEMORY;
+    double *workspace = spari_zalloc(2 * n, sizeof *workspace), most = 0;
+    int status = value && workspace ? SPAR_OK : SPAR_ERR_MEMORY;
     for (int pass = 0; pass < 2 && count < modes && status != SPAR_ERR_MEMORY; pass++) {
-        double more = pass ? some_stiffness(&w->pencil, room) : 0;
-        status = search_shapes(w, modes, more, value, shape, rate, room, &count);
+        double more = pass ? some_stiffness(&w->pencil, workspace) : 0;
+        status = search_shapes(w, modes, more, value, shape, rate, workspace, &count);
     }
     for (int k = 0; k < count; k++) {
         most = fmax(most, rate[k]);
@@ -133,19 +133,19 @@ int spari_shapes_find(spari_swing *w, int modes, double *shape, double *rate) {
         rate[k] = fmax(rate[k], most > 0 ? 0.01 * most : 1);
     }
     free(value);
-    free(room);
+    free(workspace);
     SPARI_REQUIRE(w->session, status != SPAR_ERR_MEMORY, status, "no memory for %d modes", modes);
     SPARI_REQUIRE(w->session, status == SPAR_OK && count == modes, SPAR_ERR_NUMERIC,
                   "%d of %d modes; the others have no mass, or have not converged: ask for fewer", count, modes);
     return SPAR_OK;
 }
 
-void spari_shapes_show(const spari_swing *w, int modes, const double *shape, double *nodes) {
+void spari_shapes_show(const spari_small_motions *w, int modes, const double *shape, double *nodes) {
     for (int k = 0; k < modes; k++, shape += w->size) {
         for (const spar_member *m = w->session->members; m; m = m->next) {
-            const swing_part *part = spari_swing_part(w, m);
+            const spari_motion_part *part = spari_small_motions_part(w, m);
             if (part) {
-                m->row->shape(m, shape + part->at, w->room, nodes);
+                m->row->shape(m, shape + part->at, w->workspace, nodes);
             }
             nodes += 6 * m->nodes;
         }

@@ -13,9 +13,9 @@ int64_t spari_shapes_nodes(const spar_session *session);
 void spari_shapes_times(const spari_pencil *pencil, int kind, const double *x, double *y);
 double spari_shapes_product(int n, const double *a, const double *b);
 /* The lowest shapes [modes][size], of unit mass, and their rates [modes], > 0; a status and a message. */
-int spari_shapes_find(spari_swing *swing, int modes, double *shape, double *rate);
+int spari_shapes_find(spari_small_motions *motions, int modes, double *shape, double *rate);
 /* Converts shapes to motion of the nodes of all members [modes][nodes][6]; members that spar does not solve are at
    rest. */
-void spari_shapes_show(const spari_swing *swing, int modes, const double *shape, double *nodes);
+void spari_shapes_show(const spari_small_motions *motions, int modes, const double *shape, double *nodes);
 
 #endif

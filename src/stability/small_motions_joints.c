@@ -11,18 +11,18 @@
 #include <string.h>
 
 /* Motion of a joint's node by the unknowns of its part: the nonzero columns. */
-typedef struct swing_side {
-    const swing_part *part; /* NULL: prescribed motion */
-    int count, *column;     /* numbers among all unknowns */
+typedef struct motion_side {
+    const spari_motion_part *part; /* NULL: prescribed motion */
+    int count, *column;            /* numbers among all unknowns */
     double (*S)[6];
-} swing_side;
+} motion_side;
 
 /* Columns of one side, and room for the part's unknowns. */
-static void find_columns(const spari_swing *w, const spar_joint *j, int side, swing_side *of) {
+static void find_columns(const spari_small_motions *w, const spar_joint *j, int side, motion_side *of) {
     const spar_member *m = of->part->member;
-    int held = spari_member_held(m), own = m->row->limb == &spari_limb_nodes && !m->row->whole;
-    double *unit = w->room, *work = unit + of->part->size, *nodes = work + 6 * (int64_t)m->body->unique;
-    int first = own ? 6 * j->unique[side] - held : 0, end = own ? first + 6 : of->part->size;
+    int constrained = spari_member_constrained(m), own = m->row->component == &spari_component_body && !m->row->whole;
+    double *unit = w->workspace, *work = unit + of->part->size, *nodes = work + 6 * (int64_t)m->body->unique;
+    int first = own ? 6 * j->unique[side] - constrained : 0, end = own ? first + 6 : of->part->size;
     memset(unit, 0, (size_t)of->part->size * sizeof *unit);
     of->count = 0;
     for (int c = first < 0 ? 0 : first; c < end; c++) {
@@ -47,7 +47,7 @@ static void find_columns(const spari_swing *w, const spar_joint *j, int side, sw
 
 /* Derivative of the nodes' rates [12] with respect to their motion: V = d v / d x, in the frame (steady_rotation.h),
    v the present rates. */
-static void rates_of_nodes(const spari_swing *w, const spar_joint *j, const swing_side of[2], double v[12],
+static void rates_of_nodes(const spari_small_motions *w, const spar_joint *j, const motion_side of[2], double v[12],
                            double V[12][12]) {
     memset(V, 0, 144 * sizeof V[0][0]);
     for (int side = 0; side < 2; side++) {
@@ -57,11 +57,11 @@ static void rates_of_nodes(const spari_swing *w, const spar_joint *j, const swin
             memcpy(v + 6 * side, m->after.v + 6 * j->seat[side], 6 * sizeof *v);
         }
         for (int half = 0; half < 2 && of[side].part; half++) {
-            double turn[3], W[3][3];
+            double rotation[3], W[3][3];
             for (int k = 0; k < 3; k++) {
-                turn[k] = half ? w->w[k] - of[side].part->own[k] : w->w[k];
+                rotation[k] = half ? w->w[k] - of[side].part->own[k] : w->w[k];
             }
-            spari_skew(turn, *W);
+            spari_skew(rotation, *W);
             for (int i = 0; i < 9; i++) {
                 V[6 * side + 3 * half + i / 3][6 * side + 3 * half + i % 3] = W[i / 3][i % 3];
             }
@@ -69,15 +69,15 @@ static void rates_of_nodes(const spari_swing *w, const spar_joint *j, const swin
     }
 }
 
-typedef struct swing_joint {
+typedef struct motion_joint {
     double K[12][12], C[12][12], B[6][12], f[12];
     double bound[12][12]; /* the part of K that depends on the joint's axes, without the rotation of loads that rotate
                              with all */
     int given;
-} swing_joint;
+} motion_joint;
 
 /* K, C += B^T (k B + d R), B^T d B over the free motions; K into `bound` too */
-static void add_spring(const spar_joint *j, double R[6][12], swing_joint *of) {
+static void add_spring(const spar_joint *j, double R[6][12], motion_joint *of) {
     for (int pq = 0; pq < 36; pq++) {
         int p = pq / 6, q = pq % 6, off = (of->given >> p & 1) || (of->given >> q & 1);
         double k = off ? 0 : j->stiffness[pq], d = off ? 0 : j->damping[pq];
@@ -91,30 +91,30 @@ static void add_spring(const spar_joint *j, double R[6][12], swing_joint *of) {
     }
 }
 
-SPARI_APART static void linearise_joint(const spari_swing *w, const spar_joint *j, const swing_side side[2],
-                                        swing_joint *of) {
-    spari_place place[2];
+SPARI_APART static void linearise_joint(const spari_small_motions *w, const spar_joint *j, const motion_side side[2],
+                                        motion_joint *of) {
+    spari_node_pose pose[2];
     spari_relative at = j->after;
     double v[12], V[12][12], R[6][12], stands[6];
-    *of = (swing_joint){.given = spari_joint_given(j)};
-    spari_joint_places(j, place);
+    *of = (motion_joint){.given = spari_joint_constrained(j)};
+    spari_joint_poses(j, pose);
     rates_of_nodes(w, j, side, v, V);
-    spari_tie_motion(&j->tie, &place[0], &place[1], at.z, of->B);
+    spari_kinematics_motion(&j->kinematics, &pose[0], &pose[1], at.z, of->B);
     spari_joint_count_turns(j, j->after.z, at.z);
     int springs = spari_joint_spring(j, at.z, at.rate, INFINITY, 1, at.load);
-    spari_tie_tangent(&j->tie, &place[0], &place[1], at.load, of->K);
-    spari_tie_forces(of->B, at.load, of->f);
+    spari_kinematics_tangent(&j->kinematics, &pose[0], &pose[1], at.load, of->K);
+    spari_kinematics_forces(of->B, at.load, of->f);
     for (int k = 0; k < 6;
          k++) { /* constraint and spring forces are steady like the motion; the host's loads are fixed in space */
         stands[k] = of->given >> k & 1 ? 0 : j->given[k] + j->preload[k];
     }
-    spari_tie_tangent(&j->tie, &place[0], &place[1], stands, of->bound);
+    spari_kinematics_tangent(&j->kinematics, &pose[0], &pose[1], stands, of->bound);
     for (int i = 0; i < 144; i++) {
         of->K[i / 12][i % 12] *= -1;
         of->bound[i / 12][i % 12] *= -1;
     }
     if (springs) {
-        spari_tie_rates(&j->tie, &place[0], &place[1], v, R);
+        spari_kinematics_rates(&j->kinematics, &pose[0], &pose[1], v, R);
         for (int i = 0; i < 72; i++) {
             for (int k = 0; k < 12; k++) {
                 R[i / 12][i % 12] += of->B[i / 12][k] * V[k][i % 12];
@@ -125,7 +125,7 @@ SPARI_APART static void linearise_joint(const spari_swing *w, const spar_joint *
 }
 
 /* |A T - T A| of a 12 x 12 matrix, T the rotation of vectors with s; *size: its scale. */
-static double change_by_turning(double A[12][12], const double s[3], double *size) {
+static double change_by_rotation(double A[12][12], const double s[3], double *size) {
     double W[3][3], change = 0;
     spari_skew(s, *W);
     for (int i = 0; i < 12; i++) {
@@ -142,7 +142,7 @@ static double change_by_turning(double A[12][12], const double s[3], double *siz
 }
 
 /* Projection onto the constrained motions, B^T (B B^T)^-1 B of the given rows, by Gram-Schmidt. */
-static void held_directions(const swing_joint *of, double P[12][12]) {
+static void constrained_directions(const motion_joint *of, double P[12][12]) {
     double row[6][12] = {{0}};
     int count = 0;
     memset(P, 0, 144 * sizeof P[0][0]);
@@ -176,8 +176,8 @@ static void held_directions(const swing_joint *of, double P[12][12]) {
 }
 
 /* The joint's axes rotate with b. If b rotates otherwise than the frame, the joint must be isotropic about the axis. */
-SPARI_APART static int check_around(const spari_swing *w, const spar_joint *j, const swing_side side[2],
-                                    swing_joint *of) {
+SPARI_APART static int check_around(const spari_small_motions *w, const spar_joint *j, const motion_side side[2],
+                                    motion_joint *of) {
     double s[3], P[12][12], size[3] = {0}, most = spari_norm(w->w);
     for (int k = 0; k < 3; k++) {
         double b = side[1].part   ? side[1].part->own[k]
@@ -188,12 +188,13 @@ SPARI_APART static int check_around(const spari_swing *w, const spar_joint *j, c
     if (!(spari_norm(s) > 1e-4 * most) || !(spari_norm(s) > 0)) {
         return SPAR_OK;
     }
-    held_directions(of, P);
-    double turn = spari_norm(s), of_K = change_by_turning(of->bound, s, size),
-           of_C = change_by_turning(of->C, s, size + 1);
-    double of_P = change_by_turning(P, s, size + 2);
-    const double alike = 1e-6;
-    int round = of_K <= alike * turn * size[0] && of_C <= alike * turn * size[1] && of_P <= alike * turn * size[2];
+    constrained_directions(of, P);
+    double rotation = spari_norm(s), of_K = change_by_rotation(of->bound, s, size),
+           of_C = change_by_rotation(of->C, s, size + 1);
+    double of_P = change_by_rotation(P, s, size + 2);
+    const double tolerance = 1e-6;
+    int round = of_K <= tolerance * rotation * size[0] && of_C <= tolerance * rotation * size[1] &&
+                of_P <= tolerance * rotation * size[2];
     SPARI_REQUIRE(w->session, round, SPAR_ERR_UNSUPPORTED,
                   "joint '%s' is not alike all around the axis about which its sides turn: the equations of small "
                   "motions change with time, and have no eigenvalues; of a periodic state there are multipliers "
@@ -203,9 +204,9 @@ SPARI_APART static int check_around(const spari_swing *w, const spar_joint *j, c
 }
 
 /* S_a^T X S_b of two sides, and the constraints */
-static void put_joint(spari_swing *w, const swing_side side[2], const swing_joint *of, int *holds) {
+static void put_joint(spari_small_motions *w, const motion_side side[2], const motion_joint *of, int *holds) {
     for (int ab = 0; ab < 4; ab++) {
-        const swing_side *a = side + ab / 2, *b = side + ab % 2;
+        const motion_side *a = side + ab / 2, *b = side + ab % 2;
         for (int64_t rc = 0; rc < (int64_t)a->count * b->count; rc++) {
             const double *S = a->S[rc / b->count], *T = b->S[rc % b->count];
             spari_pencil_entry e = {a->column[rc / b->count], b->column[rc % b->count], 0, 0, 0};
@@ -241,12 +242,13 @@ static void put_joint(spari_swing *w, const swing_side side[2], const swing_join
     }
 }
 
-int spari_swing_add_joint(spari_swing *w, const spar_joint *j, int *holds) {
-    swing_side side[2] = {{.part = spari_swing_part(w, j->member[0])}, {.part = spari_swing_part(w, j->member[1])}};
+int spari_small_motions_add_joint(spari_small_motions *w, const spar_joint *j, int *holds) {
+    motion_side side[2] = {{.part = spari_small_motions_part(w, j->member[0])},
+                           {.part = spari_small_motions_part(w, j->member[1])}};
     if (!side[0].part && !side[1].part) {
         return SPAR_OK;
     }
-    swing_joint *of = spari_zalloc(1, sizeof *of);
+    motion_joint *of = spari_zalloc(1, sizeof *of);
     int status = of ? SPAR_OK : SPAR_ERR_MEMORY;
     for (int n = 0; n < 2 && status == SPAR_OK; n++) {
         int size = side[n].part ? side[n].part->size : 0;

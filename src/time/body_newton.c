@@ -27,7 +27,7 @@ typedef struct alpha_nodes {
 } alpha_nodes;
 
 static spari_node_work alpha_work(const spari_solver *s) {
-    return (spari_node_work){.lanes = s->body->lanes, .dx = s->dx, .kept = s->kept_q, .cut = 1};
+    return (spari_node_work){.lanes = s->body->lanes, .dx = s->dx, .kept = s->tangent_q, .cut = 1};
 }
 
 /* The same of a substep's increments. */
@@ -38,7 +38,7 @@ static spari_node_work alpha_work_on(const spari_solver *s, const spari_scheme *
 }
 
 static double size_of_span(const alpha_nodes *t, spari_node_size size) {
-    return fmax(sqrt(size.way) / t->s->body->length, sqrt(size.turn));
+    return fmax(sqrt(size.way) / t->s->body->length, sqrt(size.rotation));
 }
 
 /* What a span says of its largest. */
@@ -53,9 +53,9 @@ static void keep_shape(const spari_solver *s, const spar_member *member, spari_e
     const spari_state *from = &e->from, *shape = &e->to;
     spari_root_look_from(s, member, &before, &s->from, &e->to);
     for (int i = 0; i < s->n; i++) {
-        double turn[4];
-        spari_quat_between(from->q + 7 * i + 3, shape->q + 7 * i + 3, turn);
-        spari_quat_log(turn, dx + 6 * i + 3);
+        double rotation[4];
+        spari_quat_between(from->q + 7 * i + 3, shape->q + 7 * i + 3, rotation);
+        spari_quat_log(rotation, dx + 6 * i + 3);
         for (int k = 0; k < 3; k++) {
             dx[6 * i + k] = from->q[7 * i + k] - shape->q[7 * i + k];
             dx[6 * i + 3 + k] *= -1;
@@ -70,7 +70,7 @@ static void predict_span(void *context, int64_t from, int64_t to) {
     if (t->shifted) {
         spari_nodes_correct(w, from, to);
     }
-    (void)spari_nodes_place(w, from, to);
+    (void)spari_nodes_positions(w, from, to);
 }
 
 /* Starting values of Newton. */
@@ -84,7 +84,7 @@ int spari_alpha_predict(const spari_solver *s, const spar_member *member, const 
         keep_shape(s, member, e, s->dx);
     }
     alpha_nodes t = {.s = s, .work = alpha_work_on(s, c, e, x), .shifted = shape};
-    t.stays = shape ? SPARI_KEEP_PLACE : stays;
+    t.stays = shape ? SPARI_KEEP_POSITION : stays;
     spari_solver_spread(s, predict_span, &t);
     spari_root_show(s, member, e);
     return 1;
@@ -92,31 +92,31 @@ int spari_alpha_predict(const spari_solver *s, const spar_member *member, const 
 
 /* Starting values without inertia: the member goes along with its root as it stands. */
 void spari_alpha_carry(const spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
-                       const double turn[4], const spari_ends *e, double *x) {
+                       const double rotation[4], const spari_ends *e, double *x) {
     const spari_state *from = &e->from;
     const spari_node_work work = alpha_work_on(s, c, e, x);
     int driven = member->root == SPAR_ROOT_DRIVEN;
     double psi[3];
-    spari_quat_log(turn, psi);
+    spari_quat_log(rotation, psi);
     for (int i = 0; i < s->n; i++) {
-        const double *place = spari_member_place(member, i);
+        const double *position = spari_member_position(member, i);
         double arm[3], turned[3];
         for (int k = 0; k < 3; k++) {
-            arm[k] = place[k] + from->q[7 * i + k] - member->xr[k] - from->q[k];
+            arm[k] = position[k] + from->q[7 * i + k] - member->xr[k] - from->q[k];
         }
-        spari_rotate(turn, arm, turned);
+        spari_rotate(rotation, arm, turned);
         for (int k = 0; k < 3; k++) {
             x[6 * i + k] = driven ? root->q[k] - from->q[k] + turned[k] - arm[k] : 0;
             x[6 * i + 3 + k] = driven ? psi[k] : 0;
         }
     }
-    (void)spari_nodes_place(&work, 0, s->n);
+    (void)spari_nodes_positions(&work, 0, s->n);
 }
 
 /* A driven root goes where it is told. */
 void spari_alpha_impose_root(const spar_member *member, const spari_pose *root, const spari_ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
-    int end = spari_member_held(member);
+    int end = spari_member_constrained(member);
     if (end == 0 || e->root) { /* seen from itself a root does not move */
         return;
     }
@@ -161,52 +161,52 @@ double spari_alpha_balance(spari_solver *s, const spar_member *member, const spa
     if (spari_solver_has_applied(s, member)) {
         scale = fmax(scale, spari_applied_residual(member, at->q, 1, r));
     }
-    if (s->arms) {
-        spari_arms_residual(s->arms, at->q + 3, r + 3);
+    if (s->offset_loads) {
+        spari_offset_loads_residual(s->offset_loads, at->q + 3, r + 3);
     }
     if (member->added) {
         scale = fmax(scale, spari_added_times(member, SPARI_UNKNOWNS, SPARI_UNKNOWNS, at->a, 1, r));
     }
-    memset(r, 0, (size_t)spari_member_held(member) * sizeof *r);
+    memset(r, 0, (size_t)spari_member_constrained(member) * sizeof *r);
     return scale;
 }
 
-static void turn_span_back(void *context, int64_t from, int64_t to) {
+static void rotate_span_back(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
-    t->s->most[from / SPARI_SPAN] = spari_nodes_turn_back(&t->work, from, to);
+    t->s->most[from / SPARI_SPAN] = spari_nodes_rotate_back(&t->work, from, to);
 }
 
-static void turn_span_forth(void *context, int64_t from, int64_t to) {
+static void rotate_span_forth(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
-    spari_nodes_turn_forth(&t->work, from, to);
+    spari_nodes_rotate_forth(&t->work, from, to);
 }
 
-/* Solves with the kept tangent. It was formed when the nodes were turned otherwise: forces are turned back node by
+/* Solves with the reused tangent. It was formed when the nodes were turned otherwise: forces are turned back node by
    node, and the corrections turned forth, as if each node had carried its part of the tangent along. For a rigid turn
-   of the member that is exact; for a beam that swings and bends it makes one tangent last some forty times longer than
-   in fixed axes. */
-double spari_alpha_turn_back(const spari_solver *s, const double *q, const double *r, double *dx) {
+   of the member that is exact; for a beam that oscillates and bends it makes one tangent last some forty times longer
+   than in fixed axes. */
+double spari_alpha_rotate_back(const spari_solver *s, const double *q, const double *r, double *dx) {
     alpha_nodes t = {.s = s, .work = alpha_work(s)};
-    t.work.q = q, t.work.r = r, t.work.dx = dx, t.work.turn = s->turn;
-    spari_solver_spread(s, turn_span_back, &t);
+    t.work.q = q, t.work.r = r, t.work.dx = dx, t.work.rotation = s->rotation;
+    spari_solver_spread(s, rotate_span_back, &t);
     return spari_solver_most(s);
 }
 
-void spari_alpha_turn_forth(const spari_solver *s, double *dx) {
+void spari_alpha_rotate_forth(const spari_solver *s, double *dx) {
     alpha_nodes t = {.s = s, .work = alpha_work(s)};
-    t.work.dx = dx, t.work.turn = s->turn;
-    spari_solver_spread(s, turn_span_forth, &t);
+    t.work.dx = dx, t.work.rotation = s->rotation;
+    spari_solver_spread(s, rotate_span_forth, &t);
 }
 
 static int solve_turned(const spari_solver *s, const double *q, const double *r, double *dx) {
-    (void)spari_alpha_turn_back(s, q, r, dx);
+    (void)spari_alpha_rotate_back(s, q, r, dx);
     int singular = spari_linear_solve(s->linear, dx);
-    spari_alpha_turn_forth(s, dx);
+    spari_alpha_rotate_forth(s, dx);
     return singular;
 }
 
 /* T := R T R^T */
-static void turn_matrix(const double q[4], double T[9]) {
+static void rotation_matrix(const double q[4], double T[9]) {
     for (int side = 0; side < 2; side++) {
         for (int j = 0; j < 3; j++) { /* rows: T R^T, then columns */
             double x[3];
@@ -223,10 +223,10 @@ static void turn_matrix(const double q[4], double T[9]) {
 
 /* The rotation vector of node i from its increment, and k = span^2 cv / 12 of what it changes by with the rates. */
 static double rotation_of(const spari_scheme *c, const spari_ends *e, const double *x, int i, double psi[3]) {
-    double turn[3];
-    spari_cross(e->to.v + 6 * i + 3, e->from.v + 6 * i + 3, turn);
+    double rotation[3];
+    spari_cross(e->to.v + 6 * i + 3, e->from.v + 6 * i + 3, rotation);
     for (int j = 0; j < 3; j++) {
-        psi[j] = x[6 * i + 3 + j] + (c->still ? 0 : c->span * c->span / 12 * turn[j]);
+        psi[j] = x[6 * i + 3 + j] + (c->still ? 0 : c->span * c->span / 12 * rotation[j]);
     }
     return c->still ? 0 : c->span * c->span * c->cv / 12;
 }
@@ -254,7 +254,7 @@ void spari_alpha_operators(const spari_solver *s, const spari_scheme *c, const s
             }
         }
         if (e->root) {
-            turn_matrix(e->root->q + 3, out);
+            rotation_matrix(e->root->q + 3, out);
         }
     }
 }
@@ -267,7 +267,7 @@ static void take_increments(void *context, int64_t from, int64_t to) {
 static void correct_span(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
     spari_nodes_correct(&t->work, from, to);
-    put_size(t, from, spari_nodes_place(&t->work, from, to));
+    put_size(t, from, spari_nodes_positions(&t->work, from, to));
 }
 
 /* Both at once where nothing is cut. */
@@ -288,10 +288,10 @@ typedef struct corrected {
 /* x -= correction, rotations through the inverse tangent operator, shortened to `longest`. turn: what turns it forth
    first; NULL: nothing. */
 static corrected correct_turned(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
-                                double *turn, double longest, double *x, double *dx) {
+                                double *rotation, double longest, double *x, double *dx) {
     double R[9], largest;
     alpha_nodes t = {.s = s, .work = alpha_work_on(s, c, e, x)};
-    t.work.dx = dx, t.work.turn = turn, t.work.R = e->root ? R : NULL;
+    t.work.dx = dx, t.work.rotation = rotation, t.work.R = e->root ? R : NULL;
     if (e->root) {
         spari_quat_matrix(e->root->q + 3, R);
     }
@@ -318,10 +318,10 @@ double spari_alpha_correct(const spari_solver *s, const spar_member *member, con
 void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double v, double a,
                              double b) {
     for (int i = 0; i < s->n; i++) {
-        double turn[3];
-        spari_cross(s->dx + 6 * i + 3, e->from.v + 6 * i + 3, turn);
+        double rotation[3];
+        spari_cross(s->dx + 6 * i + 3, e->from.v + 6 * i + 3, rotation);
         for (int k = 0; k < 3; k++) {
-            s->increment[6 * i + 3 + k] += v * c->span * c->span / 12 * turn[k];
+            s->increment[6 * i + 3 + k] += v * c->span * c->span / 12 * rotation[k];
         }
         for (int k = 6 * i; k < 6 * i + 6; k++) {
             e->to.v[k] -= v * s->dx[k];
@@ -347,7 +347,7 @@ double spari_alpha_size(const spari_solver *s, double *x) {
    new ones contract no better than old ones the mean never falls so far. */
 enum { PATIENCE = 5, PRICE = 10 };
 
-/* Where Newton ends earlier (leave.h) a solution takes fewer; for the sake of a coupling it hardly does. */
+/* Where Newton ends earlier (newton_stop.h) a solution takes fewer; for the sake of a coupling it hardly does. */
 static int patience(const spar_session *s) {
     return s->newton_strict || isfinite(s->newton_share) ? PATIENCE : PATIENCE - 2;
 }
@@ -380,7 +380,7 @@ typedef struct alpha_step {
     const spar_member *member;
     const spari_scheme *c;
     const spari_pose *root;
-    const double *turn;
+    const double *rotation;
     spari_ends *e;
     double *x;
 } alpha_step;
@@ -388,21 +388,21 @@ typedef struct alpha_step {
 static int guess_alone(void *self, spari_guess stays) {
     const alpha_step *t = self;
     if (t->c->still) {
-        spari_alpha_carry(t->s, t->member, t->c, t->root, t->turn, t->e, t->x);
+        spari_alpha_carry(t->s, t->member, t->c, t->root, t->rotation, t->e, t->x);
         return stays != SPARI_KEEP_SHAPE;
     }
     return spari_alpha_predict(t->s, t->member, t->c, stays, t->e, t->x);
 }
 
-static int kept_serves_alone(const alpha_step *t) {
+static int tangent_serves_alone(const alpha_step *t) {
     const spari_solver *s = t->s;
-    return s->factored && spari_alpha_close(t->c->cm, s->kept_cm) && spari_alpha_close(t->c->cv, s->kept_cv);
+    return s->factored && spari_alpha_close(t->c->cm, s->tangent_cm) && spari_alpha_close(t->c->cv, s->tangent_cv);
 }
 
 static int begin_alone(void *self, int kept) {
     const alpha_step *t = self;
-    t->s->factored = kept && kept_serves_alone(t);
-    spari_mixing_begin(t->s->mixing);
+    t->s->factored = kept && tangent_serves_alone(t);
+    spari_anderson_begin(t->s->anderson);
     spari_alpha_impose_root(t->member, t->root, t->e, t->x); /* no correction moves it */
     return t->s->factored;
 }
@@ -415,7 +415,7 @@ static const char *iterate_alone(void *self, double longest, spari_iterate *it) 
     }
     const double *q = t->e->seen.q;
     double scale = spari_alpha_balance(s, t->member, t->c, &t->e->seen, s->r);
-    double noise = spari_alpha_turn_back(s, q, s->r, s->dx);
+    double noise = spari_alpha_rotate_back(s, q, s->r, s->dx);
     if (!isfinite(scale) || !isfinite(noise)) {
         return "met numbers that are not finite";
     }
@@ -424,17 +424,17 @@ static const char *iterate_alone(void *self, double longest, spari_iterate *it) 
         if (spari_alpha_tangent(s, t->member, t->c, &t->e->seen)) {
             return "found a singular tangent";
         }
-        (void)spari_alpha_turn_back(s, q, s->r, s->dx); /* its axes are these */
-        spari_mixing_begin(s->mixing);
+        (void)spari_alpha_rotate_back(s, q, s->r, s->dx); /* its axes are these */
+        spari_anderson_begin(s->anderson);
     }
     if (spari_linear_solve(s->linear, s->dx)) {
         return "found a singular tangent";
     }
-    spari_mixing_take(s->mixing, s->body->crew ? *s->body->crew : NULL, s->body->lanes, s->body->length, s->dx);
-    corrected size = correct_turned(s, t->member, t->c, t->e, s->turn, longest, t->x, s->dx);
+    spari_anderson_step(s->anderson, s->body->pool ? *s->body->pool : NULL, s->body->lanes, s->body->length, s->dx);
+    corrected size = correct_turned(s, t->member, t->c, t->e, s->rotation, longest, t->x, s->dx);
     s->newton++;
     it->correction = size.by;
-    it->tolerance = spari_leave(t->member, t->c, size.way + t->e->carried);
+    it->tolerance = spari_newton_tolerance(t->member, t->c, size.way + t->e->carried);
     it->rounded = noise <= 16 * DBL_EPSILON * scale;
     it->small = it->correction < 1e-11 || noise <= 64 * DBL_EPSILON * s->body->stiffest;
     return NULL;
@@ -449,7 +449,7 @@ static void end_alone(void *self, int iterations, int fresh) {
     const alpha_step *t = self;
     spari_alpha_impose_root(t->member, t->root, t->e, t->x);
     t->s->factored = t->s->factored && serves_on(t->s, patience(t->member->session), iterations, fresh);
-    if (!t->s->factored) { /* for an answer (spari_solver_answer) */
+    if (!t->s->factored) { /* for an answer (spari_solver_response) */
         spari_alpha_operators(t->s, t->c, t->e, t->x);
     }
 }
@@ -460,8 +460,8 @@ static int newton(const alpha_step *t) {
     const spar_session *session = t->member->session;
     alpha_step step = *t;
     int iterations = 0;
-    const char *wrong = spari_newton_solve(&how, &step, kept_serves_alone(t), session->newton_max,
-                                           spari_leave_begin(session, &t->s->trace), &iterations);
+    const char *wrong = spari_newton_solve(&how, &step, tangent_serves_alone(t), session->newton_max,
+                                           spari_newton_stop_begin(session, &t->s->trace), &iterations);
     SPARI_REQUIRE(t->member->session, !wrong, SPAR_ERR_NUMERIC,
                   "member '%s': Newton %s (%d iterations in several attempts, each of %d at most) in the step from t = "
                   "%g; take a smaller dt, more substeps or a smaller rho_inf, or look at the loads",
@@ -477,9 +477,9 @@ void spari_alpha_unbalance(void *self, const spar_member *member, const double *
     if (spari_solver_has_applied(s, member)) {
         spari_applied_residual(member, b->q, 1, r);
     }
-    if (s->arms) {
-        spari_arms_at(s->arms, 0);
-        spari_arms_residual(s->arms, b->q + 3, r + 3);
+    if (s->offset_loads) {
+        spari_offset_loads_at(s->offset_loads, 0);
+        spari_offset_loads_residual(s->offset_loads, b->q + 3, r + 3);
     }
     for (int i = 0; i < 6 * s->n; i++) {
         r[i] -= s->steps.load0[i];
@@ -488,7 +488,7 @@ void spari_alpha_unbalance(void *self, const spar_member *member, const double *
 
 static int start(spari_solver *s, const spar_member *member, const spari_scheme *c) {
     spari_state *b = &s->begin;
-    int n = s->n, end = spari_member_held(member);
+    int n = s->n, end = spari_member_constrained(member);
     if (member->root != SPAR_ROOT_DRIVEN) {
         memset(b->a, 0, (size_t)end * sizeof *b->a);
         memset(b->v, 0, (size_t)end * sizeof *b->v);
@@ -519,9 +519,9 @@ static void enter_alone(void *self, const spari_part *part) {
     spari_stage_enter(t->s);
 }
 
-static double turning_alone(const void *self) {
+static double rotation_rate_alone(const void *self) {
     const alpha_run *t = self;
-    return spari_stage_turning(t->s, t->member);
+    return spari_stage_rotation_rate(t->s, t->member);
 }
 
 static int solve_alone(void *self, const spari_scheme *c, const spari_part *part) {
@@ -529,24 +529,24 @@ static int solve_alone(void *self, const spari_scheme *c, const spari_part *part
     spari_stage *g = &t->stage;
     spari_solver *s = t->s;
     SPARI_TRY(spari_stage_begin(s, t->member, c, part, g));
-    int status = newton(&(alpha_step){s, t->member, c, &g->root, g->turn, &g->ends, s->increment});
+    int status = newton(&(alpha_step){s, t->member, c, &g->root, g->rotation, &g->ends, s->increment});
     s->factored = s->factored && status == SPAR_OK;
     return status;
 }
 
-static int leave_alone(void *self, const spari_scheme *c, const spari_part *part) {
+static int finish_alone(void *self, const spari_scheme *c, const spari_part *part) {
     alpha_run *t = self;
     (void)part;
-    spari_stage_leave(t->s, t->member, c, &t->stage);
+    spari_stage_end(t->s, t->member, c, &t->stage);
     return SPAR_OK;
 }
 
-int spari_solver_answer(spari_solver *s, const spar_member *member, double *load, double *motion) {
+int spari_solver_response(spari_solver *s, const spar_member *member, double *load, double *motion) {
     spari_scheme c = spari_scheme_last(member, s->body->D != NULL, &s->steps.solved);
     if (!s->factored && spari_alpha_tangent(s, member, &c, &s->to)) {
         return 1;
     }
-    memset(load, 0, (size_t)spari_member_held(member) * sizeof *load);
+    memset(load, 0, (size_t)spari_member_constrained(member) * sizeof *load);
     return solve_turned(s, s->to.q, load, motion);
 }
 
@@ -566,7 +566,8 @@ static void name_alone(const void *self, char *text, int size) {
 }
 
 int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
-    static const spari_stepper how = {enter_alone, turning_alone, solve_alone, leave_alone, gains_alone, name_alone};
+    static const spari_stepper how = {enter_alone,  rotation_rate_alone, solve_alone,
+                                      finish_alone, gains_alone,         name_alone};
     const spari_scheme c = spari_scheme_of(member, s->body->D != NULL, dt / member->session->substeps);
     alpha_run t = {.s = s, .member = member};
     if (!s->steps.started && !c.still) {

@@ -1,4 +1,4 @@
-/* The arrays and the kept tangent of a member that is solved for; save and load of both. */
+/* The arrays and the reused tangent of a member that is solved for; save and load of both. */
 #include "body_solver.h"
 
 #include "../base/poison.h"
@@ -16,13 +16,13 @@ spari_state spari_state_in(double *block, int n) {
     return (spari_state){block, v, a, a + 6 * (int64_t)n};
 }
 
-spari_solver *spari_solver_create(const spar_member *member, const spari_body *body, spari_arms *arms) {
+spari_solver *spari_solver_create(const spar_member *member, const spari_body *body, spari_offset_loads *offset_loads) {
     int64_t n = body->unique, m = 6 * (int64_t)body->per_element;
     spari_solver *s = spari_zalloc(1, sizeof *s);
     if (!s) {
         return NULL;
     }
-    s->body = body, s->arms = arms;
+    s->body = body, s->offset_loads = offset_loads;
     s->n = body->unique;
     int ok = 1;
     for (int k = 0; k < 3; k++) {
@@ -33,12 +33,13 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
         ok = ok && (*sixes[k] = spari_zalloc(spari_mixed_unknowns(n), sizeof(double))) != NULL;
     }
     ok = ok && (s->tinv = spari_zalloc(9 * n, sizeof(double))) != NULL;
-    ok = ok && (s->kept_q = spari_zalloc(4 * n, sizeof(double))) && (s->turn = spari_zalloc(4 * n, sizeof(double)));
+    ok = ok && (s->tangent_q = spari_zalloc(4 * n, sizeof(double))) &&
+         (s->rotation = spari_zalloc(4 * n, sizeof(double)));
     ok = ok && (s->best = spari_zalloc(7 * n, sizeof(double)));
     const int64_t spans = (n + SPARI_SPAN - 1) / SPARI_SPAN;
     ok = ok && (s->most = spari_zalloc(2 * spans, sizeof(double)));
     s->most_by = ok ? s->most + spans : NULL;
-    ok = ok && (s->mixing = spari_mixing_create(n));
+    ok = ok && (s->anderson = spari_anderson_create(n));
     ok = ok && (s->linear = spari_linear_create(body->elements, (int)m, 6));
     if (!ok) {
         spari_solver_free(s);
@@ -52,7 +53,7 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
         }
         s->own[k] = spari_state_in(block, s->n);
     }
-    spari_linear_share(s->linear, body->crew);
+    spari_linear_share(s->linear, body->pool);
     s->begin = spari_state_in(s->block[0], s->n);
     s->from = spari_state_in(s->block[1], s->n);
     s->to = spari_state_in(s->block[2], s->n);
@@ -76,11 +77,11 @@ void spari_solver_free(spari_solver *s) {
     free(s->dx);
     free(s->stage_v);
     free(s->tinv);
-    free(s->kept_q);
-    free(s->turn);
+    free(s->tangent_q);
+    free(s->rotation);
     free(s->best);
     free(s->most);
-    spari_mixing_free(s->mixing);
+    spari_anderson_free(s->anderson);
     spari_linear_free(s->linear);
     spari_condensed_free(s->condensed);
     spari_snapshot_free(&s->before);
@@ -102,7 +103,7 @@ void spari_solver_poison(spari_solver *s) {
         spari_poison(sixes[k], 6 * n); /* what lies behind is read with vectors, and is zero */
     }
     spari_poison(s->tinv, 9 * n);
-    spari_poison(s->turn, 4 * n);
+    spari_poison(s->rotation, 4 * n);
     spari_poison(s->best, 7 * n);
     spari_poison(s->most, 2 * spans);
     spari_poison(s->to.q, 25 * n);
@@ -112,7 +113,7 @@ void spari_solver_poison(spari_solver *s) {
 }
 
 void spari_solver_begin(spari_solver *s) {
-    s->begun = (spari_reuse){s->factored, s->kept_cm, s->kept_cv, s->served, s->spent, s->trace};
+    s->begun = (spari_reuse){s->factored, s->tangent_cm, s->tangent_cv, s->served, s->spent, s->trace};
     spari_snapshot_open(&s->before, 1);
 }
 
@@ -126,7 +127,7 @@ static void keep_factors(spari_solver *s) {
     int64_t own = 4 * (int64_t)s->n, factors = spari_linear_state_size(s->linear);
     double *to = s->begun.factored ? spari_snapshot_take(&s->before, before_size(s)) : NULL;
     if (to) {
-        memcpy(to, s->kept_q, (size_t)own * sizeof *to);
+        memcpy(to, s->tangent_q, (size_t)own * sizeof *to);
         spari_linear_save(s->linear, to + own);
         if (s->condensed) {
             spari_condensed_save(s->condensed, to + own + factors);
@@ -137,7 +138,7 @@ static void keep_factors(spari_solver *s) {
 static void restore_factors(spari_solver *s) {
     int64_t own = 4 * (int64_t)s->n;
     const double *from = s->before.data;
-    memcpy(s->kept_q, from, (size_t)own * sizeof *from);
+    memcpy(s->tangent_q, from, (size_t)own * sizeof *from);
     spari_linear_load(s->linear, from + own);
     if (s->condensed) {
         spari_condensed_load(s->condensed, s->condensed->fixed, from + own + spari_linear_state_size(s->linear));
@@ -149,11 +150,11 @@ void spari_solver_reject(spari_solver *s) {
     if (!s->before.open) {
         return;
     }
-    s->factored = b->factored && s->before.taken >= 0;
-    s->kept_cm = b->cm, s->kept_cv = b->cv;
+    s->factored = b->factored && s->before.saved >= 0;
+    s->tangent_cm = b->cm, s->tangent_cv = b->cv;
     s->served = b->served, s->spent = b->spent;
     s->trace = b->trace;
-    if (s->before.taken > 0) {
+    if (s->before.saved > 0) {
         restore_factors(s);
     }
 }
@@ -184,8 +185,8 @@ static void add_tangents(const spari_body *body, int tile, int from, int to, voi
         if (spari_solver_has_applied(t->s, m) && t->factor != 0) {
             spari_applied_tangent(m, e, t->q, t->factor, body->matrix);
         }
-        if (t->s->arms && t->factor != 0) {
-            spari_arms_tangent(t->s->arms, t->q + 3, body->matrix);
+        if (t->s->offset_loads && t->factor != 0) {
+            spari_offset_loads_tangent(t->s->offset_loads, t->q + 3, body->matrix);
         }
         if (t->tinv && m->added) { /* it belongs to the balance of a step, not to what begins one */
             spari_added_tangent(m, e, t->cm, t->tinv, body->matrix);
@@ -196,7 +197,7 @@ static void add_tangents(const spari_body *body, int tile, int from, int to, voi
 
 /* Factors what has been formed at the state q. */
 static int factor_formed(spari_solver *s, const spar_member *member, const double *q, double cm, double cv) {
-    int end = spari_member_held(member);
+    int end = spari_member_constrained(member);
     if (s->condensed) {
         spari_condensed_take(s->condensed, s->linear, end);
     }
@@ -208,9 +209,9 @@ static int factor_formed(spari_solver *s, const spar_member *member, const doubl
         return 1;
     }
     s->factored = 1;
-    s->kept_cm = cm, s->kept_cv = cv;
+    s->tangent_cm = cm, s->tangent_cv = cv;
     for (int i = 0; i < s->n; i++) {
-        memcpy(s->kept_q + 4 * i, q + 7 * i + 3, 4 * sizeof *q);
+        memcpy(s->tangent_q + 4 * i, q + 7 * i + 3, 4 * sizeof *q);
     }
     return 0;
 }
@@ -226,19 +227,19 @@ int spari_solver_factor(spari_solver *s, const spar_member *member, const double
     return factor_formed(s, member, q, cm, cv);
 }
 
-int spari_solver_factor_turning(spari_solver *s, const spar_member *member, const spari_turn *turn, const double *q,
-                                const double *v, const double *a, double factor, double *mass) {
+int spari_solver_factor_rotating(spari_solver *s, const spar_member *member, const spari_steady_rotation *rotation,
+                                 const double *q, const double *v, const double *a, double factor, double *mass) {
     const spari_body *body = s->body;
     keep_factors(s);
     s->factored = 0;
     spari_linear_zero(s->linear);
     for (int e = 0; e < body->elements; e++) {
-        spari_turn_tangent(body, turn, e, q, v, a, factor, body->matrix, mass);
+        spari_steady_rotation_tangent(body, rotation, e, q, v, a, factor, body->matrix, mass);
         if (spari_solver_has_applied(s, member)) {
             spari_applied_tangent(member, e, q, factor, body->matrix);
         }
-        if (s->arms) {
-            spari_arms_tangent(s->arms, q + 3, body->matrix);
+        if (s->offset_loads) {
+            spari_offset_loads_tangent(s->offset_loads, q + 3, body->matrix);
         }
         spari_linear_add(s->linear, e, body->matrix);
     }
@@ -274,8 +275,8 @@ int64_t spari_solver_state_size(const spari_solver *s) {
 void spari_solver_save(const spari_solver *s, double *state) {
     const double head[STATE_HEAD] = {s->n,
                                      s->factored,
-                                     s->kept_cm,
-                                     s->kept_cv,
+                                     s->tangent_cm,
+                                     s->tangent_cv,
                                      s->steps.begin.h,
                                      s->steps.solved.h,
                                      s->steps.started,
@@ -293,7 +294,7 @@ void spari_solver_save(const spari_solver *s, double *state) {
     memcpy(state, head, sizeof head);
     memcpy(state += STATE_HEAD, s->begin.q, 25 * n * sizeof *state);
     memcpy(state += 25 * n, s->to.q, 25 * n * sizeof *state);
-    memcpy(state += 25 * n, s->kept_q, 4 * n * sizeof *state);
+    memcpy(state += 25 * n, s->tangent_q, 4 * n * sizeof *state);
     if (s->factored) {
         spari_linear_save(s->linear, state + 4 * n);
     } else {
@@ -325,7 +326,7 @@ int spari_solver_is_state(const spari_solver *s, const double *state, int64_t co
 void spari_solver_load(spari_solver *s, const double *state) {
     size_t n = (size_t)s->n;
     s->factored = state[1] != 0;
-    s->kept_cm = state[2], s->kept_cv = state[3];
+    s->tangent_cm = state[2], s->tangent_cv = state[3];
     s->steps.begin = (spari_pattern){state[4], (int)state[11]};
     s->steps.solved = (spari_pattern){state[5], (int)state[16]};
     s->steps.started = state[6] != 0;
@@ -335,7 +336,7 @@ void spari_solver_load(spari_solver *s, const double *state) {
     s->trace.rate = state[14], s->trace.left = state[15];
     memcpy(s->begin.q, state += STATE_HEAD, 25 * n * sizeof *state);
     memcpy(s->to.q, state += 25 * n, 25 * n * sizeof *state);
-    memcpy(s->kept_q, state += 25 * n, 4 * n * sizeof *state);
+    memcpy(s->tangent_q, state += 25 * n, 4 * n * sizeof *state);
     if (s->factored) {
         spari_linear_load(s->linear, state + 4 * n);
     } else {

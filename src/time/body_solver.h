@@ -1,16 +1,16 @@
 /* The owner's solver of one body: generalised-alpha in time on R^3 x SO(3), static equilibrium. It works on the
    unknowns' nodes (joints once) and asks the body for forces and tangents: the body of an exact member, or the one node
    that carries a rigid beam. Of the member it takes how the root is held and driven, effects and settings. */
-#ifndef SPARI_SOLVER_H
-#define SPARI_SOLVER_H
+#ifndef SPARI_BODY_SOLVER_H
+#define SPARI_BODY_SOLVER_H
 
+#include "../algebra/anderson.h"
+#include "../algebra/condense.h"
 #include "../base/thread_pool.h"
 #include "../member/body.h"
 #include "../member/structure.h"
-#include "offset_loads.h"
-#include "../algebra/condense.h"
 #include "effort.h"
-#include "../algebra/anderson.h"
+#include "offset_loads.h"
 #include "scheme.h"
 #include "tangent_snapshot.h"
 
@@ -31,7 +31,8 @@ typedef struct spari_reuse {
 typedef struct spari_solver spari_solver;
 struct spari_solver {
     const spari_body *body;
-    spari_arms *arms;     /* of a body that carries a rigid beam: its loads along the line come so too; or NULL */
+    spari_offset_loads
+        *offset_loads;    /* of a body that carries a rigid beam: its loads along the line come so too; or NULL */
     int n;                /* unique nodes */
     spari_state begin;    /* at t^n */
     spari_state from, to; /* a substep's ends; after a solve `to` is t^{n+1} */
@@ -45,23 +46,23 @@ struct spari_solver {
     double *best;           /* static: state to go back to */
     double *most, *most_by; /* [spans of nodes] the largest of each (spari_solver_most), and of their corrections */
     spari_linear *linear;
-    spari_mixing *mixing;       /* of a solution's corrections; nothing of it lasts longer */
+    spari_anderson *anderson;   /* of a solution's corrections; nothing of it lasts longer */
     spari_condensed *condensed; /* of a member that joints tie to others; NULL: none */
     /* the factored tangent, kept while it contracts */
     int factored;
-    double kept_cm, kept_cv;   /* its coefficients */
-    double *kept_q;            /* [n][4] how the nodes were turned when it was formed */
-    double *turn;              /* [n][4] their turn since */
-    int64_t served, spent;     /* solutions with it, and what they and the tangent itself took, in iterations */
-    double power, power_begin; /* that damping takes out, at the last forces computed and at t^n */
-    spari_trace trace;         /* of Newton; strict it forgets the rate */
-    spari_reuse begun;         /* the same as the step began, */
-    spari_snapshot before;     /* and its factors */
-    int64_t newton, factors;   /* totals: iterations, factorisations */
+    double tangent_cm, tangent_cv; /* its coefficients */
+    double *tangent_q;             /* [n][4] how the nodes were turned when it was formed */
+    double *rotation;              /* [n][4] their turn since */
+    int64_t served, spent;         /* solutions with it, and what they and the tangent itself took, in iterations */
+    double power, power_begin;     /* that damping takes out, at the last forces computed and at t^n */
+    spari_trace trace;             /* of Newton; strict it forgets the rate */
+    spari_reuse begun;             /* the same as the step began, */
+    spari_snapshot before;         /* and its factors */
+    int64_t newton, factors;       /* totals: iterations, factorisations */
 };
 
 /* `arms`, which may be NULL, and `body` are kept. */
-spari_solver *spari_solver_create(const spar_member *member, const spari_body *body, spari_arms *arms);
+spari_solver *spari_solver_create(const spar_member *member, const spari_body *body, spari_offset_loads *offset_loads);
 void spari_solver_free(spari_solver *solver);
 /* A state in a block of 25 doubles for each of n nodes. */
 spari_state spari_state_in(double *block, int n);
@@ -75,7 +76,7 @@ int spari_solver_balance(spari_solver *solver, spar_member *member, double dt);
 /* After that: what more load [n][6] on the nodes at the end adds to their motion [n][6], displacements and turns, to
    first order and over the last substep; load is spent. One back-substitution; a tangent is formed only where none is
    kept. 0, or 1: it is singular. */
-int spari_solver_answer(spari_solver *solver, const spar_member *member, double *load, double *motion);
+int spari_solver_response(spari_solver *solver, const spar_member *member, double *load, double *motion);
 /* A step begins. It is accepted: t^{n+1} becomes t^n. It is rejected: the tangent is again the one that it began with.
  */
 void spari_solver_begin(spari_solver *solver);
@@ -87,10 +88,10 @@ void spari_static_shift(int n, double cut, const double *dx, double *q);
    the last call found, if that leads there; else from t^n. */
 int spari_solver_static(spari_solver *solver, const spar_member *member, int load_steps, int onward);
 
-/* What it has taken so far. */
+/* Its effort so far. */
 void spari_solver_effort(const spari_solver *solver, spari_effort *effort);
 
-/* All that the next steps depend on, to the last bit, as doubles, for save and load; the kept tangent is part of it.
+/* All that the next steps depend on, to the last bit, as doubles, for save and load; the reused tangent is part of it.
    is_state: whether `count` doubles can be the state of this solver. */
 int64_t spari_solver_state_size(const spari_solver *solver);
 void spari_solver_save(const spari_solver *solver, double *state);
@@ -102,13 +103,13 @@ void spari_solver_load(spari_solver *solver, const double *state);
 void spari_solver_poison(spari_solver *solver);
 /* Loads that follow the body's own nodes or stand along its line are there. */
 static inline int spari_solver_has_applied(const spari_solver *solver, const spar_member *member) {
-    return (member->applied || member->foundation) && !solver->arms;
+    return (member->applied || member->foundation) && !solver->offset_loads;
 }
 /* The solver's nodes in spans, by whoever there is to work on them: span number from / SPARI_SPAN writes to its own
    nodes and most[number]. */
 enum { SPARI_SPAN = 256 };
 static inline void spari_solver_spread(const spari_solver *solver, spari_span work, void *context) {
-    spari_crew_spread(solver->body->crew ? *solver->body->crew : NULL, solver->n, SPARI_SPAN, work, context);
+    spari_thread_pool_spread(solver->body->pool ? *solver->body->pool : NULL, solver->n, SPARI_SPAN, work, context);
 }
 /* The largest of the spans'. */
 static inline double spari_solver_largest(const spari_solver *solver, const double *spans) {
@@ -125,8 +126,9 @@ static inline double spari_solver_most(const spari_solver *solver) {
 int spari_solver_factor(spari_solver *solver, const spar_member *member, const double *q, const double *v,
                         const double *a, double factor, double cm, double cv, const double *tinv);
 /* The same of equilibrium in a frame that turns so, with the loads at that factor; `mass`: room for an element's. */
-struct spari_turn;
-int spari_solver_factor_turning(spari_solver *solver, const spar_member *member, const struct spari_turn *turn,
-                                const double *q, const double *v, const double *a, double factor, double *mass);
+struct spari_steady_rotation;
+int spari_solver_factor_rotating(spari_solver *solver, const spar_member *member,
+                                 const struct spari_steady_rotation *rotation, const double *q, const double *v,
+                                 const double *a, double factor, double *mass);
 
 #endif

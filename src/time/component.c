@@ -8,7 +8,7 @@
 #include <float.h>
 
 /* The corrections by the tangent kept. 0 or 1. */
-static int solve_component(spari_limb *p) {
+static int solve_component(spari_component *p) {
     double none[6] = {0};
     if (p->row->reduce(p, none)) {
         return 1;
@@ -20,7 +20,7 @@ static int solve_component(spari_limb *p) {
 /* ---- a stage of a substep, as newton.h has it ---- */
 
 typedef struct component_stage {
-    spari_limb *p;
+    spari_component *p;
     int formed; /* there is a tangent */
     double way; /* how far the stage has moved it, by the first iteration; 0: not known */
 } component_stage;
@@ -39,8 +39,8 @@ static int begin_component(void *self, int kept) {
 
 static const char *iterate_component(void *self, double longest, spari_iterate *it) {
     component_stage *t = self;
-    spari_limb *p = t->p;
-    const spari_limb_row *row = p->row;
+    spari_component *p = t->p;
+    const spari_component_row *row = p->row;
     double scale = row->balance(p);
     if (!isfinite(scale)) {
         return "met numbers that are not finite";
@@ -57,10 +57,10 @@ static const char *iterate_component(void *self, double longest, spari_iterate *
         *it = (spari_iterate){.correction = 0, .tolerance = 0}; /* it ends */
         return NULL;
     }
-    it->correction = row->change(p);
+    it->correction = row->correction_size(p);
     row->correct(p, it->correction > longest ? longest / it->correction : 1);
     t->way = t->way > 0 ? t->way : row->way(p);
-    it->tolerance = spari_leave(p->member, &p->scheme, t->way);
+    it->tolerance = spari_newton_tolerance(p->member, &p->scheme, t->way);
     it->small = it->correction < 1e-11;
     it->rounded = it->small && row->noise(p) <= 16 * DBL_EPSILON * scale;
     return NULL;
@@ -78,14 +78,14 @@ static void end_component(void *self, int iterations, int fresh) {
 static int solve_stage(void *self, const spari_scheme *c, const spari_part *part) {
     static const spari_newton how = {INFINITY,        1e-6,         guess_component, begin_component, iterate_component,
                                      renew_component, end_component};
-    spari_limb *p = self;
+    spari_component *p = self;
     const spar_session *session = p->member->session;
     component_stage stage = {.p = p};
     int iterations = 0;
     p->scheme = *c;
     SPARI_TRY(p->row->stage(p, part));
     const char *wrong = spari_newton_solve(&how, &stage, p->row->serves(p), session->newton_max,
-                                           spari_leave_begin(session, &p->solver->trace), &iterations);
+                                           spari_newton_stop_begin(session, &p->solver->trace), &iterations);
     SPARI_REQUIRE(
         session, !wrong, SPAR_ERR_NUMERIC,
         "member '%s': its equations have no solution in the step from t = %g (Newton %s); look at the turning "
@@ -97,13 +97,13 @@ static int solve_stage(void *self, const spari_scheme *c, const spari_part *part
 /* ---- a step ---- */
 
 static void enter_component(void *self, const spari_part *part) {
-    spari_limb *p = self;
+    spari_component *p = self;
     (void)part;
     p->row->enter(p);
 }
 
-static int leave_component(void *self, const spari_scheme *c, const spari_part *part) {
-    spari_limb *p = self;
+static int finish_component(void *self, const spari_scheme *c, const spari_part *part) {
+    spari_component *p = self;
     (void)c, (void)part;
     p->row->end(p);
     return SPAR_OK;
@@ -112,7 +112,7 @@ static int leave_component(void *self, const spari_scheme *c, const spari_part *
 enum { COMPONENT_START_PASSES = 4 };
 
 /* Accelerations at t^0, by refinements as spari_scheme_start has them. */
-static int start_component(spari_limb *p) {
+static int start_component(spari_component *p) {
     int singular = p->row->start(p);
     for (int pass = 0; pass < COMPONENT_START_PASSES && !singular; pass++) {
         p->row->unbalance(p);
@@ -129,7 +129,7 @@ static int start_component(spari_limb *p) {
     return SPAR_OK;
 }
 
-int spari_component_balance(spari_limb *p, double dt) {
+int spari_component_balance(spari_component *p, double dt) {
     int started = p->row->take(p, dt / p->member->session->substeps);
     if (!started && !p->scheme.still) {
         SPARI_TRY(start_component(p));
@@ -138,8 +138,8 @@ int spari_component_balance(spari_limb *p, double dt) {
     return SPAR_OK;
 }
 
-int spari_component_advance(spari_limb *p, double dt) {
-    static const spari_stepper how = {.enter = enter_component, .solve = solve_stage, .leave = leave_component};
+int spari_component_advance(spari_component *p, double dt) {
+    static const spari_stepper how = {.enter = enter_component, .solve = solve_stage, .finish = finish_component};
     spari_steps *steps = &p->solver->steps;
     SPARI_TRY(spari_component_balance(p, dt));
     const spari_scheme alpha = p->scheme;
@@ -147,7 +147,7 @@ int spari_component_advance(spari_limb *p, double dt) {
     return spari_scheme_run(&how, p, &alpha, &p->member->cuts, &steps->solved, p->member->session, dt);
 }
 
-int spari_component_answer(spari_limb *p, const double *load, double *motion) {
+int spari_component_answer(spari_component *p, const double *load, double *motion) {
     p->row->look_back(p);
     if (!p->row->serves(p)) {
         (void)p->row->balance(p);
@@ -167,16 +167,16 @@ int spari_component_answer(spari_limb *p, const double *load, double *motion) {
 
 enum { COMPONENT_REST_ITERATIONS = 50 };
 
-int spari_component_static(spari_limb *p, const double *fluid) {
+int spari_component_static(spari_component *p, const double *fluid) {
     const spar_member *m = p->member;
-    spari_turning turning = {.mass = NULL};
+    spari_rotating_frame rotating = {.mass = NULL};
     double last = 0;
     int found = 0, singular = 0;
-    if (m->root == SPAR_ROOT_DRIVEN && spari_turn_of(m, m->now.v, m->now.a, &turning.turn)) {
+    if (m->root == SPAR_ROOT_DRIVEN && spari_steady_rotation_of(m, m->now.v, m->now.a, &rotating.rotation)) {
         for (int k = 0; k < 3; k++) {
-            turning.centre[k] = m->xr[k] + m->now.q[k];
+            rotating.centre[k] = m->xr[k] + m->now.q[k];
         }
-        p->turning = &turning;
+        p->rotating = &rotating;
     }
     p->scheme = (spari_scheme){.cm = 0, .cv = 0};
     p->row->rest(p, fluid, 0);
@@ -186,17 +186,17 @@ int spari_component_static(spari_limb *p, const double *fluid) {
         if (singular) {
             break;
         }
-        double size = p->row->change(p);
+        double size = p->row->correction_size(p);
         p->row->shift(p, 1);
         found = (p->row->solved && p->row->solved(p)) || size < 1e-15 || (it > 2 && size > 0.5 * last && size < 1e-9);
         last = size;
     }
     if (found) {
-        p->row->keep_places(p, 0);
+        p->row->keep_positions(p, 0);
         p->row->end_rest(p);
     } else {
-        p->row->leave_rest(p);
+        p->row->discard_rest(p);
     }
-    p->turning = NULL;
+    p->rotating = NULL;
     return !found;
 }

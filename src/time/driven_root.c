@@ -42,7 +42,7 @@ spari_pose spari_drive_between(const spari_pose *a, const spari_pose *b, double 
 
 /* Back from the end under an acceleration that is linear in time. */
 spari_pose spari_drive_stage(const spari_pose *from, const spari_pose *to, double h, double span) {
-    double r = h - span, f = span / h, way[6], turn[4];
+    double r = h - span, f = span / h, way[6], rotation[4];
     spari_pose out;
     for (int k = 0; k < 6; k++) {
         out.a[k] = (1 - f) * from->a[k] + f * to->a[k];
@@ -52,25 +52,25 @@ spari_pose spari_drive_stage(const spari_pose *from, const spari_pose *to, doubl
     for (int k = 0; k < 3; k++) {
         out.q[k] = to->q[k] + way[k];
     }
-    spari_quat_exp(way + 3, turn);
-    spari_quat_mul(turn, to->q + 3, out.q + 3);
+    spari_quat_exp(way + 3, rotation);
+    spari_quat_mul(rotation, to->q + 3, out.q + 3);
     return out;
 }
 
-void spari_drive_jump(const spari_pose *from, const spari_pose *to, double h, double velocity[6], double place[6]) {
-    double turn[4];
+void spari_drive_jump(const spari_pose *from, const spari_pose *to, double h, double velocity[6], double position[6]) {
+    double rotation[4];
     for (int k = 0; k < 3; k++) {
-        place[k] = to->q[k] - from->q[k];
+        position[k] = to->q[k] - from->q[k];
     }
-    spari_quat_between(from->q + 3, to->q + 3, turn);
-    spari_quat_log(turn, place + 3);
+    spari_quat_between(from->q + 3, to->q + 3, rotation);
+    spari_quat_log(rotation, position + 3);
     for (int k = 0; k < 6; k++) {
         const double *v = from->v, *a = from->a, *b = to->a;
         velocity[k] = to->v[k] - v[k] - 0.5 * h * (a[k] + b[k]);
-        place[k] -= h * (v[k] + velocity[k] + h * (a[k] / 3 + b[k] / 6));
+        position[k] -= h * (v[k] + velocity[k] + h * (a[k] / 3 + b[k] / 6));
     }
     for (int k = 0; k < 6; k += 3) {
         spari_rotate_back(to->q + 3, velocity + k, velocity + k);
-        spari_rotate_back(to->q + 3, place + k, place + k);
+        spari_rotate_back(to->q + 3, position + k, position + k);
     }
 }

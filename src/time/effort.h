@@ -1,4 +1,4 @@
-/* What solving for a member has taken, counted: the same on every machine and under every load, as no time is. */
+/* The effort of solving for a member, counted: the same on every machine and under every load, as no time is. */
 #ifndef SPARI_EFFORT_H
 #define SPARI_EFFORT_H
 

@@ -12,13 +12,13 @@ struct spari_pencil;
 /* A row. Of the operations NULL means: nothing to do. They are called where spari_fidelity_is_here, but for those that
    every rank calls. 0 or a status; messages name the member, the public call puts its name before. */
 typedef struct spari_fidelity {
-    int moves;       /* spar finds the motion; else the host gives it */
-    int solved;      /* by equations: there is a body, and its owner sends the motion; else all ranks do alike */
-    int massive;     /* the body has its mass whatever effects are in force */
-    int takes_modes; /* it is asked for with a number of modes */
-    int given_root;  /* it needs a root that is fixed or driven */
-    int lower;       /* the SPAR_FIDELITY_* that advice goes on to from here, 0: none */
-    int whole;       /* one body carries all of its nodes, from the root */
+    int moves;           /* spar finds the motion; else the host gives it */
+    int solved;          /* by equations: there is a body, and its owner sends the motion; else all ranks do alike */
+    int massive;         /* the body has its mass whatever effects are in force */
+    int takes_modes;     /* it is asked for with a number of modes */
+    int prescribed_root; /* it needs a root that is fixed or driven */
+    int lower;           /* the SPAR_FIDELITY_* that advice goes on to from here, 0: none */
+    int whole;           /* one body carries all of its nodes, from the root */
     spari_view seen;
 
     /* every rank: what of the description it cannot serve; before anything is built */
@@ -44,7 +44,7 @@ typedef struct spari_fidelity {
     /* after a step: what a little more of load_used, `load` [nodes][6], adds to m->after: `motion` [nodes][6],
        displacements and small turns, global axes, to first order and over the last substep. 0, or 1: there is no
        answer. NULL: loads move nothing */
-    int (*answer)(spar_member *m, const double *load, double *motion);
+    int (*response)(spar_member *m, const double *load, double *motion);
     /* load [nodes][6] becomes one that moves the member as it does, without what moves nothing: what the root holds,
        what cancels between the ends of two elements, what a rigid body or modes leave out. 0 or SPAR_ERR_MEMORY. NULL:
        all loads move it. Where felt_here it is for the one who finds the motion, else for every rank, without a motion.
@@ -55,7 +55,7 @@ typedef struct spari_fidelity {
     void (*begin)(spar_member *m);
     void (*accept)(spar_member *m);
     void (*reject)(spar_member *m);
-    /* what all that has taken since the member was made; NULL: nothing to speak of */
+    /* the effort of all that since the member was made; NULL: nothing to speak of */
     void (*effort)(const spar_member *m, spari_effort *effort);
     /* equilibrium under dead and `fluid` loads [nodes][6], line loads and gravity; leaves t^n alone, writes m->after.
        onward: from the shape that the last call found, if that leads there; else from t^n. NULL: there is none */
@@ -63,8 +63,8 @@ typedef struct spari_fidelity {
 
     /* every rank: what the root gives in the motion after (NULL: nothing), with memory given beforehand: so many
        doubles; with that of followers and line loads, which a host may give later */
-    int64_t (*reaction_room)(const spar_member *m);
-    void (*reaction)(const spar_member *m, double *room, double load[6]);
+    int64_t (*reaction_size)(const spar_member *m);
+    void (*reaction)(const spar_member *m, double *workspace, double load[6]);
     /* every rank: kinetic, strain, potential of the motion after */
     int (*energy)(const spar_member *m, double energy[4]);
 
@@ -73,19 +73,19 @@ typedef struct spari_fidelity {
        where the body has mass. */
     int64_t (*unknowns)(const spar_member *m);
     int (*problem)(const spar_member *m, double *K, double *M);
-    void (*shape)(const spar_member *m, const double *x, double *room, double *nodes);
+    void (*shape)(const spar_member *m, const double *x, double *workspace, double *nodes);
     /* every rank: its equations of small motions about the motion after, unsymmetric and with rates, seen from a frame
        that turns with w: entries of the pencil, and what is left of its forces. SPAR_ERR_UNSUPPORTED: it can be seen
        from the frame of its own root only, which turns otherwise */
     int (*linearise)(const spar_member *m, const double w[3], struct spari_pencil *to);
 
-    /* Of members that joints tie to others, and that are solved with them (assembly.h): how (limb.h; NULL: joints
+    /* Of members that joints tie to others, and that are solved with them (assembly.h): how (component.h; NULL: joints
        cannot tie it); what it has found, into m->after; of those whose unknowns are nodes' the solver of the body, on
        its owner, and what goes into it before a step, and before equilibrium under dead and `fluid` loads. */
-    const struct spari_limb_row *limb;
+    const struct spari_component_row *component;
     /* every rank: joints have come or changed, m->solution is made anew for them if it depends on them; the node of the
-       limb's that a node of the unknowns is. NULL: it does not; the same */
-    int (*retie)(spar_member *m);
+       component's that a node of the unknowns is. NULL: it does not; the same */
+    int (*renew_joints)(spar_member *m);
     int (*end_of)(const spar_member *m, int node);
     struct spari_solver *(*solver)(const spar_member *m);
     void (*take_loads)(spar_member *m);

@@ -1,5 +1,5 @@
-/* Newton's iteration of a substep, of one member (body_newton.c) or of members that joints tie (assembly.c): attempts that
-   get more careful, each from starting values of its own, and when one has converged. The loops stand here, to be
+/* Newton's iteration of a substep, of one member (body_newton.c) or of members that joints tie (assembly.c): attempts
+   that get more careful, each from starting values of its own, and when one has converged. The loops stand here, to be
    compiled with what they call. */
 #ifndef SPARI_NEWTON_H
 #define SPARI_NEWTON_H
@@ -92,7 +92,7 @@ static inline const char *spari_newton_solve(const spari_newton *how, void *self
                                              {0, 0, SPARI_KEEP_ACCELERATION},
                                              {0, 1, SPARI_KEEP_SHAPE},
                                              {0, 1, SPARI_KEEP_VELOCITY},
-                                             {0, 1, SPARI_KEEP_PLACE}};
+                                             {0, 1, SPARI_KEEP_POSITION}};
     const char *wrong = NULL;
     for (size_t k = kept ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
         if (!how->predict(self, attempts[k].stays)) {

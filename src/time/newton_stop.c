@@ -2,15 +2,15 @@
 #include "newton_stop.h"
 
 #include "../base/session.h"
-#include "step_error.h"
 #include "fidelity.h"
+#include "step_error.h"
 
 #include <math.h>
 
 /* Of the error of the scheme, and of roots that turn freely, whose energy and momentum nothing brings back to what they
-   are: a body that tumbles for 10^5 steps (tests/time/test_newton.c) loses 4e-4 of its energy by a thousandth, of which the
-   scheme itself has 1e-4. Of the way of a step. What estimates keep from step to step, as an acceleration that turns
-   round stands still. */
+   are: a body that tumbles for 10^5 steps (tests/time/test_newton.c) loses 4e-4 of its energy by a thousandth, of which
+   the scheme itself has 1e-4. Of the way of a step. What estimates keep from step to step, as an acceleration that
+   turns round stands still. */
 static const double part = 1e-3, part_if_free = 1e-4, most = 1e-7, keeps = 0.85;
 
 /* Members whose equations are solved by iteration. */
@@ -18,33 +18,34 @@ static int is_iterated(const spar_member *m) {
     return m->assembly || m->row->solver;
 }
 
-void spari_leave_accept(spar_member *m) {
+void spari_newton_stop_accept(spar_member *m) {
     const spar_session *s = m->session;
-    if (s->newton_strict || !is_iterated(m) || !spari_change_is(m) || !spari_change_tells(s)) {
-        m->jerk = m->swing = 0;
+    if (s->newton_strict || !is_iterated(m) || !spari_step_error_applies(m) || !spari_step_error_is_known(s)) {
+        m->jerk = m->acceleration_scale = 0;
         return;
     }
-    const spari_change of = spari_change_of(m, m->row->whole && m->nodes > 1 ? m->nodes - 1 : 1);
-    double length = spari_member_length(m), jerk = of.change / (s->dt * length), swing = of.acceleration / length;
+    const spari_step_change of = spari_step_change_of(m, m->row->whole && m->nodes > 1 ? m->nodes - 1 : 1);
+    double length = spari_member_length(m), jerk = of.change / (s->dt * length),
+           acceleration_scale = of.acceleration / length;
     m->jerk = fmax(jerk, keeps * m->jerk);
-    m->swing = fmax(swing, keeps * m->swing);
+    m->acceleration_scale = fmax(acceleration_scale, keeps * m->acceleration_scale);
 }
 
 /* What is left is a force, and what forces change is velocities, which last: of a motion at omega the error (E1) of a
    place is to be compared with that of a velocity over omega, and omega h is the change of the acceleration over the
    step by the acceleration. */
-double spari_leave(const spar_member *m, const spari_scheme *c, double way) {
+double spari_newton_tolerance(const spar_member *m, const spari_scheme *c, double way) {
     const spar_session *s = m->session;
     double strict = s->newton_atol + s->newton_rtol * way, change = c->h * m->jerk;
     if (c->rule != SPARI_ALPHA) {
-        return spari_leave_stage(s, c, way);
+        return spari_newton_tolerance_stage(s, c, way);
     }
     if (s->newton_strict || c->still || !(change > 0)) {
         return strict;
     }
-    change = fmin(change, 2 * m->swing);
-    double left = spari_change_error(c, change) * fmin(change / m->swing, 1);
-    left *= spari_member_root_is_given(m) ? part : part_if_free;
-    left = fmin(left, s->newton_share * m->swing / c->cm);
+    change = fmin(change, 2 * m->acceleration_scale);
+    double left = spari_step_error(c, change) * fmin(change / m->acceleration_scale, 1);
+    left *= spari_member_root_is_prescribed(m) ? part : part_if_free;
+    left = fmin(left, s->newton_share * m->acceleration_scale / c->cm);
     return fmax(strict, fmin(left, most * way));
 }

@@ -19,7 +19,7 @@ static const spari_node_kernels *kernels_from(int lanes, int64_t from, int64_t t
 }
 
 static spari_node_size larger_of(spari_node_size a, spari_node_size b) {
-    return (spari_node_size){fmax(a.way, b.way), fmax(a.turn, b.turn)};
+    return (spari_node_size){fmax(a.way, b.way), fmax(a.rotation, b.rotation)};
 }
 
 static spari_node_size largest_of(int pass, const spari_node_work *t, int64_t from, int64_t to) {
@@ -31,7 +31,7 @@ static spari_node_size largest_of(int pass, const spari_node_work *t, int64_t fr
     return size;
 }
 
-double spari_nodes_turn_back(const spari_node_work *t, int64_t from, int64_t to) {
+double spari_nodes_rotate_back(const spari_node_work *t, int64_t from, int64_t to) {
     double most = 0;
     for (int64_t end; from < to; from = end) {
         const spari_node_kernels *kernel = kernels_from(t->lanes, from, to, &end);
@@ -40,7 +40,7 @@ double spari_nodes_turn_back(const spari_node_work *t, int64_t from, int64_t to)
     return most;
 }
 
-void spari_nodes_turn_forth(const spari_node_work *t, int64_t from, int64_t to) {
+void spari_nodes_rotate_forth(const spari_node_work *t, int64_t from, int64_t to) {
     for (int64_t end; from < to; from = end) {
         kernels_from(t->lanes, from, to, &end)->forth(t, from, end);
     }
@@ -64,7 +64,7 @@ void spari_nodes_correct(const spari_node_work *t, int64_t from, int64_t to) {
     kernels_of(t->lanes, to - from)->correct(t, from, to);
 }
 
-spari_node_size spari_nodes_place(const spari_node_work *t, int64_t from, int64_t to) {
+spari_node_size spari_nodes_positions(const spari_node_work *t, int64_t from, int64_t to) {
     return largest_of(SPARI_SIZED_BY_PLACE, t, from, to);
 }
 

@@ -16,7 +16,7 @@
 
 /* Up to an angle of 1 series in its square are exact to rounding: the cosine of half of it, half the sine by the half,
    and the second order of the inverse tangent operator, |B_2k| / (2k)! with Bernoulli's numbers. */
-#define SMALL_TURN 1.0
+#define SMALL_ROTATION 1.0
 static const double cosine_series[] = {1,           -1.0 / 2,       1.0 / 24,        -1.0 / 720,
                                        1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600, -1.0 / 87178291200};
 static const double sine_series[] = {0.5,          -0.5 / 6,        0.5 / 120,       -0.5 / 5040,
@@ -67,10 +67,10 @@ HERE L NAME(series)(const int n, const double *c, L x) {
 }
 
 /* The lanes whose angle is large: what the series are no good for. */
-TARGET SPARI_APART static void NAME(large_turns)(const double *square, double *cosine, double *sine) {
+TARGET SPARI_APART static void NAME(large_rotations)(const double *square, double *cosine, double *sine) {
     for (int l = 0; l < W; l++) {
         double half = 0.5 * sqrt(square[l]);
-        if (square[l] > SMALL_TURN) {
+        if (square[l] > SMALL_ROTATION) {
             cosine[l] = cos(half);
             sine[l] = 0.5 * sin(half) / half;
         }
@@ -79,7 +79,7 @@ TARGET SPARI_APART static void NAME(large_turns)(const double *square, double *c
 
 /* The unit quaternion of the rotation vector psi. */
 HERE void NAME(quat_exp)(const L *psi, L *q) {
-    const double small = SMALL_TURN;
+    const double small = SMALL_ROTATION;
     L square = NAME(dot)(psi, psi), quarter = 0.25 * square;
     L cosine = NAME(series)(8, cosine_series, quarter), sine = NAME(series)(7, sine_series, quarter);
     if (NAME(any_above)(square, SPLAT(&small))) {
@@ -87,7 +87,7 @@ HERE void NAME(quat_exp)(const L *psi, L *q) {
         NAME(put)(p2, square);
         NAME(put)(c, cosine);
         NAME(put)(s, sine);
-        NAME(large_turns)(p2, c, s);
+        NAME(large_rotations)(p2, c, s);
         cosine = NAME(get)(c);
         sine = NAME(get)(s);
     }
@@ -99,7 +99,7 @@ HERE void NAME(quat_exp)(const L *psi, L *q) {
 
 TARGET SPARI_APART static void NAME(large_inverses)(const double *square, double *second) {
     for (int l = 0; l < W; l++) {
-        if (square[l] > SMALL_TURN) {
+        if (square[l] > SMALL_ROTATION) {
             double half = 0.5 * sqrt(square[l]);
             second[l] = (1 - half * cos(half) / sin(half)) / square[l];
         }
@@ -108,7 +108,7 @@ TARGET SPARI_APART static void NAME(large_inverses)(const double *square, double
 
 /* y := T^-1 y, the inverse of the tangent operator of psi, T^-1 = I - psi~/2 + (1 - (p/2) cot(p/2))/p^2 psi~^2 */
 HERE void NAME(tangent_inverse)(const L *psi, L *y) {
-    const double small = SMALL_TURN;
+    const double small = SMALL_ROTATION;
     L square = NAME(dot)(psi, psi), second = NAME(series)(10, inverse_series, square), once[3], twice[3];
     if (NAME(any_above)(square, SPLAT(&small))) {
         double p2[W], b[W];
@@ -124,30 +124,30 @@ HERE void NAME(tangent_inverse)(const L *psi, L *y) {
     }
 }
 
-/* ---- to the kept tangent and back ---- */
+/* ---- to the reused tangent and back ---- */
 
-HERE void NAME(turn_back_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *most,
-                                L *poison) {
-    L q[4], kept[4], turn[4], r[6];
+HERE void NAME(forces_back_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *most,
+                                  L *poison) {
+    L q[4], kept[4], rotation[4], r[6];
     NAME(pick_rows)(whole, at, 7, 4, t->q + 7 * i + 3, q);
     NAME(pick_rows)(whole, at, 4, 4, t->kept + 4 * i, kept);
     NAME(pick_rows)(whole, at, 6, 6, t->r + 6 * i, r);
     const L back[4] = {kept[0], -kept[1], -kept[2], -kept[3]};
-    NAME(quat_mul)(q, back, turn);
-    NAME(drop_rows)(whole, at, 4, 4, t->turn + 4 * i, turn);
+    NAME(quat_mul)(q, back, rotation);
+    NAME(drop_rows)(whole, at, 4, 4, t->rotation + 4 * i, rotation);
     for (int k = 0; k < 6; k++) {
         *most = NAME(larger)(NAME(larger)(r[k], -r[k]), *most);
         *poison = *poison + 0.0 * r[k];
     }
-    NAME(rotate_back)(turn, r, r);
-    NAME(rotate_back)(turn, r + 3, r + 3);
+    NAME(rotate_back)(rotation, r, r);
+    NAME(rotate_back)(rotation, r + 3, r + 3);
     NAME(drop_rows)(whole, at, 6, 6, t->dx + 6 * i, r);
 }
 
-TARGET static double NAME(turn_back)(const spari_node_work *t, int64_t from, int64_t to) {
+TARGET static double NAME(forces_back)(const spari_node_work *t, int64_t from, int64_t to) {
     L most = {0}, poison = {0};
     double bad[W], large;
-#define WORK(whole) NAME(turn_back_block)(whole, at, t, i, &most, &poison);
+#define WORK(whole) NAME(forces_back_block)(whole, at, t, i, &most, &poison);
     EACH_BLOCK(from, to, WORK)
 #undef WORK
     NAME(put)(bad, poison);
@@ -158,21 +158,21 @@ TARGET static double NAME(turn_back)(const spari_node_work *t, int64_t from, int
     return bad[0] == 0 ? large : INFINITY;
 }
 
-HERE void NAME(turn_forth_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *d) {
-    L turn[4];
-    NAME(pick_rows)(whole, at, 4, 4, t->turn + 4 * i, turn);
-    NAME(rotate)(turn, d, d);
-    NAME(rotate)(turn, d + 3, d + 3);
+HERE void NAME(corrections_forth_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *d) {
+    L rotation[4];
+    NAME(pick_rows)(whole, at, 4, 4, t->rotation + 4 * i, rotation);
+    NAME(rotate)(rotation, d, d);
+    NAME(rotate)(rotation, d + 3, d + 3);
 }
 
 HERE void NAME(forth_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i) {
     L d[6];
     NAME(pick_rows)(whole, at, 6, 6, t->dx + 6 * i, d);
-    NAME(turn_forth_block)(whole, at, t, i, d);
+    NAME(corrections_forth_block)(whole, at, t, i, d);
     NAME(drop_rows)(whole, at, 6, 6, t->dx + 6 * i, d);
 }
 
-TARGET static void NAME(turn_forth)(const spari_node_work *t, int64_t from, int64_t to) {
+TARGET static void NAME(corrections_forth)(const spari_node_work *t, int64_t from, int64_t to) {
 #define WORK(whole) NAME(forth_block)(whole, at, t, i);
     EACH_BLOCK(from, to, WORK)
 #undef WORK
@@ -183,14 +183,14 @@ TARGET static void NAME(turn_forth)(const spari_node_work *t, int64_t from, int6
 /* psi of the increment and the rates at both ends, which are not looked at without inertia. */
 HERE void NAME(rotations)(const spari_scheme *c, const L *x, const L *rate, const L *before, L *psi) {
     const double part = c->span * c->span / 12;
-    L turn[3];
+    L rotation[3];
     for (int k = 0; k < 3; k++) {
         psi[k] = x[k];
     }
     if (!c->still) {
-        NAME(cross)(rate, before, turn);
+        NAME(cross)(rate, before, rotation);
         for (int k = 0; k < 3; k++) {
-            psi[k] = psi[k] + part * turn[k];
+            psi[k] = psi[k] + part * rotation[k];
         }
     }
 }
@@ -227,8 +227,8 @@ HERE spari_node_size NAME(size_of)(const L *size) {
 
 /* d of nodes with psi, as the tangent has it, becomes what x has to lose. */
 HERE void NAME(to_increments)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *d) {
-    if (t->turn) {
-        NAME(turn_forth_block)(whole, at, t, i, d);
+    if (t->rotation) {
+        NAME(corrections_forth_block)(whole, at, t, i, d);
     }
     for (int k = 0; k < 6 && t->R; k += 3) {
         NAME(matrix_times_back)(t->R, d + k, d + k);
@@ -448,7 +448,7 @@ HERE void NAME(arms_of)(const int whole, const int64_t *at, const spar_member *m
 
 HERE void NAME(show_block)(const int whole, const int64_t *at, const spari_root_view *t, int64_t i) {
     const spari_pose *root = t->root;
-    L q[7], v[6], a[6], d[3], r[3], turn[4], out[7], spin[3], grow[3];
+    L q[7], v[6], a[6], d[3], r[3], rotation[4], out[7], spin[3], grow[3];
     NAME(arms_of)(whole, at, t->member, i, r);
     NAME(pick_rows)(whole, at, 7, 7, t->own->q + 7 * i, q);
     NAME(pick_rows)(whole, at, 6, 6, t->own->v + 6 * i, v);
@@ -470,9 +470,9 @@ HERE void NAME(show_block)(const int whole, const int64_t *at, const spari_root_
         a[k] = a[k] + root->a[k];
     }
     for (int k = 0; k < 4; k++) {
-        turn[k] = SPLAT(root->q + 3 + k);
+        rotation[k] = SPLAT(root->q + 3 + k);
     }
-    NAME(quat_mul)(turn, q + 3, out + 3);
+    NAME(quat_mul)(rotation, q + 3, out + 3);
     L over = 1.0 / NAME(root)(NAME(quat_dot)(out + 3, out + 3));
     for (int k = 3; k < 7; k++) {
         out[k] = out[k] * over;
@@ -510,7 +510,7 @@ HERE void NAME(less_root_motion)(const L *omega, const L *alpha, const L *d, L *
 
 HERE void NAME(look_block)(const int whole, const int64_t *at, const spari_root_view *t, int64_t i) {
     const spari_pose *root = t->root;
-    L q[7], v[6], a[6], d[3], r[3], turn[4], out[7], spin[3], grow[3];
+    L q[7], v[6], a[6], d[3], r[3], rotation[4], out[7], spin[3], grow[3];
     NAME(arms_of)(whole, at, t->member, i, r);
     NAME(pick_rows)(whole, at, 7, 7, t->seen->q + 7 * i, q);
     NAME(pick_rows)(whole, at, 6, 6, t->seen->v + 6 * i, v);
@@ -518,7 +518,7 @@ HERE void NAME(look_block)(const int whole, const int64_t *at, const spari_root_
     NAME(splat3)(t->omega, spin);
     NAME(splat3)(t->alpha, grow);
     for (int k = 0; k < 4; k++) {
-        turn[k] = SPLAT(root->q + 3 + k);
+        rotation[k] = SPLAT(root->q + 3 + k);
     }
     for (int k = 0; k < 3; k++) {
         d[k] = r[k] + q[k] - root->q[k];
@@ -527,12 +527,12 @@ HERE void NAME(look_block)(const int whole, const int64_t *at, const spari_root_
         v[k] = v[k] - root->v[k];
         a[k] = a[k] - root->a[k];
     }
-    NAME(rotate_back)(turn, d, d);
+    NAME(rotate_back)(rotation, d, d);
     for (int k = 0; k < 6; k += 3) {
-        NAME(rotate_back)(turn, v + k, v + k);
-        NAME(rotate_back)(turn, a + k, a + k);
+        NAME(rotate_back)(rotation, v + k, v + k);
+        NAME(rotate_back)(rotation, a + k, a + k);
     }
-    const L back[4] = {turn[0], -turn[1], -turn[2], -turn[3]};
+    const L back[4] = {rotation[0], -rotation[1], -rotation[2], -rotation[3]};
     NAME(quat_mul)(back, q + 3, out + 3);
     for (int k = 0; k < 3; k++) {
         out[k] = d[k] - r[k];
@@ -556,7 +556,7 @@ HERE void NAME(lose_block)(const int whole, const int64_t *at, const spari_root_
     NAME(pick_rows)(whole, at, 7, 7, t->own->q + 7 * i, q);
     NAME(pick_rows)(whole, at, 6, 6, t->own->v + 6 * i, v);
     NAME(splat3)(t->velocity + 3, jump);
-    NAME(splat3)(t->place + 3, gap);
+    NAME(splat3)(t->position + 3, gap);
     for (int k = 0; k < 4; k++) {
         back[k] = SPLAT(t->back + k);
     }
@@ -568,7 +568,7 @@ HERE void NAME(lose_block)(const int whole, const int64_t *at, const spari_root_
     for (int k = 0; k < 3; k++) {
         v[k] = v[k] - (t->velocity[k] + c1[k]);
         v[3 + k] = v[3 + k] - t->velocity[3 + k];
-        q[k] = q[k] - (t->place[k] + c2[k]);
+        q[k] = q[k] - (t->position[k] + c2[k]);
     }
     NAME(quat_mul)(back, q + 3, out);
     NAME(drop_rows)(whole, at, 7, 3, t->own->q + 7 * i, q);
@@ -584,8 +584,8 @@ TARGET static void NAME(lose)(const spari_root_jump *t, int64_t from, int64_t to
 
 const spari_node_kernels NAME(spari_node_kernels) = {
     .width = W,
-    .back = NAME(turn_back),
-    .forth = NAME(turn_forth),
+    .back = NAME(forces_back),
+    .forth = NAME(corrections_forth),
     .sized =
         {[SPARI_SIZED_BY_TAKE] = NAME(take), [SPARI_SIZED_BY_PLACE] = NAME(place), [SPARI_SIZED_BY_SIZE] = NAME(size)},
     .predict = NAME(predict),

@@ -48,9 +48,9 @@ static void lose_jump(const spari_solver *solver, const spar_member *m, double h
                       const spari_pose *to, const spari_state *own) {
     spari_root_jump t = {.lanes = solver->body->lanes, .member = m, .own = own};
     double less[3];
-    spari_drive_jump(from, to, h, t.velocity, t.place);
+    spari_drive_jump(from, to, h, t.velocity, t.position);
     for (int k = 0; k < 3; k++) {
-        less[k] = -t.place[3 + k];
+        less[k] = -t.position[3 + k];
     }
     spari_quat_exp(less, t.back);
     spari_solver_spread(solver, lose_of_nodes, &t);
@@ -61,9 +61,9 @@ spari_ends spari_root_ends(const spari_solver *s, const spar_member *m, const sp
     spari_ends e = {*from, *to, *to, NULL, 0};
     if (m->root == SPAR_ROOT_DRIVEN && s->own[0].q && !c->still) {
         const spari_pose before = spari_pose_of(from->q, from->v, from->a);
-        double turn[4], psi[3], way[3];
-        spari_quat_between(before.q + 3, root->q + 3, turn);
-        spari_quat_log(turn, psi);
+        double rotation[4], psi[3], way[3];
+        spari_quat_between(before.q + 3, root->q + 3, rotation);
+        spari_quat_log(rotation, psi);
         for (int k = 0; k < 3; k++) {
             way[k] = root->q[k] - before.q[k];
         }
@@ -101,9 +101,9 @@ void spari_stage_enter(spari_solver *s) {
 
 /* ---- a rigid motion to be seen from ---- */
 
-double spari_stage_turning(const spari_solver *s, const spar_member *m) {
+double spari_stage_rotation_rate(const spari_solver *s, const spar_member *m) {
     double w[3] = {0};
-    if (spari_member_turns_stiffly(m)) {
+    if (spari_member_rotates_stiffly(m)) {
         spari_mean_rotation(s->n, s->from.v, w);
     }
     return spari_norm(w);
@@ -113,7 +113,7 @@ double spari_stage_turning(const spari_solver *s, const spar_member *m) {
 static const double farthest = 1;
 
 static int follows(const spar_member *m, const spari_scheme *c, const spari_stage *g) {
-    return c->rule != SPARI_ALPHA && !c->still && spari_member_turns_stiffly(m) &&
+    return c->rule != SPARI_ALPHA && !c->still && spari_member_rotates_stiffly(m) &&
            spari_norm(g->rigid.v + 3) * c->h <= farthest;
 }
 
@@ -133,7 +133,7 @@ static int make_own_states(spari_solver *s) {
 static spari_pose mean_motion(const spari_solver *s, const spar_member *m) {
     const spari_state *at = &s->from;
     spari_pose p = {.q = {0, 0, 0, 1, 0, 0, 0}};
-    int pinned = spari_member_held(m) == 3;
+    int pinned = spari_member_constrained(m) == 3;
     for (int i = 0; i < s->n; i++) {
         double arm[3];
         spari_member_arm(m, i, arm);
@@ -152,13 +152,13 @@ static spari_pose mean_motion(const spari_solver *s, const spar_member *m) {
 
 static spari_pose move_along(const spari_pose *p, double time) {
     spari_pose out = *p;
-    double psi[3], turn[4];
+    double psi[3], rotation[4];
     for (int k = 0; k < 3; k++) {
         out.q[k] += time * p->v[k];
         psi[k] = time * p->v[3 + k];
     }
-    spari_quat_exp(psi, turn);
-    spari_quat_mul(turn, p->q + 3, out.q + 3);
+    spari_quat_exp(psi, rotation);
+    spari_quat_mul(rotation, p->q + 3, out.q + 3);
     return out;
 }
 
@@ -215,7 +215,7 @@ static void mean_angular_acceleration(const spari_solver *s, const spar_member *
 /* Where the turning has no third derivative: a pinned root, the node that a joint holds, or, of what is free, the mean
    of all nodes. 0: there are several. */
 static int find_pivot(const spari_solver *s, const spar_member *m, double pivot[3], double a0[3]) {
-    int ends = s->condensed ? s->condensed->ends : 0, pinned = spari_member_held(m) == 3;
+    int ends = s->condensed ? s->condensed->ends : 0, pinned = spari_member_constrained(m) == 3;
     if (ends > 1 || (ends == 1 && pinned && s->condensed->node[0] != 0)) {
         return 0;
     }
@@ -238,7 +238,7 @@ static int find_pivot(const spari_solver *s, const spar_member *m, double pivot[
    the place, with the C of (E1), for h v + h^2 ((1/2 - beta) b^n + beta b^{n+1}) is the whole increment. A step of
    TR-BDF2 after it begins with the true ones, and it goes on with its own: v += f times that for all that turns as a
    rigid body. */
-static void shift_turning(const spari_solver *s, const spar_member *m, double f) {
+static void shift_rotating_nodes(const spari_solver *s, const spar_member *m, double f) {
     double w[3], pivot[3], a0[3], alpha[3];
     if (!find_pivot(s, m, pivot, a0)) {
         return;
@@ -246,16 +246,16 @@ static void shift_turning(const spari_solver *s, const spar_member *m, double f)
     spari_mean_rotation(s->n, s->from.v, w);
     mean_angular_acceleration(s, m, pivot, a0, w, alpha);
     for (int i = 0; i < s->n; i++) {
-        double r[3], turn[3], grow[3], a[3], b[3];
+        double r[3], rotation[3], grow[3], a[3], b[3];
         arm_from(s, m, i, pivot, r);
-        spari_cross(w, r, turn);
+        spari_cross(w, r, rotation);
         spari_cross(alpha, r, grow);
-        spari_cross(w, turn, a);
+        spari_cross(w, rotation, a);
         for (int k = 0; k < 3; k++) {
             a[k] += grow[k]; /* the acceleration */
         }
         spari_cross(w, a, b);
-        spari_cross(alpha, turn, a);
+        spari_cross(alpha, rotation, a);
         for (int k = 0; k < 3; k++) {
             s->from.v[6 * i + k] += f * (b[k] + 2 * a[k]);
         }
@@ -271,7 +271,7 @@ void spari_steady_rate(const spar_member *m, const double w[3], const double a[3
 }
 
 /* b^0 = a^0 + (alpha_m - alpha_f) h times the rate of the acceleration; and of a rigid body v^0 less C h^2 times that,
-   as shift_turning has it of members that deform. */
+   as shift_rotating_nodes has it of members that deform. */
 void spari_stage_remember(spari_solver *s, const spar_member *m, const spari_scheme *c) {
     double h = (c->alpha_m - c->alpha_f) * c->h, C = spari_scheme_error(c), rate[3];
     memcpy(s->begin.b, s->begin.a, (size_t)(6 * s->n) * sizeof *s->begin.b);
@@ -281,7 +281,7 @@ void spari_stage_remember(spari_solver *s, const spar_member *m, const spari_sch
         memcpy(s->begin.b, s->own[0].a, (size_t)(6 * s->n) * sizeof *s->begin.b);
         return;
     }
-    for (int i = 0; i < s->n && !spari_member_root_is_given(m) && m->session->step == 0; i++) {
+    for (int i = 0; i < s->n && !spari_member_root_is_prescribed(m) && m->session->step == 0; i++) {
         double *v = s->begin.v + 6 * i, *b = s->begin.b + 6 * i;
         spari_steady_rate(m, v + 3, s->begin.a + 6 * i, rate);
         for (int k = 0; k < 3; k++) {
@@ -294,13 +294,13 @@ void spari_stage_remember(spari_solver *s, const spar_member *m, const spari_sch
 /* A substep begins, after one of the other scheme. */
 static void change_scheme(const spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part) {
     double C = spari_scheme_error(c);
-    if (!spari_member_turns_stiffly(m) || c->still) {
+    if (!spari_member_rotates_stiffly(m) || c->still) {
         return;
     }
     if (c->rule == SPARI_TRAPEZOIDAL && part->alpha > 0) {
-        shift_turning(s, m, C * part->alpha * part->alpha);
+        shift_rotating_nodes(s, m, C * part->alpha * part->alpha);
     } else if (c->rule == SPARI_ALPHA && part->alpha == 0 && part->ratio > 0) {
-        shift_turning(s, m, -C * c->h * c->h);
+        shift_rotating_nodes(s, m, -C * c->h * c->h);
     }
 }
 
@@ -317,10 +317,10 @@ int spari_stage_root(spari_solver *s, const spar_member *m, const spari_scheme *
     if (c->rule == SPARI_TRAPEZOIDAL) {
         g->root = spari_drive_stage(&g->before, &g->root, c->h, c->span);
     }
-    g->turn[0] = 1;
-    memset(g->turn + 1, 0, 3 * sizeof *g->turn);
+    g->rotation[0] = 1;
+    memset(g->rotation + 1, 0, 3 * sizeof *g->rotation);
     if (m->root == SPAR_ROOT_DRIVEN) {
-        spari_quat_between(g->before.q + 3, g->root.q + 3, g->turn);
+        spari_quat_between(g->before.q + 3, g->root.q + 3, g->rotation);
     }
     if (rigid && c->rule == SPARI_TRAPEZOIDAL) {
         SPARI_REQUIRE(m->session, make_own_states(s) == SPAR_OK, SPAR_ERR_MEMORY,
@@ -339,9 +339,9 @@ int spari_stage_root(spari_solver *s, const spar_member *m, const spari_scheme *
 int spari_stage_begin(spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part,
                       spari_stage *g) {
     spari_scheme_mix_loads(m, &s->steps, 6 * s->n, part->end);
-    if (s->arms) {
-        spari_arms_at(s->arms, part->end);
-        memcpy(s->arms->gravity, m->body->gravity, sizeof m->body->gravity);
+    if (s->offset_loads) {
+        spari_offset_loads_at(s->offset_loads, part->end);
+        memcpy(s->offset_loads->gravity, m->body->gravity, sizeof m->body->gravity);
     }
     return spari_stage_root(s, m, c, part, g);
 }
@@ -371,9 +371,9 @@ static double moved_by(const spari_solver *s, double h) {
                      dw[3] = {h * (v[3] - u[3]), h * (v[4] - u[4]), h * (v[5] - u[5])};
         const double *p = s->from.q + 7 * i, *q = s->to.q + 7 * i;
         const double way[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-        double turn[4], psi[3];
-        spari_quat_between(p + 3, q + 3, turn);
-        spari_quat_log(turn, psi);
+        double rotation[4], psi[3];
+        spari_quat_between(p + 3, q + 3, rotation);
+        spari_quat_log(rotation, psi);
         double far = fmax(spari_norm(way), spari_norm(dv)) / s->body->length;
         most = fmax(most, fmax(far, fmax(spari_norm(psi), spari_norm(dw))));
     }
@@ -392,9 +392,9 @@ static double work_in(spari_solver *s, const spar_member *m, const spari_state *
         (void)spari_applied_residual(m, x->q, 1, s->dx);
     }
     for (int i = 0; i < s->n; i++) {
-        double turn[4], psi[3];
-        spari_quat_between(s->from.q + 7 * i + 3, s->to.q + 7 * i + 3, turn);
-        spari_quat_log(turn, psi);
+        double rotation[4], psi[3];
+        spari_quat_between(s->from.q + 7 * i + 3, s->to.q + 7 * i + 3, rotation);
+        spari_quat_log(rotation, psi);
         for (int k = 0; k < 3; k++) {
             sum -= s->dx[6 * i + k] * (s->to.q[7 * i + k] - s->from.q[7 * i + k]) + s->dx[6 * i + 3 + k] * psi[k];
         }
@@ -414,10 +414,10 @@ void spari_stage_energy(spari_solver *s, const spar_member *m, const spari_part 
 }
 
 int spari_stage_is_near(const spari_solver *s, const spar_member *m, double h) {
-    return m->root == SPAR_ROOT_DRIVEN || m->added || s->arms || !(moved_by(s, h) > near);
+    return m->root == SPAR_ROOT_DRIVEN || m->added || s->offset_loads || !(moved_by(s, h) > near);
 }
 
-void spari_stage_leave(const spari_solver *s, spar_member *m, const spari_scheme *c, spari_stage *g) {
+void spari_stage_end(const spari_solver *s, spar_member *m, const spari_scheme *c, spari_stage *g) {
     spari_stage_restart(s, m, c, g);
     g->before = g->root;
     spari_scheme_dissipate(m, c, &g->power, s->power);

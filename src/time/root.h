@@ -3,8 +3,8 @@
 #ifndef SPARI_ROOT_H
 #define SPARI_ROOT_H
 
-#include "scheme.h"
 #include "body_solver.h"
+#include "scheme.h"
 
 /* A substep's ends in the variables of the scheme, seen from a driven root, else as they are; and the end as the body
    takes it. */
@@ -23,7 +23,7 @@ typedef struct spari_stage {
     spari_ends ends;
     spari_pose before, root; /* a driven root at the beginning of the substep and at the end of the stage */
     spari_pose rigid, along; /* the rigid motion that a substep of TR-BDF2 is seen from, likewise */
-    double turn[4];          /* of the root */
+    double rotation[4];      /* of the root */
     double power;            /* that damping takes at the beginning */
 } spari_stage;
 /* A step begins at t^n. */
@@ -33,7 +33,7 @@ void spari_steady_rate(const spar_member *member, const double w[3], const doubl
 /* Accelerations at t^0 are known: what of generalised-alpha belongs to them, for substeps of the scheme. */
 void spari_stage_remember(spari_solver *solver, const spar_member *member, const spari_scheme *scheme);
 /* The mean angular velocity at the beginning of the substep, of what turns freely and deforms; else 0. */
-double spari_stage_turning(const spari_solver *solver, const spar_member *member);
+double spari_stage_rotation_rate(const spari_solver *solver, const spar_member *member);
 /* A substep begins where the last one has ended. */
 void spari_stage_enter(spari_solver *solver);
 /* Loads, root and ends of a stage. SPAR_OK or SPAR_ERR_MEMORY. */
@@ -51,7 +51,7 @@ int spari_stage_is_near(const spari_solver *solver, const spar_member *member, d
 void spari_stage_energy(spari_solver *solver, const spar_member *member, const spari_part *part, double *gain,
                         double *size);
 /* The substep has ended. */
-void spari_stage_leave(const spari_solver *solver, spar_member *member, const spari_scheme *scheme, spari_stage *stage);
+void spari_stage_end(const spari_solver *solver, spar_member *member, const spari_scheme *scheme, spari_stage *stage);
 /* Motion of all nodes as seen from a root; b is so already. */
 void spari_root_look_from(const spari_solver *solver, const spar_member *member, const spari_pose *root,
                           const spari_state *state, spari_state *own);

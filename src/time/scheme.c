@@ -47,7 +47,7 @@ void spari_scheme_loads(const spar_member *member, spari_steps *steps) {
     spari_member_gather(member, member->load_used, steps->load1);
     spari_member_gather(member, member->dead, steps->load);
     if (before == member->dead) {
-        spari_crew_spread(member->session->crew, n, SPAN, add_dead, steps);
+        spari_thread_pool_spread(member->session->pool, n, SPAN, add_dead, steps);
         return;
     }
     for (int64_t i = 0; i < n; i++) {
@@ -86,7 +86,7 @@ static void mix_loads(void *context, int64_t from, int64_t to) {
 
 void spari_scheme_mix_loads(const spar_member *m, const spari_steps *t, int loads, double s) {
     applied_at(m, 1 - s);
-    spari_crew_spread(m->session->crew, loads, SPAN, mix_loads, &(loads_within){t, s});
+    spari_thread_pool_spread(m->session->pool, loads, SPAN, mix_loads, &(loads_within){t, s});
     if (m->added && s < 1) {
         (void)spari_added_times(m, SPARI_NODES, SPARI_UNKNOWNS, m->now.a, 1 - s, t->load);
     }
@@ -120,7 +120,7 @@ spari_scheme spari_scheme_stage(const spari_scheme *alpha, spari_rule rule) {
 }
 
 static spari_pattern pattern_after(const spari_pattern *last, double h) {
-    if (last->h > 0 && !spari_steps_alike(h, last->h)) {
+    if (last->h > 0 && !spari_steps_are_equal(h, last->h)) {
         return (spari_pattern){h, 0};
     }
     return (spari_pattern){h, last->h > 0 && last->even < SPARI_EVEN ? last->even + 1 : last->even};
@@ -133,9 +133,9 @@ spari_scheme spari_scheme_last(const spar_member *m, int damped, const spari_pat
 
 /* Of what turns freely at W, generalised-alpha feeds the parts that it does not resolve from 1 - rho_inf = 1.5 W h on
    (docs/beam.md, "Stiff members that turn"); with rho_inf = 1 those of omega h > 4 / (W h). TR-BDF2 does not. */
-static int exceeds_limit(double turning, const spari_scheme *c, const spar_session *session) {
+static int exceeds_limit(double rotation_rate, const spari_scheme *c, const spar_session *session) {
     static const double least = 0.05;
-    return 1.5 * turning * c->h > fmax(1 - session->rho_inf, least);
+    return 1.5 * rotation_rate * c->h > fmax(1 - session->rho_inf, least);
 }
 
 void spari_mean_rotation(int64_t n, const double *v, double w[3]) {
@@ -147,15 +147,15 @@ void spari_mean_rotation(int64_t n, const double *v, double w[3]) {
     }
 }
 
-int spari_member_turns_stiffly(const spar_member *m) {
-    return m->body && m->fidelity != SPAR_FIDELITY_RIGID && m->body->unique > 1 && !spari_member_root_is_given(m);
+int spari_member_rotates_stiffly(const spar_member *m) {
+    return m->body && m->fidelity != SPAR_FIDELITY_RIGID && m->body->unique > 1 && !spari_member_root_is_prescribed(m);
 }
 
-int spari_scheme_turns(const spar_session *s, double dt) {
+int spari_scheme_rotates(const spar_session *s, double dt) {
     const spari_scheme c = {.h = dt / s->substeps};
     int turns = 0;
     for (const spar_member *m = s->members; m && !turns; m = m->next) {
-        if (spari_member_turns_stiffly(m)) {
+        if (spari_member_rotates_stiffly(m)) {
             double w[3];
             spari_mean_rotation(m->nodes, m->now.v, w);
             turns = exceeds_limit(1.1 * spari_norm(w), &c, s);
@@ -191,10 +191,10 @@ static int try_part(const spari_stepper *how, void *self, const spari_scheme *al
 /* The same; whether it has a solution that may stay. What fails is told to the session if `last`. */
 static int try_to_stay(const spari_stepper *how, void *self, const spari_scheme *alpha, int even, spari_part *part,
                        spari_scheme *c, const spar_session *session, int last) {
-    char text[SPARI_MESSAGE_SIZE], *before = last ? NULL : spari_messages_aside(text);
+    char text[SPARI_MESSAGE_SIZE], *before = last ? NULL : spari_messages_redirect(text);
     int status = try_part(how, self, alpha, even, part, c);
     if (!last) {
-        (void)spari_messages_aside(before);
+        (void)spari_messages_redirect(before);
     }
     if (status == SPAR_OK && how->gains && !c->still && !session->rough && how->gains(self, part)) {
         status = SPAR_ERR_NUMERIC;
@@ -238,7 +238,7 @@ static int run_substep(const spari_stepper *how, void *self, const spari_scheme 
         if (!tries_anew) {
             how->enter(self, &part);
         }
-        if (tries_anew || (how->turning && exceeds_limit(how->turning(self), &alpha, session))) {
+        if (tries_anew || (how->rotation_rate && exceeds_limit(how->rotation_rate(self), &alpha, session))) {
             next.even = 0;
         }
         part.last = next.even == SPARI_EVEN - 1;
@@ -251,7 +251,7 @@ static int run_substep(const spari_stepper *how, void *self, const spari_scheme 
             continue;
         }
         SPARI_TRY(status);
-        SPARI_TRY(how->leave(self, &c, &part));
+        SPARI_TRY(how->finish(self, &c, &part));
         *pattern = next;
         at += size;
         again = 0, tried = 0;
@@ -304,7 +304,7 @@ static void predict_stage(const spari_scheme *c, spari_guess stays, int n, spari
             a = as + (1 - STAGE) / STAGE * (as - a0);
         }
         if (stays != SPARI_KEEP_ACCELERATION) {
-            double way = stays == SPARI_KEEP_PLACE ? 0 : c->span * v0;
+            double way = stays == SPARI_KEEP_POSITION ? 0 : c->span * v0;
             a = ((way - p) / g - v) / g;
         }
         to.a[k] = to.b[k] = a;
@@ -326,7 +326,7 @@ void spari_scheme_predict(const spari_scheme *c, spari_guess stays, int n, spari
             to.a[k] = a;
             next = (a - c->alpha_m * b) / (1 - c->alpha_m);
         } else { /* the b that makes x = h v or 0, and the a that goes with it */
-            next = (1 - 0.5 / c->beta) * b - (stays == SPARI_KEEP_PLACE ? v / (h * c->beta) : 0);
+            next = (1 - 0.5 / c->beta) * b - (stays == SPARI_KEEP_POSITION ? v / (h * c->beta) : 0);
             to.a[k] = ((1 - c->alpha_m) * next + c->alpha_m * b - c->alpha_f * a) / (1 - c->alpha_f);
         }
         x[k] = h * v + h * h * ((0.5 - c->beta) * b + c->beta * next);
@@ -346,15 +346,15 @@ void spari_scheme_correct(const spari_scheme *c, double cut, int n, const double
     }
 }
 
-int spari_scheme_start(const spari_scheme *c, spari_linear *A, int held, int n, spari_forces unbalance, void *self,
-                       const spar_member *m, double *r, double *a) {
+int spari_scheme_start(const spari_scheme *c, spari_linear *A, int constrained, int n, spari_forces unbalance,
+                       void *self, const spar_member *m, double *r, double *a) {
     for (int pass = 0; pass < START_PASSES; pass++) {
         unbalance(self, m, a, r);
-        memset(r, 0, (size_t)held * sizeof *r);
+        memset(r, 0, (size_t)constrained * sizeof *r);
         if (spari_linear_solve(A, r)) {
             return 1;
         }
-        for (int i = held; i < n; i++) {
+        for (int i = constrained; i < n; i++) {
             a[i] -= c->cm * r[i];
         }
     }

@@ -4,8 +4,8 @@
 #ifndef SPARI_SCHEME_H
 #define SPARI_SCHEME_H
 
-#include "../member/structure.h"
 #include "../algebra/linear.h"
+#include "../member/structure.h"
 
 #include <float.h>
 
@@ -68,11 +68,11 @@ typedef struct spari_stepper {
     /* The state that was found becomes the one that the substep begins at. */
     void (*enter)(void *self, const spari_part *part);
     /* The largest mean angular velocity of stiff members that turn freely; NULL: there are none. */
-    double (*turning)(const void *self);
+    double (*rotation_rate)(const void *self);
     /* To the end of a stage. A status and a message. */
     int (*solve)(void *self, const spari_scheme *c, const spari_part *part);
     /* The substep has ended. A status and a message. */
-    int (*leave)(void *self, const spari_scheme *c, const spari_part *part);
+    int (*finish)(void *self, const spari_scheme *c, const spari_part *part);
     /* Whether the solution found has more energy than the state it came from and the work of the loads account for;
        NULL: substeps are not cut. */
     int (*gains)(void *self, const spari_part *part);
@@ -112,11 +112,11 @@ void spari_scheme_stretch(double ratio, int n, const double *a, double *b);
 /* Whether it has stiff parts that turn freely. Their velocities are found from positions: in a stage they are off by a
    part of h^2 times the third derivative of the position, which of what turns at W is W^3 times the radius. Where dt
    changes, that rings. Seen from the rigid motion with the mean velocities of the member the rotation is rest. */
-int spari_member_turns_stiffly(const spar_member *member);
+int spari_member_rotates_stiffly(const spar_member *member);
 /* w: the mean angular velocity of n nodes with velocities v [n][6]. */
 void spari_mean_rotation(int64_t n, const double *v, double w[3]);
-/* Whether in steps dt a member turns so fast that it is taken by TR-BDF2, or nearly: alike on all ranks. */
-int spari_scheme_turns(const spar_session *session, double dt);
+/* Whether in steps dt a member turns so fast that it is integrated by TR-BDF2, or nearly: the same on all ranks. */
+int spari_scheme_rotates(const spar_session *session, double dt);
 /* After a substep of TR-BDF2 from accelerations a0 to a: the b that generalised-alpha would go on with. */
 void spari_scheme_restart(const spari_scheme *c, int n, const double *a0, const double *a, double *b);
 
@@ -127,7 +127,7 @@ typedef enum spari_guess {
     SPARI_KEEP_ACCELERATION,
     SPARI_KEEP_SHAPE,
     SPARI_KEEP_VELOCITY,
-    SPARI_KEEP_PLACE
+    SPARI_KEEP_POSITION
 } spari_guess;
 
 /* Rates of n unknowns, and true and algorithmic accelerations. At the beginning of a backward-difference stage b has
@@ -153,7 +153,7 @@ typedef void (*spari_forces)(void *self, const spar_member *m, const double *y, 
    all) would start with accelerations that the step cannot follow. Each refinement solves for what is left; with
    z = omega^2 / cm a mode keeps 1 - (z / (1 + z))^4 of its acceleration. unbalance: inertia and internal forces less
    loads of the accelerations a. The first `held` of the n unknowns keep theirs. 0, or 1 when A is singular. */
-int spari_scheme_start(const spari_scheme *c, spari_linear *A, int held, int n, spari_forces unbalance, void *self,
-                       const spar_member *m, double *r, double *a);
+int spari_scheme_start(const spari_scheme *c, spari_linear *A, int constrained, int n, spari_forces unbalance,
+                       void *self, const spar_member *m, double *r, double *a);
 
 #endif

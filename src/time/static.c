@@ -20,8 +20,8 @@ enum { STATIC_ITERATIONS = 50, STATIC_HALVINGS = 14 };
 
 /* What a solution works with besides the solver's arrays. */
 typedef struct loading {
-    int turning; /* the root turns: equilibrium in its frame */
-    spari_turn turn, part;
+    int rotating; /* the root turns: equilibrium in its frame */
+    spari_steady_rotation rotation, part;
     double *mass;  /* turning: an element's mass matrix */
     int guarded;   /* the path is watched */
     double *v, *a; /* rates of the steady turn; NULL: at rest */
@@ -32,10 +32,10 @@ static double balance_at(const spari_solver *s, const spar_member *m, loading *l
                          double *r) {
     const spari_body body = spari_body_in_part(s->body, f);
     double scale;
-    if (l->turning) {
-        l->part = spari_turn_part(&l->turn, f);
-        spari_turn_rates(m, &l->part, q, l->v, l->a);
-        scale = spari_turn_residual(&body, q, l->v, l->a, f, r);
+    if (l->rotating) {
+        l->part = spari_steady_rotation_part(&l->rotation, f);
+        spari_steady_rotation_rates(m, &l->part, q, l->v, l->a);
+        scale = spari_steady_rotation_residual(&body, q, l->v, l->a, f, r);
     } else {
         scale = spari_body_residual(&body, q, NULL, NULL, f, r, NULL);
     }
@@ -54,8 +54,8 @@ static void form_static_tangent(const spari_solver *s, const spar_member *m, loa
     const spari_body body = spari_body_in_part(s->body, f);
     spari_linear_zero(s->linear);
     for (int e = 0; e < s->body->elements; e++) {
-        if (l->turning) {
-            spari_turn_tangent(&body, &l->part, e, q, l->v, l->a, f, s->body->matrix, l->mass);
+        if (l->rotating) {
+            spari_steady_rotation_tangent(&body, &l->part, e, q, l->v, l->a, f, s->body->matrix, l->mass);
         } else {
             spari_body_tangent(&body, e, q, NULL, NULL, f, 0, 0, NULL, s->body->matrix);
         }
@@ -64,19 +64,19 @@ static void form_static_tangent(const spari_solver *s, const spar_member *m, loa
         }
         spari_linear_add(s->linear, e, s->body->matrix);
     }
-    for (int i = 0; i < spari_member_held(m); i++) {
+    for (int i = 0; i < spari_member_constrained(m); i++) {
         spari_linear_fix(s->linear, i);
     }
 }
 
 void spari_static_shift(int n, double cut, const double *dx, double *q) {
     for (int i = 0; i < n; i++) {
-        double turn[3], p[4];
+        double rotation[3], p[4];
         for (int k = 0; k < 3; k++) {
             q[7 * i + k] -= cut * dx[6 * i + k];
-            turn[k] = -cut * dx[6 * i + 3 + k];
+            rotation[k] = -cut * dx[6 * i + 3 + k];
         }
-        spari_quat_exp(turn, p);
+        spari_quat_exp(rotation, p);
         spari_quat_mul(p, q + 7 * i + 3, q + 7 * i + 3);
         spari_quat_normalise(q + 7 * i + 3);
     }
@@ -100,7 +100,7 @@ static outcome equilibrium(spari_solver *s, const spar_member *member, loading *
     const double longest = 0.8; /* a correction turns no node by more (rad), nor moves it by more of the length */
     for (int it = 0; it < STATIC_ITERATIONS; it++) {
         double scale = balance_at(s, member, l, f, q, s->r), noise = 0;
-        memset(s->r, 0, (size_t)spari_member_held(member) * sizeof *s->r);
+        memset(s->r, 0, (size_t)spari_member_constrained(member) * sizeof *s->r);
         for (int i = 0; i < 6 * n; i++) {
             noise = fmax(noise, fabs(s->r[i]));
         }
@@ -147,7 +147,7 @@ static int starts_on_path(const spari_solver *s, const spar_member *m, loading *
         return 0;
     }
     balance_at(s, m, l, 0, q, s->r);
-    for (int i = spari_member_held(m); i < 6 * s->n; i++) {
+    for (int i = spari_member_constrained(m); i < 6 * s->n; i++) {
         if (fabs(s->r[i]) > 1e-9 * s->body->stiffest) {
             return 0;
         }
@@ -191,10 +191,10 @@ static double follow_path(spari_solver *s, const spar_member *member, loading *l
 static double largest_bend(const spari_solver *s, const double *q) {
     double largest = 0;
     for (int i = 1; i < s->n; i++) {
-        double back[4], turn[4], psi[3];
+        double back[4], rotation[4], psi[3];
         spari_quat_conj(q + 7 * i - 4, back);
-        spari_quat_mul(back, q + 7 * i + 3, turn);
-        spari_quat_log(turn, psi);
+        spari_quat_mul(back, q + 7 * i + 3, rotation);
+        spari_quat_log(rotation, psi);
         largest = fmax(largest, spari_norm(psi));
     }
     return largest;
@@ -247,8 +247,8 @@ static int no_memory_to_balance(const spar_member *member) {
 static void give_equilibrium(spari_solver *s, const spar_member *member, const loading *l) {
     memcpy(s->to.q, s->best, (size_t)(7 * s->n) * sizeof *s->best);
     memset(s->to.v, 0, (size_t)(18 * s->n) * sizeof(double));
-    if (l->turning) {
-        spari_turn_rates(member, &l->turn, s->to.q, s->to.v, s->to.a);
+    if (l->rotating) {
+        spari_steady_rotation_rates(member, &l->rotation, s->to.q, s->to.v, s->to.a);
     }
 }
 
@@ -256,9 +256,10 @@ int spari_solver_static(spari_solver *s, const spar_member *member, int load_ste
     int n = s->n;
     loading l = {0};
     outcome why = FAILED;
-    l.turning = member->root == SPAR_ROOT_DRIVEN && spari_turn_of(member, member->now.v, member->now.a, &l.turn);
+    l.rotating =
+        member->root == SPAR_ROOT_DRIVEN && spari_steady_rotation_of(member, member->now.v, member->now.a, &l.rotation);
     l.v = s->to.v, l.a = s->to.a;
-    if (l.turning) {
+    if (l.rotating) {
         l.mass = spari_zalloc(36 * (int64_t)member->per_element * member->per_element, sizeof *l.mass);
         if (!l.mass) {
             return no_memory_to_balance(member);

@@ -6,16 +6,17 @@
 
 #include <string.h>
 
-int spari_turn_of(const spar_member *m, const double v[6], const double a[6], spari_turn *turn) {
-    memcpy(turn->v0, v, sizeof turn->v0);
-    memcpy(turn->w, v + 3, sizeof turn->w);
-    memcpy(turn->a0, a, sizeof turn->a0);
+int spari_steady_rotation_of(const spar_member *m, const double v[6], const double a[6],
+                             spari_steady_rotation *rotation) {
+    memcpy(rotation->v0, v, sizeof rotation->v0);
+    memcpy(rotation->w, v + 3, sizeof rotation->w);
+    memcpy(rotation->a0, a, sizeof rotation->a0);
     int inertia = m->body->mass && (m->effects & SPAR_EFFECT_INERTIA);
-    return inertia && (spari_norm(turn->w) > 0 || spari_norm(turn->a0) > 0);
+    return inertia && (spari_norm(rotation->w) > 0 || spari_norm(rotation->a0) > 0);
 }
 
-spari_turn spari_turn_part(const spari_turn *turn, double f) {
-    spari_turn part = *turn;
+spari_steady_rotation spari_steady_rotation_part(const spari_steady_rotation *rotation, double f) {
+    spari_steady_rotation part = *rotation;
     for (int i = 0; i < 3; i++) {
         part.w[i] *= sqrt(f);
         part.v0[i] *= sqrt(f);
@@ -24,7 +25,8 @@ spari_turn spari_turn_part(const spari_turn *turn, double f) {
     return part;
 }
 
-void spari_turn_rates(const spar_member *m, const spari_turn *turn, const double *q, double *v, double *a) {
+void spari_steady_rotation_rates(const spar_member *m, const spari_steady_rotation *rotation, const double *q,
+                                 double *v, double *a) {
     int P = m->per_element;
     for (int64_t i = 0; i < m->nodes; i++) {
         int64_t u = m->elements == 1 ? i : i - i / P;
@@ -32,19 +34,19 @@ void spari_turn_rates(const spar_member *m, const spari_turn *turn, const double
         for (int c = 0; c < 3; c++) {
             r[c] = m->xr[3 * i + c] - m->xr[c] + q[7 * u + c] - q[c];
         }
-        spari_cross(turn->w, r, v + 6 * u);
-        spari_cross(turn->w, v + 6 * u, a + 6 * u);
+        spari_cross(rotation->w, r, v + 6 * u);
+        spari_cross(rotation->w, v + 6 * u, a + 6 * u);
         for (int c = 0; c < 3; c++) {
-            v[6 * u + c] += turn->v0[c];
-            a[6 * u + c] += turn->a0[c];
-            v[6 * u + 3 + c] = turn->w[c];
+            v[6 * u + c] += rotation->v0[c];
+            a[6 * u + c] += rotation->a0[c];
+            v[6 * u + 3 + c] = rotation->w[c];
             a[6 * u + 3 + c] = 0;
         }
     }
 }
 
-void spari_turning_rates(const spari_turning *t, double f, const double x[3], double v[6], double a[6]) {
-    const spari_turn part = spari_turn_part(&t->turn, f);
+void spari_rotating_frame_rates(const spari_rotating_frame *t, double f, const double x[3], double v[6], double a[6]) {
+    const spari_steady_rotation part = spari_steady_rotation_part(&t->rotation, f);
     const double r[3] = {x[0] - t->centre[0], x[1] - t->centre[1], x[2] - t->centre[2]};
     spari_cross(part.w, r, v);
     spari_cross(part.w, v, a);
@@ -56,26 +58,27 @@ void spari_turning_rates(const spari_turning *t, double f, const double x[3], do
     }
 }
 
-double spari_turn_residual(const spari_body *damped, const double *q, const double *v, const double *a, double factor,
-                           double *r) {
+double spari_steady_rotation_residual(const spari_body *damped, const double *q, const double *v, const double *a,
+                                      double factor, double *r) {
     spari_body body = *damped;
     body.D = NULL;
     body.drag = 0;
     return spari_body_residual(&body, q, v, a, factor, r, NULL);
 }
 
-void spari_turn_tangent(const spari_body *damped, const spari_turn *turn, int e, const double *q, const double *v,
-                        const double *a, double factor, double *S, double *M) {
+void spari_steady_rotation_tangent(const spari_body *damped, const spari_steady_rotation *rotation, int e,
+                                   const double *q, const double *v, const double *a, double factor, double *S,
+                                   double *M) {
     int n = 6 * damped->per_element;
     spari_body body = *damped;
     body.D = NULL;
     body.drag = 0;
-    spari_body_tangent(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, 0, 0, NULL, S);
-    spari_body_rates(&body, e, q, turn ? v : NULL, turn ? a : NULL, factor, S, NULL, M);
-    if (!turn) {
+    spari_body_tangent(&body, e, q, rotation ? v : NULL, rotation ? a : NULL, factor, 0, 0, NULL, S);
+    spari_body_rates(&body, e, q, rotation ? v : NULL, rotation ? a : NULL, factor, S, NULL, M);
+    if (!rotation) {
         return;
     }
-    const double *w = turn->w;
+    const double *w = rotation->w;
     double ww[3][3], square = spari_dot(w, w);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
@@ -105,8 +108,8 @@ static void add_by_blocks(int n, const double *X, int from, double T[3][3], doub
     }
 }
 
-void spari_turn_pencil(const spari_body *body, const double w[3], const double own[3], int e, const double *q,
-                       const double *v, const double *a, double *K, double *C, double *M) {
+void spari_steady_rotation_pencil(const spari_body *body, const double w[3], const double own[3], int e,
+                                  const double *q, const double *v, const double *a, double *K, double *C, double *M) {
     int n = 6 * body->per_element;
     spari_body_tangent(body, e, q, v, a, 1, 0, 0, NULL, K);
     spari_body_rates(body, e, q, v, a, 1, K, C, M);
@@ -126,7 +129,7 @@ void spari_turn_pencil(const spari_body *body, const double w[3], const double o
         less[r][c] = W[r][c] - S[r][c];
         back[r][c] = -S[r][c];
     }
-    if (body->drag > 0 && body->node_place) { /* damping by mass is seen from the frame itself */
+    if (body->drag > 0 && body->node_position) { /* damping by mass is seen from the frame itself */
         double still[3][3];
         for (int i = 0; i < 9; i++) {
             still[i / 3][i % 3] = -body->drag * W[i / 3][i % 3];

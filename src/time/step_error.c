@@ -36,7 +36,7 @@ static void rates_from_root(const spar_member *m, const spari_motion *x, int64_t
     spari_rotate_back(x->q + 3, a, a);
 }
 
-int spari_change_is(const spar_member *m) {
+int spari_step_error_applies(const spar_member *m) {
     return m->row->solved && m->row->moves && (m->effects & SPAR_EFFECT_INERTIA) != 0;
 }
 
@@ -46,14 +46,14 @@ typedef struct change_sums {
     const spar_member *m;
     int64_t stride, span;
     double length;
-    spari_change part[PARTS];
+    spari_step_change part[PARTS];
 } change_sums;
 
 static void add_changes(void *context, int64_t from, int64_t to) {
     change_sums *t = context;
     const spar_member *m = t->m;
     double v[6], a[6], v0[6], a0[6];
-    spari_change sum = {0, 0, 0};
+    spari_step_change sum = {0, 0, 0};
     for (int64_t i = from; i < to; i++) {
         rates_from_root(m, &m->now, i * t->stride, v0, a0);
         rates_from_root(m, &m->after, i * t->stride, v, a);
@@ -67,25 +67,25 @@ static void add_changes(void *context, int64_t from, int64_t to) {
     t->part[from / t->span] = sum;
 }
 
-spari_change spari_change_of(const spar_member *m, int64_t stride) {
+spari_step_change spari_step_change_of(const spar_member *m, int64_t stride) {
     int64_t nodes = (m->nodes + stride - 1) / stride, span = (nodes + PARTS - 1) / PARTS;
     change_sums t = {.m = m, .stride = stride, .span = span < LEAST ? LEAST : span};
     t.length = m->nodes == 1 ? spari_member_length(m) : 0;
-    spari_crew_spread(m->session->crew, nodes, t.span, add_changes, &t);
-    spari_change sum = t.part[0];
+    spari_thread_pool_spread(m->session->pool, nodes, t.span, add_changes, &t);
+    spari_step_change sum = t.part[0];
     for (int64_t k = 1; k * t.span < nodes; k++) {
         sum.change += t.part[k].change;
         sum.acceleration += t.part[k].acceleration;
         sum.speed += t.part[k].speed;
     }
     double count = (double)nodes;
-    return (spari_change){sqrt(sum.change / count), sqrt(sum.acceleration / count), sqrt(sum.speed / count)};
+    return (spari_step_change){sqrt(sum.change / count), sqrt(sum.acceleration / count), sqrt(sum.speed / count)};
 }
 
-int spari_change_tells(const spar_session *s) {
+int spari_step_error_is_known(const spar_session *s) {
     return s->step > 0 || (s->members && s->members->begun);
 }
 
-double spari_change_error(const spari_scheme *c, double change) {
+double spari_step_error(const spari_scheme *c, double change) {
     return fabs(spari_scheme_error(c)) * c->h * c->h * change;
 }

@@ -8,27 +8,27 @@
 
 void spari_snapshot_open(spari_snapshot *s, int useful) {
     s->open = useful;
-    s->taken = 0;
+    s->saved = 0;
 }
 
 double *spari_snapshot_take(spari_snapshot *s, int64_t count) {
-    if (!s->open || s->taken) {
+    if (!s->open || s->saved) {
         return NULL;
     }
     s->count = count;
-    if (count > s->room) {
+    if (count > s->capacity) {
         double *data = spari_zalloc(count, sizeof *data);
         if (data) {
             free(s->data);
-            s->data = data, s->room = count;
+            s->data = data, s->capacity = count;
         }
     }
-    s->taken = count <= s->room ? 1 : -1;
-    return s->taken > 0 ? s->data : NULL;
+    s->saved = count <= s->capacity ? 1 : -1;
+    return s->saved > 0 ? s->data : NULL;
 }
 
 void spari_snapshot_close(spari_snapshot *s) {
-    s->open = s->taken = 0;
+    s->open = s->saved = 0;
 }
 
 void spari_snapshot_free(spari_snapshot *s) {
@@ -37,13 +37,13 @@ void spari_snapshot_free(spari_snapshot *s) {
 }
 
 int64_t spari_snapshot_size(const spari_snapshot *s) {
-    return SPARI_SNAPSHOT_HEAD + (s->taken > 0 ? s->count : 0);
+    return SPARI_SNAPSHOT_HEAD + (s->saved > 0 ? s->count : 0);
 }
 
 void spari_snapshot_save(const spari_snapshot *s, double *state) {
-    const double head[SPARI_SNAPSHOT_HEAD] = {s->open, s->taken, s->taken > 0 ? (double)s->count : 0};
+    const double head[SPARI_SNAPSHOT_HEAD] = {s->open, s->saved, s->saved > 0 ? (double)s->count : 0};
     memcpy(state, head, sizeof head);
-    if (s->taken > 0) {
+    if (s->saved > 0) {
         memcpy(state + SPARI_SNAPSHOT_HEAD, s->data, (size_t)s->count * sizeof *state);
     }
 }
@@ -64,5 +64,5 @@ void spari_snapshot_load(spari_snapshot *s, const double *state, int there) {
     if (to) {
         memcpy(to, state + SPARI_SNAPSHOT_HEAD, (size_t)s->count * sizeof *to);
     }
-    s->taken = s->open && !to && (state[1] != 0 || !there) ? -1 : s->taken;
+    s->saved = s->open && !to && (state[1] != 0 || !there) ? -1 : s->saved;
 }

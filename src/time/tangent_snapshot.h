@@ -1,16 +1,16 @@
 /* A reused tangent as it was when the step began. A step may form another one, and a rejected step is to leave no
    trace. The numbers are copied only before a step overwrites them. */
-#ifndef SPARI_SNAPSHOT_H
-#define SPARI_SNAPSHOT_H
+#ifndef SPARI_TANGENT_SNAPSHOT_H
+#define SPARI_TANGENT_SNAPSHOT_H
 
 #include <stdint.h>
 
 typedef struct spari_snapshot {
     int open;      /* a step is under way, and what it began with is of use */
-    int taken;     /* the step has overwritten it: `data` holds it, or, -1, there was no memory for that */
+    int saved;     /* the step has overwritten it: `data` holds it, or, -1, there was no memory for that */
     int64_t count; /* so many numbers */
     double *data;
-    int64_t room;
+    int64_t capacity;
 } spari_snapshot;
 
 /* A step begins. useful: there is something to come back to. */

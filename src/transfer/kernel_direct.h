@@ -8,9 +8,9 @@
 #if W == 8 && defined(STREAM)
 /* Destination of a run's triples. */
 typedef struct NAME(flow) {
-    __m512i last, turn; /* numbers not yet written are at the end of last */
-    char *to;           /* address of the next pair of vectors */
-    char *line;         /* next line to write; NULL: not begun, or whole lines are impossible */
+    __m512i last, rotation; /* numbers not yet written are at the end of last */
+    char *to;               /* address of the next pair of vectors */
+    char *line;             /* next line to write; NULL: not begun, or whole lines are impossible */
     int past;
 } NAME(flow);
 
@@ -18,12 +18,12 @@ HERE NAME(flow) NAME(flow_to)(void *to, int past) {
     const __m512i count = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     const int before = (int)((uintptr_t)to & 63) / 4;
     NAME(flow) f = {.to = to, .past = past, .last = count};
-    f.turn = _mm512_add_epi32(count, _mm512_set1_epi32(16 - before));
+    f.rotation = _mm512_add_epi32(count, _mm512_set1_epi32(16 - before));
     return f;
 }
 
 HERE void NAME(write_line)(NAME(flow) * f, __m512i v) {
-    const __m512i line = _mm512_permutex2var_epi32(f->last, f->turn, v);
+    const __m512i line = _mm512_permutex2var_epi32(f->last, f->rotation, v);
     if (f->past) {
         _mm512_stream_si512((void *)f->line, line);
     } else {
@@ -56,7 +56,7 @@ HERE void NAME(write_pair)(NAME(flow) * f, const int n, const __m512i *v) {
 /* Writes the rest of the last line. */
 HERE void NAME(end_flow)(NAME(flow) * f) {
     if (f->line) {
-        __m512i line = _mm512_permutex2var_epi32(f->last, f->turn, f->last);
+        __m512i line = _mm512_permutex2var_epi32(f->last, f->rotation, f->last);
         memcpy(f->line, &line, (size_t)(f->to - f->line));
         f->line = NULL;
     }
@@ -172,10 +172,10 @@ HERE double NAME(direct)(const spari_nodes *s, int64_t first, int count, const d
                                                          const double *c, void *x, void *v, int past) {                \
         return NAME(direct)(s, first, count, c, consistent, what, single, x, v, past);                                 \
     }
-DIRECT(places, 0, SPARI_UPTO_PLACE, 0)
+DIRECT(places, 0, SPARI_UPTO_POSITION, 0)
 DIRECT(nodal, 0, SPARI_UPTO_RATE, 0)
 DIRECT(consistent, 1, SPARI_UPTO_RATE, 0)
-DIRECT(places_single, 0, SPARI_UPTO_PLACE, 1)
+DIRECT(places_single, 0, SPARI_UPTO_POSITION, 1)
 DIRECT(nodal_single, 0, SPARI_UPTO_RATE, 1)
 DIRECT(consistent_single, 1, SPARI_UPTO_RATE, 1)
 #undef DIRECT

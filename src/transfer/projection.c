@@ -477,7 +477,7 @@ static double xi_of(const segment *s, double t) {
 
 /* Newton on D'/2 = (r - p) . r', kept between low and high (s of the segment, in [-1,1]) by bisection. If the zero
    is not between them, returns the nearer end. */
-static double refine_foot(const segment *s, const double p[3], double low, double high, double at) {
+static double refine_nearest(const segment *s, const double p[3], double low, double high, double at) {
     const double first = low, last = high, small = 2 * DBL_EPSILON;
     double before = HUGE_VAL;
     int low_known = 0, high_known = 0;
@@ -522,7 +522,7 @@ typedef struct part {
 } part;
 
 static void offer_inside(search *q, const segment *s, const double p[3], const part *a, double t) {
-    double found = refine_foot(s, p, 2 * a->t0 - 1, 2 * a->t1 - 1, 2 * t - 1), xi = xi_of(s, 0.5 * (1 + found));
+    double found = refine_nearest(s, p, 2 * a->t0 - 1, 2 * a->t1 - 1, 2 * t - 1), xi = xi_of(s, 0.5 * (1 + found));
     offer(q, s->element, xi, square_at(q, s->element, xi));
 }
 
@@ -654,7 +654,7 @@ static int solve_by_roots(search *q, const segment *s, const double p[3]) {
     for (int k = 0; k < degree && most > 0; k++) {
         if (fabs(im[k]) <= near && fabs(re[k]) <= 1 + near) {
             double at = fmax(-1, fmin(1, re[k]));
-            double found = refine_foot(s, p, fmax(-1, at - near), fmin(1, at + near), at),
+            double found = refine_nearest(s, p, fmax(-1, at - near), fmin(1, at + near), at),
                    xi = xi_of(s, 0.5 * (1 + found));
             offer(q, s->element, xi, square_at(q, s->element, xi));
         }
@@ -737,7 +737,7 @@ typedef struct points {
     int64_t n;
     const double *x;
     int *element;
-    double *xi, *feet;
+    double *xi, *nearest;
     uint8_t *flags;
     struct part *stacks; /* per thread */
 } points;
@@ -767,18 +767,18 @@ static void project_item(void *context, int64_t item, int worker) {
         }
         p->element[j] = q.element, p->xi[j] = q.xi;
         p->flags[j] = (uint8_t)((q.ambiguous ? SPAR_MAP_AMBIGUOUS : 0) | (is_beyond(&q) ? SPAR_MAP_END : 0));
-        spari_line_point(line, q.element, q.xi, p->feet + 3 * j, NULL);
+        spari_line_point(line, q.element, q.xi, p->nearest + 3 * j, NULL);
     }
 }
 
-int spari_line_project(const spari_line *line, spari_crew *crew, int method, int64_t n, const double *x, int *element,
-                       double *xi, double *feet, uint8_t *flags) {
-    points p = {line, method, n, x, element, xi, feet, flags, NULL};
-    p.stacks = spari_zalloc((int64_t)spari_crew_threads(crew) * (DEPTH + 1), sizeof *p.stacks);
+int spari_line_project(const spari_line *line, spari_thread_pool *pool, int method, int64_t n, const double *x,
+                       int *element, double *xi, double *nearest, uint8_t *flags) {
+    points p = {line, method, n, x, element, xi, nearest, flags, NULL};
+    p.stacks = spari_zalloc((int64_t)spari_thread_pool_threads(pool) * (DEPTH + 1), sizeof *p.stacks);
     if (!p.stacks) {
         return SPAR_ERR_MEMORY;
     }
-    spari_crew_run(crew, (n + SLAB - 1) / SLAB, project_item, &p);
+    spari_thread_pool_run(pool, (n + SLAB - 1) / SLAB, project_item, &p);
     free(p.stacks);
     return SPAR_OK;
 }

@@ -14,12 +14,12 @@ void spari_line_free(spari_line *line);
 
 /* Projects points x [n][3] onto the line. The nearest point has the smallest distance; of several, the one with the
    smallest coordinate along the line is returned and flagged.
-   crew: threads (base/thread_pool.h)
-   element, xi, foot: [n], [n], [n][3] element, local coordinate and position of the nearest points
+   thread pool: threads (base/thread_pool.h)
+   element, xi, projection point: [n], [n], [n][3] element, local coordinate and position of the nearest points
    flags: [n] SPAR_MAP_END, SPAR_MAP_AMBIGUOUS
    Returns SPAR_OK, or SPAR_ERR_MEMORY without a message. */
-int spari_line_project(const spari_line *line, spari_crew *crew, int method, int64_t n, const double *x, int *element,
-                       double *xi, double *foot, uint8_t *flags);
+int spari_line_project(const spari_line *line, spari_thread_pool *pool, int method, int64_t n, const double *x,
+                       int *element, double *xi, double *nearest, uint8_t *flags);
 /* Position and derivative (may be NULL) of the line. */
 void spari_line_point(const spari_line *line, int element, double xi, double x[3], double dx[3]);
 

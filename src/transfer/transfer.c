@@ -12,7 +12,7 @@
 carrier spari_carrier_of(const double *c) {
     carrier m;
     double unit[4];
-    memcpy(m.place, c + SPARI_F_PLACE, sizeof m.place);
+    memcpy(m.place, c + SPARI_F_POSITION, sizeof m.place);
     memcpy(m.rate, c + SPARI_F_RATE, sizeof m.rate);
     memcpy(m.q, c + SPARI_F_QUAT, sizeof m.q);
     memcpy(m.omega, c + SPARI_F_SPIN, sizeof m.omega);
@@ -21,7 +21,7 @@ carrier spari_carrier_of(const double *c) {
     memcpy(unit, m.q, sizeof unit);
     m.square = spari_quat_dot(unit, unit);
     spari_quat_normalise(unit);
-    spari_quat_matrix(unit, m.turn);
+    spari_quat_matrix(unit, m.rotation);
     return m;
 }
 
@@ -139,7 +139,7 @@ void spari_modal_matrix(int n, double *m) {
 static void node_fields(const double *xr, const double *q, const double *v, const double *a, const double chained[4],
                         int consistent, int upto, double g[SPARI_FIELDS]) {
     for (int i = 0; i < 3; i++) {
-        g[SPARI_F_PLACE + i] = xr[i] + q[i];
+        g[SPARI_F_POSITION + i] = xr[i] + q[i];
         g[SPARI_F_RATE + i] = upto < SPARI_UPTO_RATE ? 0 : v[i];
     }
     memcpy(g + SPARI_F_QUAT, chained, 4 * sizeof *g);
@@ -457,14 +457,14 @@ static void add_slab(const gathering *g, int64_t slab, double *rows, double *blo
     }
 }
 
-static spari_crew *crew_of(const spari_nodes *s) {
-    return s->crew ? *s->crew : NULL;
+static spari_thread_pool *pool_of(const spari_nodes *s) {
+    return s->pool ? *s->pool : NULL;
 }
 
 /* Workspace of a thread, which begins with its rows. */
 static double *work_of(const gathering *g, int worker) {
     int64_t size = g->rows + spari_gather_share(g->nodes);
-    return worker == 0 ? g->work : spari_crew_room(crew_of(g->s), worker, size);
+    return worker == 0 ? g->work : spari_thread_pool_workspace(pool_of(g->s), worker, size);
 }
 
 /* If several slabs are summed at once, each has a block of its own, whichever thread fills it. */
@@ -492,17 +492,18 @@ static void join_sums(const double *block, double *total, int64_t nodes) {
 /* Sums all loads into one block. */
 static void sum_all_loads(gathering *g, double *total) {
     int64_t slabs = spari_slabs(g->s->n, g->slab);
-    spari_crew *crew = crew_of(g->s);
+    spari_thread_pool *pool = pool_of(g->s);
     if (slabs < 2) {
         add_slab(g, 0, g->work, total);
         return;
     }
-    int shared = spari_crew_is_free(crew) && spari_crew_room(crew, 1, g->rows + spari_gather_share(g->nodes));
-    int64_t most = shared ? spari_crew_threads(crew) : 1;
+    int shared =
+        spari_thread_pool_is_free(pool) && spari_thread_pool_workspace(pool, 1, g->rows + spari_gather_share(g->nodes));
+    int64_t most = shared ? spari_thread_pool_threads(pool) : 1;
     clear_sums(total, g->nodes);
     for (g->first = 0; g->first < slabs; g->first += most) {
         int64_t here = slabs - g->first < most ? slabs - g->first : most;
-        spari_crew_run(crew, here, gather_item, g);
+        spari_thread_pool_run(pool, here, gather_item, g);
         for (int64_t k = 0; k < here; k++) {
             join_sums(block_of(g, k), total, g->nodes);
         }

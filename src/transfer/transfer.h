@@ -26,7 +26,7 @@ typedef struct spari_nodes {
     uint16_t *place; /* [n] storage position -> node within its tile; NULL: in order */
     uint8_t *flags;  /* [n] SPAR_MAP_*, by node */
     int lanes;       /* maximum vector width; 0: as the processor has (tests try all) */
-    struct spari_crew *const *crew; /* threads (base/thread_pool.h); NULL: one thread */
+    struct spari_thread_pool *const *pool; /* threads (base/thread_pool.h); NULL: one thread */
 } spari_nodes;
 
 /* SPARI_SLAB: nodes per item if nodes are independent, whole tiles. SPARI_SUM_SLAB: minimum if they are summed. More
@@ -40,21 +40,21 @@ static inline int64_t spari_slabs(int64_t n, int64_t slab) {
 
 /* Coefficients of the nodal fields of one state, [element][mode][SPARI_FIELDS]. */
 enum {
-    SPARI_F_PLACE = 0,  /* reference position + displacement */
-    SPARI_F_RATE = 3,   /* velocity */
-    SPARI_F_QUAT = 6,   /* relative rotation, signs chained along the element */
-    SPARI_F_SPIN = 10,  /* nodal: omega (3); consistent: omega q (4) */
-    SPARI_F_ACCEL = 14, /* acceleration */
-    SPARI_F_TWIST = 17, /* nodal: alpha (3); consistent: alpha q - |omega|^2 q / 2 (4) */
+    SPARI_F_POSITION = 0, /* reference position + displacement */
+    SPARI_F_RATE = 3,     /* velocity */
+    SPARI_F_QUAT = 6,     /* relative rotation, signs chained along the element */
+    SPARI_F_SPIN = 10,    /* nodal: omega (3); consistent: omega q (4) */
+    SPARI_F_ACCEL = 14,   /* acceleration */
+    SPARI_F_TWIST = 17,   /* nodal: alpha (3); consistent: alpha q - |omega|^2 q / 2 (4) */
     SPARI_FIELDS = 21
 };
 /* Requested motion: positions; also velocities; also accelerations, which need the poses. SPARI_POSES (rotations,
    and with velocities the angular velocities) is or-ed to it. */
-enum { SPARI_UPTO_PLACE, SPARI_UPTO_RATE, SPARI_UPTO_ACCEL, SPARI_UPTO, SPARI_POSES };
+enum { SPARI_UPTO_POSITION, SPARI_UPTO_RATE, SPARI_UPTO_ACCEL, SPARI_UPTO, SPARI_POSES };
 
 /* Rows that a kernel computes for a tile, each of SPARI_ROW doubles. */
 enum {
-    SPARI_R_PLACE = 0,
+    SPARI_R_POSITION = 0,
     SPARI_R_RATE = 3,
     SPARI_R_QUAT = 6, /* not normalised */
     SPARI_R_OMEGA = 10,
@@ -161,12 +161,12 @@ static inline int64_t spari_gather_rows(int per_element) {
 static inline int64_t spari_gather_share(int64_t nodes) {
     return nodes * 7 * 2 + 22;
 }
-static inline int64_t spari_gather_room(int elements, int per_element) {
+static inline int64_t spari_gather_workspace_size(int elements, int per_element) {
     return spari_gather_rows(per_element) + 2 * spari_gather_share((int64_t)elements * per_element);
 }
 /* Sums loads of all nodes: force, moment (may be absent) [n][3] -> load [nodes][6].
    q: nodal quaternions [nodes][7], needed by the consistent kind
-   work: spari_gather_room doubles, aligned to a cache line; the other threads have the same in the pool
+   work: spari_gather_workspace_size doubles, aligned to a cache line; the other threads have the same in the pool
    audit: NULL if not wanted
    Returns the smallest |Q|^2. */
 double spari_gather_loads(const spari_nodes *nodes, const double *modal, const double *c, int consistent,

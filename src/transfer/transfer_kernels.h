@@ -16,7 +16,7 @@ static inline void spari_add(double *s, double x) {
 
 /* How the one node of a point or rigid body moves what is tied to it: place + R arm. */
 typedef struct carrier {
-    double place[3], rate[3], q[4], turn[9], omega[3], accel[3], alpha[3];
+    double place[3], rate[3], q[4], rotation[9], omega[3], accel[3], alpha[3];
     double square; /* |q|^2 */
 } carrier;
 

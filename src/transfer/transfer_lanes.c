@@ -375,7 +375,7 @@ HERE L NAME(fused_square)(const L *q) {
 }
 
 /* r = R(Q / |Q|) c without a square root: c + twice (w u x c + u x (u x c)), twice: 2 / |Q|^2 */
-HERE void NAME(turn)(const L *q, L twice, const L *c, L *r) {
+HERE void NAME(rotation)(const L *q, L twice, const L *c, L *r) {
     L t[3], s[3];
     NAME(fused_cross)(q + 1, c, t);
     s[0] = q[0] * t[0], s[1] = q[0] * t[1], s[2] = q[0] * t[2];
@@ -424,9 +424,9 @@ HERE L NAME(move_one)(const int consistent, const int what, const L *place, cons
     const int upto = what & SPARI_UPTO;
     static const double two = 2;
     L square = NAME(fused_square)(q), twice = SPLAT(&two) / square, r[3], w[3], wr[3];
-    NAME(turn)(q, twice, con, r);
+    NAME(rotation)(q, twice, con, r);
     for (int i = 0; i < 3; i++) {
-        out[SPARI_R_PLACE + i] = place[i] + r[i];
+        out[SPARI_R_POSITION + i] = place[i] + r[i];
     }
     for (int i = 0; i < 4; i++) {
         out[SPARI_R_QUAT + i] = q[i];
@@ -570,10 +570,10 @@ HERE void NAME(splat)(const int n, const double *from, L *to) {
 }
 
 /* r = R c */
-HERE void NAME(rotate)(const L *turn, const L *c, L *r) {
+HERE void NAME(rotate)(const L *rotation, const L *c, L *r) {
     SPARI_UNROLL
     for (int i = 0; i < 3; i++) {
-        r[i] = MADD(turn[3 * i + 2], c[2], MADD(turn[3 * i + 1], c[1], turn[3 * i] * c[0]));
+        r[i] = MADD(rotation[3 * i + 2], c[2], MADD(rotation[3 * i + 1], c[1], rotation[3 * i] * c[0]));
     }
 }
 
@@ -590,8 +590,8 @@ HERE void NAME(give)(const L *a, const L *b, int count, double *out) {
 /* Stores positions and velocities of all nodes directly in the host's triples. */
 HERE void NAME(carry_all)(const spari_nodes *s, const carrier *m, const int places, const int rates, double *x,
                           double *v) {
-    L turn[9], place[3], rate[3], w[3];
-    NAME(splat)(9, m->turn, turn);
+    L rotation[9], place[3], rate[3], w[3];
+    NAME(splat)(9, m->rotation, rotation);
     NAME(splat)(3, m->place, place);
     NAME(splat)(3, m->rate, rate);
     NAME(splat)(3, m->omega, w);
@@ -606,7 +606,7 @@ HERE void NAME(carry_all)(const spari_nodes *s, const carrier *m, const int plac
             }
             c[i] = NAME(get)(count < W ? part : s->con[i] + p);
         }
-        NAME(rotate)(turn, c, r);
+        NAME(rotate)(rotation, c, r);
         if (places) {
             NAME(give)(place, r, count, x + 3 * p);
         }
@@ -641,8 +641,8 @@ HERE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carr
                       double (*buf)[SPARI_ROW]) {
     const double *const *from = (const double *const *)s->con;
     const int upto = what & SPARI_UPTO;
-    L turn[9], place[3], rate[3], w[3], accel[3], alpha[3], c[3][2];
-    NAME(splat)(9, m->turn, turn);
+    L rotation[9], place[3], rate[3], w[3], accel[3], alpha[3], c[3][2];
+    NAME(splat)(9, m->rotation, rotation);
     NAME(splat)(3, m->place, place);
     NAME(splat)(3, m->rate, rate);
     NAME(splat)(3, m->omega, w);
@@ -653,10 +653,10 @@ HERE void NAME(carry)(const spari_nodes *s, int64_t first, int count, const carr
         SPARI_UNROLL
         for (int u = 0; u < 2; u++) {
             L arm[3] = {c[0][u], c[1][u], c[2][u]}, r[3], wr[3], ar[3], wwr[3];
-            NAME(rotate)(turn, arm, r);
+            NAME(rotate)(rotation, arm, r);
             SPARI_UNROLL
             for (int i = 0; i < 3; i++) {
-                NAME(put)(buf[SPARI_R_PLACE + i] + at + W * u, place[i] + r[i]);
+                NAME(put)(buf[SPARI_R_POSITION + i] + at + W * u, place[i] + r[i]);
             }
             if (upto < SPARI_UPTO_RATE) {
                 continue;
@@ -698,14 +698,14 @@ TARGET SPARI_APART static double NAME(motion_carried)(const spari_nodes *s, int6
                                                       int what, double (*buf)[SPARI_ROW]) {
     const carrier m = spari_carrier_of(c);
     switch (what) {
-    case SPARI_UPTO_PLACE:
-        NAME(carry)(s, first, count, &m, SPARI_UPTO_PLACE, buf);
+    case SPARI_UPTO_POSITION:
+        NAME(carry)(s, first, count, &m, SPARI_UPTO_POSITION, buf);
         break;
     case SPARI_UPTO_RATE:
         NAME(carry)(s, first, count, &m, SPARI_UPTO_RATE, buf);
         break;
-    case SPARI_UPTO_PLACE | SPARI_POSES:
-        NAME(carry)(s, first, count, &m, SPARI_UPTO_PLACE | SPARI_POSES, buf);
+    case SPARI_UPTO_POSITION | SPARI_POSES:
+        NAME(carry)(s, first, count, &m, SPARI_UPTO_POSITION | SPARI_POSES, buf);
         break;
     case SPARI_UPTO_RATE | SPARI_POSES:
         NAME(carry)(s, first, count, &m, SPARI_UPTO_RATE | SPARI_POSES, buf);
@@ -722,10 +722,10 @@ TARGET SPARI_APART static double NAME(motion_carried)(const spari_nodes *s, int6
                                                       double(*buf)[SPARI_ROW], int at) {                               \
         return NAME(run)(s, first, count, c, consistent, what, buf, at);                                               \
     }
-RUN(places, 0, SPARI_UPTO_PLACE) /* the same for both kinds */
+RUN(places, 0, SPARI_UPTO_POSITION) /* the same for both kinds */
 RUN(nodal_rates, 0, SPARI_UPTO_RATE)
 RUN(consistent_rates, 1, SPARI_UPTO_RATE)
-RUN(poses, 0, SPARI_UPTO_PLACE | SPARI_POSES)
+RUN(poses, 0, SPARI_UPTO_POSITION | SPARI_POSES)
 RUN(nodal_rates_poses, 0, SPARI_UPTO_RATE | SPARI_POSES)
 RUN(consistent_rates_poses, 1, SPARI_UPTO_RATE | SPARI_POSES)
 RUN(nodal_all, 0, SPARI_UPTO_ACCEL | SPARI_POSES)
@@ -738,15 +738,15 @@ TARGET static double NAME(motion)(const spari_nodes *s, int64_t first, int count
         return NAME(motion_carried)(s, first, count, c, what, buf);
     }
     switch (2 * what + !!consistent) {
-    case 2 * SPARI_UPTO_PLACE:
-    case 2 * SPARI_UPTO_PLACE + 1:
+    case 2 * SPARI_UPTO_POSITION:
+    case 2 * SPARI_UPTO_POSITION + 1:
         return NAME(run_places)(s, first, count, c, buf, at);
     case 2 * SPARI_UPTO_RATE:
         return NAME(run_nodal_rates)(s, first, count, c, buf, at);
     case 2 * SPARI_UPTO_RATE + 1:
         return NAME(run_consistent_rates)(s, first, count, c, buf, at);
-    case 2 * (SPARI_UPTO_PLACE | SPARI_POSES):
-    case 2 * (SPARI_UPTO_PLACE | SPARI_POSES) + 1:
+    case 2 * (SPARI_UPTO_POSITION | SPARI_POSES):
+    case 2 * (SPARI_UPTO_POSITION | SPARI_POSES) + 1:
         return NAME(run_poses)(s, first, count, c, buf, at);
     case 2 * (SPARI_UPTO_RATE | SPARI_POSES):
         return NAME(run_nodal_rates_poses)(s, first, count, c, buf, at);
@@ -820,7 +820,7 @@ HERE L NAME(lever)(int modes, const double *c, const int consistent, const int h
         const L *all = field[u], *q = audited ? all + SPARI_F_QUAT : all, *spin = all + SPARI_F_SPIN;
         L square = NAME(fused_square)(q), twice = SPLAT(&two) / square, over = twice * 0.5, r[3], m[3], moment[3];
         least[u] = square;
-        NAME(turn)(q, twice, con, r);
+        NAME(rotation)(q, twice, con, r);
         if (has_moment) {
             moment[0] = in[7][u], moment[1] = in[8][u], moment[2] = in[9][u];
             NAME(add_cross)(moment, r, f, m);
@@ -1017,7 +1017,7 @@ HERE void NAME(add_carried)(const carrier *m, const int has_moment, const L *Z, 
     }
     SPARI_UNROLL
     for (int i = 0; i < 3; i++) {
-        const double *a = m->turn + 3 * ((i + 1) % 3), *b = m->turn + 3 * ((i + 2) % 3);
+        const double *a = m->rotation + 3 * ((i + 1) % 3), *b = m->rotation + 3 * ((i + 2) % 3);
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         load[i] = NAME(total)(total[i]);
         load[3 + i] = a[0] * z[k] + a[1] * z[3 + k] + a[2] * z[6 + k] - b[0] * z[j] - b[1] * z[3 + j] - b[2] * z[6 + j];
@@ -1037,7 +1037,7 @@ HERE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, con
     const double *const *from = (const double *const *)s->con;
     const int rows = has_moment ? 6 : 3;
     const L none = SPLAT(&zero);
-    L c[3][2], in[6][2], Z[9], total[6], add[9], top[3], turn[9], place[3], rate[3], w[3];
+    L c[3][2], in[6][2], Z[9], total[6], add[9], top[3], rotation[9], place[3], rate[3], w[3];
     SPARI_UNROLL
     for (int i = 0; i < 9; i++) {
         Z[i] = add[i] = none;
@@ -1046,7 +1046,7 @@ HERE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, con
     for (int i = 0; i < 3; i++) {
         total[i] = total[3 + i] = top[i] = none;
     }
-    NAME(splat)(9, m->turn, turn);
+    NAME(splat)(9, m->rotation, rotation);
     NAME(splat)(3, m->place, place);
     NAME(splat)(3, m->rate, rate);
     NAME(splat)(3, m->omega, w);
@@ -1065,7 +1065,7 @@ HERE void NAME(load_carrier)(const spari_nodes *s, int64_t first, int count, con
             }
             if (audited) {
                 L arm[3] = {c[0][u], c[1][u], c[2][u]}, r[3], force[3] = {in[0][u], in[1][u], in[2][u]}, moment[3];
-                NAME(rotate)(turn, arm, r);
+                NAME(rotate)(rotation, arm, r);
                 for (int i = 0; i < 3; i++) {
                     moment[i] = has_moment ? in[3 + i][u] : none;
                 }

@@ -51,7 +51,7 @@ double spari_cost_members(const spar_session *s, double *each) {
 }
 
 static int unknowns_of(const spar_member *m, int elements, int nodes) {
-    return 6 * (elements * (nodes - 1) + !spari_member_root_is_given(m));
+    return 6 * (elements * (nodes - 1) + !spari_member_root_is_prescribed(m));
 }
 
 double spari_cost_exact(const spar_member *m, int elements, int nodes, int points) {

@@ -17,7 +17,7 @@
 
 int spar_session_try(spar_session *session, double dt, int64_t steps, spar_before_step before, spar_fluid_solver solve,
                      void *context, int compare, int64_t capacity, double *report) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     spari_run run = {.dt = dt,
@@ -27,7 +27,7 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
                      .context = context,
                      .goals = SPARI_GOAL(SPARI_OF_REACTION)};
     spari_record record = {0};
-    spari_wish wish = {0};
+    spari_trial_settings trial_settings = {0};
     int status = spari_trial_check(s, __func__, &run);
     status = status == SPAR_OK ? spari_need_capacity(s, __func__, capacity) : status;
     if (status == SPAR_OK && compare && (!s->own->kept || s->own->kept->members != s->member_count)) {
@@ -36,12 +36,12 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
                        "%s: there is no run of these members to compare with; try with compare = 0 first", __func__);
     }
     status = spari_trial_enter(s, __func__, &run, 0, compare, status);
-    status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
+    status = status == SPAR_OK ? spari_trial_settings_create(s, &trial_settings) : status;
     if (status == SPAR_OK) {
-        (void)spari_trial_run(s, &run, &wish, &record);
+        (void)spari_trial_run(s, &run, &trial_settings, &record);
         status = record.own;
     }
-    spari_wish_free(&wish);
+    spari_trial_settings_free(&trial_settings);
     if (status == SPAR_OK) {
         const double made[SPAR_TRY_COUNT] = {
             [SPAR_TRY_MOTION] = compare ? spari_record_distance(&record, s->own->kept, SPARI_OF_MOTION) : 0,
@@ -81,14 +81,14 @@ static void minus(double *r, const double *from, int64_t n) {
 }
 
 /* Forces of attached masses: difference with and without them. r, less: workspace of [6 n] each. */
-static double lump_squares(const spar_member *m, const double *q, const double *v, const double *a, double *r,
-                           double *less, double length) {
+static double point_mass_squares(const spar_member *m, const double *q, const double *v, const double *a, double *r,
+                                 double *less, double length) {
     int inertia = (m->effects & SPAR_EFFECT_INERTIA) != 0;
     const double *rate = inertia ? v : NULL, *acceleration = inertia ? a : NULL;
     spari_body_residual(m->body, q, rate, acceleration, 1, r, NULL);
-    spari_lumps_weigh(m, 0);
+    spari_point_masses_weight(m, 0);
     spari_body_residual(m->body, q, rate, acceleration, 1, less, NULL);
-    spari_lumps_weigh(m, 1);
+    spari_point_masses_weight(m, 1);
     minus(r, less, m->body->unique);
     return squares(r, m->body->unique, length);
 }
@@ -169,7 +169,7 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
         sum[INERTIA] += squares(rest, n, length);
     }
     if (m->effects & SPAR_EFFECT_MASSES) {
-        sum[MASSES] += lump_squares(m, q, v, a, r, rest, length);
+        sum[MASSES] += point_mass_squares(m, q, v, a, r, rest, length);
     }
     if (m->effects & SPAR_EFFECT_PRETENSION) {
         sum[PRETENSION] += pretension_squares(m, q, r, rest, length);
@@ -262,16 +262,16 @@ static int in_force(const spar_session *s, int r, int asked) {
     return any && (asked & rows[r].part) == rows[r].part;
 }
 
-static void leave_row_out(const spar_session *s, int r, spari_wish *wish) {
+static void leave_row_out(const spar_session *s, int r, spari_trial_settings *trial_settings) {
     if (r == SPAR_ROW_PREDICTOR) {
-        SPARI_VARY(wish->setting, predictor, 0);
+        SPARI_VARY(trial_settings->setting, predictor, 0);
     } else if (r == SPAR_ROW_ITERATION) {
-        SPARI_VARY(wish->setting, scheme, SPAR_COUPLING_EXPLICIT);
+        SPARI_VARY(trial_settings->setting, scheme, SPAR_COUPLING_EXPLICIT);
     } else if (rows[r].effect == 0) {
-        wish->mute = rows[r].part;
+        trial_settings->mute = rows[r].part;
     }
     for (int k = 0; k < s->member_count; k++) {
-        wish->member[k].left_out = rows[r].effect;
+        trial_settings->member[k].left_out = rows[r].effect;
     }
 }
 
@@ -313,26 +313,26 @@ typedef struct run_tally {
 } run_tally;
 
 /* A run with a call of the progress callback before it. */
-static int run_told(spar_session *s, const spari_run *run, const spari_wish *wish, run_tally *runs,
+static int run_told(spar_session *s, const spari_run *run, const spari_trial_settings *trial_settings, run_tally *runs,
                     spari_record *record) {
     *record = (spari_record){0};
     record->own = spari_progress_tell(s, run->progress, runs->done, runs->done + runs->left);
     SPARI_TRY(record->own);
     runs->done++;
     runs->left--;
-    return spari_trial_run(s, run, wish, record);
+    return spari_trial_run(s, run, trial_settings, record);
 }
 
 static int try_row_out(spar_session *s, const char *call, const spari_run *run, int r, const spari_record *base,
                        run_tally *runs, double *out) {
     double with = cost_of_row(base, r), without = INFINITY;
-    spari_wish wish;
-    SPARI_TRY(spari_wish_create(s, &wish));
+    spari_trial_settings trial_settings;
+    SPARI_TRY(spari_trial_settings_create(s, &trial_settings));
     int status = SPAR_OK;
     for (int k = 0; k < REPEATS && status == SPAR_OK; k++) {
         spari_record record;
-        leave_row_out(s, r, &wish);
-        status = run_told(s, run, &wish, runs, &record);
+        leave_row_out(s, r, &trial_settings);
+        status = run_told(s, run, &trial_settings, runs, &record);
         if (status == SPAR_OK && k == 0) {
             out[SPAR_COLUMN_MOTION] = spari_record_distance(&record, base, SPARI_OF_MOTION);
             out[SPAR_COLUMN_REACTION] = spari_record_distance(&record, base, SPARI_OF_REACTION);
@@ -342,15 +342,15 @@ static int try_row_out(spar_session *s, const char *call, const spari_run *run, 
         }
         without = status == SPAR_OK ? fmin(without, cost_of_row(&record, r)) : without;
         spari_record_free(&record);
-        spari_wish_free(&wish);
-        status = status == SPAR_OK ? spari_wish_create(s, &wish) : status;
+        spari_trial_settings_free(&trial_settings);
+        status = status == SPAR_OK ? spari_trial_settings_create(s, &trial_settings) : status;
         if (status == SPAR_OK) {
-            status = run_told(s, run, &wish, runs, &record);
+            status = run_told(s, run, &trial_settings, runs, &record);
             with = fmin(with, cost_of_row(&record, r));
             spari_record_free(&record);
         }
     }
-    spari_wish_free(&wish);
+    spari_trial_settings_free(&trial_settings);
     if (is_of_the_run(status)) {
         tell_failure(s, call, r);
         out[SPAR_COLUMN_MOTION] = out[SPAR_COLUMN_REACTION] = -1;
@@ -395,16 +395,16 @@ static int fill_rows(spar_session *s, const char *call, const spari_run *run, do
     double size[SPAR_ROW_COUNT] = {0};
     sizes seen = {{0}, 0};
     spari_run watched = *run;
-    spari_wish wish;
+    spari_trial_settings trial_settings;
     spari_record base;
     run_tally runs = {0, 1 + count_runs(s, 0, run->solve ? ~0 : 0)}; /* the first run shows the fluid's requests */
     watched.watch = add_state, watched.watcher = &seen;
     SPARI_TRY(add_state(s, &seen));
-    SPARI_TRY(spari_wish_create(s, &wish));
-    (void)run_told(s, &watched, &wish, &runs, &base);
+    SPARI_TRY(spari_trial_settings_create(s, &trial_settings));
+    (void)run_told(s, &watched, &trial_settings, &runs, &base);
     find_sizes(&seen, run->dt, size);
     int status = base.own, asked = base.asked;
-    spari_wish_free(&wish);
+    spari_trial_settings_free(&trial_settings);
     size[SPAR_ROW_PREDICTOR] = base.report[SPAR_REPORT_ERROR];
     size[SPAR_ROW_ITERATION] = base.report[SPAR_REPORT_ADDED_MASS];
     status = status == SPAR_OK ? asked_anywhere(s, &asked) : status;
@@ -416,7 +416,7 @@ static int fill_rows(spar_session *s, const char *call, const spari_run *run, do
 int spar_session_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
                                 spar_fluid_solver solve, void *context, int64_t table_rows, int64_t table_columns,
                                 double *table) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     spari_run run = {.dt = dt,

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-int spari_ties_lay_aside(spar_session *s, spari_ties *t) {
-    *t = (spari_ties){0};
+int spari_joints_save_snapshot(spar_session *s, spari_joint_snapshot *t) {
+    *t = (spari_joint_snapshot){0};
     if (!s->joints) {
         return SPAR_OK;
     }
@@ -20,20 +20,20 @@ int spari_ties_lay_aside(spar_session *s, spari_ties *t) {
     return SPAR_OK;
 }
 
-int64_t spari_ties_end(const spar_member *m, int64_t node, spari_mesh mesh) {
+int64_t spari_joints_end_node(const spar_member *m, int64_t node, spari_mesh mesh) {
     int64_t k = node % m->per_element;
     return k > 0 && k < m->per_element - 1 ? -1
                                            : spari_resample_end(m->elements, (int)(node / m->per_element), k > 0, mesh);
 }
 
-int spari_ties_follow(const spar_member *m, const spar_member *old) {
-    for (spar_joint *j = m->session->joints; j && !spari_mesh_alike(spari_member_mesh(m), spari_member_mesh(old));
+int spari_joints_follow_rebuild(const spar_member *m, const spar_member *old) {
+    for (spar_joint *j = m->session->joints; j && !spari_mesh_is_equal(spari_member_mesh(m), spari_member_mesh(old));
          j = j->next) {
         for (int side = 0; side < 2; side++) {
             if (j->member[side] != m) {
                 continue;
             }
-            int64_t node = spari_ties_end(old, j->node[side], spari_member_mesh(m));
+            int64_t node = spari_joints_end_node(old, j->node[side], spari_member_mesh(m));
             SPARI_REQUIRE(m->session, node >= 0, SPAR_ERR_STATE,
                           "joint '%s' holds node %lld of '%s', which lies within an element, of those there are or "
                           "of those to come: the member cannot have other nodes; tie ends of elements",
@@ -44,7 +44,7 @@ int spari_ties_follow(const spar_member *m, const spar_member *old) {
     return SPAR_OK;
 }
 
-void spari_ties_restore(spar_session *s, spari_ties *t) {
+void spari_joints_restore_snapshot(spar_session *s, spari_joint_snapshot *t) {
     if (!t->joints) {
         return;
     }
@@ -55,25 +55,25 @@ void spari_ties_restore(spar_session *s, spari_ties *t) {
     spari_assemblies_give(s, t->assemblies);
     s->joints_stale = t->stale;
     free(t->joints);
-    *t = (spari_ties){0};
+    *t = (spari_joint_snapshot){0};
 }
 
-void spari_ties_adopt(spar_session *s, spari_ties *t) {
+void spari_joints_drop_snapshot(spar_session *s, spari_joint_snapshot *t) {
     const spar_joint *copy = t->joints;
     for (spar_joint *j = s->joints; j && copy; j = j->next, copy++) { /* their work accounts continue */
         memcpy(j->account, copy->account, sizeof j->account);
     }
     spari_assemblies_drop(t->assemblies);
     free(t->joints);
-    *t = (spari_ties){0};
+    *t = (spari_joint_snapshot){0};
 }
 
-int spari_ties_hold_within(const spar_member *m, int elements) {
+int spari_joints_hold_within(const spar_member *m, int elements) {
     const spari_mesh mesh = {elements, m->per_element};
     int within = 0;
     for (const spar_joint *j = m->session->joints; j; j = j->next) {
         for (int side = 0; side < 2; side++) {
-            within = within || (j->member[side] == m && spari_ties_end(m, j->node[side], mesh) < 0);
+            within = within || (j->member[side] == m && spari_joints_end_node(m, j->node[side], mesh) < 0);
         }
     }
     return within;

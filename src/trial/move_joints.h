@@ -1,27 +1,27 @@
 /* Joints of rebuilt members: moved to the nodes at the same positions, keeping their motion and loads. Copies hold
    the old state; handles stay valid. */
-#ifndef SPARI_RETIE_H
-#define SPARI_RETIE_H
+#ifndef SPARI_MOVE_JOINTS_H
+#define SPARI_MOVE_JOINTS_H
 
 #include "../assembly/assembly.h"
 
-typedef struct spari_ties {
+typedef struct spari_joint_snapshot {
     spar_joint *joints; /* [joint_count] old state; NULL: nothing to restore */
     spari_assembly *assemblies;
     int stale;
-} spari_ties;
+} spari_joint_snapshot;
 
 /* Copies joints and assemblies; the session then has no assemblies. A status and a message. Local, as all below. */
-int spari_ties_lay_aside(spar_session *session, spari_ties *ties);
+int spari_joints_save_snapshot(spar_session *session, spari_joint_snapshot *joint_snapshot);
 /* Moves the joints of a rebuilt member to its new nodes; `old`: the member before. Refused if a joint's node does
    not exist in the new mesh. The assemblies must then be created. */
-int spari_ties_follow(const spar_member *member, const spar_member *old);
+int spari_joints_follow_rebuild(const spar_member *member, const spar_member *old);
 /* Restores the copies, after the members have been restored; or keeps the present state. */
-void spari_ties_restore(spar_session *session, spari_ties *ties);
-void spari_ties_adopt(spar_session *session, spari_ties *ties);
+void spari_joints_restore_snapshot(spar_session *session, spari_joint_snapshot *joint_snapshot);
+void spari_joints_drop_snapshot(spar_session *session, spari_joint_snapshot *joint_snapshot);
 /* Node of a mesh that coincides with a node of the member, as the end of an element in both; -1: none. */
-int64_t spari_ties_end(const spar_member *member, int64_t node, spari_mesh mesh);
+int64_t spari_joints_end_node(const spar_member *member, int64_t node, spari_mesh mesh);
 /* Whether a joint is at a node inside an element, or would be with this many elements. */
-int spari_ties_hold_within(const spar_member *member, int elements);
+int spari_joints_hold_within(const spar_member *member, int elements);
 
 #endif

@@ -9,16 +9,16 @@
 
 enum { FLAGS = 32 }; /* fluids per word */
 
-typedef struct carry_room {
-    const spari_carried *fluids;
+typedef struct moved_sums {
+    const spari_moved_loads *fluids;
     int64_t count, words, *first, sums; /* words: per rank, including its status */
     double *here;                       /* [ranks][words]: bit mask of fluids with force nodes on the rank */
     spari_bins *sum;                    /* [sums], and room for a status */
     double *value;                      /* of the largest fluid */
-} carry_room;
+} moved_sums;
 
 /* Hash of what must agree across ranks, so that sums over them belong to one fluid. */
-static uint64_t hash_of(const carry_room *c) {
+static uint64_t hash_of(const moved_sums *c) {
     uint64_t h = SPARI_HASH_BEGIN;
     for (int64_t k = 0; k < c->count; k++) {
         const char *member = spari_fluid_member(c->fluids[k].fluid)->name,
@@ -29,10 +29,10 @@ static uint64_t hash_of(const carry_room *c) {
     return h;
 }
 
-static int make_sums_room(spar_session *s, carry_room *c) {
+static int alloc_sums(spar_session *s, moved_sums *c) {
     int64_t ranks = spari_comm_size(s->comm), most = 0;
     for (int64_t k = 0; k < c->count; k++) {
-        int64_t n = spari_fluid_carried_size(c->fluids[k].before);
+        int64_t n = spari_fluid_moved_size(c->fluids[k].before);
         c->sums += n;
         most = n > most ? n : most;
     }
@@ -49,7 +49,7 @@ static int make_sums_room(spar_session *s, carry_room *c) {
     return spari_comm_prepare_bins(s->comm, s->message, sizeof s->message);
 }
 
-static void flag_own(const spar_session *s, carry_room *c) {
+static void flag_own(const spar_session *s, moved_sums *c) {
     double *own = c->here + c->first[spari_comm_rank(s->comm)];
     for (int64_t k = 0; k < c->count; k++) {
         int64_t n = 0;
@@ -59,7 +59,7 @@ static void flag_own(const spar_session *s, carry_room *c) {
 }
 
 /* First rank with force nodes of the k-th fluid; 0 if none. */
-static int holder_of(const spar_session *s, const carry_room *c, int64_t k) {
+static int holder_of(const spar_session *s, const moved_sums *c, int64_t k) {
     for (int r = 0; r < spari_comm_size(s->comm); r++) {
         if ((uint32_t)c->here[c->first[r] + k / FLAGS] >> k % FLAGS & 1) {
             return r;
@@ -68,37 +68,37 @@ static int holder_of(const spar_session *s, const carry_room *c, int64_t k) {
     return 0;
 }
 
-static void put_sums(const spar_session *s, const carry_room *c) {
+static void put_sums(const spar_session *s, const moved_sums *c) {
     const spari_bins *sum = c->sum;
     for (int64_t k = 0; k < c->count; k++) {
-        const spari_carried *f = c->fluids + k;
-        int64_t n = spari_fluid_carried_size(f->before);
+        const spari_moved_loads *f = c->fluids + k;
+        int64_t n = spari_fluid_moved_size(f->before);
         for (int64_t i = 0; i < n; i++) {
             c->value[i] = 0.5 * spari_bins_value(sum++);
         }
         int holds = holder_of(s, c, k) == spari_comm_rank(s->comm);
-        spari_fluid_put_carried(f->fluid, f->before, holds ? c->value : NULL);
+        spari_fluid_put_moved(f->fluid, f->before, holds ? c->value : NULL);
     }
 }
 
-static int carry(spar_session *s, const char *call, carry_room *c) {
-    int status = make_sums_room(s, c);
-    const spari_alike alike[] = {spari_hash("list of fluids (reproducible sums, on other nodes)", hash_of(c))};
-    SPARI_TRY(spari_enter_alike(s, call, alike, 1, status));
+static int carry(spar_session *s, const char *call, moved_sums *c) {
+    int status = alloc_sums(s, c);
+    const spari_agreed must_agree[] = {spari_hash("list of fluids (reproducible sums, on other nodes)", hash_of(c))};
+    SPARI_TRY(spari_enter_agreed(s, call, must_agree, 1, status));
     flag_own(s, c);
     SPARI_TRY(spari_comm_share(s->comm, c->here, c->first, SPAR_OK, s->message, sizeof s->message));
     spari_bins *at = c->sum;
     for (int64_t k = 0; k < c->count; k++) {
-        spari_fluid_add_carried(c->fluids[k].old, c->fluids[k].before, at);
-        at += spari_fluid_carried_size(c->fluids[k].before);
+        spari_fluid_add_moved(c->fluids[k].old, c->fluids[k].before, at);
+        at += spari_fluid_moved_size(c->fluids[k].before);
     }
     SPARI_TRY(spari_comm_sum_bins(s->comm, c->sum, c->sums, SPAR_OK, s->message, sizeof s->message));
     put_sums(s, c);
     return SPAR_OK;
 }
 
-int spari_carry_loads(spar_session *s, const char *call, int any, const spari_carried *fluids, int64_t count) {
-    carry_room c = {.fluids = fluids, .count = count};
+int spari_move_loads(spar_session *s, const char *call, int any, const spari_moved_loads *fluids, int64_t count) {
+    moved_sums c = {.fluids = fluids, .count = count};
     if (!any || !s->reproducible || spari_comm_size(s->comm) == 1) {
         return SPAR_OK;
     }

@@ -14,15 +14,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-spari_remake spari_remake_of(const spar_member *m) {
-    return (spari_remake){
+spari_rebuild spari_rebuild_of(const spar_member *m) {
+    return (spari_rebuild){
         .per_element = m->per_element, .fidelity = m->fidelity, .modes = m->modes, .elements = m->elements};
 }
 
 /* ---- description and state ---- */
 
 /* The description with another quadrature rule, or other nodes if nodes were given; a copy that shares the rest. */
-static int describe_again(spar_member *m, const spari_remake *wish, const spar_member *old) {
+static int describe_again(spar_member *m, const spari_rebuild *settings, const spar_member *old) {
     if (m->kind != SPARI_BEAM) {
         return SPAR_OK;
     }
@@ -32,14 +32,14 @@ static int describe_again(spar_member *m, const spari_remake *wish, const spar_m
     b->node_x = b->node_q = NULL;
     m->beam = b;
     b->rule = spari_beam_rule(old->beam);
-    if (wish->points > 0) {
-        b->points = wish->points;
+    if (settings->points > 0) {
+        b->points = settings->points;
     } else if (b->points > 0 && b->rule != SPAR_QUADRATURE_SECTIONS) { /* as many as an element with more nodes needs */
-        int least = wish->per_element + (b->rule == SPAR_QUADRATURE_LOBATTO);
+        int least = settings->per_element + (b->rule == SPAR_QUADRATURE_LOBATTO);
         b->points = b->points < least ? least : b->points;
     }
-    m->per_element = wish->per_element;
-    m->elements = wish->elements > 0 ? wish->elements : m->elements;
+    m->per_element = settings->per_element;
+    m->elements = settings->elements > 0 ? settings->elements : m->elements;
     SPARI_REQUIRE(m->session, m->elements == old->elements || !old->beam->node_x, SPAR_ERR_STATE,
                   "'%s' has the nodes that it was given: it cannot have %d elements in place of %d; describe its axis, "
                   "or keep the elements",
@@ -81,18 +81,18 @@ static void carry_state(spar_member *old, spar_member *m) {
     memcpy(m->drive, old->drive, sizeof m->drive);
 }
 
-int spari_member_remake(spar_member *m, const spari_remake *wish, spar_member *old) {
-    spari_member_set_aside(m, old);
-    m->fidelity = wish->fidelity;
-    m->modes = spari_fidelity_row(wish->fidelity)->takes_modes ? wish->modes : 0;
-    SPARI_TRY(describe_again(m, wish, old));
+int spari_member_rebuild(spar_member *m, const spari_rebuild *settings, spar_member *old) {
+    spari_member_detach(m, old);
+    m->fidelity = settings->fidelity;
+    m->modes = spari_fidelity_row(settings->fidelity)->takes_modes ? settings->modes : 0;
+    SPARI_TRY(describe_again(m, settings, old));
     SPARI_TRY(spari_fidelity_check(m));
-    m->effects = spari_member_effects(m) & ~wish->left_out;
+    m->effects = spari_member_effects(m) & ~settings->left_out;
     if (!(m->effects & SPAR_EFFECT_INERTIA)) {
         m->effects &= ~SPAR_EFFECT_GYROSCOPIC;
     }
     SPARI_TRY(spari_member_build(m));
-    SPARI_TRY(spari_applied_remake(old, m));
+    SPARI_TRY(spari_applied_rebuild(old, m));
     carry_state(old, m);
     return SPAR_OK;
 }

@@ -91,7 +91,7 @@ static void look_at_motion(const spar_session *s, const spari_record *r, double 
     const double *start = r->start, *basis = r->basis;
     int64_t at = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
-        int held = m->kind == SPARI_BEAM && spari_member_root_is_given(m);
+        int constrained = m->kind == SPARI_BEAM && spari_member_root_is_prescribed(m);
         for (int k = 0; k < stations_of(m); k++, at += 3, basis += SPARI_MAX_NODES) {
             double X[3], *u = motion + at;
             if (m->nodes == 1) {
@@ -99,10 +99,10 @@ static void look_at_motion(const spar_session *s, const spari_record *r, double 
             } else {
                 beam_station(m, k, basis, X, u);
             }
-            if (held) {
+            if (constrained) {
                 beyond_root(m, X, u, beyond + at);
             }
-            for (int c = 0; c < 3 && !held; c++) {
+            for (int c = 0; c < 3 && !constrained; c++) {
                 beyond[at + c] = u[c] - start[at + c];
             }
         }
@@ -155,9 +155,9 @@ static int look_at_sections(const spar_session *s, double *force) {
     return SPAR_OK;
 }
 
-static void look_at_reactions(const spar_session *s, double *room, double *reaction) {
+static void look_at_reactions(const spar_session *s, double *workspace, double *reaction) {
     for (const spar_member *m = s->members; m; m = m->next, reaction += 6) {
-        spari_member_reaction_in(m, room, reaction);
+        spari_member_reaction_in(m, workspace, reaction);
         for (int c = 3; c < 6; c++) {
             reaction[c] /= spari_member_length(m);
         }
@@ -190,23 +190,24 @@ static void lay_sample_out(const spar_session *s, int goals, spari_record *r) {
 }
 
 int spari_record_create(spar_session *s, int64_t steps, int goals, spari_record *r) {
-    int64_t room = 0;
+    int64_t workspace = 0;
     *r = (spari_record){.steps = steps, .goals = goals};
     lay_sample_out(s, goals, r);
     for (const spar_member *m = s->members; m && r->goals & SPARI_GOAL(SPARI_OF_REACTION); m = m->next) {
-        int64_t own = spari_member_reaction_room(m);
-        room = room > own ? room : own;
+        int64_t own = spari_member_reaction_size(m);
+        workspace = workspace > own ? workspace : own;
     }
     r->value = spari_zalloc(SPARI_SAMPLES * width(r), sizeof *r->value);
     r->recent = spari_zalloc(RECENT * width(r), sizeof *r->recent);
     r->load = spari_zalloc(SPARI_LOADS * 6 * (int64_t)r->members, sizeof *r->load);
     r->trail = spari_zalloc(4 * 6 * (int64_t)r->members, sizeof *r->trail);
     r->start = spari_zalloc(3 * r->stations, sizeof *r->start);
-    r->room = spari_zalloc(room, sizeof *r->room);
+    r->workspace = spari_zalloc(workspace, sizeof *r->workspace);
     r->basis = spari_zalloc(SPARI_MAX_NODES * r->stations, sizeof *r->basis);
     r->member_work = spari_zalloc(r->members + 1, sizeof *r->member_work); /* and a status, when it is summed */
-    SPARI_REQUIRE(s, r->value && r->recent && r->load && r->trail && r->start && r->room && r->basis && r->member_work,
-                  SPAR_ERR_MEMORY, "no memory for the record of a trial run");
+    SPARI_REQUIRE(
+        s, r->value && r->recent && r->load && r->trail && r->start && r->workspace && r->basis && r->member_work,
+        SPAR_ERR_MEMORY, "no memory for the record of a trial run");
     find_bases(s, r->basis);
     return SPAR_OK;
 }
@@ -217,7 +218,7 @@ void spari_record_free(spari_record *r) {
     free(r->load);
     free(r->trail);
     free(r->start);
-    free(r->room);
+    free(r->workspace);
     free(r->basis);
     free(r->member_work);
     *r = (spari_record){0};
@@ -241,18 +242,19 @@ void spari_record_begin(spari_record *r, const spar_session *s) {
 }
 
 /* Time of sample k, in steps from the beginning. */
-static double place(const spari_record *r, int k) {
+static double position_of(const spari_record *r, int k) {
     return (k + 1.0) * (double)r->steps / SPARI_SAMPLES;
 }
 
 /* Samples after `from` up to `to`, by the cubic through the steps i - 3 .. i. */
 static void interpolate(spari_record *r, int64_t i, double from, double to) {
     int64_t n = width(r);
-    for (int k = (int)floor(from / (double)r->steps * SPARI_SAMPLES); k < SPARI_SAMPLES && place(r, k) <= to; k++) {
-        double x = place(r, k) - (double)(i - 3), *out = r->value + k * n; /* points at 0, 1, 2, 3 */
+    for (int k = (int)floor(from / (double)r->steps * SPARI_SAMPLES); k < SPARI_SAMPLES && position_of(r, k) <= to;
+         k++) {
+        double x = position_of(r, k) - (double)(i - 3), *out = r->value + k * n; /* points at 0, 1, 2, 3 */
         const double phi[RECENT] = {-(x - 1) * (x - 2) * (x - 3) / 6, x * (x - 2) * (x - 3) / 2,
                                     -x * (x - 1) * (x - 3) / 2, x * (x - 1) * (x - 2) / 6};
-        if (place(r, k) <= from) {
+        if (position_of(r, k) <= from) {
             continue;
         }
         memset(out, 0, (size_t)n * sizeof *out);
@@ -269,7 +271,7 @@ static void interpolate(spari_record *r, int64_t i, double from, double to) {
 static int look_at_goals(const spari_record *r, spar_session *s, double *now) {
     int status = SPAR_OK;
     if (r->goals & SPARI_GOAL(SPARI_OF_REACTION)) {
-        look_at_reactions(s, r->room, now + r->first[SPARI_OF_REACTION]);
+        look_at_reactions(s, r->workspace, now + r->first[SPARI_OF_REACTION]);
         look_at_joints(s, now + r->first[SPARI_OF_JOINT]);
     }
     if (r->goals & SPARI_GOAL(SPARI_OF_LOAD)) {
@@ -292,7 +294,7 @@ int spari_record_look(spari_record *r, spar_session *s, int64_t i) {
     double *now = recent(r, i);
     look_at_motion(s, r, now + r->first[SPARI_OF_MOTION], now + r->first[SPARI_OF_BEYOND]);
     SPARI_TRY(look_at_goals(r, s, now));
-    r->taken = i;
+    r->steps_done = i;
     int64_t bad = spari_first_nonfinite(now, width(r));
     SPARI_REQUIRE(s, bad < 0, SPAR_ERR_NUMERIC, "the trial run has blown up");
     if (i >= 3) {

@@ -1,6 +1,6 @@
-/* Results of a trial run: data of the scene at evenly spaced times, for any number of steps, and its cost. */
-#ifndef SPARI_RECORD_H
-#define SPARI_RECORD_H
+/* Results of a trial run: data of the session at evenly spaced times, for any number of steps, and its cost. */
+#ifndef SPARI_RUN_RECORD_H
+#define SPARI_RUN_RECORD_H
 
 #include "../exchange/session_private.h"
 
@@ -22,13 +22,13 @@ enum {
 enum { SPARI_LOADS = 9 }; /* times at which the fluid's loads are compared: the end of the first step, and 8 more */
 
 struct spari_record {
-    int64_t steps, taken, stations;  /* of the run, and completed; positions of all members */
-    int64_t first[SPARI_BLOCKS + 1]; /* begin of a block in a sample, and size of a sample */
-    int goals, members;              /* blocks recorded beside the motion */
-    double *value;                   /* [SPARI_SAMPLES][first[SPARI_BLOCKS]] */
-    double *recent;                  /* [4][the same], of the last steps */
-    double *start, *room;            /* initial displacements; workspace for reactions */
-    double *basis;                   /* [stations][SPARI_MAX_NODES] for the positions along beams */
+    int64_t steps, steps_done, stations; /* of the run, and completed; positions of all members */
+    int64_t first[SPARI_BLOCKS + 1];     /* begin of a block in a sample, and size of a sample */
+    int goals, members;                  /* blocks recorded beside the motion */
+    double *value;                       /* [SPARI_SAMPLES][first[SPARI_BLOCKS]] */
+    double *recent;                      /* [4][the same], of the last steps */
+    double *start, *workspace;           /* initial displacements; workspace for reactions */
+    double *basis;                       /* [stations][SPARI_MAX_NODES] for the positions along beams */
     double *load;  /* [SPARI_LOADS][members][6]: fluid loads after the first step and at even times: their sum, and
                       moment divided by the length about the root's reference position */
     double *trail; /* [4][members][6] the same in the last three steps, and their second difference */

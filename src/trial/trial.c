@@ -23,24 +23,24 @@
 
 /* ---- trial settings ---- */
 
-int spari_wish_create(spar_session *s, spari_wish *wish) {
-    *wish = (spari_wish){.member = spari_zalloc(s->member_count, sizeof *wish->member)};
-    (void)spari_settings_varied(s, wish->setting);
-    spari_remake *r = wish->member;
+int spari_trial_settings_create(spar_session *s, spari_trial_settings *trial_settings) {
+    *trial_settings = (spari_trial_settings){.member = spari_zalloc(s->member_count, sizeof *trial_settings->member)};
+    (void)spari_settings_varied(s, trial_settings->setting);
+    spari_rebuild *r = trial_settings->member;
     for (const spar_member *m = s->members; m && r; m = m->next, r++) {
-        *r = spari_remake_of(m);
+        *r = spari_rebuild_of(m);
     }
     int status = r ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for a trial run");
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
     if (status != SPAR_OK) {
-        spari_wish_free(wish);
+        spari_trial_settings_free(trial_settings);
     }
     return status;
 }
 
-void spari_wish_free(spari_wish *wish) {
-    free(wish->member);
-    wish->member = NULL;
+void spari_trial_settings_free(spari_trial_settings *trial_settings) {
+    free(trial_settings->member);
+    trial_settings->member = NULL;
 }
 
 /* ---- save and restore ---- */
@@ -55,7 +55,7 @@ static const struct {
     SPARI_SAVED(time),         SPARI_SAVED(time_rest),     SPARI_SAVED(dt),          SPARI_SAVED(dt_last),
     SPARI_SAVED(uneven),       SPARI_SAVED(step),          SPARI_SAVED(iteration),   SPARI_SAVED(phase),
     SPARI_SAVED(past),         SPARI_SAVED(order),         SPARI_SAVED(iterating),   SPARI_SAVED(started),
-    SPARI_SAVED(failed),       SPARI_SAVED(lent),          SPARI_SAVED(standing),    SPARI_SAVED(trial),
+    SPARI_SAVED(failed),       SPARI_SAVED(in_callback),   SPARI_SAVED(standing),    SPARI_SAVED(trial),
     SPARI_SAVED(calls_differ), SPARI_SAVED(gravity_before)};
 
 static void copy_field(spar_session *to, const spar_session *from, size_t at, size_t size) {
@@ -72,34 +72,34 @@ static void copy_saved(spar_session *to, const spar_session *from) {
     }
 }
 
-typedef struct stash {
+typedef struct snapshot {
     spar_session session;  /* the saved fields of it */
     double *pack, *motion; /* private data of the session that are set aside */
     int64_t pack_count, *first;
     spari_coupling *coupling;
-    spar_member *members; /* [member_count] old members; */
-    int made;             /* number of those rebuilt */
-    spari_ties ties;      /* of the members */
-    spar_fluid **fluids;  /* old fluids, in their order */
+    spar_member *members;                /* [member_count] old members; */
+    int made;                            /* number of those rebuilt */
+    spari_joint_snapshot joint_snapshot; /* of the members */
+    spar_fluid **fluids;                 /* old fluids, in their order */
     int fluid_count, fluids_made;
-    spari_carried *carried; /* [fluid_count] room for those with other nodes */
-} stash;
+    spari_moved_loads *carried; /* [fluid_count] room for those with other nodes */
+} snapshot;
 
-static void stash_free(const stash *t) {
+static void snapshot_free(const snapshot *t) {
     free(t->members);
     free(t->fluids);
     free(t->carried);
 }
 
 /* After a failure the session is unchanged, with nothing to restore. */
-static int stash_create(spar_session *s, stash *t) {
+static int snapshot_create(spar_session *s, snapshot *t) {
     spari_own *own = s->own;
-    *t = (stash){.session = {.settings = s->settings, .setting_count = s->setting_count},
-                 .pack = own->pack,
-                 .motion = own->motion,
-                 .pack_count = own->pack_count,
-                 .first = own->first,
-                 .coupling = own->coupling};
+    *t = (snapshot){.session = {.settings = s->settings, .setting_count = s->setting_count},
+                    .pack = own->pack,
+                    .motion = own->motion,
+                    .pack_count = own->pack_count,
+                    .first = own->first,
+                    .coupling = own->coupling};
     copy_saved(&t->session, s);
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         t->fluid_count++;
@@ -107,10 +107,10 @@ static int stash_create(spar_session *s, stash *t) {
     t->members = spari_zalloc(s->member_count, sizeof *t->members);
     t->fluids = spari_zalloc(t->fluid_count, sizeof(spar_fluid *));
     t->carried = spari_zalloc(t->fluid_count, sizeof *t->carried);
-    int status = t->members && t->fluids && t->carried ? spari_ties_lay_aside(s, &t->ties)
+    int status = t->members && t->fluids && t->carried ? spari_joints_save_snapshot(s, &t->joint_snapshot)
                                                        : spari_fail(s, SPAR_ERR_MEMORY, "no memory for a trial run");
     if (status != SPAR_OK) {
-        stash_free(t);
+        snapshot_free(t);
         return status;
     }
     own->coupling = NULL;
@@ -121,7 +121,7 @@ static int stash_create(spar_session *s, stash *t) {
     return SPAR_OK;
 }
 
-static const spar_member *member_before(const spar_session *s, const stash *t, const spar_member *member) {
+static const spar_member *member_before(const spar_session *s, const snapshot *t, const spar_member *member) {
     int k = 0;
     for (const spar_member *m = s->members; m && m != member; m = m->next) {
         k++;
@@ -129,47 +129,47 @@ static const spar_member *member_before(const spar_session *s, const stash *t, c
     return t->members + k;
 }
 
-static int make_anew(spar_session *s, stash *t, const spari_wish *wish) {
-    spari_settings_vary(s, wish->setting);
+static int make_anew(spar_session *s, snapshot *t, const spari_trial_settings *trial_settings) {
+    spari_settings_vary(s, trial_settings->setting);
     s->past = s->past < s->predictor ? s->past : s->predictor;
     for (spar_member *m = s->members; m; m = m->next, t->made++) {
-        int status = spari_member_remake(m, wish->member + t->made, t->members + t->made);
-        status = status == SPAR_OK ? spari_ties_follow(m, t->members + t->made) : status;
+        int status = spari_member_rebuild(m, trial_settings->member + t->made, t->members + t->made);
+        status = status == SPAR_OK ? spari_joints_follow_rebuild(m, t->members + t->made) : status;
         if (status != SPAR_OK) {
             t->made++;
             return status;
         }
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), t->fluids_made++) {
-        int status = spari_fluid_remake(f, member_before(s, t, spari_fluid_member(f)), t->fluids + t->fluids_made);
+        int status = spari_fluid_rebuild(f, member_before(s, t, spari_fluid_member(f)), t->fluids + t->fluids_made);
         if (status != SPAR_OK) {
             t->fluids_made += t->fluids[t->fluids_made] != NULL;
             return status;
         }
-        spari_fluid_mute(f, wish->mute);
+        spari_fluid_mute(f, trial_settings->mute);
     }
     s->trial = 1;
     return SPAR_OK;
 }
 
 /* Transfers the fluids' loads to other nodes; collective. */
-static int carry_loads(spar_session *s, const stash *t) {
+static int carry_loads(spar_session *s, const snapshot *t) {
     int64_t count = 0;
     int any = 0, k = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
-        any = any || !spari_mesh_alike(spari_member_mesh(m), spari_member_mesh(member_before(s, t, m)));
+        any = any || !spari_mesh_is_equal(spari_member_mesh(m), spari_member_mesh(member_before(s, t, m)));
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), k++) {
         const spar_member *before = member_before(s, t, spari_fluid_member(f));
-        if (!spari_mesh_alike(spari_member_mesh(before), spari_member_mesh(spari_fluid_member(f)))) {
-            t->carried[count++] = (spari_carried){f, t->fluids[k], before};
+        if (!spari_mesh_is_equal(spari_member_mesh(before), spari_member_mesh(spari_fluid_member(f)))) {
+            t->carried[count++] = (spari_moved_loads){f, t->fluids[k], before};
         }
     }
-    return spari_carry_loads(s, "a trial run", any, t->carried, count);
+    return spari_move_loads(s, "a trial run", any, t->carried, count);
 }
 
 /* The message of a failure is kept. */
-static void go_back(spar_session *s, stash *t) {
+static void go_back(spar_session *s, snapshot *t) {
     spar_fluid *f = s->fluids;
     for (int k = 0; k < t->fluids_made; k++, f = spari_fluid_next(f)) {
         spari_fluid_restore(f, t->fluids[k]);
@@ -178,7 +178,7 @@ static void go_back(spar_session *s, stash *t) {
     for (int k = 0; k < t->made; k++, m = m->next) {
         spari_member_restore(m, t->members + k);
     }
-    spari_ties_restore(s, &t->ties);
+    spari_joints_restore_snapshot(s, &t->joint_snapshot);
     spari_coupling_free(&s->own->coupling);
     free(s->own->pack);
     free(s->own->first);
@@ -186,7 +186,7 @@ static void go_back(spar_session *s, stash *t) {
     copy_saved(s, &t->session);
     s->own->pack = t->pack, s->own->motion = t->motion, s->own->first = t->first;
     s->own->pack_count = t->pack_count, s->own->coupling = t->coupling;
-    stash_free(t);
+    snapshot_free(t);
     spari_fluid_release_gone(s);
 }
 
@@ -249,9 +249,9 @@ typedef struct timed_fluid {
 static int solve_timed(spar_session *s, double t, double dt, int iteration, void *context) {
     timed_fluid *fluid = context;
     clock_t since = clock();
-    int answer = fluid->run->solve(s, t, dt, iteration, fluid->run->context);
+    int result = fluid->run->solve(s, t, dt, iteration, fluid->run->context);
     fluid->spent += clock() - since;
-    return answer;
+    return result;
 }
 
 /* One step, with its cost. */
@@ -294,7 +294,7 @@ static int check_use(spar_session *s, const spari_run *run, int64_t i, spari_rec
 static int march(spar_session *s, const spari_run *run, spari_record *r) {
     double size[4] = {0};
     for (int64_t i = 1; i <= run->steps; i++) {
-        SPARI_TRY(spari_lend_before(s, run->before, run->dt, run->context));
+        SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->context));
         SPARI_TRY(step_once(s, run, r));
         SPARI_TRY(run->watch ? run->watch(s, run->watcher) : SPAR_OK);
         watch_loads(s, i, run->steps, r, size);
@@ -317,7 +317,8 @@ static int share_costs(spar_session *s, spari_record *r) {
     return spari_comm_sum(s->comm, r->member_work, r->members, SPAR_OK, s->message, sizeof s->message);
 }
 
-/* The members and fluids there now are the trial's. balanced: the run begins with a balanced start. */
+/* The members and fluids there now are the trial's. balanced: the run begins with a start with initial accelerations.
+ */
 static int run_there(spar_session *s, const spari_run *run, int balanced, spari_record *r) {
     int status = spari_record_create(s, run->steps, run->goals, r);
     status = spari_session_seal(s, status);
@@ -366,12 +367,13 @@ static int share_failure(spar_session *s, int own, double *work) {
     return shared < CODES ? shared : SPAR_ERR_PEER; /* a host may report on all ranks that a peer of its fluid failed */
 }
 
-int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wish, spari_record *record) {
-    stash t;
+int spari_trial_run(spar_session *s, const spari_run *run, const spari_trial_settings *trial_settings,
+                    spari_record *record) {
+    snapshot t;
     int balanced = spari_start_stands(s);
     *record = (spari_record){0};
-    int status = stash_create(s, &t), away = status == SPAR_OK;
-    status = away ? make_anew(s, &t, wish) : status;
+    int status = snapshot_create(s, &t), away = status == SPAR_OK;
+    status = away ? make_anew(s, &t, trial_settings) : status;
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
     status = status == SPAR_OK ? carry_loads(s, &t) : status;
     status = status == SPAR_OK && s->joints ? spari_assemblies_make(s, "a trial run") : status;
@@ -390,15 +392,15 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_wish *wis
 
 int spari_trial_enter(spar_session *s, const char *call, const spari_run *run, double tolerance, int compare,
                       int status) {
-    const spari_alike alike[] = {spari_real("dt", run->dt),
-                                 spari_whole("steps", run->steps),
-                                 spari_given("before", run->before != NULL),
-                                 spari_given("solve", run->solve != NULL),
-                                 spari_real("tolerance", tolerance),
-                                 spari_real("length", run->length),
-                                 spari_whole("compare", compare != 0),
-                                 spari_given("progress call", run->progress && run->progress->tell)};
-    return spari_enter_alike(s, call, alike, sizeof alike / sizeof *alike, status);
+    const spari_agreed must_agree[] = {spari_real("dt", run->dt),
+                                       spari_whole("steps", run->steps),
+                                       spari_given("before", run->before != NULL),
+                                       spari_given("solve", run->solve != NULL),
+                                       spari_real("tolerance", tolerance),
+                                       spari_real("length", run->length),
+                                       spari_whole("compare", compare != 0),
+                                       spari_given("progress call", run->progress && run->progress->tell)};
+    return spari_enter_agreed(s, call, must_agree, sizeof must_agree / sizeof *must_agree, status);
 }
 
 int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {

@@ -39,11 +39,11 @@ typedef struct spari_run {
 } spari_run;
 
 /* Settings of a trial. */
-typedef struct spari_wish {
+typedef struct spari_trial_settings {
     double setting[SPARI_MOST_VARIED]; /* session/settings.h */
     int mute;                          /* SPARI_MUTE_* */
-    spari_remake *member;              /* [members] */
-} spari_wish;
+    spari_rebuild *member;             /* [members] */
+} spari_trial_settings;
 
 /* Refuses trials during a step or a trial, with uncommitted members, or with invalid numbers. Local. */
 int spari_trial_check(spar_session *session, const char *call, const spari_run *run);
@@ -51,13 +51,14 @@ int spari_trial_check(spar_session *session, const char *call, const spari_run *
    calls that have them, else 0. Collective. */
 int spari_trial_enter(spar_session *session, const char *call, const spari_run *run, double tolerance, int compare,
                       int status);
-/* Present settings. Free with spari_wish_free. Collective. */
-int spari_wish_create(spar_session *session, spari_wish *wish);
-void spari_wish_free(spari_wish *wish);
+/* Present settings. Free with spari_trial_settings_free. Collective. */
+int spari_trial_settings_create(spar_session *session, spari_trial_settings *trial_settings);
+void spari_trial_settings_free(spari_trial_settings *trial_settings);
 /* Runs and restores. Allocates the record; free it with spari_record_free, also after any failure. Returns the
    failing rank's status on all of them, so that they continue equally; record.own is this rank's status for the
    host. Collective. */
-int spari_trial_run(spar_session *session, const spari_run *run, const spari_wish *wish, spari_record *record);
+int spari_trial_run(spar_session *session, const spari_run *run, const spari_trial_settings *trial_settings,
+                    spari_record *record);
 /* Gives the record to the session for later comparisons; *record is then empty. Collective. */
 int spari_trial_keep(spar_session *session, spari_record *record);
 #endif

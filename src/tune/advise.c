@@ -191,7 +191,7 @@ static double bend_of_group(const spari_advisor *d, int g, const spari_record *b
     double most = 0;
     int k = 0;
     for (const spar_member *m = d->session->members; m; m = m->next, k++) {
-        if (d->group[k] == g && spari_member_root_is_given(m)) {
+        if (d->group[k] == g && spari_member_root_is_prescribed(m)) {
             most = fmax(most, spari_record_bend(base, d->session, m));
         }
     }
@@ -202,8 +202,8 @@ static double bend_of_group(const spari_advisor *d, int g, const spari_record *b
    first six modes are rigid. Members that bend are not rigid. */
 static int is_possible(const spari_advisor *d, int g, int fidelity, int64_t modes, const spari_record *base) {
     enum { RIGID_MODES = 6 };
-    int given = spari_member_root_is_given(spari_plan_member(d, g));
-    if (!given && (spari_fidelity_row(fidelity)->given_root || (modes > 0 && modes < RIGID_MODES))) {
+    int given = spari_member_root_is_prescribed(spari_plan_member(d, g));
+    if (!given && (spari_fidelity_row(fidelity)->prescribed_root || (modes > 0 && modes < RIGID_MODES))) {
         return 0;
     }
     return fidelity >= SPAR_FIDELITY_LINEAR || !(d->goals & SPAR_GOAL_MOTION) ||
@@ -214,7 +214,7 @@ static int is_possible(const spari_advisor *d, int g, int fidelity, int64_t mode
 static double least_cost(const spari_advisor *d, const spari_plan *p, int g, int k, const shaping *w, double cost) {
     double solved = 0;
     const spar_member *m = spari_plan_member(d, g);
-    int solves = spari_member_is_tied(m) ? 2 : 1; /* connected members are iterated at any fidelity */
+    int solves = spari_member_has_joints(m) ? 2 : 1; /* connected members are iterated at any fidelity */
     if (fidelities[k].fidelity >= SPAR_FIDELITY_LINEAR) {
         solved = w->count[g] * solves * (double)w->base.solutions *
                  spari_cost_frame(m, p->group[g].elements, p->group[g].nodes, (int)fidelities[k].modes);
@@ -226,12 +226,12 @@ static int choose_fidelity(spari_advisor *d, spari_plan *p, int g, const shaping
     const double looser = 1.5; /* linear may lead to modal */
     spari_plan best = *p, q = *p;
     double as_it_was = *cost;
-    int taken[FIDELITIES] = {0};
+    int accepted[FIDELITIES] = {0};
     for (int k = 0; k < FIDELITIES; k++) {
         int after = fidelities[k].after;
         double part, took, least = least_cost(d, p, g, k, w, as_it_was);
         int leads = k == 0 ? 1 : k; /* to modal */
-        if ((after >= 0 && !taken[after]) ||
+        if ((after >= 0 && !accepted[after]) ||
             !is_possible(d, g, fidelities[k].fidelity, fidelities[k].modes, &w->base) ||
             !shape_pays(d, w, *cost, fmin(least, least_cost(d, p, g, leads, w, as_it_was)))) {
             continue;
@@ -240,8 +240,8 @@ static int choose_fidelity(spari_advisor *d, spari_plan *p, int g, const shaping
         q.group[g].modes = fidelities[k].modes;
         const spari_use use = {(k == 0 ? looser : spari_rule.at_most) * *cost, spari_rule.fidelity};
         SPARI_TRY(spari_plan_distance(d, &q, &w->base, use, &part, &took));
-        taken[k] = part <= spari_rule.fidelity;
-        if (taken[k] && took < spari_rule.worth * *cost) {
+        accepted[k] = part <= spari_rule.fidelity;
+        if (accepted[k] && took < spari_rule.worth * *cost) {
             best = q;
             *cost = took;
             *part_of = part;
@@ -381,7 +381,7 @@ static SPARI_APART int choose_structure(spari_advisor *d, const spari_plan *fine
 /* ---- dt and coupling ---- */
 
 /* Steps on the dt grid to move, for an error of this order in dt. */
-static int leap_of(double ratio, double order) {
+static int long_step_of(double ratio, double order) {
     return (int)lround(2 / order * log2(fmax(ratio, 1e-2)));
 }
 
@@ -418,9 +418,9 @@ static int coarsest_steps(spari_advisor *d, spari_plan p, int j, spari_outcome *
             }
         }
         /* by the order the next position is near; then halve the gap */
-        int leap = leap_of(ratio / spari_rule.good, order);
-        leap = is_good ? (leap < -1 ? leap : -1) : (leap > 1 ? leap : 1);
-        at += leap;
+        int long_step = long_step_of(ratio / spari_rule.good, order);
+        long_step = is_good ? (long_step < -1 ? long_step : -1) : (long_step > 1 ? long_step : 1);
+        at += long_step;
         if (at >= good || at <= bad) {
             at = (good + bad) / 2;
             at = at >= good ? good - 1 : at <= bad ? bad + 1 : at;
@@ -466,8 +466,8 @@ static int begin_explicit(const spari_advisor *d, const spari_plan *structure, s
         double ratio = o->error / (spari_rule.good * d->tolerance);
         if (isfinite(o->error) && o->plan.scheme == SPAR_COUPLING_EXPLICIT && o->plan.substeps == structure->substeps &&
             memcmp(o->plan.group, structure->group, sizeof structure->group) == 0) {
-            int at = spari_plan_grid(d, o->plan.steps), leap = leap_of(ratio, 2);
-            begin = ratio > 1 ? at + (leap > 1 ? leap : 1) : at;
+            int at = spari_plan_grid(d, o->plan.steps), long_step = long_step_of(ratio, 2);
+            begin = ratio > 1 ? at + (long_step > 1 ? long_step : 1) : at;
             *seen = *o;
         }
     }
@@ -854,10 +854,10 @@ static SPARI_APART int search_plans(spari_advisor *d, const spari_plan *present,
 }
 
 /* Allocates the advice in advance: for members that have none yet [members], else NULL. */
-static int make_remakes(const spari_advisor *d, spari_remake ***room) {
+static int alloc_rebuilds(const spari_advisor *d, spari_rebuild ***copies) {
     spari_own *own = d->session->own;
     own->advised = own->advised ? own->advised : spari_zalloc(1, sizeof *own->advised);
-    spari_remake **all = *room = spari_zalloc(d->session->member_count, sizeof(spari_remake *));
+    spari_rebuild **all = *copies = spari_zalloc(d->session->member_count, sizeof(spari_rebuild *));
     int k = 0, ok = all && own->advised;
     for (const spar_member *m = d->session->members; m && ok; m = m->next, k++) {
         ok = m->advice || (all[k] = spari_zalloc(1, sizeof *all[k]));
@@ -865,18 +865,18 @@ static int make_remakes(const spari_advisor *d, spari_remake ***room) {
     return ok ? SPAR_OK : spari_fail(d->session, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);
 }
 
-static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_outcome *best, spari_remake **room,
+static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_outcome *best, spari_rebuild **copies,
                       double *advice) {
     const spari_plan *p = &best->plan;
     double elements = 0;
     int k = 0;
     for (spar_member *m = d->session->members; m; m = m->next, k++) {
-        m->advice = m->advice ? m->advice : room[k];
-        room[k] = room[k] == m->advice ? NULL : room[k];
-        *m->advice = spari_remake_of(m);
+        m->advice = m->advice ? m->advice : copies[k];
+        copies[k] = copies[k] == m->advice ? NULL : copies[k];
+        *m->advice = spari_rebuild_of(m);
         if (d->group[k] >= 0) {
             const spari_shape *b = &p->group[d->group[k]];
-            *m->advice = (spari_remake){b->nodes, b->fidelity, b->modes, b->points, 0, b->elements};
+            *m->advice = (spari_rebuild){b->nodes, b->fidelity, b->modes, b->points, 0, b->elements};
         }
         elements += m->kind == SPARI_BEAM ? m->advice->elements : 0;
     }
@@ -921,7 +921,7 @@ static int check_request(spar_session *s, double tolerance, const spari_run *run
 int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps, double length,
                         spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity,
                         double *advice) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", SPARI_ADVISE);
     spar_session *s = session;
     spari_advisor d = {
@@ -936,13 +936,13 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     SPARI_TRY(spari_trial_enter(s, SPARI_ADVISE, &d.run, tolerance, 0, check_request(s, tolerance, &d.run, capacity)));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
-    spari_remake **room = NULL;
+    spari_rebuild **copies = NULL;
     d.goals = d.run.goals = s->goals;
     d.limit = s->advise_limit > 0 ? s->advise_limit : INFINITY;
     d.longer = fmax(1, length / (dt * (double)steps));
     d.runs = fmax(d.longer, spari_rule.least_runs);
     int status = spari_plan_groups(&d);
-    status = status == SPAR_OK ? make_remakes(&d, &room) : status;
+    status = status == SPAR_OK ? alloc_rebuilds(&d, &copies) : status;
     status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
     if (status == SPAR_OK) {
         spari_plan present = spari_plan_present(&d);
@@ -951,13 +951,13 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     if (status == SPAR_OK) {
         memcpy(s->message, message, sizeof message); /* a failure in a trial is no failure of the session */
         double made[SPAR_ADVICE_COUNT];
-        hand_over(&d, &now, &best, room, made);
+        hand_over(&d, &now, &best, copies, made);
         spari_fill(capacity, advice, SPAR_ADVICE_COUNT, made);
     }
-    for (int k = 0; room && k < s->member_count; k++) {
-        free(room[k]);
+    for (int k = 0; copies && k < s->member_count; k++) {
+        free(copies[k]);
     }
-    free(room);
+    free(copies);
     free(d.group);
     free(d.known);
     spari_plan_forget(&d);
@@ -970,7 +970,7 @@ int spar_member_get_advice(const spar_member *member, int *fidelity, int64_t *mo
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     SPARI_REQUIRE(member->session, member->advice, SPAR_ERR_STATE,
                   "%s: '%s' has no advice yet; call spar_session_advise first", __func__, member->name);
-    const spari_remake *a = member->advice;
+    const spari_rebuild *a = member->advice;
     if (fidelity) {
         *fidelity = a->fidelity;
     }

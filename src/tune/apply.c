@@ -43,8 +43,8 @@ typedef struct change {
     int64_t pack_count, *first;
     anew *made; /* [count] in order */
     int64_t count;
-    spari_carried *carried; /* [count] room for the fluids with other nodes */
-    spari_ties ties;        /* of the members; copied if a connected one is rebuilt */
+    spari_moved_loads *carried;          /* [count] room for the fluids with other nodes */
+    spari_joint_snapshot joint_snapshot; /* of the members; copied if a connected one is rebuilt */
 } change;
 
 static int change_create(spar_session *s, change *c) {
@@ -63,22 +63,22 @@ static void put_settings(spar_session *s, const double *values, int past) {
 }
 
 static int is_as_advised(const spar_member *m) {
-    const spari_remake *to = m->advice;
+    const spari_rebuild *to = m->advice;
     return !to ||
            (to->per_element == m->per_element && (to->elements == 0 || to->elements == m->elements) &&
             to->fidelity == m->fidelity && to->modes == m->modes && (to->points == 0 || to->points == m->beam->points));
 }
 
-static int remake_members(spar_session *s, change *c) {
-    int tied = 0; /* members that are tied begin anew together: whether one of them has to */
+static int rebuild_members(spar_session *s, change *c) {
+    int joints_moved = 0; /* members that are tied begin anew together: whether one of them has to */
     for (const spar_member *m = s->members; m && s->joints; m = m->next) {
-        tied = tied || (!is_as_advised(m) && spari_member_is_tied(m));
+        joints_moved = joints_moved || (!is_as_advised(m) && spari_member_has_joints(m));
     }
-    if (tied) {
-        SPARI_TRY(spari_ties_lay_aside(s, &c->ties));
+    if (joints_moved) {
+        SPARI_TRY(spari_joints_save_snapshot(s, &c->joint_snapshot));
     }
     for (spar_member *m = s->members; m; m = m->next) {
-        if (is_as_advised(m) && !(tied && spari_member_is_tied(m))) {
+        if (is_as_advised(m) && !(joints_moved && spari_member_has_joints(m))) {
             SPARI_REQUIRE(s, spari_history_keep(m->load_history, 6 * m->nodes, s->predictor) == SPAR_OK,
                           SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
             SPARI_TRY(spari_means_keep(m));
@@ -86,15 +86,15 @@ static int remake_members(spar_session *s, change *c) {
         }
         anew *a = &c->made[c->count++];
         a->member = m;
-        const spari_remake as_it_is = spari_remake_of(m);
-        SPARI_TRY(spari_member_remake(m, m->advice ? m->advice : &as_it_is, &a->was));
-        SPARI_TRY(spari_ties_follow(m, &a->was));
+        const spari_rebuild as_it_is = spari_rebuild_of(m);
+        SPARI_TRY(spari_member_rebuild(m, m->advice ? m->advice : &as_it_is, &a->was));
+        SPARI_TRY(spari_joints_follow_rebuild(m, &a->was));
         spari_work_carry(&a->was, m);
     }
     return SPAR_OK;
 }
 
-static int remake_fluids(spar_session *s, change *c) {
+static int rebuild_fluids(spar_session *s, change *c) {
     int64_t members = c->count;
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         const anew *of = NULL;
@@ -107,7 +107,7 @@ static int remake_fluids(spar_session *s, change *c) {
             continue;
         }
         anew *a = &c->made[c->count];
-        int status = spari_fluid_remake(f, &of->was, &a->fluid_was);
+        int status = spari_fluid_rebuild(f, &of->was, &a->fluid_was);
         a->fluid = f;
         c->count += a->fluid_was != NULL;
         SPARI_TRY(status);
@@ -116,7 +116,7 @@ static int remake_fluids(spar_session *s, change *c) {
 }
 
 static int has_other_nodes(const anew *a) {
-    return !spari_mesh_alike(spari_member_mesh(a->member), spari_member_mesh(&a->was));
+    return !spari_mesh_is_equal(spari_member_mesh(a->member), spari_member_mesh(&a->was));
 }
 
 /* Collective. */
@@ -129,14 +129,14 @@ static int carry_change(spar_session *s, const change *c, const char *call) {
         for (int64_t j = 0; j < c->count && a->fluid; j++) {
             const anew *of = &c->made[j];
             if (of->member && of->member == spari_fluid_member(a->fluid) && has_other_nodes(of)) {
-                c->carried[count++] = (spari_carried){a->fluid, a->fluid_was, &of->was};
+                c->carried[count++] = (spari_moved_loads){a->fluid, a->fluid_was, &of->was};
             }
         }
     }
-    return spari_carry_loads(s, call, any, c->carried, count);
+    return spari_move_loads(s, call, any, c->carried, count);
 }
 
-static void lay_exchange_aside(spari_own *own, change *c) {
+static void detach_exchange(spari_own *own, change *c) {
     c->pack = own->pack, c->motion = own->motion, c->first = own->first, c->pack_count = own->pack_count;
     own->pack = own->motion = NULL;
     own->first = NULL;
@@ -159,7 +159,7 @@ static void undo(spar_session *s, change *c) {
             spari_member_restore(a->member, &a->was);
         }
     }
-    spari_ties_restore(s, &c->ties);
+    spari_joints_restore_snapshot(s, &c->joint_snapshot);
     swap_exchange(s->own, c);
     put_settings(s, c->before, c->past);
 }
@@ -173,7 +173,7 @@ static void confirm(spar_session *s, change *c) {
             spari_member_adopt(a->member, &a->was);
         }
     }
-    spari_ties_adopt(s, &c->ties);
+    spari_joints_drop_snapshot(s, &c->joint_snapshot);
     s->coupling_stale = 1;
     s->own->advised->of = spari_advised_of(s);
 }
@@ -199,19 +199,19 @@ static int check_apply(spar_session *s, const char *call) {
 }
 
 int spar_session_apply_advice(spar_session *session, double *dt) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     change c = {0};
-    SPARI_TRY(spari_enter_alike(s, __func__, NULL, 0, check_apply(s, __func__)));
+    SPARI_TRY(spari_enter_agreed(s, __func__, NULL, 0, check_apply(s, __func__)));
     int status = change_create(s, &c), begun = status == SPAR_OK;
     if (begun) {
-        lay_exchange_aside(s->own, &c);
+        detach_exchange(s->own, &c);
         (void)spari_settings_varied(s, c.before);
         c.past = s->past;
         put_settings(s, s->own->advised->setting, s->past);
-        status = remake_members(s, &c);
-        status = status == SPAR_OK ? remake_fluids(s, &c) : status;
+        status = rebuild_members(s, &c);
+        status = status == SPAR_OK ? rebuild_fluids(s, &c) : status;
     }
     if (s->joints) { /* whether there are joints agrees on all ranks; they change only on success */
         status = spari_enter(s, "advice", status);
@@ -238,7 +238,7 @@ int spar_session_apply_advice(spar_session *session, double *dt) {
 /* ---- numbers of the host's own ---- */
 
 int spar_session_push_numbers(spar_session *session, int64_t n, const double *numbers) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST_NUMBERS && (numbers || n == 0), SPAR_ERR_ARGUMENT,
                   "%s: %lld numbers%s; give 0 to %d", __func__, (long long)n, numbers ? "" : " without an array",

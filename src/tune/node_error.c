@@ -59,7 +59,7 @@ static int correct_shape(const spar_member *m, spari_solver *s, const finer *f, 
     for (int i = 0; i < 6 * s->n; i++) {
         s->r[i] -= f->load[i];
     }
-    memset(s->r, 0, (size_t)spari_member_held(m) * sizeof *s->r);
+    memset(s->r, 0, (size_t)spari_member_constrained(m) * sizeof *s->r);
     if (spari_solver_factor(s, m, f->q, f->v, f->a, 1, cm, 0, NULL)) {
         return 1;
     }
@@ -85,11 +85,11 @@ static int correct_shape(const spar_member *m, spari_solver *s, const finer *f, 
 static double distance(const spar_member *m, const finer *f) {
     spari_solver *s = m->solution;
     double h = m->session->dt_last[0], sum = 0, size = INFINITY, last;
-    int held = spari_member_held(m) == 6;
-    if (!held && h <= 0) {
+    int constrained = spari_member_constrained(m) == 6;
+    if (!constrained && h <= 0) {
         return -1;
     }
-    for (int k = h > 0 ? 0 : SLOWER; k < (held ? CORRECTIONS : SLOWER); k++) {
+    for (int k = h > 0 ? 0 : SLOWER; k < (constrained ? CORRECTIONS : SLOWER); k++) {
         last = size;
         if (correct_shape(m, s, f, mass[k] > 0 ? mass[k] / (h * h) : 0, &size) || !isfinite(size)) {
             return -1;
@@ -119,7 +119,7 @@ static int find_loads(const spar_member *m, double **load) {
         spari_member_to_unique(m, 6, m->now.v, x + 7 * n);
         spari_member_to_unique(m, 6, m->now.a, x + 13 * n);
         spari_body_residual(body, x, x + 7 * n, x + 13 * n, 1, r, NULL);
-        memset(r, 0, (size_t)spari_member_held(m) * sizeof *r);
+        memset(r, 0, (size_t)spari_member_constrained(m) * sizeof *r);
         spari_member_from_unique(m, 6, r, *load);
         for (int64_t e = 1; e < m->elements;
              e++) { /* of the two nodes at an element boundary, one has the whole load */
@@ -134,7 +134,7 @@ static int find_loads(const spar_member *m, double **load) {
 
 /* During the call the member is replaced by the finer one, which this rank solves. */
 static int find_nodes_error(spar_member *m, double *error) {
-    spari_remake wish = spari_remake_of(m);
+    spari_rebuild settings = spari_rebuild_of(m);
     int P = m->per_element, n = P + MORE < SPARI_MAX_NODES ? P + MORE : SPARI_MAX_NODES;
     double *load = NULL, *onto = spari_zalloc(6 * (int64_t)m->elements * n, sizeof *onto);
     spar_member old;
@@ -142,11 +142,11 @@ static int find_nodes_error(spar_member *m, double *error) {
     int status = onto ? find_loads(m, &load) : spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for '%s'", m->name);
     if (status == SPAR_OK) {
         spari_resample_loads(spari_member_mesh(m), (spari_mesh){m->elements, n}, load, onto);
-        wish.per_element = n;
-        wish.left_out = SPAR_EFFECT_WORK; /* a new work account would reset those of the joints */
+        settings.per_element = n;
+        settings.left_out = SPAR_EFFECT_WORK; /* a new work account would reset those of the joints */
         int owner = m->owner;
         m->owner = spari_comm_rank(m->session->comm);
-        status = spari_member_remake(m, &wish, &old);
+        status = spari_member_rebuild(m, &settings, &old);
         old.owner = owner;
         status = status == SPAR_OK ? finer_create(m, onto, &f) : status;
         *error = status == SPAR_OK ? distance(m, &f) : 0;
@@ -164,7 +164,7 @@ static int has_nodes(const spar_member *m) {
 }
 
 int spar_member_get_error(spar_member *member, double *step, double *nodes) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_member *m = member;
     spar_session *s = m->session;
@@ -172,7 +172,7 @@ int spar_member_get_error(spar_member *member, double *step, double *nodes) {
     SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: '%s' is not committed; call spar_member_commit first", __func__,
                   m->name);
     SPARI_REQUIRE(
-        s, !step || spari_pace_is_set(s), SPAR_ERR_STATE,
+        s, !step || spari_step_control_is_set(s), SPAR_ERR_STATE,
         "%s: errors of steps are not kept; call spar_session_set_tolerance first, or ask for that of the nodes",
         __func__);
     SPARI_REQUIRE(s, !s->standing && !s->trial, SPAR_ERR_STATE,
@@ -180,7 +180,7 @@ int spar_member_get_error(spar_member *member, double *step, double *nodes) {
     SPARI_REQUIRE(s, !nodes || s->phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is under way; the error of the nodes is found between steps", __func__);
     if (step) {
-        found[0] = s->phase >= SPARI_SOLVED ? spari_pace_error(m) : m->step_error;
+        found[0] = s->phase >= SPARI_SOLVED ? spari_step_control_error(m) : m->step_error;
     }
     if (nodes && has_nodes(m)) {
         found[1] = -1;

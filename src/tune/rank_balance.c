@@ -27,7 +27,7 @@ static void find_balance(const spar_session *s, double own[BALANCE_COLUMNS]) {
 
 int spar_session_get_balance(const spar_session *session, int64_t capacity, int64_t *members, double *expected,
                              double *counted) {
-    SPARI_QUIET;
+    SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = (spar_session *)(uintptr_t)session; /* writes its message; the state is not changed */
     int64_t ranks = spari_comm_size(s->comm);

@@ -19,7 +19,7 @@
 /* ---- plans ---- */
 
 static int is_varied(const spar_member *m) {
-    return m->kind == SPARI_BEAM && !m->external && !spari_ties_hold_within(m, m->elements);
+    return m->kind == SPARI_BEAM && !m->external && !spari_joints_hold_within(m, m->elements);
 }
 
 const spar_member *spari_plan_member(const spari_advisor *d, int group) {
@@ -40,7 +40,7 @@ int spari_plan_groups(spari_advisor *d) {
     for (const spar_member *m = s->members; m; m = m->next, k++) {
         d->group[k] = -1;
         for (int g = 0; g < d->groups && is_varied(m) && d->group[k] < 0; g++) {
-            d->group[k] = spari_member_make(spari_plan_member(d, g)) == spari_member_make(m) ? g : -1;
+            d->group[k] = spari_member_copy_hash(spari_plan_member(d, g)) == spari_member_copy_hash(m) ? g : -1;
         }
         if (d->group[k] < 0 && is_varied(m) && d->groups < SPARI_GROUPS) {
             d->group[k] = d->groups++;
@@ -57,7 +57,7 @@ static int is_loaded_within(const spar_member *m, int elements) {
         for (int c = 0; c < 6; c++) {
             any = any || m->dead[6 * node + c] != 0 || (follower && follower[6 * node + c] != 0);
         }
-        if (any && spari_ties_end(m, node, (spari_mesh){elements, m->per_element}) < 0) {
+        if (any && spari_joints_end_node(m, node, (spari_mesh){elements, m->per_element}) < 0) {
             return 1;
         }
     }
@@ -69,10 +69,10 @@ const char *spari_plan_holds(const spari_advisor *d, int group, int elements) {
     int k = 0;
     for (const spar_member *m = d->session->members; m && !why; m = m->next, k++) {
         if (d->group[k] == group && elements != m->elements) {
-            why = m->beam->node_x                       ? "its nodes are given"
-                  : spari_ties_hold_within(m, elements) ? "a joint holds a node that would lie within an element"
-                  : is_loaded_within(m, elements)       ? "a load is kept at a node that lies within an element"
-                                                        : NULL;
+            why = m->beam->node_x                         ? "its nodes are given"
+                  : spari_joints_hold_within(m, elements) ? "a joint holds a node that would lie within an element"
+                  : is_loaded_within(m, elements)         ? "a load is kept at a node that lies within an element"
+                                                          : NULL;
         }
     }
     return why;
@@ -148,7 +148,7 @@ int spari_plan_pays(spari_advisor *d, double trial, double saving) {
 
 int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, double most, spari_record *record) {
     spar_session *s = d->session;
-    spari_wish wish;
+    spari_trial_settings trial_settings;
     spari_run run = d->run;
     run.most = isfinite(most) ? most : 0;
     run.fluid = d->fluid;
@@ -159,12 +159,12 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, double mos
         "allows %.3g: give a larger one, a larger tolerance, or no limit (0)",
         SPARI_ADVISE, d->trials, d->spent / d->now, d->limit);
     SPARI_TRY(tell_progress(d));
-    SPARI_TRY(spari_wish_create(s, &wish));
-    spari_plan_settings(p, wish.setting);
+    SPARI_TRY(spari_trial_settings_create(s, &trial_settings));
+    spari_plan_settings(p, trial_settings.setting);
     for (int k = 0; k < s->member_count; k++) {
         if (d->group[k] >= 0) {
             const spari_shape *g = &p->group[d->group[k]];
-            spari_remake *r = wish.member + k;
+            spari_rebuild *r = trial_settings.member + k;
             r->elements = g->elements, r->per_element = g->nodes, r->fidelity = g->fidelity, r->modes = g->modes,
             r->points = g->points;
         }
@@ -172,11 +172,11 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, double mos
     run.beside = d->beside, run.off = d->off;
     run.steps = longer * p->steps;
     run.dt = d->run.dt * (double)d->run.steps / (double)p->steps;
-    int status = spari_trial_run(s, &run, &wish, record);
+    int status = spari_trial_run(s, &run, &trial_settings, record);
     d->trials++;
     d->spent += record->work + d->fluid * (double)record->solutions;
     d->solutions += d->weighed ? 0 : record->solutions;
-    spari_wish_free(&wish);
+    spari_trial_settings_free(&trial_settings);
     return status;
 }
 
@@ -300,7 +300,7 @@ int spari_plan_measure(spari_advisor *d, const spari_plan *p, double most, spari
     } else if (spari_plan_fails(status)) {
         out->guessed = r.off > 0;
         out->error = out->guessed ? r.off + d->reference_error : INFINITY;
-        out->cost = out->guessed ? spari_plan_cost(d, &r) * (double)p->steps / (double)r.taken
+        out->cost = out->guessed ? spari_plan_cost(d, &r) * (double)p->steps / (double)r.steps_done
                     : r.dear     ? fmax(most, spari_plan_cost(d, &r))
                                  : INFINITY;
         remember(d, out);
@@ -599,7 +599,7 @@ static int copy_reference(spari_advisor *d) {
     d->reference = l->record;
     d->reference.value = spari_copy(l->record.value, spari_record_size(&l->record));
     d->reference.recent = spari_copy(l->record.recent, spari_record_size(&l->record) / SPARI_SAMPLES * 4);
-    d->reference.load = d->reference.trail = d->reference.start = d->reference.room = NULL;
+    d->reference.load = d->reference.trail = d->reference.start = d->reference.workspace = NULL;
     d->reference.basis = d->reference.member_work = NULL;
     int status = d->reference.value && d->reference.recent
                      ? SPAR_OK
@@ -613,7 +613,7 @@ static int copy_reference(spari_advisor *d) {
 
 void spari_plan_forget(spari_advisor *d) {
     spari_record_free(&d->reference);
-    spari_record_free(&d->calm);
+    spari_record_free(&d->last_look);
     for (int k = 0; k < d->levels; k++) {
         spari_record_free(&d->level[k].record);
     }
@@ -624,10 +624,10 @@ void spari_plan_forget(spari_advisor *d) {
    tolerance to dt, of order 2, in runs that cost at least about a level that keeps the tolerance. */
 static int finer_pays(spari_advisor *d) {
     const spari_level *last = &d->level[d->levels - 1], *good = spari_plan_good_level(d);
-    double room = spari_rule.good - d->reference_error / d->tolerance, cost = spari_plan_cost(d, &last->record),
+    double margin = spari_rule.good - d->reference_error / d->tolerance, cost = spari_plan_cost(d, &last->record),
            run = good ? spari_plan_cost(d, &good->record) : cost;
     return d->reference_error > spari_rule.reference_most * d->tolerance ||
-           spari_plan_pays(d, 2 * cost, run * (1 - sqrt(room / spari_rule.good)));
+           spari_plan_pays(d, 2 * cost, run * (1 - sqrt(margin / spari_rule.good)));
 }
 
 /* Halves dt until the errors of steps and nodes are a small fraction of the tolerance, or small enough if the next
@@ -761,7 +761,7 @@ static int seesaws(const spari_advisor *d, const spari_plan *p, const spari_reco
 }
 
 /* Comparison settings for the longer run: tight coupling, and half the dt if the coupling is tight already. */
-static spari_plan calm_plan(const spari_advisor *d, const spari_plan *p) {
+static spari_plan last_look_plan(const spari_advisor *d, const spari_plan *p) {
     spari_plan q = *p;
     int keeps = d->session->keep_coupling;
     q.predictor = 1;
@@ -774,13 +774,13 @@ static spari_plan calm_plan(const spari_advisor *d, const spari_plan *p) {
 }
 
 /* Runs them, unless the last comparison used the same. */
-static int run_calm(spari_advisor *d, const spari_plan *q, int longer, const spari_record *run, double limit) {
+static int run_last_look(spari_advisor *d, const spari_plan *q, int longer, const spari_record *run, double limit) {
     int status = SPAR_OK;
-    if (!d->calm.value || d->calm_longer != longer || memcmp(&d->calm_plan, q, sizeof *q) != 0) {
-        spari_record_free(&d->calm);
-        d->calm_plan = *q, d->calm_longer = longer;
+    if (!d->last_look.value || d->last_look_longer != longer || memcmp(&d->last_look_plan, q, sizeof *q) != 0) {
+        spari_record_free(&d->last_look);
+        d->last_look_plan = *q, d->last_look_longer = longer;
         d->beside = run, d->off = limit; /* approximately: that run's error is relative to this one */
-        status = spari_plan_run(d, q, longer, INFINITY, &d->calm);
+        status = spari_plan_run(d, q, longer, INFINITY, &d->last_look);
         d->beside = NULL;
     }
     return status;
@@ -788,17 +788,17 @@ static int run_calm(spari_advisor *d, const spari_plan *q, int longer, const spa
 
 /* Phase errors may have grown with time. */
 static int stays_beside(spari_advisor *d, const spari_plan *p, int longer, const spari_record *run, int *stays) {
-    const spari_plan q = calm_plan(d, p);
+    const spari_plan q = last_look_plan(d, p);
     const double limit = longer * d->tolerance;
     double error = INFINITY;
-    int status = run_calm(d, &q, longer, run, limit);
+    int status = run_last_look(d, &q, longer, run, limit);
     if (status == SPAR_OK) {
-        status = compare_runs(d, run, &d->calm, 1, &error);
+        status = compare_runs(d, run, &d->last_look, 1, &error);
     }
-    *stays = status == SPAR_OK && error <= limit && !seesaws(d, p, run, &d->calm, longer);
-    tell_plan(d, &q, error, spari_plan_cost(d, &d->calm));
+    *stays = status == SPAR_OK && error <= limit && !seesaws(d, p, run, &d->last_look, longer);
+    tell_plan(d, &q, error, spari_plan_cost(d, &d->last_look));
     if (status != SPAR_OK) {
-        spari_record_free(&d->calm);
+        spari_record_free(&d->last_look);
     }
     return spari_plan_fails(status) ? SPAR_OK : status;
 }

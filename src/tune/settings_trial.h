@@ -1,6 +1,6 @@
 /* Candidate settings of the advice, and the results of runs with them. */
-#ifndef SPARI_PLAN_H
-#define SPARI_PLAN_H
+#ifndef SPARI_SETTINGS_TRIAL_H
+#define SPARI_SETTINGS_TRIAL_H
 
 #include "../trial/rules.h"
 #include "../trial/trial.h"
@@ -64,9 +64,9 @@ typedef struct spari_advisor {
     double reference_error;
     const spari_record *beside; /* the current run ends if it is farther than `off` from this one; NULL: no limit */
     double off;
-    spari_record calm; /* comparison run of the last longer run: its settings, */
-    spari_plan calm_plan;
-    int calm_longer;      /* its length in trials */
+    spari_record last_look; /* comparison run of the last longer run: its settings, */
+    spari_plan last_look_plan;
+    int last_look_longer; /* its length in trials */
     double shortest;      /* period that steps must resolve, as a fraction of the trials' time; 0: none */
     double fluid;         /* cost of a fluid solution, */
     int weighed;          /* known after a completed run */

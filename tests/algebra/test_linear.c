@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "base/thread_pool.h"
 #include "algebra/linear.h"
+#include "base/thread_pool.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -345,9 +345,9 @@ static void check_threads(int block) {
     double first[MOST_OF_X], x[MOST_OF_X] = {0};
     for (int threads = 1; threads <= 4; threads++) {
         srand(7);
-        spari_crew *crew = threads > 1 ? spari_crew_create(threads) : NULL;
+        spari_thread_pool *pool = threads > 1 ? spari_thread_pool_create(threads) : NULL;
         long_chain c = chain_create(COUNT, block, OVERLAP, 0), d = chain_create(COUNT, block, OVERLAP, 0);
-        spari_linear_share(c.s, &crew);
+        spari_linear_share(c.s, &pool);
         for (int i = 0; i < n; i++) {
             x[i] = sin(i);
         }
@@ -372,7 +372,7 @@ static void check_threads(int block) {
         free(state);
         chain_free(&c);
         chain_free(&d);
-        spari_crew_free(crew);
+        spari_thread_pool_free(pool);
     }
 }
 

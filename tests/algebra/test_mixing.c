@@ -54,13 +54,13 @@ static void two_directions(int n, double *a, double *b) {
 }
 
 /* e less its correction; x: the correction that was taken. */
-static void correct(spari_mixing *m, int width, double length, int n, double lambda, const double *a, const double *b,
+static void correct(spari_anderson *m, int width, double length, int n, double lambda, const double *a, const double *b,
                     double *e, double *x) {
     double along = dot(n, a, e), across = dot(n, b, e);
     for (int i = 0; i < n; i++) {
         x[i] = e[i] - lambda * (along * b[i] + across * a[i]);
     }
-    spari_mixing_take(m, NULL, width, length, x);
+    spari_anderson_step(m, NULL, width, length, x);
     for (int i = 0; i < n; i++) {
         e[i] -= x[i];
     }
@@ -75,7 +75,7 @@ static void test_pair_is_taken(void **unused) {
             double a[6 * MOST], b[6 * MOST], x[6 * MOST + BEYOND] = {0}, first[6 * MOST], lambda = lambdas[l];
             int n = 6 * counts[c];
             two_directions(n, a, b);
-            spari_mixing *m = spari_mixing_create(counts[c]);
+            spari_anderson *m = spari_anderson_create(counts[c]);
             assert_non_null(m);
             for (int w = 0; w < WIDTHS; w++) {
                 double e[6 * MOST];
@@ -83,7 +83,7 @@ static void test_pair_is_taken(void **unused) {
                     e[i] = 1e-3 * (a[i] + 0.3 * b[i]);
                 }
                 double before = size_of(n, e);
-                spari_mixing_begin(m);
+                spari_anderson_begin(m);
                 for (int it = 0; it < (l == 0 ? 4 : 3); it++) {
                     double comes = pow(lambda, it) * before;
                     assert_true(fabs(size_of(n, e) - comes) <= 1e-12 * before || it % 2);
@@ -95,7 +95,7 @@ static void test_pair_is_taken(void **unused) {
                 }
                 assert_memory_equal(first, x, (size_t)n * sizeof *x);
             }
-            spari_mixing_free(m);
+            spari_anderson_free(m);
         }
     }
 }
@@ -112,7 +112,7 @@ static void test_more_directions(void **unused) {
             e[i] += v[k][i] / sqrt(6);
         }
     }
-    spari_mixing *m = spari_mixing_create(N / 6);
+    spari_anderson *m = spari_anderson_create(N / 6);
     for (int it = 0; it < 12; it++) {
         memcpy(x, e, sizeof x);
         for (int k = 0; k < 2 * PAIRS; k++) {
@@ -121,14 +121,14 @@ static void test_more_directions(void **unused) {
                 x[i] -= part * v[k][i];
             }
         }
-        spari_mixing_take(m, NULL, 0, 7, x);
+        spari_anderson_step(m, NULL, 0, 7, x);
         for (int i = 0; i < N; i++) {
             e[i] -= x[i];
         }
     }
     print_message("left after 12: %.1e\n", size_of(N, e));
     assert_true(size_of(N, e) <= 0.1 * pow(0.3, 12) * sqrt(8));
-    spari_mixing_free(m);
+    spari_anderson_free(m);
 }
 
 /* Corrections that say nothing are taken as they come: none, the same again, what no square holds, what contracts fast.
@@ -137,21 +137,21 @@ static void test_what_says_nothing(void **unused) {
     (void)unused;
     const double sizes[] = {0, 1, 1e-200, 1e200, 1e308};
     enum { N = 66 };
-    spari_mixing *m = spari_mixing_create(N / 6);
+    spari_anderson *m = spari_anderson_create(N / 6);
     for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
         for (int fast = 0; fast < 2; fast++) {
-            spari_mixing_begin(m);
+            spari_anderson_begin(m);
             for (int it = 0; it < 6; it++) {
                 double x[N + BEYOND] = {0}, as_it_comes[N], by = fast ? pow(0.02, it) : 1;
                 for (int i = 0; i < N; i++) {
                     x[i] = as_it_comes[i] = sizes[s] * by * cos(i) * (it % 2 && fast ? -1 : 1);
                 }
-                spari_mixing_take(m, NULL, 0, 7, x);
+                spari_anderson_step(m, NULL, 0, 7, x);
                 assert_memory_equal(x, as_it_comes, sizeof as_it_comes);
             }
         }
     }
-    spari_mixing_free(m);
+    spari_anderson_free(m);
 }
 
 /* What begins anew knows of nothing before: the same bits as for the first time. */
@@ -160,20 +160,20 @@ static void test_begins_anew(void **unused) {
     enum { N = 30 };
     double a[N], b[N], x[2][N + BEYOND] = {{0}};
     two_directions(N, a, b);
-    spari_mixing *m = spari_mixing_create(N / 6);
+    spari_anderson *m = spari_anderson_create(N / 6);
     for (int run = 0; run < 2; run++) {
         double e[N];
         for (int i = 0; i < N; i++) {
             e[i] = a[i] - b[i] + 0.1 * cos(i);
         }
-        spari_mixing_begin(m);
+        spari_anderson_begin(m);
         for (int it = 0; it < 5 + 2 * run; it++) {
             correct(m, 0, 1, N, 0.4, a, b, e, it < 5 ? x[run] : (double[N + BEYOND]){0});
         }
     }
     assert_memory_equal(x[0], x[1], sizeof x[0]);
-    spari_mixing_free(m);
-    spari_mixing_free(NULL);
+    spari_anderson_free(m);
+    spari_anderson_free(NULL);
 }
 
 int main(void) {

@@ -147,9 +147,9 @@ static void test_wide(void **state) {
         if (traps) {
             feenableexcept(TRAPS);
         }
-        spari_quiet_begin();
+        spari_environment_begin();
         x = one / none;
-        spari_quiet_end();
+        spari_environment_end();
         assert_int_equal(fetestexcept(FE_ALL_EXCEPT), 0);
         assert_true(x > 1);
         x = x + one; /* which is where a flag left behind would raise its signal */

@@ -95,8 +95,8 @@ static void same_bits(void **state) {
     }
     assert_int_equal(spari_comm_sum(ranks, x, 32, SPAR_OK, text, sizeof text), SPAR_OK);
     for (int i = 0; i < 32; i++) {
-        const spari_alike alike = spari_real("sum", x[i]);
-        assert_int_equal(spari_comm_enter(ranks, "sums", &alike, 1, SPAR_OK, text, sizeof text), SPAR_OK);
+        const spari_agreed must_agree = spari_real("sum", x[i]);
+        assert_int_equal(spari_comm_enter(ranks, "sums", &must_agree, 1, SPAR_OK, text, sizeof text), SPAR_OK);
     }
 }
 
@@ -200,7 +200,7 @@ static void arguments(void **state) {
     (void)state;
     for (int bad = 0; bad < 4; bad++) {
         int here = rank == size - 1;
-        const spari_alike alike[] = {
+        const spari_agreed must_agree[] = {
             spari_real("dt", here && bad == 0 ? nextafter(0.1, 1) : 0.1),
             spari_whole("steps", here && bad == 1 ? INT64_MIN : INT64_MAX),
             spari_given("solve", here && bad == 2 ? 0 : 1),
@@ -208,16 +208,17 @@ static void arguments(void **state) {
         };
         static const char *const name[] = {"dt (here 0.1", "steps (here ", "solve (here ", "settings; give"};
         char text[SPARI_MESSAGE_SIZE] = "";
-        int status = spari_comm_enter(ranks, "call", alike, 4, SPAR_OK, text, sizeof text);
+        int status = spari_comm_enter(ranks, "call", must_agree, 4, SPAR_OK, text, sizeof text);
         assert_int_equal(status, size == 1 ? SPAR_OK : SPAR_ERR_COMM);
         assert_true(size == 1 || strstr(text, name[bad]));
         (void)snprintf(text, sizeof text, "wings fell off at %d", rank);
-        status = spari_comm_enter(ranks, "call", alike, 4, rank == 0 ? SPAR_ERR_NUMERIC : SPAR_OK, text, sizeof text);
+        status =
+            spari_comm_enter(ranks, "call", must_agree, 4, rank == 0 ? SPAR_ERR_NUMERIC : SPAR_OK, text, sizeof text);
         check_told(0, status, text);
         text[0] = '\0';
-        assert_int_equal(spari_comm_enter(ranks, "call", alike, 0, SPAR_OK, text, sizeof text), SPAR_OK);
+        assert_int_equal(spari_comm_enter(ranks, "call", must_agree, 0, SPAR_OK, text, sizeof text), SPAR_OK);
     }
-    const spari_alike zero = spari_real("zero", rank == 0 ? 0.0 : -0.0);
+    const spari_agreed zero = spari_real("zero", rank == 0 ? 0.0 : -0.0);
     char text[64];
     assert_int_equal(spari_comm_enter(ranks, "call", &zero, 1, SPAR_OK, text, sizeof text), SPAR_OK);
 }

@@ -622,7 +622,7 @@ static void answer(lagging *l, const double *x, double *g) {
 /* The rho that the accelerator goes by, from what it says is still to come; 0: none. */
 static double rho_in(const spari_accelerator *a, const double *x, const double *g, const double *before) {
     double r[SIX];
-    if (!spari_accelerator_settle(a, x, g, r)) {
+    if (!spari_accelerator_settled(a, x, g, r)) {
         return 0;
     }
     double more = (r[0] - (g[0] - x[0])) / (g[0] - before[0]);

@@ -3,9 +3,9 @@
    loads by it, against differences of solutions. */
 #include "scene.h"
 
-#include "member/structure.h"
 #include "assembly/assembly.h"
 #include "assembly/system.h"
+#include "member/structure.h"
 
 #include <stdio.h>
 
@@ -351,7 +351,7 @@ static figures compare(unsigned long long *random, double size) {
     add_loads(s, y, size);
     OK(s, spar_step_solve(s));
     s->assemblies->factored = 0;
-    assert_int_equal(spari_assembly_answer(s->assemblies, 2, n, answer), 0);
+    assert_int_equal(spari_assembly_response(s->assemblies, 2, n, answer), 0);
     double xx = product(x, answer, n), yy = product(y, answer + n, n), xy = product(x, answer + n, n);
     assert_true(xx > 0 && yy > 0);
     add_loads(s, x, -little);

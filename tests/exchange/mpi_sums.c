@@ -5,10 +5,10 @@
    forces that nearly cancel, of sizes from 1e-6 to 1e3 N. */
 #include "scene.h"
 
-#include "ranks.h"
 #include "exchange/session_private.h"
-#include "tune/apply.h"
+#include "ranks.h"
 #include "trial/rebuild.h"
+#include "tune/apply.h"
 #include <spar/spar_mpi.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -281,7 +281,7 @@ static int give_nodes(scene *c, int elements, int per_element) {
     (void)spari_settings_varied(s, advised->setting);
     advised->given = 1;
     advised->of = spari_advised_of(s);
-    *c->beam->advice = spari_remake_of(c->beam);
+    *c->beam->advice = spari_rebuild_of(c->beam);
     c->beam->advice->elements = elements, c->beam->advice->per_element = per_element;
     return spar_session_apply_advice(s, NULL);
 }

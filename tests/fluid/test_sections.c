@@ -298,10 +298,10 @@ static void apart_in_a_trial(void **state) {
     spar_fluid *f = line(&b, "apart", 1);
     OK(b.session, spar_fluid_pull_poses(f, 1, x[0][0], q[0][0], NULL, NULL, NULL, NULL));
     OK(b.session, spar_fluid_pull_force_places(f, 1, p[0][0], NULL, NULL));
-    spari_remake wish = spari_remake_of(b.beam);
+    spari_rebuild wish = spari_rebuild_of(b.beam);
     wish.per_element = 9;
-    OK(b.session, spari_member_remake(b.beam, &wish, &old));
-    OK(b.session, spari_fluid_remake(f, &old, &was));
+    OK(b.session, spari_member_rebuild(b.beam, &wish, &old));
+    OK(b.session, spari_fluid_rebuild(f, &old, &was));
     memcpy(b.beam->after.q, b.beam->now.q, (size_t)(7 * b.beam->nodes) * sizeof(double));
     OK(b.session, spar_fluid_pull_poses(f, 1, x[1][0], q[1][0], NULL, NULL, NULL, NULL));
     OK(b.session, spar_fluid_pull_force_places(f, 1, p[1][0], NULL, NULL));

@@ -347,12 +347,12 @@ static void trials_keep_weights(void **state) {
     }
     OK(m.session, spar_member_set_motion(b1, q[0], v[0], NULL));
     OK(m.session, spar_fluid_pull_motion(f, 1, a.x[0], a.v[0]));
-    spari_remake wish = spari_remake_of(b1);
+    spari_rebuild wish = spari_rebuild_of(b1);
     wish.per_element = 7;
-    OK(m.session, spari_member_remake(b1, &wish, &old));
+    OK(m.session, spari_member_rebuild(b1, &wish, &old));
     memcpy(b1->after.q, b1->now.q, (size_t)(7 * b1->nodes) * sizeof(double));
     memcpy(b1->after.v, b1->now.v, (size_t)(6 * b1->nodes) * sizeof(double));
-    OK(m.session, spari_fluid_remake(f, &old, &was));
+    OK(m.session, spari_fluid_rebuild(f, &old, &was));
     OK(m.session, spar_fluid_get_motion_weights(f, seen));
     assert_memory_equal(seen, m.w, sizeof seen);
     OK(m.session, spar_fluid_pull_motion(f, 1, b.x[0], b.v[0]));

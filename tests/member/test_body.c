@@ -327,7 +327,7 @@ static void plain_gather(int P, const double *q, const double *v, const double *
 static void plain_add(int P, const double *g, const double *z, double *r) {
     for (int l = 0; l < P; l++) {
         double g4[4], q[4], back[4], p[4];
-        spari_point_turn(z, l, q);
+        spari_point_rotation(z, l, q);
         spari_quat_conj(q, back);
         for (int k = 0; k < 4; k++) {
             g4[k] = g[SPARI_MAX_NODES * (3 + k) + l];
@@ -449,7 +449,7 @@ static double plain_residual(const spari_body *b, const state *s, const double *
         }
         for (int l = 0; l < P; l++) {
             double c[4], p[4], *rl = r + 6 * (e * (P - 1) + l);
-            spari_point_turn(z, l, q);
+            spari_point_rotation(z, l, q);
             spari_quat_conj(q, c);
             spari_quat_mul(g[l] + 3, c, p);
             for (int i = 0; i < 3; i++) {

@@ -31,8 +31,8 @@ static void random_turn(double size, double q[4]) {
     spari_quat_exp(psi, q);
 }
 
-static spari_tie random_tie(int free, int line) {
-    spari_tie t = {.free = free, .line = line};
+static spari_joint_kinematics random_tie(int free, int line) {
+    spari_joint_kinematics t = {.free = free, .line = line};
     random_vector(1, t.arm[0]);
     random_vector(1, t.arm[1]);
     random_turn(2, t.axes[0]);
@@ -40,7 +40,7 @@ static spari_tie random_tie(int free, int line) {
     return t;
 }
 
-static void nudge(spari_place *p, const double d[6]) {
+static void nudge(spari_node_pose *p, const double d[6]) {
     double turn[4];
     for (int k = 0; k < 3; k++) {
         p->x[k] += d[k];
@@ -50,7 +50,8 @@ static void nudge(spari_place *p, const double d[6]) {
 }
 
 /* a is where the tie's rotations, held ones among them, are what `relative` says */
-static void random_places(const spari_tie *t, const double relative[4], spari_place *a, spari_place *b) {
+static void random_places(const spari_joint_kinematics *t, const double relative[4], spari_node_pose *a,
+                          spari_node_pose *b) {
     double frame[4], back[4];
     random_vector(3, a->x);
     random_vector(3, b->x);
@@ -80,24 +81,24 @@ static void test_changes(void **state) {
     (void)state;
     srand(3);
     for (int trial = 0; trial < 80; trial++) {
-        spari_tie t = random_tie(masks[trial % MASKS], trial >= 64);
-        spari_place a, b;
+        spari_joint_kinematics t = random_tie(masks[trial % MASKS], trial >= 64);
+        spari_node_pose a, b;
         double relative[4], z[6], B[6][12], load[6], K[12][12] = {{0}}, f[2][12];
         random_turn(0.6, relative);
         random_places(&t, relative, &a, &b);
         random_vector(1, load);
         random_vector(1, load + 3);
-        spari_tie_motion(&t, &a, &b, z, B);
-        spari_tie_tangent(&t, &a, &b, load, K);
+        spari_kinematics_motion(&t, &a, &b, z, B);
+        spari_kinematics_tangent(&t, &a, &b, load, K);
         for (int j = 0; j < 12; j++) {
             double zz[2][6], Bj[6][12], h = 1e-5;
             for (int side = 0; side < 2; side++) {
-                spari_place at = a, bt = b;
+                spari_node_pose at = a, bt = b;
                 double d[6] = {0};
                 d[j % 6] = side ? -h : h;
                 nudge(j < 6 ? &at : &bt, d);
-                spari_tie_motion(&t, &at, &bt, zz[side], Bj);
-                spari_tie_forces(Bj, load, f[side]);
+                spari_kinematics_motion(&t, &at, &bt, zz[side], Bj);
+                spari_kinematics_forces(Bj, load, f[side]);
             }
             for (int k = 0; k < 6; k++) {
                 assert_true(fabs(B[k][j] - (zz[0][k] - zz[1][k]) / (2 * h)) < 2e-9);
@@ -114,15 +115,15 @@ static void test_rigid_motion(void **state) {
     (void)state;
     srand(5);
     for (int trial = 0; trial < 40; trial++) {
-        spari_tie t = random_tie(masks[trial % MASKS], trial >= 32);
-        spari_place a, b;
+        spari_joint_kinematics t = random_tie(masks[trial % MASKS], trial >= 32);
+        spari_node_pose a, b;
         double relative[4], z[6], z2[6], B[6][12], turn[4], way[3], w[3];
         random_turn(1, relative);
         random_places(&t, relative, &a, &b);
         random_turn(3, turn);
         random_vector(5, way);
         random_vector(1, w);
-        spari_tie_motion(&t, &a, &b, z, B);
+        spari_kinematics_motion(&t, &a, &b, z, B);
         double va[3], vb[3];
         spari_cross(w, a.x, va);
         spari_cross(w, b.x, vb);
@@ -133,7 +134,7 @@ static void test_rigid_motion(void **state) {
             }
             assert_true(fabs(rate) < 1e-13);
         }
-        spari_place *both[2] = {&a, &b};
+        spari_node_pose *both[2] = {&a, &b};
         for (int n = 0; n < 2; n++) {
             spari_rotate(turn, both[n]->x, both[n]->x);
             spari_quat_mul(turn, both[n]->q, both[n]->q);
@@ -141,7 +142,7 @@ static void test_rigid_motion(void **state) {
                 both[n]->x[k] += way[k];
             }
         }
-        spari_tie_motion(&t, &a, &b, z2, B);
+        spari_kinematics_motion(&t, &a, &b, z2, B);
         for (int k = 0; k < 6; k++) {
             assert_true(fabs(angle_apart(z[k], z2[k])) < 1e-13);
         }
@@ -153,14 +154,14 @@ static void test_hinge_turns(void **state) {
     (void)state;
     srand(7);
     for (int axis = 0; axis < 3; axis++) {
-        spari_tie t = random_tie(SPAR_FREE_RX << axis, 0);
+        spari_joint_kinematics t = random_tie(SPAR_FREE_RX << axis, 0);
         for (int n = -40; n <= 40; n++) {
             double angle = 0.1 * n, psi[3] = {0}, relative[4], z[6], B[6][12], D = 0;
-            spari_place a, b;
+            spari_node_pose a, b;
             psi[axis] = angle;
             spari_quat_exp(psi, relative);
             random_places(&t, relative, &a, &b);
-            spari_tie_motion(&t, &a, &b, z, B);
+            spari_kinematics_motion(&t, &a, &b, z, B);
             for (int k = 0; k < 3; k++) {
                 assert_true(k == axis ? fabs(angle_apart(z[3 + k], angle)) < 1e-14 : fabs(z[3 + k]) < 1e-14);
                 D = 0;
@@ -180,9 +181,9 @@ static void test_universal_turns(void **state) {
     srand(9);
     for (int n = 0; n < 300; n++) {
         int without = n % 3, first = without == 0 ? 1 : 0, second = 3 - without - first, off = n % 2;
-        spari_tie t = random_tie(56 & ~(SPAR_FREE_RX << without), 0);
+        spari_joint_kinematics t = random_tie(56 & ~(SPAR_FREE_RX << without), 0);
         double angle[2] = {0.17 * (n - 150), 4 * uniform()}, psi[3][3] = {{0}}, turn[3][4], relative[4], z[6];
-        spari_place a, b;
+        spari_node_pose a, b;
         psi[0][first] = angle[0], psi[1][second] = angle[1], psi[2][without] = 0.1 * off;
         for (int k = 0; k < 3; k++) {
             spari_quat_exp(psi[k], turn[k]);
@@ -190,7 +191,7 @@ static void test_universal_turns(void **state) {
         spari_quat_mul(turn[0], turn[2], relative);
         spari_quat_mul(relative, turn[1], relative);
         random_places(&t, relative, &a, &b);
-        spari_tie_motion(&t, &a, &b, z, NULL);
+        spari_kinematics_motion(&t, &a, &b, z, NULL);
         assert_true(fabs(angle_apart(z[3 + first], angle[0])) < 1e-13);
         assert_true(fabs(angle_apart(z[3 + second], angle[1])) < 1e-13);
         assert_true(fabs(z[3 + without] - sin(0.1 * off)) < 1e-13);
@@ -206,11 +207,11 @@ static void test_rotations_agree(void **state) {
     double relative[4];
     spari_quat_exp(psi, relative);
     for (int m = 0; m < MASKS; m++) {
-        spari_tie t = random_tie(masks[m], 0);
-        spari_place a, b;
+        spari_joint_kinematics t = random_tie(masks[m], 0);
+        spari_node_pose a, b;
         double z[6];
         random_places(&t, relative, &a, &b);
-        spari_tie_motion(&t, &a, &b, z, NULL);
+        spari_kinematics_motion(&t, &a, &b, z, NULL);
         for (int k = 0; k < 3; k++) {
             assert_true(fabs(z[3 + k] - psi[k]) < 1e-7);
         }
@@ -222,24 +223,24 @@ static void test_drift(void **state) {
     (void)state;
     srand(13);
     for (int trial = 0; trial < 40; trial++) {
-        spari_tie t = random_tie(masks[trial % MASKS], trial >= 32);
-        spari_place a, b;
+        spari_joint_kinematics t = random_tie(masks[trial % MASKS], trial >= 32);
+        spari_node_pose a, b;
         double relative[4], v[12], z[3][6], drift[6], h = 1e-4;
         random_turn(0.5, relative);
         random_places(&t, relative, &a, &b);
         for (int j = 0; j < 12; j++) {
             v[j] = uniform();
         }
-        spari_tie_drift(&t, &a, &b, v, drift);
+        spari_kinematics_drift(&t, &a, &b, v, drift);
         for (int s = -1; s <= 1; s++) {
-            spari_place at = a, bt = b;
+            spari_node_pose at = a, bt = b;
             double d[12];
             for (int j = 0; j < 12; j++) {
                 d[j] = s * h * v[j];
             }
             nudge(&at, d);
             nudge(&bt, d + 6);
-            spari_tie_motion(&t, &at, &bt, z[s + 1], NULL);
+            spari_kinematics_motion(&t, &at, &bt, z[s + 1], NULL);
         }
         for (int k = 0; k < 6; k++) {
             assert_true(fabs(drift[k] - (z[0][k] - 2 * z[1][k] + z[2][k]) / (h * h)) < 1e-6);

@@ -3,8 +3,8 @@
    oracle is the strict run, and one with half its dt: their distance is the error of dt (3/4 of it). */
 #include "scene.h"
 
-#include "time/fidelity.h"
 #include "time/body_solver.h"
+#include "time/fidelity.h"
 
 #include <stdio.h>
 
@@ -295,17 +295,17 @@ static void test_rejected(void **state) {
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, (const double[]){0, 10, 25, 0, 0, 0}));
     scene_run(s, 0.01, 10);
-    jerk[0] = b->jerk, swing[0] = b->swing;
+    jerk[0] = b->jerk, swing[0] = b->acceleration_scale;
     assert_true(jerk[0] > 0 && swing[0] > 0);
     OK(s, spar_step_begin(s, 0.05));
     OK(s, spar_step_solve(s));
     OK(s, spar_step_reject(s));
-    jerk[1] = b->jerk, swing[1] = b->swing;
+    jerk[1] = b->jerk, swing[1] = b->acceleration_scale;
     assert_memory_equal(jerk, jerk + 1, sizeof *jerk);
     assert_memory_equal(swing, swing + 1, sizeof *swing);
     scene_strict(s);
     scene_run(s, 0.01, 1);
-    assert_true(b->jerk == 0 && b->swing == 0); /* strict: nothing is kept */
+    assert_true(b->jerk == 0 && b->acceleration_scale == 0); /* strict: nothing is kept */
     spar_session_destroy(&s);
 }
 

@@ -83,7 +83,7 @@ static void assert_alike(int n, const double *x, double *first, int width, const
 static void test_turns(void **unused) {
     (void)unused;
     for (int n = 1; n <= MOST; n++) {
-        double q[7 * MOST], kept[4 * MOST], r[6 * MOST], turn[4 * MOST + 1], dx[6 * MOST + 1], most = 0;
+        double q[7 * MOST], kept[4 * MOST], r[6 * MOST], rotation[4 * MOST + 1], dx[6 * MOST + 1], most = 0;
         double exact_turn[4 * MOST], exact[6 * MOST], first[2][6 * MOST];
         random_numbers(7 * n, 1, q);
         random_quaternions(n, 7, q + 3);
@@ -100,20 +100,20 @@ static void test_turns(void **unused) {
             most = fmax(most, fabs(r[i]));
         }
         for (int k = 0; k < WIDTHS; k++) {
-            spari_node_work t = {.lanes = widths[k], .q = q, .kept = kept, .r = r, .turn = turn, .dx = dx};
-            turn[4 * n] = dx[6 * n] = 77;
-            assert_true(spari_nodes_turn_back(&t, 0, n) == most);
-            assert_near(4 * n, turn, exact_turn, 1e-15, "a turn");
+            spari_node_work t = {.lanes = widths[k], .q = q, .kept = kept, .r = r, .rotation = rotation, .dx = dx};
+            rotation[4 * n] = dx[6 * n] = 77;
+            assert_true(spari_nodes_rotate_back(&t, 0, n) == most);
+            assert_near(4 * n, rotation, exact_turn, 1e-15, "a turn");
             assert_near(6 * n, dx, exact, 1e-15, "a force turned back");
             assert_alike(6 * n, dx, first[0], widths[k], "turned back");
-            spari_nodes_turn_forth(&t, 0, n);
+            spari_nodes_rotate_forth(&t, 0, n);
             assert_near(6 * n, dx, r, 1e-15 * 8, "a force turned forth");
             assert_alike(6 * n, dx, first[1], widths[k], "turned forth");
-            assert_true(turn[4 * n] == 77 && dx[6 * n] == 77);
+            assert_true(rotation[4 * n] == 77 && dx[6 * n] == 77);
             for (int i = 0; i < 2 * n; i += 2) { /* one that is no number, wherever it stands */
                 double was = r[3 * i];
                 r[3 * i] = i % 4 ? NAN : -INFINITY;
-                assert_true(spari_nodes_turn_back(&t, 0, n) == INFINITY);
+                assert_true(spari_nodes_rotate_back(&t, 0, n) == INFINITY);
                 r[3 * i] = was;
             }
         }
@@ -125,7 +125,7 @@ static void test_turns(void **unused) {
 typedef struct substep {
     spari_scheme c;
     spari_state from, to;
-    double room[2][25 * MOST], x[6 * MOST], dx[6 * MOST], turn[4 * MOST], R[9];
+    double room[2][25 * MOST], x[6 * MOST], dx[6 * MOST], rotation[4 * MOST], R[9];
 } substep;
 
 /* Increments whose rotation vectors, with the term of the rates, have this angle. */
@@ -135,7 +135,7 @@ static void random_substep(int n, double angle, int still, substep *s) {
     random_state(n, &s->to, s->room[1]);
     random_numbers(6 * n, 1, s->x);
     random_numbers(6 * n, 1e-3, s->dx);
-    random_quaternions(n, 4, s->turn);
+    random_quaternions(n, 4, s->rotation);
     double q[4];
     random_quaternions(1, 4, q);
     spari_quat_matrix(q, s->R);
@@ -190,7 +190,7 @@ static void check_corrections(int n, double angle, int still, int turned, int ro
     for (int i = 0; i < n; i++) {
         for (int k = 0; k < 6; k += 3) {
             if (turned) {
-                spari_rotate(s.turn + 4 * i, exact + 6 * i + k, exact + 6 * i + k);
+                spari_rotate(s.rotation + 4 * i, exact + 6 * i + k, exact + 6 * i + k);
             }
             if (rooted) {
                 spari_matrix_times_back(s.R, exact + 6 * i + k, exact + 6 * i + k);
@@ -202,14 +202,14 @@ static void check_corrections(int n, double angle, int still, int turned, int ro
         memcpy(dx, s.dx, sizeof s.dx);
         dx[6 * n] = 77;
         spari_node_work t = {.lanes = widths[k], .c = &s.c, .from = &s.from, .to = &s.to, .x = s.x, .dx = dx};
-        t.turn = turned ? s.turn : NULL, t.R = rooted ? s.R : NULL;
+        t.rotation = turned ? s.rotation : NULL, t.R = rooted ? s.R : NULL;
         spari_node_size size = spari_nodes_take(&t, 0, n);
         /* near 2 pi the operator has no inverse; 5 pi / 2 and less than 3 pi stay 0.1 away mostly */
         assert_near(6 * n, dx, exact, angle < 0 ? 1e-10 : 1e-14, "a correction");
         assert_alike(6 * n, dx, first, widths[k], "corrections");
         assert_true(dx[6 * n] == 77);
         assert_true(fabs(size.way - square_of_largest(n, 0, dx)) <= 1e-15 * size.way);
-        assert_true(fabs(size.turn - square_of_largest(n, 3, dx)) <= 1e-15 * size.turn);
+        assert_true(fabs(size.rotation - square_of_largest(n, 3, dx)) <= 1e-15 * size.rotation);
     }
 }
 
@@ -243,12 +243,13 @@ static void check_places(int n, double angle, int still) {
         spari_state to = {own.room[1], own.room[1] + 7 * MOST, own.room[1] + 13 * MOST, own.room[1] + 19 * MOST};
         spari_state from = {own.room[0], own.room[0] + 7 * MOST, own.room[0] + 13 * MOST, own.room[0] + 19 * MOST};
         spari_node_work t = {.lanes = widths[k], .c = &s.c, .from = &from, .to = &to, .x = own.x};
-        spari_node_size size = spari_nodes_place(&t, 0, n), alone = spari_nodes_size(&t, 0, n);
+        spari_node_size size = spari_nodes_positions(&t, 0, n), alone = spari_nodes_size(&t, 0, n);
         assert_near(7 * n, to.q, exact, 2e-15, "a place");
         assert_alike(7 * n, to.q, first, widths[k], "places");
         assert_memory_equal(to.q + 7 * n, s.room[1] + 7 * n, sizeof(double) * (size_t)(7 * (MOST - n)));
         assert_true(fabs(size.way - square_of_largest(n, 0, s.x)) <= 1e-15 * size.way && size.way == alone.way);
-        assert_true(fabs(size.turn - square_of_largest(n, 3, s.x)) <= 1e-15 * size.turn && size.turn == alone.turn);
+        assert_true(fabs(size.rotation - square_of_largest(n, 3, s.x)) <= 1e-15 * size.rotation &&
+                    size.rotation == alone.rotation);
         for (int i = 0; i < 6 * n; i++) {
             assert_true(still ? to.v[i] == s.x[i] / s.c.h && to.a[i] == 0 && to.b[i] == 0
                               : to.v[i] == s.room[1][7 * MOST + i]);
@@ -274,7 +275,7 @@ static void test_no_number(void **unused) {
         spari_node_work t = {.lanes = widths[k], .c = &s.c, .from = &s.from, .to = &s.to, .x = s.x};
         s.x[6 * 4 + 3] = NAN;
         s.x[6 * 7 + 4] = INFINITY;
-        spari_nodes_place(&t, 0, 9);
+        spari_nodes_positions(&t, 0, 9);
         for (int i = 0; i < 9; i++) {
             assert_true((i == 4 || i == 7) ==
                         !(fabs(spari_quat_dot(s.to.q + 7 * i + 3, s.to.q + 7 * i + 3) - 1) < 1e-15));
@@ -295,7 +296,7 @@ static void check_prediction(const substep *s, const substep *own, spari_guess s
         assert_true(fabs(v1[i] - v[i] - h * ((1 - c->gamma) * b[i] + c->gamma * b1[i])) <= 1e-14);
         assert_true(stays != SPARI_KEEP_ACCELERATION || a1[i] == a[i]);
         assert_true(stays != SPARI_KEEP_VELOCITY || fabs(own->x[i] - h * v[i]) <= 1e-14);
-        assert_true(stays != SPARI_KEEP_PLACE || fabs(own->x[i]) <= 1e-14);
+        assert_true(stays != SPARI_KEEP_POSITION || fabs(own->x[i]) <= 1e-14);
         spari_rates from = {s->from.v + i, s->from.a + i, s->from.b + i, NULL}, to = {one, one + 1, one + 2, NULL};
         spari_scheme_predict(c, stays, 1, from, one + 3, to);
         assert_true(one[0] == v1[i] && one[1] == a1[i] && one[2] == b1[i] && one[3] == own->x[i]);
@@ -305,7 +306,7 @@ static void check_prediction(const substep *s, const substep *own, spari_guess s
 
 static void test_starting_values(void **unused) {
     (void)unused;
-    const spari_guess guesses[] = {SPARI_KEEP_ACCELERATION, SPARI_KEEP_VELOCITY, SPARI_KEEP_PLACE};
+    const spari_guess guesses[] = {SPARI_KEEP_ACCELERATION, SPARI_KEEP_VELOCITY, SPARI_KEEP_POSITION};
     for (int n = 1; n <= MOST; n++) {
         substep s, own;
         random_substep(n, 0.3, 0, &s);
@@ -356,11 +357,11 @@ static void check_at_once(int n, double angle, int turned, int rooted) {
             spari_state from = {s.room[0], s.room[0] + 7 * MOST, s.room[0] + 13 * MOST, s.room[0] + 19 * MOST};
             spari_state to = {room, room + 7 * MOST, room + 13 * MOST, room + 19 * MOST};
             spari_node_work t = {.lanes = widths[k], .c = &s.c, .from = &from, .to = &to, .cut = 1};
-            t.x = own[j].x, t.dx = own[j].dx, t.turn = turned ? s.turn : NULL, t.R = rooted ? s.R : NULL;
+            t.x = own[j].x, t.dx = own[j].dx, t.rotation = turned ? s.rotation : NULL, t.R = rooted ? s.R : NULL;
             if (j == 0) {
                 size[j][0] = spari_nodes_take(&t, 0, n);
                 spari_nodes_correct(&t, 0, n);
-                size[j][1] = spari_nodes_place(&t, 0, n);
+                size[j][1] = spari_nodes_positions(&t, 0, n);
             } else {
                 spari_nodes_advance(&t, 0, n, &size[j][0], &size[j][1]);
             }
@@ -450,20 +451,20 @@ static void check_look(const spari_root_view *shown, int n, double *first) {
 
 /* x + u goes back by what a small rigid motion E takes it, u-dot by what the rates J take it; the turn by exp(-E). */
 static void plain_lose(const spari_root_jump *t, const double *arm, double q[7], double v[6]) {
-    const double less[3] = {-t->place[3], -t->place[4], -t->place[5]};
-    double d[3], way[3], rate[3], turn[4];
+    const double less[3] = {-t->position[3], -t->position[4], -t->position[5]};
+    double d[3], way[3], rate[3], rotation[4];
     for (int k = 0; k < 3; k++) {
         d[k] = arm[k] + q[k];
     }
-    spari_cross(t->place + 3, d, way);
+    spari_cross(t->position + 3, d, way);
     spari_cross(t->velocity + 3, d, rate);
     for (int k = 0; k < 3; k++) {
-        q[k] -= t->place[k] + way[k];
+        q[k] -= t->position[k] + way[k];
         v[k] -= t->velocity[k] + rate[k];
         v[3 + k] -= t->velocity[3 + k];
     }
-    spari_quat_exp(less, turn);
-    spari_quat_mul(turn, q + 3, q + 3);
+    spari_quat_exp(less, rotation);
+    spari_quat_mul(rotation, q + 3, q + 3);
 }
 
 static void check_lose(const spar_member *m, int n) {
@@ -473,9 +474,9 @@ static void check_lose(const spar_member *m, int n) {
     random_state(n, &own, before);
     t.own = &own;
     random_numbers(6, 1, t.velocity);
-    random_numbers(6, 0.1, t.place);
+    random_numbers(6, 0.1, t.position);
     for (int k = 0; k < 3; k++) {
-        less[k] = -t.place[3 + k];
+        less[k] = -t.position[3 + k];
     }
     spari_quat_exp(less, t.back);
     for (int k = 0; k < WIDTHS; k++) {
@@ -524,7 +525,7 @@ static void check_show(int n, int elements) {
     spari_matrix_times_back(R, root.a + 3, alpha);
     double nodes[3 * MOST];
     for (int i = 0; i < n; i++) {
-        memcpy(nodes + 3 * i, spari_member_place(&m, i), 3 * sizeof *nodes);
+        memcpy(nodes + 3 * i, spari_member_position(&m, i), 3 * sizeof *nodes);
     }
     for (int i = 0; i < n; i++) {
         plain_show(nodes, &root, &own, i, exact + 7 * i, exact + 7 * n + 6 * i, exact + 13 * n + 6 * i);

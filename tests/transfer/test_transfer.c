@@ -211,7 +211,7 @@ static void collect(const scene *s, int consistent, int upto, int row, double (*
 
 static void compare_motion(scene *s, int consistent) {
     enum { ROWS = 5 };
-    static const int row[ROWS] = {SPARI_R_PLACE, SPARI_R_RATE, SPARI_R_OMEGA, SPARI_R_ACCEL, SPARI_R_ALPHA};
+    static const int row[ROWS] = {SPARI_R_POSITION, SPARI_R_RATE, SPARI_R_OMEGA, SPARI_R_ACCEL, SPARI_R_ALPHA};
     double(*got)[3] = malloc(sizeof *got * (size_t)(s->n + 1));
     fill(s, consistent, SPARI_UPTO_ACCEL);
     for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
@@ -241,8 +241,8 @@ static void compare_straight(scene *s, int consistent, int single, int64_t first
     for (int64_t at = 0; at < s->n; at += SPARI_TILE) {
         spari_tile_motion(s->set, at, s->field, consistent, SPARI_UPTO_RATE, buf);
         for (int k = 0; k < 2; k++) {
-            spari_tile_store(s->set, at, buf + (k ? SPARI_R_RATE : SPARI_R_PLACE), tiles[k]);
-            spari_tile_store_f32(s->set, at, buf + (k ? SPARI_R_RATE : SPARI_R_PLACE), floats[k]);
+            spari_tile_store(s->set, at, buf + (k ? SPARI_R_RATE : SPARI_R_POSITION), tiles[k]);
+            spari_tile_store_f32(s->set, at, buf + (k ? SPARI_R_RATE : SPARI_R_POSITION), floats[k]);
         }
     }
     for (int begin = 0; begin < 64;
@@ -362,7 +362,7 @@ static void rigid_motion_is_exact(void **unused) {
             }
             for (int consistent = 0; consistent < 2; consistent++) {
                 fill(&s, consistent, SPARI_UPTO_RATE);
-                collect(&s, consistent, SPARI_UPTO_RATE, SPARI_R_PLACE, x);
+                collect(&s, consistent, SPARI_UPTO_RATE, SPARI_R_POSITION, x);
                 collect(&s, consistent, SPARI_UPTO_RATE, SPARI_R_RATE, v);
                 for (int j = 0; j < 40; j++) {
                     double phi[SPARI_MAX_NODES], X[3] = {0};
@@ -392,7 +392,7 @@ static void signs_do_not_matter(void **unused) {
     unsigned long long seed = 4;
     static scene s;
     static double x[2][3][50][3], load[2][MOST][6], work[WORK];
-    static const int row[] = {SPARI_R_PLACE, SPARI_R_RATE, SPARI_R_ACCEL};
+    static const int row[] = {SPARI_R_POSITION, SPARI_R_RATE, SPARI_R_ACCEL};
     for (int consistent = 0; consistent < 2; consistent++) {
         scene_start(&s, 2, 9, 50, &seed);
         for (int turn = 0; turn < 20; turn++) {
@@ -448,7 +448,7 @@ static void at_time(scene *s, double t, double bend, int consistent, double (*x)
         }
     }
     fill(s, consistent, SPARI_UPTO_ACCEL);
-    collect(s, consistent, SPARI_UPTO_ACCEL, SPARI_R_PLACE, x);
+    collect(s, consistent, SPARI_UPTO_ACCEL, SPARI_R_POSITION, x);
     collect(s, consistent, SPARI_UPTO_ACCEL, SPARI_R_RATE, v);
     collect(s, consistent, SPARI_UPTO_ACCEL, SPARI_R_ACCEL, a);
 }
@@ -543,7 +543,7 @@ static void loads_are_the_formula(void **unused) {
             scene_start(&s, elements, nodes, n, &seed);
             for (int kind = 0; kind < 4; kind++) {
                 int consistent = kind % 2, has_moment = kind / 2;
-                fill(&s, consistent, SPARI_UPTO_PLACE);
+                fill(&s, consistent, SPARI_UPTO_POSITION);
                 loads_by_formula(&s, consistent, has_moment, want);
                 for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
                     s.set->lanes = widths[w];
@@ -661,7 +661,7 @@ static void reproducible_loads(void **unused) {
                     assert_memory_equal(got, want, (size_t)size * sizeof got[0][0]);
                     reorder(&s, &seed);
                 }
-                fill(&s, consistent, SPARI_UPTO_PLACE);
+                fill(&s, consistent, SPARI_UPTO_POSITION);
                 spari_gather_loads(s.set, s.modal, s.field, consistent, s.q[0], (spari_source){.d = s.force[0]}, moment,
                                    work, plain[0], NULL);
                 double most = 1;
@@ -770,8 +770,8 @@ static void rotations_that_cancel_are_seen(void **unused) {
     memset(s.q, 0, sizeof s.q);
     s.q[0][3] = 1, s.q[1][4] = 1;
     s.set->xi[4] = 0;
-    fill(&s, 0, SPARI_UPTO_PLACE);
-    double least = spari_tile_motion(s.set, 0, s.field, 0, SPARI_UPTO_PLACE, buf);
+    fill(&s, 0, SPARI_UPTO_POSITION);
+    double least = spari_tile_motion(s.set, 0, s.field, 0, SPARI_UPTO_POSITION, buf);
     CLOSE(least, 0.5, 1e-15); /* |(1,1,0,0)/2|^2: a half turn apart is still defined */
     s.q[1][3] = -1, s.q[1][4] = 0;
     s.field[SPARI_F_QUAT] = 0,
@@ -779,7 +779,7 @@ static void rotations_that_cancel_are_seen(void **unused) {
     for (int i = 1; i < 4; i++) {
         s.field[SPARI_F_QUAT + i] = s.field[SPARI_FIELDS + SPARI_F_QUAT + i] = 0;
     }
-    least = spari_tile_motion(s.set, 0, s.field, 0, SPARI_UPTO_PLACE, buf);
+    least = spari_tile_motion(s.set, 0, s.field, 0, SPARI_UPTO_POSITION, buf);
     assert_true(least == 0);
     scene_end(&s);
 }

@@ -2,10 +2,10 @@
  */
 #include "scene.h"
 
-#include "member/body.h"
 #include "exchange/session_private.h"
-#include "tune/apply.h"
+#include "member/body.h"
 #include "trial/rebuild.h"
+#include "tune/apply.h"
 
 enum { MOST = 64 };
 
@@ -13,7 +13,7 @@ enum { MOST = 64 };
    along a part and a load at its tip. */
 static spar_member *describe(spar_session *s, int elements, int nodes) {
     enum { AXIS = 9 };
-    const double eta[3] = {0, 0.37, 1}, lump_eta = 0.55, bed_eta[2] = {0.2, 0.7}, bed[6] = {9, 9, 9, 4, 4, 4},
+    const double eta[3] = {0, 0.37, 1}, point_mass_eta = 0.55, bed_eta[2] = {0.2, 0.7}, bed[6] = {9, 9, 9, 4, 4, 4},
                  tip[6] = {0, 4, 7, 0.2, 0, 0};
     double axis[AXIS], xyz[3 * AXIS], twist[AXIS], K[3 * 36], M[3 * 36], lump[36], J[3] = {1e-3, 2e-3, 3e-3},
                                                                                    centre[3] = {0, 0.02, 0};
@@ -32,7 +32,7 @@ static spar_member *describe(spar_session *s, int elements, int nodes) {
     OK(s, spar_beam_create(s, "b", elements, nodes, &b));
     OK(s, spar_beam_set_axis(b, AXIS, axis, xyz, twist));
     OK(s, spar_beam_set_sections(b, 3, eta, K, M));
-    OK(s, spar_beam_set_masses(b, 1, &lump_eta, lump));
+    OK(s, spar_beam_set_masses(b, 1, &point_mass_eta, lump));
     OK(s, spar_beam_set_foundation(b, 2, bed_eta, bed));
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_load(b, (int64_t)elements * nodes - 1, SPAR_LOAD_DEAD, tip));
@@ -51,9 +51,9 @@ static void test_as_described_so(void **state) {
         spar_member *b = describe(s, 2, 6), *so = describe(other, elements, nodes), old;
         OK(s, spar_member_solve_static(b, 2));
         OK(other, spar_member_solve_static(so, 2));
-        spari_remake wish = spari_remake_of(b);
+        spari_rebuild wish = spari_rebuild_of(b);
         wish.elements = elements, wish.per_element = nodes;
-        OK(s, spari_member_remake(b, &wish, &old));
+        OK(s, spari_member_rebuild(b, &wish, &old));
         assert_int_equal(b->nodes, elements * nodes);
         assert_memory_equal(b->xr, so->xr, 3 * (size_t)b->nodes * sizeof(double));
         assert_memory_equal(b->qr, so->qr, 4 * (size_t)b->nodes * sizeof(double));
@@ -127,9 +127,9 @@ static void test_momentum(void **state) {
         OK(s, spar_member_set_load(b, 4, SPAR_LOAD_DEAD, push));
         scene_run(s, 0.01, 20);
         momentum(b, before);
-        spari_remake wish = spari_remake_of(b);
+        spari_rebuild wish = spari_rebuild_of(b);
         wish.elements = divided[k][0], wish.per_element = divided[k][1];
-        OK(s, spari_member_remake(b, &wish, &old));
+        OK(s, spari_member_rebuild(b, &wish, &old));
         momentum(b, after);
         for (int c = 0; c < 6; c++) {
             NEAR(after[c], before[c], within[k] * 10);
@@ -149,9 +149,9 @@ static void test_comes_back(void **state) {
     before = *b;
     const int fidelity[] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_MODAL, SPAR_FIDELITY_LINEAR};
     for (int k = 0; k < 3; k++) {
-        spari_remake wish = {
+        spari_rebuild wish = {
             .per_element = 4 + k, .elements = 1 + 2 * k, .fidelity = fidelity[k], .modes = 4 * (k == 1)};
-        OK(s, spari_member_remake(b, &wish, &old));
+        OK(s, spari_member_rebuild(b, &wish, &old));
         assert_int_equal(b->elements, 1 + 2 * k);
         spari_member_restore(b, &old);
         assert_memory_equal(b, &before, sizeof before);
@@ -170,9 +170,9 @@ static void test_comes_back(void **state) {
     OK(s, spar_beam_set_sections(given, 1, &eta, K, M));
     OK(s, spar_member_commit(given));
     before = *given;
-    spari_remake wish = spari_remake_of(given);
+    spari_rebuild wish = spari_rebuild_of(given);
     wish.elements = 3;
-    REFUSED(s, SPAR_ERR_STATE, "has the nodes that it was given", spari_member_remake(given, &wish, &old));
+    REFUSED(s, SPAR_ERR_STATE, "has the nodes that it was given", spari_member_rebuild(given, &wish, &old));
     spari_member_restore(given, &old);
     assert_memory_equal(given, &before, sizeof before);
     spar_session_destroy(&s);

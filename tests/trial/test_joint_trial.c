@@ -2,10 +2,10 @@
    members that are tied. */
 #include "scene.h"
 
-#include "member/joint.h"
 #include "exchange/session_private.h"
-#include "tune/apply.h"
+#include "member/joint.h"
 #include "trial/rebuild.h"
+#include "tune/apply.h"
 
 enum { MEMBERS = 3, JOINTS = 3, MOST = 40 };
 
@@ -226,7 +226,7 @@ static int give_elements(scene *c, int elements, int nodes) {
     (void)spari_settings_varied(s, advised->setting);
     advised->given = 1;
     advised->of = spari_advised_of(s);
-    *c->member[0]->advice = spari_remake_of(c->member[0]);
+    *c->member[0]->advice = spari_rebuild_of(c->member[0]);
     c->member[0]->advice->elements = elements, c->member[0]->advice->per_element = nodes;
     return spar_session_apply_advice(s, NULL);
 }

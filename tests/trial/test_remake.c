@@ -58,10 +58,10 @@ static void test_loads_keep_their_sums(void **state) {
         resultant(b, b->dead, before);
         OK(s, spar_member_get_loads(b, load));
         resultant(b, load, all[0]);
-        spari_remake wish = spari_remake_of(b);
+        spari_rebuild wish = spari_rebuild_of(b);
         wish.per_element = nodes[k];
         wish.elements = elements[k];
-        OK(s, spari_member_remake(b, &wish, &old));
+        OK(s, spari_member_rebuild(b, &wish, &old));
         resultant(b, b->dead, after);
         memcpy(b->after.q, b->now.q, (size_t)(7 * b->nodes) * sizeof(double));
         OK(s, spar_member_get_loads(b, load));
@@ -98,9 +98,9 @@ static void test_line_loads_as_set(void **state) {
                 OK(other, spar_session_load(other, file));
                 assert_int_equal(remove(file), 0);
             }
-            spari_remake wish = spari_remake_of(b);
+            spari_rebuild wish = spari_rebuild_of(b);
             wish.per_element = nodes[k], wish.elements = elements[k];
-            OK(b->session, spari_member_remake(b, &wish, &old));
+            OK(b->session, spari_member_rebuild(b, &wish, &old));
             memcpy(b->after.q, b->now.q, (size_t)(7 * b->nodes) * sizeof(double));
             OK(b->session, spar_member_get_loads(b, load[0]));
             const double eta_of_bent[2] = {0.1, 0.8}, line_of_bent[12] = {0, 0, 0.5, 0.1, 0, 0, 0, 0, 0.2, 0, 0.3, 0};
@@ -133,9 +133,9 @@ static void test_sections_under_a_line_load(void **state) {
         spar_member *b = scene_beam(s, "b", from[k][0], from[k][1], L, K, M), old;
         OK(s, spar_member_commit(b));
         OK(s, spar_beam_set_line_load(b, SPAR_LOAD_DEAD, 2, ends, line));
-        spari_remake wish = spari_remake_of(b);
+        spari_rebuild wish = spari_rebuild_of(b);
         wish.elements = to[k][0], wish.per_element = to[k][1];
-        OK(s, spari_member_remake(b, &wish, &old));
+        OK(s, spari_member_rebuild(b, &wish, &old));
         OK(s, spar_member_solve_static(b, 1));
         OK(s, spar_beam_get_section(b, PLACES, eta, NULL, force[0], NULL, NULL));
         for (int i = 0; i < PLACES; i++) {
@@ -156,9 +156,9 @@ static void test_state_goes_over(void **state) {
     spar_member *b = bent_beam(s), old;
     double x[NODES], phi[24];
     spari_gll(NODES, x, NULL, NULL);
-    spari_remake wish = spari_remake_of(b);
+    spari_rebuild wish = spari_rebuild_of(b);
     wish.per_element = 9;
-    OK(s, spari_member_remake(b, &wish, &old));
+    OK(s, spari_member_rebuild(b, &wish, &old));
     for (int e = 0; e < ELEMENTS; e++) {
         for (int l = 0; l < NODES; l++) {
             spari_resample_basis(9, x[l], phi);
@@ -184,7 +184,7 @@ static void test_comes_back(void **state) {
     (void)state;
     spar_session *s = scene_session();
     spar_member *b = bent_beam(s), old, before = *b;
-    const spari_remake wishes[] = {
+    const spari_rebuild wishes[] = {
         {.per_element = 9, .fidelity = SPAR_FIDELITY_EXACT},
         {.per_element = 4, .fidelity = SPAR_FIDELITY_MODAL, .modes = 5},
         {.per_element = NODES, .fidelity = SPAR_FIDELITY_RIGID},
@@ -194,7 +194,7 @@ static void test_comes_back(void **state) {
         {.per_element = NODES, .fidelity = SPAR_FIDELITY_EXACT, .points = 1},   /* refused: too coarse */
     };
     for (size_t k = 0; k < sizeof wishes / sizeof *wishes; k++) {
-        int status = spari_member_remake(b, &wishes[k], &old);
+        int status = spari_member_rebuild(b, &wishes[k], &old);
         assert_int_equal(status == SPAR_OK, k < 5);
         spari_member_restore(b, &old);
         assert_memory_equal(b, &before, sizeof before);

@@ -516,7 +516,7 @@ static void test_apply_refuses(void **state) {
     assert_true(nodes * c.b->advice->elements != 12); /* else nothing would be made anew */
     OK(c.s, spar_session_save(c.s, "trial_apply.spar"));
     char *before = contents("trial_apply.spar", &size);
-    spari_remake right = *c.body->advice;
+    spari_rebuild right = *c.body->advice;
     c.body->advice->fidelity = SPAR_FIDELITY_MODAL; /* there is no modal body */
     assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
     assert_non_null(strstr(spar_session_message(c.s), "spar_session_apply_advice"));

@@ -3,7 +3,7 @@
    (Mx, My) against ANSYS. Tolerances: rounding, and for the other mesh the spectral error. */
 #include "verification.h"
 
-static const double place_x[3] = {3, -7, 11}, place_turn[3] = {0.9, -2.1, 1.4};
+static const double placed_x[3] = {3, -7, 11}, place_turn[3] = {0.9, -2.1, 1.4};
 
 typedef struct bent {
     double q[7], reaction[6];
@@ -32,7 +32,7 @@ static bent bend(const double *p, int load_steps, int elements, int nodes) {
     OK(s, spar_beam_set_axis(b, N, eta, xyz, twist));
     OK(s, spar_beam_set_sections(b, 1, eta, K, M));
     if (p != none) {
-        OK(s, spar_member_set_placement(b, place_x, p));
+        OK(s, spar_member_set_placement(b, placed_x, p));
     }
     OK(s, spar_member_commit(b));
     spari_rotate(p, load, turned);

@@ -457,7 +457,7 @@ static int of_one(int bad, int own) {
 }
 
 /* All succeed or none. */
-static int alike(int status, const char *message) {
+static int must_agree(int status, const char *message) {
     int mine[2] = {status == SPAR_OK, status != SPAR_OK}, most[2];
     MPI_Allreduce(mine, most, 2, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
     if (most[0] && most[1]) {
@@ -871,7 +871,7 @@ static void set_and_back(int k, int bad, scene *hit, scene *calm) {
         apply(hit, k, 0);
     }
     int status = make_step(hit, &a);
-    if (alike(status, spar_session_message(hit->session))) {
+    if (must_agree(status, spar_session_message(hit->session))) {
         MUST(calm->session, make_step(calm, &a));
     } else {
         expect(hit, status, SPAR_ERR_COMM, "calls ");
@@ -994,7 +994,7 @@ static void inner_calls(void) {
                     start(INNER, "%s from a callback of %s on rank %d", calls[i].name, calls[outer].name, bad);
                     hit.inner = rank == bad ? where + i : 0;
                     int status = calls[outer].make(&hit, &a), own = where == 1 && BEGIN <= i && i <= BEGIN_START;
-                    (void)alike(status, spar_session_message(hit.session));
+                    (void)must_agree(status, spar_session_message(hit.session));
                     if (own && rank == bad && hit.answer != SPAR_ERR_STATE) {
                         fail_case("does to what is under way what is its lender's", hit.answer, "");
                     }
@@ -1031,7 +1031,7 @@ static void failing_callbacks(void) {
                     hit.calls = 0;
                     *(nan ? &hit.nan_at : &hit.user_at) = rank == bad ? at : 0;
                     int status = calls[i].make(&hit, &a);
-                    int all = alike(status, spar_session_message(hit.session));
+                    int all = must_agree(status, spar_session_message(hit.session));
                     hit.nan_at = hit.user_at = 0;
                     if (all && (i == STEP || i == STATIC)) {
                         MUST(calm.session, calls[i].make(&calm, &a));
@@ -1064,7 +1064,7 @@ static void failing_memory(const struct call *call, int bad, scene *hit, scene *
         int status = call->make(hit, &a), failed = rank == bad && allocations >= at;
         fails_at = 0;
         MPI_Bcast(&failed, 1, MPI_INT, bad, MPI_COMM_WORLD);
-        int all = alike(status, spar_session_message(hit->session));
+        int all = must_agree(status, spar_session_message(hit->session));
         (void)alarm(0);
         if (!all) {
             expect(hit, status, of_one(bad, SPAR_ERR_MEMORY), NULL);
