@@ -31,15 +31,14 @@ typedef struct spari_reuse {
 typedef struct spari_solver spari_solver;
 struct spari_solver {
     const spari_body *body;
-    spari_offset_loads
-        *offset_loads;    /* of a body that carries a rigid beam: its loads along the line come so too; or NULL */
-    int n;                /* unique nodes */
-    spari_state begin;    /* at t^n */
-    spari_state from, to; /* a substep's ends; after a solve `to` is t^{n+1} */
-    double *block[3];     /* the memory of the three */
-    spari_state own[2];   /* a substep's ends seen from a driven root or a rigid motion; NULL: none so far */
-    double *increment;    /* [n][6] u - u_n and the rotation vector of q q_n^-1 */
-    double *tinv;         /* [n][9] inverse tangent operator of the rotation vector */
+    spari_offset_loads *offset_loads; /* of a body that carries a rigid beam, with its loads along the line; or NULL */
+    int n;                            /* unique nodes */
+    spari_state begin;                /* at t^n */
+    spari_state from, to;             /* a substep's ends; after a solve `to` is t^{n+1} */
+    double *block[3];                 /* the memory of the three */
+    spari_state own[2]; /* ends of a substep relative to a driven root or a rigid motion; NULL: none so far */
+    double *increment;  /* [n][6] u - u_n and the rotation vector of q q_n^-1 */
+    double *tinv;       /* [n][9] inverse tangent operator of the rotation vector */
     spari_steps steps;
     double *r, *dx;
     double *stage_v;        /* [n][6] velocities at the end of a trapezoidal stage */
@@ -51,8 +50,8 @@ struct spari_solver {
     /* the factored tangent, kept while it contracts */
     int factored;
     double tangent_cm, tangent_cv; /* its coefficients */
-    double *tangent_q;             /* [n][4] how the nodes were turned when it was formed */
-    double *rotation;              /* [n][4] their turn since */
+    double *tangent_q;             /* [n][4] rotation of the nodes when it was formed */
+    double *rotation;              /* [n][4] their rotation since */
     int64_t served, spent;         /* solutions with it, and what they and the tangent itself took, in iterations */
     double power, power_begin;     /* that damping takes out, at the last forces computed and at t^n */
     spari_trace trace;             /* of Newton; strict it forgets the rate */
@@ -61,7 +60,7 @@ struct spari_solver {
     int64_t newton, factors;       /* totals: iterations, factorisations */
 };
 
-/* `arms`, which may be NULL, and `body` are kept. */
+/* The solver keeps references to `body` and `offset_loads` (NULL: none). */
 spari_solver *spari_solver_create(const spar_member *member, const spari_body *body, spari_offset_loads *offset_loads);
 void spari_solver_free(spari_solver *solver);
 /* A state in a block of 25 doubles for each of n nodes. */
@@ -73,9 +72,9 @@ void spari_solver_restart(spari_solver *solver);
 int spari_solver_advance(spari_solver *solver, spar_member *member, double dt);
 /* Accelerations at t^0 under steps.load0, for steps dt; `to` is the state there. */
 int spari_solver_balance(spari_solver *solver, spar_member *member, double dt);
-/* After that: what more load [n][6] on the nodes at the end adds to their motion [n][6], displacements and turns, to
-   first order and over the last substep; load is spent. One back-substitution; a tangent is formed only where none is
-   kept. 0, or 1: it is singular. */
+/* After that: the motion [n][6] that a small additional load [n][6] at the end causes, displacements and rotations,
+   to first order and over the last substep. load is overwritten. One back-substitution; a tangent is formed only if
+   there is none. Returns 0, or 1 (singular). */
 int spari_solver_response(spari_solver *solver, const spar_member *member, double *load, double *motion);
 /* A step begins. It is accepted: t^{n+1} becomes t^n. It is rejected: the tangent is again the one that it began with.
  */
@@ -125,7 +124,8 @@ static inline double spari_solver_most(const spari_solver *solver) {
 /* Forms and factors the tangent at state q, v, a. */
 int spari_solver_factor(spari_solver *solver, const spar_member *member, const double *q, const double *v,
                         const double *a, double factor, double cm, double cv, const double *tinv);
-/* The same of equilibrium in a frame that turns so, with the loads at that factor; `mass`: room for an element's. */
+/* The same for equilibrium in a rotating frame, with the loads at that factor. mass: workspace for an element's
+   matrix. */
 struct spari_steady_rotation;
 int spari_solver_factor_rotating(spari_solver *solver, const spar_member *member,
                                  const struct spari_steady_rotation *rotation, const double *q, const double *v,

@@ -1,6 +1,6 @@
-/* A member of an assembly as the assembly sees it: its ends, the nodes that joints hold, how they move and what forces
-   are left on them. A member alone has no ends (component.c). What lies behind them is solved by a table of operations,
-   one for the members whose unknowns are the motions of their nodes (component_body.c) and one for those that are
+/* A component: a member of an assembly as the assembly sees it. A component has ends, the nodes that joints hold,
+   with their motion and the residual forces on them. A table of operations solves the rest of the member. One table
+   serves members whose unknowns are the motions of their nodes (component_body.c), another one members that are
    linear in the frame of their root (component_floating.c). */
 #ifndef SPARI_COMPONENT_H
 #define SPARI_COMPONENT_H
@@ -13,67 +13,71 @@ struct spari_component;
 
 /* Operations on a component. */
 typedef struct spari_component_row {
-    /* Room for its ends; the component's member and what solves it are there. 0, or SPAR_ERR_MEMORY. */
+    /* Allocates the ends. The member and its solver exist already. Returns 0 or SPAR_ERR_MEMORY. */
     int (*make)(struct spari_component *p);
 
-    /* Loads and coefficients of a step in substeps h; whether accelerations at t^0 are known. */
+    /* Takes the loads and coefficients of a step with substeps h. Returns whether the accelerations at t^0 are
+       known. */
     int (*take)(struct spari_component *p, double h);
-    /* It begins at t^n. A substep begins where the last one has ended; a stage of it, p->scheme, 0
-       or a status and a message; it ends. */
+    /* begin: the step begins at t^n. enter: a substep begins at the end of the last one. stage: one stage of the
+       substep, with p->scheme; returns 0, or a status and a message. end: the substep ends. */
     void (*begin)(struct spari_component *p);
     void (*enter)(struct spari_component *p);
     int (*stage)(struct spari_component *p, const spari_part *part);
-    /* A step begins with the velocities that have been published. */
+    /* The step begins with the published velocities. */
     void (*take_velocities)(struct spari_component *p);
     void (*end)(struct spari_component *p);
-    /* Its rates at the end are kept, or what was kept comes back. */
+    /* Saves the rates at the end, or restores them (back). */
     void (*keep_rates)(struct spari_component *p, int back);
 
-    /* Starting values; 0: there are none of that kind. */
+    /* Computes starting values. Returns 0 if this kind does not exist here. */
     int (*predict)(struct spari_component *p, spari_guess stays);
-    /* Forces less loads of the latest iterate: those on the ends go to p->force, which constraints add to; what
-       rounding in them is relative to. */
+    /* Computes the residual (forces less loads) of the latest iterate. The residual at the ends goes to p->force, to
+       which constraints add. Returns the size that rounding errors are relative to. */
     double (*balance)(struct spari_component *p);
-    /* The largest of what is left of the forces; NaN where one is none. */
+    /* The largest residual force; NaN if one of them is not finite. */
     double (*noise)(const struct spari_component *p);
-    /* Forms and factors the tangent there, and what remains of it at the ends. 0 or 1. */
+    /* Forms and factors the tangent at that iterate and condenses it to the ends. Returns 0 or 1 (singular). */
     int (*tangent)(struct spari_component *p);
-    /* Whether the tangent kept can serve this step. */
+    /* Whether the reused tangent can serve this step. */
     int (*serves)(const struct spari_component *p);
     /* Whether one correction with that tangent solves the equations: they are linear, and it is their own. NULL: no. */
     int (*solved)(const struct spari_component *p);
     /* What is left of the forces at the ends, x [6 ends], global axes. 0 or 1. */
     int (*reduce)(struct spari_component *p, double *x);
-    /* The corrections of all, with those of the ends. */
+    /* Computes the corrections of all unknowns from those of the ends. */
     void (*expand)(struct spari_component *p, double *x);
-    /* The size of the corrections; takes them off, `cut` of them. */
+    /* correction_size: the size of the corrections. correct: subtracts the part `cut` of them. */
     double (*correction_size)(const struct spari_component *p);
     void (*correct)(struct spari_component *p, double cut);
-    /* The size of what the step has moved it by. */
+    /* The size of the motion in the step. */
     double (*way)(const struct spari_component *p);
-    /* What reduce leaves where there are no forces at all: none at the ends. */
+    /* Sets the result of reduce for zero residual forces: none at the ends. */
     void (*clear)(struct spari_component *p);
-    /* The corrections, times v, a and b, come off the velocities and accelerations at the end. */
+    /* Subtracts the corrections, times v, a and b, from the velocities, accelerations and algorithmic accelerations
+       at the end. */
     void (*shift_rates)(struct spari_component *p, double v, double a, double b);
 
-    /* After the step: its forces become a little more load [nodes][6] of its nodes; and the motion [nodes][6] of these
-       that the corrections are, displacements and small turns, global axes. */
+    /* After the step. take_more: the residual becomes a small additional load [nodes][6] on the nodes. show_more:
+       the corrections as a motion [nodes][6] of the nodes, displacements and small rotations, global axes. */
     void (*take_more)(struct spari_component *p, const double *load);
     void (*show_more)(struct spari_component *p, double *motion);
-    /* A step that was read from a file: it stands at its end. */
+    /* Restores the end of a step that was read from a file. */
     void (*look_back)(struct spari_component *p);
 
-    /* At t^0: the mass it starts with, factored (0 or 1); forces less loads of the accelerations there; those less the
-       corrections; they are found. */
+    /* At t^0. start: factors the mass; returns 0 or 1 (singular). unbalance: the residual of the accelerations.
+       correct_start: subtracts the corrections from the accelerations. end_start: the accelerations are found. */
     int (*start)(struct spari_component *p);
     void (*unbalance)(struct spari_component *p);
     void (*correct_start)(struct spari_component *p);
     void (*end_start)(struct spari_component *p);
-    /* Its velocities have been shifted after that; NULL: nothing is to be done. */
+    /* Velocities have been shifted afterwards. NULL: nothing is to be done. */
     void (*shift_start)(struct spari_component *p);
 
-    /* At rest under dead and `fluid` loads [nodes][6]: from the last shape onward, else from t^n. Forces and tangent at
-       the factor f of the loads; the corrections come off; places kept or put back; given up; found. */
+    /* Equilibrium under dead and `fluid` loads [nodes][6]. rest: begins from the last shape (onward), else from t^n.
+       balance_rest, tangent_rest: residual and tangent at the load factor f. shift: subtracts the part `cut` of the
+       corrections. keep_positions: saves the positions, or restores them (back). discard_rest: gives the equilibrium
+       up. end_rest: accepts it. */
     void (*rest)(struct spari_component *p, const double *fluid, int onward);
     double (*balance_rest)(struct spari_component *p, double f);
     int (*tangent_rest)(struct spari_component *p, double f);
@@ -82,29 +86,30 @@ typedef struct spari_component_row {
     void (*discard_rest)(struct spari_component *p);
     void (*end_rest)(struct spari_component *p);
 
-    /* How an end has turned since its tangent was formed; NULL: its axes stand. */
+    /* The rotation of an end since its tangent was formed. NULL: none. */
     const double *(*rotation)(const struct spari_component *p, int node);
 } spari_component_row;
 
 extern const spari_component_row spari_component_body, spari_component_floating;
 
-/* A member of an assembly that is solved for, and its substep. */
+/* A component and its substep. */
 typedef struct spari_component {
     spar_member *member;
     const spari_component_row *row;
     spari_solver *solver; /* of its body, or of the root of its frame; NULL: another rank solves it */
     struct spari_frame *frame;
-    spari_condensed *condensed; /* what remains of it at its ends */
-    double *K;                  /* the same [6 ends][6 ends], in global axes, as the system was formed */
-    const int *end;             /* which of the nodes that constraints know its ends are */
-    double *force;              /* [those nodes][6]: what is left on them, global axes */
-    int at;                     /* where the unknowns of its ends begin in the system */
-    const spari_state *state;   /* the motion that the constraints see, of those nodes */
+    spari_condensed *condensed; /* condensed to its ends */
+    double *K;                  /* the condensed tangent [6 ends][6 ends], global axes, as the system was formed */
+    const int *end;             /* indices of its ends among the nodes that constraints use */
+    double *force;              /* [those nodes][6] residual forces, global axes */
+    int at;                     /* index of its first unknown in the system */
+    const spari_state *state;   /* motion of those nodes */
     spari_scheme alpha, scheme; /* of a substep, and of the stage under way */
     spari_stage stage;
     const spari_rotating_frame *rotating; /* equilibrium in a frame that turns; NULL: at rest */
-    double correction_size, allowed;      /* of the correction under way: its size, and what may be left of it */
-    int moved, owner_before;              /* while it is made: the rank that had it, and what that kept of it */
+    double correction_size,
+        allowed;             /* of the latest correction: its size, and the remaining correction that is allowed */
+    int moved, owner_before; /* during creation: the rank that had the member before, and the solution of this rank */
     void *solution_before;
 } spari_component;
 

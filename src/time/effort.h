@@ -4,14 +4,14 @@
 
 #include <stdint.h>
 
-/* Static solutions: load steps that may be asked for, and those that they may take besides where steps are halved. */
+/* Limits of static solutions: load steps of a call, and additional ones by halving. */
 enum { SPARI_STATIC_MOST = 100000, SPARI_STATIC_MORE = 5000 };
 
 typedef struct spari_effort {
     int64_t iterations, tangents;     /* since the member was made: of Newton, and formed and factored */
     int nodes, elements, per_element; /* what each of them was of */
     int points;                       /* quadrature points that an iteration goes through; 0: it takes matrices */
-    double left;                      /* of the motion by Newton, in the last solution */
+    double left;                      /* remaining correction of the last solution */
     int unknowns, band;               /* of the linear system, and how many of them a row couples at most */
 } spari_effort;
 

@@ -1,6 +1,6 @@
-/* Newton's iteration of a substep, of one member (body_newton.c) or of members that joints tie (assembly.c): attempts
-   that get more careful, each from starting values of its own, and when one has converged. The loops stand here, to be
-   compiled with what they call. */
+/* Newton's method for a substep of one member (body_newton.c) or of an assembly (assembly.c). An attempt that fails
+   is followed by a more careful one from other starting values. The loops stand in a header so that the compiler
+   inlines the operations. */
 #ifndef SPARI_NEWTON_H
 #define SPARI_NEWTON_H
 
@@ -9,48 +9,48 @@
 #include <math.h>
 #include <stddef.h>
 
-/* What an iteration has done. */
+/* Result of one iteration. */
 typedef struct spari_iterate {
-    double correction, tolerance; /* its size, and what may be left */
-    int rounded;                  /* the forces left are rounding */
-    int small;                    /* as small as rounding makes it, if it does not contract any more */
+    double correction, tolerance; /* its size, and the remaining correction that is allowed */
+    int rounded;                  /* the residual consists of rounding errors */
+    int small;                    /* as small as rounding allows, once it contracts no more */
 } spari_iterate;
 
 typedef struct spari_newton {
-    double farthest; /* a larger correction leads elsewhere */
-    double least;    /* a contraction that is kept for the next solution counts as no less */
-    /* Starting values; 0: there are none of that kind. */
+    double farthest; /* a larger correction counts as divergence */
+    double least;    /* lower limit of a contraction rate that the next solution uses */
+    /* Computes starting values. Returns 0 if this kind does not exist here. */
     int (*predict)(void *self, spari_guess stays);
-    /* An attempt begins, with the tangent kept if it may; whether there is one. */
+    /* Begins an attempt, with the reused tangent if `kept` and if it may serve. Returns whether there is a tangent. */
     int (*begin)(void *self, int kept);
-    /* Corrects once, by `longest` at most; NULL, or what went wrong. */
+    /* Corrects once, by `longest` at most. Returns NULL, or the reason of a failure. */
     const char *(*iterate)(void *self, double longest, spari_iterate *it);
     /* The next iteration forms a tangent. */
     void (*renew)(void *self);
-    /* It has converged, after so many; fresh: a tangent was formed in this attempt. */
+    /* Newton has converged after so many iterations. fresh: a tangent was formed in this attempt. */
     void (*end)(void *self, int iterations, int fresh);
 } spari_newton;
 
-/* How hard it tries: with the tangent it has, with a new one, with a new one in every iteration and short corrections.
- */
+/* An attempt: with the reused tangent; with a new one; with a new one in every iteration and short corrections. */
 typedef struct spari_attempt {
     int kept, full;
     spari_guess stays;
 } spari_attempt;
 
-/* A tangent that contracts slower is formed anew; corrections with a new one each time are no longer than so much. */
+/* SPARI_SLOW: with a larger contraction rate, the tangent is formed again. SPARI_LONGEST: the longest correction of
+   an attempt with a new tangent in every iteration. */
 #define SPARI_SLOW 0.5
 #define SPARI_LONGEST 0.5
 
-/* Where a solution ends before it shows a contraction, the one kept from those before is trusted less. */
+/* If a solution ends before it shows a contraction rate, the earlier rate is multiplied by this factor. */
 #define SPARI_AGEING 1.5
 
 static inline double spari_newton_kept(const spari_newton *how, double rate) {
     return rate <= 0 ? 0 : rate < how->least ? how->least : rate < SPARI_SLOW ? rate : SPARI_SLOW;
 }
 
-/* theta is the observed contraction, theta / (1 - theta) times the last correction what is left (Hairer & Wanner,
-   Solving ODEs II, IV.8). NULL, or what went wrong. */
+/* theta is the observed contraction rate, and theta / (1 - theta) times the last correction estimates the remaining
+   correction (Hairer & Wanner, Solving ODEs II, IV.8). Returns NULL, or the reason of a failure. */
 static inline const char *spari_newton_attempt(const spari_newton *how, void *self, spari_attempt try, int most,
                                                spari_trace *trace, int *iterations) {
     double last = 0, longest = try.full ? SPARI_LONGEST : INFINITY, known = try.full ? 0 : trace->rate, worst = 0;
@@ -84,8 +84,8 @@ static inline const char *spari_newton_attempt(const spari_newton *how, void *se
     return "does not converge";
 }
 
-/* kept: there is a tangent that may serve. trace: of the last solution; the first iteration goes by its rate. NULL, or
- * what went wrong in the last attempt. */
+/* kept: there is a tangent that may serve. trace: of the last solution; its rate serves the first iteration. Returns
+   NULL, or the reason why the last attempt failed. */
 static inline const char *spari_newton_solve(const spari_newton *how, void *self, int kept, int most,
                                              spari_trace *trace, int *iterations) {
     static const spari_attempt attempts[] = {{1, 0, SPARI_KEEP_ACCELERATION},

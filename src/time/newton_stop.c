@@ -1,4 +1,4 @@
-/* What Newton may leave in a step: see newton_stop.h. */
+/* Newton's stopping rule: see newton_stop.h. */
 #include "newton_stop.h"
 
 #include "../base/session.h"
@@ -7,10 +7,11 @@
 
 #include <math.h>
 
-/* Of the error of the scheme, and of roots that turn freely, whose energy and momentum nothing brings back to what they
-   are: a body that tumbles for 10^5 steps (tests/time/test_newton.c) loses 4e-4 of its energy by a thousandth, of which
-   the scheme itself has 1e-4. Of the way of a step. What estimates keep from step to step, as an acceleration that
-   turns round stands still. */
+/* part: the allowed Newton error relative to the error of the scheme. part_if_free: the same for free roots, whose
+   energy and momentum drift without a restoring force; a body that tumbles for 10^5 steps (tests/test_newton.c)
+   loses 4e-4 of its energy with a part of 1e-3, of which 1e-4 comes from the scheme. most: the allowed error
+   relative to the motion in the step. keeps: decay of the estimates per step, because an acceleration passes through
+   0 when it reverses. */
 static const double part = 1e-3, part_if_free = 1e-4, most = 1e-7, keeps = 0.85;
 
 /* Members whose equations are solved by iteration. */
@@ -31,9 +32,9 @@ void spari_newton_stop_accept(spar_member *m) {
     m->acceleration_scale = fmax(acceleration_scale, keeps * m->acceleration_scale);
 }
 
-/* What is left is a force, and what forces change is velocities, which last: of a motion at omega the error (E1) of a
-   place is to be compared with that of a velocity over omega, and omega h is the change of the acceleration over the
-   step by the acceleration. */
+/* The Newton error acts as a force, and forces change velocities lastingly. For a motion at omega, the position
+   error (E1) has to be compared with the velocity error over omega. omega h is the ratio of the change of the
+   acceleration over the step to the acceleration. */
 double spari_newton_tolerance(const spar_member *m, const spari_scheme *c, double way) {
     const spar_session *s = m->session;
     double strict = s->newton_atol + s->newton_rtol * way, change = c->h * m->jerk;

@@ -1,4 +1,4 @@
-/* Loads on the arms of a rigid body. */
+/* Loads that act at an offset from the node of a rigid body. Their moment follows the rotation of the body. */
 #include "offset_loads.h"
 
 #include "../math/rotation.h"

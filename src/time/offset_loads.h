@@ -1,9 +1,9 @@
-/* Loads on the arms of a rigid body. */
+/* Loads that act at an offset from the node of a rigid body. Their moment follows the rotation of the body. */
 #ifndef SPARI_OFFSET_LOADS_H
 #define SPARI_OFFSET_LOADS_H
 
-/* First moments sum (rho f^T) of the nodal forces over the arms of the reference, and those of t^n and t^{n+1}: a rigid
-   body turned by R takes the moment of R Z. gravity: of the body, which goes with that of the member that has it. */
+/* First moments sum (rho f^T) of the nodal forces f at the reference offsets rho: now, at t^n and at t^{n+1}. A
+   rigid body with rotation R gets the moment of R Z. gravity: that of the body, set to the member's. */
 typedef struct spari_offset_loads {
     double Z[9], begin[9], end[9];
     double *gravity;

@@ -1,4 +1,4 @@
-/* Stages of a substep, and what is seen from a driven root. */
+/* Stages of a substep, and the motion relative to a driven root. */
 #include "root.h"
 
 #include "../base/session.h"

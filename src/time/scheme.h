@@ -1,6 +1,6 @@
-/* Generalised-alpha: its coefficients, and all that every member integrated with it does in the same way, however its
-   state looks: the substeps of a step, starting values, corrections, accelerations at t^0, steps much longer than the
-   last. The members of a session are integrated alike. */
+/* Time integration by generalised-alpha and TR-BDF2: coefficients, substeps, starting values, corrections,
+   accelerations at t^0, and changes of dt. All members of a session use the same integration, whatever their
+   unknowns are. */
 #ifndef SPARI_SCHEME_H
 #define SPARI_SCHEME_H
 
@@ -22,8 +22,8 @@ typedef struct spari_scheme {
     int still;   /* no inertia: equilibrium at each time, rates from the increments */
 } spari_scheme;
 
-/* What Newton's iteration has shown in the last solution: its contraction (0: not known), and by it what is left of the
-   motion: of the member's length, rad. */
+/* Result of the last Newton solution: its contraction rate (0: not known), and the estimated remaining correction
+   relative to the member's length, rad. */
 typedef struct spari_trace {
     double rate, left;
 } spari_trace;
@@ -32,9 +32,9 @@ static inline int spari_trace_is(const double *x) {
     return x[0] >= 0 && x[0] < 1 && x[1] >= 0 && x[1] <= DBL_MAX;
 }
 
-/* The lengths of the last (sub)steps: of the last one, 0: none yet; and how many before it had the same length, at most
-   SPARI_EVEN. With that many generalised-alpha goes on. It begins a run too: the stages of TR-BDF2 take loads as linear
-   in the step, and those at t = 0 are often not known. */
+/* The history of the substeps: the length of the last one (0: none yet), and how many before it had the same length,
+   at most SPARI_EVEN. With SPARI_EVEN of them generalised-alpha continues. A run also begins with generalised-alpha:
+   the stages of TR-BDF2 interpolate loads linearly in the step, and the loads at t = 0 are often not known. */
 typedef struct spari_pattern {
     double h;
     int even;
@@ -57,26 +57,26 @@ typedef struct spari_part {
     double dt;
     double from, to; /* where it begins and ends, */
     double end;      /* and where the stage under way ends */
-    double ratio;    /* of the algorithmic accelerations it begins with: spari_scheme_stretch */
+    double ratio;    /* factor for the algorithmic accelerations at its beginning: spari_scheme_stretch */
     int last;        /* generalised-alpha goes on after it, if dt stays */
     double alpha;    /* length of the last substep, if that was generalised-alpha's; else 0 */
-    int again;       /* a longer one from here was tried by TR-BDF2, and given up */
+    int again;       /* a longer substep from here failed with TR-BDF2 */
 } spari_part;
 
-/* How a member, or an assembly, goes through a substep. `self`: what is kept of it. */
+/* The operations of a member, or of an assembly, in a substep. self: its data. */
 typedef struct spari_stepper {
-    /* The state that was found becomes the one that the substep begins at. */
+    /* The end of the last substep becomes the beginning of the next one. */
     void (*enter)(void *self, const spari_part *part);
     /* The largest mean angular velocity of stiff members that turn freely; NULL: there are none. */
     double (*rotation_rate)(const void *self);
-    /* To the end of a stage. A status and a message. */
+    /* Solves a stage. Returns a status, with a message. */
     int (*solve)(void *self, const spari_scheme *c, const spari_part *part);
-    /* The substep has ended. A status and a message. */
+    /* Ends the substep. Returns a status, with a message. */
     int (*finish)(void *self, const spari_scheme *c, const spari_part *part);
-    /* Whether the solution found has more energy than the state it came from and the work of the loads account for;
-       NULL: substeps are not cut. */
+    /* Whether the solution has more energy than the state before it and the work of the loads account for. NULL:
+       substeps are not halved. */
     int (*gains)(void *self, const spari_part *part);
-    /* What it is, for messages. */
+    /* Its name, for messages. */
     void (*name)(const void *self, char *text, int size);
 } spari_stepper;
 
@@ -90,7 +90,7 @@ void spari_scheme_loads(const spar_member *member, spari_steps *steps);
 /* The loads at the part s of a step, those corrected by a guess of the fluid's added mass included. */
 void spari_scheme_mix_loads(const spar_member *member, const spari_steps *steps, int loads, double s);
 
-/* C of (E1): what a step of generalised-alpha leaves of a place, by h^2 and the change of the acceleration. */
+/* C of (E1): the position error of a generalised-alpha step, per h^2 and change of the acceleration. */
 static inline double spari_scheme_error(const spari_scheme *c) {
     return c->beta + 0.5 * (c->alpha_m - c->alpha_f) - 1.0 / 6;
 }
@@ -100,29 +100,32 @@ spari_scheme spari_scheme_stage(const spari_scheme *alpha, spari_rule rule);
 spari_scheme spari_scheme_last(const spar_member *member, int damped, const spari_pattern *pattern);
 /* The same coefficients for another length. */
 spari_scheme spari_scheme_resize(const spari_scheme *alpha, double h);
-/* From t^n to t^n + dt in the session's substeps, by the stepper. A substep without a solution, or whose solution gains
-   energy from nothing (Newton has found another equilibrium), is halved and tried again, down to 1/1024, and halved
-   from the start by the next calls of the step: *cuts. alpha: the coefficients of a substep. *pattern: of the steps
-   that led to t^n, becomes that of those to t^{n+1}. A status and a message of the stepper. */
+/* Advances from t^n to t^n + dt in the session's substeps. A substep is halved, down to 1/1024, if it has no
+   solution or if its solution gains energy (Newton has found another equilibrium). *cuts keeps the halvings for the
+   next calls of the step. alpha: the coefficients of a substep. *pattern: of the steps that led to t^n; becomes that
+   of the steps to t^{n+1}. Returns a status of the stepper, with a message. */
 int spari_scheme_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_cuts *cuts,
                      spari_pattern *pattern, const spar_session *session, double dt);
-/* Within 0.1 % of the last step generalised-alpha goes on, and its algorithmic acceleration b^n, which stands for the
-   acceleration at t^n + (alpha_m - alpha_f) h, follows: b := a + ratio (b - a). */
+/* If dt is within 0.1 % of the last step, generalised-alpha continues. Its algorithmic acceleration b^n, which
+   stands for the acceleration at t^n + (alpha_m - alpha_f) h, follows: b := a + ratio (b - a). */
 void spari_scheme_stretch(double ratio, int n, const double *a, double *b);
-/* Whether it has stiff parts that turn freely. Their velocities are found from positions: in a stage they are off by a
-   part of h^2 times the third derivative of the position, which of what turns at W is W^3 times the radius. Where dt
-   changes, that rings. Seen from the rigid motion with the mean velocities of the member the rotation is rest. */
+/* Whether the member has stiff parts that rotate freely. TR-BDF2 finds their velocities from positions. In a stage
+   the velocities are off by a multiple of h^2 times the third derivative of the position, which is W^3 times the
+   radius for a rotation at W. If dt changes, this error excites oscillations. Relative to the mean rigid motion of
+   the member, the rotation is rest. */
 int spari_member_rotates_stiffly(const spar_member *member);
 /* w: the mean angular velocity of n nodes with velocities v [n][6]. */
 void spari_mean_rotation(int64_t n, const double *v, double w[3]);
-/* Whether in steps dt a member turns so fast that it is integrated by TR-BDF2, or nearly: the same on all ranks. */
+/* Whether a member rotates so fast in steps dt that TR-BDF2, or nearly so, integrates it. The same on all ranks. */
 int spari_scheme_rotates(const spar_session *session, double dt);
 /* After a substep of TR-BDF2 from accelerations a0 to a: the b that generalised-alpha would go on with. */
 void spari_scheme_restart(const spari_scheme *c, int n, const double *a0, const double *a, double *b);
 
-/* What stays over the step in the starting values of Newton. Smooth motion: the acceleration. Where stiff parts ring,
-   their acceleration says nothing of the next: the velocity. Where the step is longer than the motion lasts: the place.
-   Where a driven root jumps: the shape, the place as seen from there. */
+/* The quantity that starting values keep constant over the step:
+   - acceleration: smooth motion;
+   - velocity: stiff parts oscillate, and their acceleration does not predict the next one;
+   - position: the step is longer than the motion lasts;
+   - shape, relative to the root: a driven root jumps. */
 typedef enum spari_guess {
     SPARI_KEEP_ACCELERATION,
     SPARI_KEEP_SHAPE,

@@ -1,4 +1,4 @@
-/* Equilibrium seen from a root that turns steadily: rates, forces, tangent. */
+/* Equilibrium in a frame that rotates steadily with the root: rates, forces, tangent. */
 #include "steady_rotation.h"
 
 #include "../math/rotation.h"

@@ -1,4 +1,4 @@
-/* How a step changes a member's acceleration: see step_error.h. */
+/* The local error of a time step: see step_error.h. */
 #include "step_error.h"
 
 #include "../base/session.h"

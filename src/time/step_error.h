@@ -1,24 +1,24 @@
-/* How a step changes a member's acceleration, which the error of the step in time goes by (E1). */
+/* The local error of a time step, estimated from the change of acceleration over the step: (E1) of docs/theory.md. */
 #ifndef SPARI_STEP_ERROR_H
 #define SPARI_STEP_ERROR_H
 
 #include "../member/structure.h"
 #include "scheme.h"
 
-/* Roots of mean squares over nodes, of one node its turns count as well, on arms of the member's length; of a driven
-   root's member as seen from there: of the change of the acceleration over the step, of the acceleration and the
-   velocity at its end. */
+/* Root mean squares over the nodes: of the change of the acceleration over the step, and of the acceleration and the
+   velocity at its end. For a member of one node, rotations count too, times the length of the member. For a member
+   with a driven root the motion is relative to the root. */
 typedef struct spari_step_change {
     double change, acceleration, speed;
 } spari_step_change;
 
-/* Whether the member's motion comes out of the scheme. */
+/* Whether the scheme computes the member's motion. */
 int spari_step_error_applies(const spar_member *member);
-/* Of the step that has just been solved, over every `stride`-th node. */
+/* The values of the step that has just been solved, from every `stride`-th node. */
 spari_step_change spari_step_change_of(const spar_member *member, int64_t stride);
-/* Accelerations at t = 0 are known only where a start has been balanced. */
+/* Whether the error is known. In the first step this needs consistent initial accelerations. */
 int spari_step_error_is_known(const spar_session *session);
-/* What a substep errs by, of the change of the acceleration over it. */
+/* The error of a substep with this change of the acceleration. */
 double spari_step_error(const spari_scheme *c, double change);
 
 #endif

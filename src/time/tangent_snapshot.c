@@ -1,4 +1,4 @@
-/* What a rejected step goes back to: see tangent_snapshot.h. */
+/* The snapshot that a rejected step restores: see tangent_snapshot.h. */
 #include "tangent_snapshot.h"
 
 #include "../base/status.h"

@@ -1,5 +1,5 @@
-/* A reused tangent as it was when the step began. A step may form another one, and a rejected step is to leave no
-   trace. The numbers are copied only before a step overwrites them. */
+/* A snapshot of the reused tangent at the beginning of a step. A rejected step restores it. The numbers are copied
+   only before the step overwrites them. */
 #ifndef SPARI_TANGENT_SNAPSHOT_H
 #define SPARI_TANGENT_SNAPSHOT_H
 
