@@ -1,4 +1,4 @@
-/* Members that joints tie together, in time: see assembly.h. */
+/* Time integration of an assembly: see assembly.h. */
 #include "assembly.h"
 
 #include "../base/environment.h"
@@ -17,7 +17,7 @@
 
 /* ---- one substep ---- */
 
-/* Whether any part has starting values of that kind; the others keep their velocities then. */
+/* Whether any component has starting values of this kind; the others keep their velocities then. */
 static int predict(spari_assembly *a, spari_guess stays) {
     int any = 0;
     for (int i = 0; i < a->components; i++) {
@@ -34,8 +34,8 @@ static int predict(spari_assembly *a, spari_guess stays) {
     return any;
 }
 
-/* Residuals of all parts and gaps of all constraints at the latest iterate; what rounding in the former is relative to,
-   or NaN. */
+/* Residuals of all components and gaps of all constraints at the latest iterate. Returns the size that rounding
+   errors are relative to, or NaN. */
 static double balance(spari_assembly *a, double s, double dt, double *noise) {
     double scale = 0;
     for (int i = 0; i < a->components; i++) {
@@ -64,7 +64,7 @@ static int form(spari_assembly *a) {
     return 0;
 }
 
-/* Takes as much of the constraints' corrections off their loads. */
+/* Subtracts the part `cut` of the multipliers' corrections. */
 static void correct_loads(spari_assembly *a, double cut) {
     for (int i = 0; i < a->constraints; i++) {
         for (int k = 0; k < 6; k++) {
@@ -73,7 +73,7 @@ static void correct_loads(spari_assembly *a, double cut) {
     }
 }
 
-/* Takes the corrections off, all shortened alike; their size before. */
+/* Subtracts the corrections, all shortened by the same factor. Returns their size before. */
 static double correct(spari_assembly *a, double longest) {
     double largest = 0;
     for (int i = 0; i < a->components; i++) {
@@ -88,8 +88,8 @@ static double correct(spari_assembly *a, double longest) {
     return largest;
 }
 
-/* Brings the rates onto the constraints' while the places stay: what the correction before it, for the places' sake,
-   leaves of the rates' gaps as they were then. *size: at least that of what it takes off. */
+/* Projects the rates onto the constraints; positions stay. It corrects the part of the rates' gaps that the last
+   position correction leaves. *size: at least the size of this correction. */
 static int correct_rates(spari_assembly *a, double cut, double *size) {
     double most = 0;
     for (int i = 0; i < a->constraints; i++) {
@@ -116,8 +116,9 @@ static int correct_rates(spari_assembly *a, double cut, double *size) {
     return 0;
 }
 
-/* What of a correction as large as `largest` may be left: strict by the largest way of all parts. A part is asked for
-   no more than a tenth of what the one that errs most is, to whose motion it is tied. */
+/* The remaining correction that is allowed after a correction as large as `largest`. Strict: relative to the largest
+   motion of all components. No component needs to be more accurate than a tenth of the least accurate one, because
+   their motions are coupled. */
 static double tolerance(const spari_assembly *a, double largest) {
     const spar_session *s = a->session;
     double size = 0, most = 0, worst = 0;
@@ -145,8 +146,8 @@ static int tangent_serves(const spari_assembly *a) {
     return kept;
 }
 
-/* Where the parts have moved by less than near_factored (rad; lengths by the members') the factored system still
-   serves: it contracts by about as much. */
+/* If all components have moved by less than near_factored (rad; lengths relative to the member), the factored system
+   is used again. Its contraction rate is about this number. */
 static const double near_factored = 0.01;
 enum { LEAST_PATIENCE = 3, MOST_PATIENCE = 8 };
 
@@ -161,7 +162,7 @@ static int tangents_after(int iterations, int took) {
     return iterations <= patience ? took : 0;
 }
 
-/* A substep of all, as newton.h has it. */
+/* Newton's method (newton.h) for a substep of all components. */
 typedef struct together_step {
     spari_assembly *a;
     double s, dt;
@@ -238,7 +239,7 @@ static void end_together(void *self, int iterations, int fresh) {
     t->a->factored = tangents_after(iterations, fresh ? 0 : t->took);
 }
 
-/* Velocities onto the constraints, as near as the tangent tells distances. */
+/* Projects velocities onto the constraints, in the metric of the tangent. */
 static int project(spari_assembly *a, double s, double dt) {
     for (int pass = 0; pass < 8; pass++) {
         double worst = 0, size = 0;
@@ -266,10 +267,12 @@ static int project(spari_assembly *a, double s, double dt) {
     return 0;
 }
 
-/* A line that goes taut or slack in a step shows it by its second correction: a contraction below counts as this. */
+/* If a line becomes taut or slack in a step, the second correction shows it. A smaller contraction rate counts as
+   this. */
 #define LEAST_RATE 0.02
 
-/* NULL, or what went wrong in the last attempt. A far correction may lead to another way of closing a loop. */
+/* Returns NULL, or the reason why the last attempt failed. A far correction may lead to another way of closing a
+   loop. */
 static const char *attempts_of(spari_assembly *a, double s, double dt, int *iterations) {
     static const spari_newton how = {SPARI_LONGEST,    LEAST_RATE,     guess_together, begin_together,
                                      iterate_together, renew_together, end_together};
@@ -284,7 +287,8 @@ static int guess_onward(void *self, spari_guess stays) {
     return stays == SPARI_KEEP_VELOCITY;
 }
 
-/* Driven joints that jump, in so many parts of their way: from the place of before each from where the last has led. */
+/* Moves driven joints that jump in so many parts, from the last position, each part from the solution of the part
+   before. */
 static const char *walk_drives_in(spari_assembly *a, double s, double dt, int parts, int *iterations) {
     static const spari_newton how = {SPARI_LONGEST,    LEAST_RATE,     guess_onward, begin_together,
                                      iterate_together, renew_together, end_together};
@@ -387,7 +391,7 @@ static int shift_for_alpha(spari_assembly *a, double cv, double time) {
 
 enum { START_REFINEMENTS = 3 };
 
-/* What is left of the balance at t^0, and of the constraints' accelerations. */
+/* The residual of the balance at t^0 and of the constraints' accelerations. */
 static void start_residual(spari_assembly *a, double cm) {
     for (int i = 0; i < a->components; i++) {
         a->component[i].row->unbalance(a->component + i);
@@ -406,7 +410,7 @@ static void start_residual(spari_assembly *a, double cm) {
     spari_constraints_add_forces(a);
 }
 
-/* A driven motion begins as the members do; later it is where it was driven to. */
+/* At t^0 a driven motion begins with the motion of its members; later with the motion that it was driven to. */
 static void begin_drive(spari_constraint *l) {
     spar_joint *j = l->joint;
     for (int k = 0; k < 6; k++) {

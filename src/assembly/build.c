@@ -1,4 +1,4 @@
-/* Which members joints tie together: assemblies found, sized and released. */
+/* Creation of assemblies: finds the members that joints connect, allocates and frees. */
 #include "../base/session.h"
 #include "../comm/enter.h"
 #include "../solve/life.h"
@@ -31,7 +31,7 @@ static void take_member(spari_assembly *a, spar_member *m) {
     m->assembly = a;
 }
 
-/* All that is tied to its first member, in the order in which joints reach it. */
+/* Lists all members that are connected to the first one, in the order in which joints reach them. */
 static void gather(spari_assembly *a, spar_member *first) {
     take_member(a, first);
     for (int i = 0; i < a->components; i++) {
@@ -110,7 +110,7 @@ static double mass_of_all(const spari_assembly *a) {
     return sum;
 }
 
-/* What solves it, on its owner. */
+/* Allocates the solution, on the owner. */
 static int make_system(spari_assembly *a) {
     a->here = a->owner == spari_comm_rank(a->session->comm) || a->components == 0;
     if (!a->here || a->components == 0) {
@@ -131,7 +131,7 @@ static int make_system(spari_assembly *a) {
 
 /* ---- where it is solved ---- */
 
-/* Its members' solvers on its owner; what they had waits. */
+/* Moves the members to the owner. Their former solutions are kept until the end. */
 static int move_members(spari_assembly *a) {
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
@@ -175,8 +175,8 @@ static int check_members(const spar_joint *j) {
     return SPAR_OK;
 }
 
-/* A beam that one body carries is held there: a rigid arm leads to the node. Of others the component knows the nodes
-   that joints tie, in its own order. */
+/* The node of a beam that one rigid body carries: the joint holds that body, at an offset. Other components number
+   the nodes that joints hold in their own order. */
 static void lead_to_components(spar_joint *j) {
     for (int side = 0; side < 2; side++) {
         const spar_member *m = j->member[side];

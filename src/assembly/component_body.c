@@ -1,6 +1,5 @@
-/* Members of an assembly whose unknowns are the motions of their nodes: exact beams, rigid bodies and beams. See
- * component.h.
- */
+/* Components whose unknowns are the motions of their nodes: exact beams, rigid bodies and rigid beams. See
+   component.h. */
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
@@ -271,7 +270,7 @@ static void rest_nodes(spari_component *p, const double *fluid, int onward) {
     p->stage.ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
 }
 
-/* Rates of the places where the nodes are now, as they turn with the whole. */
+/* Rates of the nodes at their present positions, in the rotation of the whole. */
 static void rotate_nodes(spari_component *p, double f) {
     const spar_member *m = p->member;
     spari_state *to = &p->solver->to;

@@ -1,4 +1,4 @@
-/* A joint of an assembly: where its nodes are, its relative motion, and its forces on them. */
+/* A constraint of an assembly: poses of its nodes, relative motion, and forces on the nodes. */
 #include "system.h"
 
 #include "../base/session.h"
@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A node with prescribed motion: of a point, of the host's own member, of one that follows its root. */
+/* The motion of a node with prescribed motion: a point, a node of an external member, a node that follows its root. */
 static spari_pose told(const spar_member *m, int64_t node, double s, double dt) {
     const spari_motion *now = &m->now, *after = &m->after;
     const spari_pose from = spari_pose_of(now->q + 7 * node, now->v + 6 * node, now->a + 6 * node),
@@ -16,7 +16,8 @@ static spari_pose told(const spar_member *m, int64_t node, double s, double dt) 
     return spari_drive_between(&from, &to, s, dt);
 }
 
-/* Place, velocity and acceleration of one side of a constraint in a state of its part, or at the part s of the step. */
+/* Pose, velocity and acceleration of one side of a constraint, in a state of its component or at the part s of the
+   step. */
 static void find_side(spari_constraint *l, int side, double s, double dt) {
     const spar_joint *j = l->joint;
     const spar_member *m = j->member[side];

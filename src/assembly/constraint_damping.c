@@ -1,14 +1,16 @@
-/* What joints hold rings in accelerations and loads: along the constraints the scheme has no motion but its own three
-   roots, all -rho_inf. Near -1 they do not die, and what turns feeds them until members fly apart: a chain of ten
-   members that oscillates by 0.05 rad after 8000 steps with rho_inf = 1. So where rho_inf is larger than `most`, the
-   ringing is damped down to it after each step, along the constraints alone: all else keeps its rho_inf. With e = B a +
-   B-dot v - z-dot-dot, which is of order h^2 but for the ringing, and x the motion that forces of the joints give with
-   B x = e,
+/* Constraint damping. Accelerations and loads along the constraints oscillate: the scheme has no motion there but
+   its own three roots, all -rho_inf. Near -1 these oscillations do not decay, and rotation feeds them until members
+   fly apart (a chain of ten members that oscillates by 0.05 rad, after 8000 steps with rho_inf = 1). If rho_inf is
+   larger than `most`, the oscillations are damped to it after each step, along the constraints alone. All other
+   motions keep rho_inf.
 
-     a := a - (1 - r^2) x,    v := v - (1 - r)^2 / 4 h x,    r = most / rho_inf
+   With e = B a + B-dot v - z-dot-dot, which is of order h^2 apart from the oscillation, and x the motion that forces
+   of the joints cause with B x = e,
 
-   have in place of two roots -1 two of -r (rho_inf = 1; the third is of the algorithmic accelerations alone, which
-   nothing sees there: they come in as b^n + b^{n+1}). Places stay, and what is published is of before. */
+      a := a - (1 - r^2) x,    v := v - (1 - r)^2 / 4 h x,    r = most / rho_inf
+
+   have two roots -r instead of two roots -1 (rho_inf = 1). The third root belongs to the algorithmic accelerations,
+   which enter as b^n + b^{n+1} and do not show there. Positions stay, and the published motion is that before. */
 #include "system.h"
 
 #include "../base/session.h"
@@ -17,7 +19,7 @@
 
 static const double most = 0.9;
 
-/* The gaps become e. */
+/* Sets the gaps to e. */
 static void find_ringing(spari_assembly *a, double s, double dt) {
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;

@@ -1,4 +1,4 @@
-/* Who solves what: see owners.h. */
+/* The rank that solves each member: see owners.h. */
 #include "owners.h"
 
 #include "../comm/comm.h"
@@ -50,12 +50,12 @@ static int least_busy(const double *busy, int ranks) {
     return least;
 }
 
-/* Whether a member without joints has yet to be given its owner. */
+/* Whether a member without joints still needs an owner. */
 static int is_unsettled(const spar_member *m) {
     return m->committed && !m->assembly && !m->owner_given && !m->owner_assigned && spari_member_expected(m) > 0;
 }
 
-/* What the ranks have to do with what has its owner, of those without joints. */
+/* The load of each rank from members without joints that have their owner. */
 static void add_assigned(const spar_session *s, double *busy) {
     for (const spar_member *m = s->members; m; m = m->next) {
         busy[m->owner] += !m->assembly && !is_unsettled(m) ? spari_member_expected(m) : 0;
@@ -83,7 +83,7 @@ static int find_host_owner(spari_assembly *a) {
     return SPAR_OK;
 }
 
-/* The dearest one that has no owner yet; NULL: all have. */
+/* The most expensive assembly without an owner; NULL: all have one. */
 static spari_assembly *dearest_left(const spar_session *s) {
     spari_assembly *found = NULL;
     for (spari_assembly *a = s->assemblies; a; a = a->next) {
@@ -125,7 +125,7 @@ typedef struct free_member {
     int moved;
 } free_member;
 
-/* The dearest first; of equals the one created first. */
+/* The most expensive first; of equal ones the one created first. */
 static int compare_free(const void *a, const void *b) {
     const free_member *x = a, *y = b;
     return x->expected != y->expected ? (x->expected < y->expected) - (x->expected > y->expected)

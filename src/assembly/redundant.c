@@ -10,7 +10,7 @@
    times the number of rows), far below what a mechanism's geometry leaves. */
 static const double dependent = 1e-9;
 
-/* What ties an interface node to the tree, in relative coordinates: u = N z + T u_parent. */
+/* The connection of an interface node to the tree, in relative coordinates: u = N z + T u_parent. */
 typedef struct tree_step {
     int first, count; /* of z among all coordinates */
     double N[6][6];   /* a column a coordinate */
@@ -139,7 +139,7 @@ static void follow_tree(loop_rows *all, const spari_assembly *a, int node, const
     }
 }
 
-/* The row of constrained motion k of a constraint, in all->x from *first to *end; its size. */
+/* Forms the row of constrained motion k of a constraint, in all->x from *first to *end. Returns its size. */
 static double read_row(loop_rows *all, const spari_assembly *a, const spari_constraint *l, int k, int *first,
                        int *end) {
     double size = 0;

@@ -1,4 +1,4 @@
-/* How an assembly turns as one: see rotation_check.h. */
+/* Steady rotation of an assembly: see rotation_check.h. */
 #include "rotation_check.h"
 
 #include "../base/session.h"
@@ -10,10 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Motions that differ by less, relative to their size, are one. */
+/* Motions that differ by less than this, relative to their size, are equal. */
 static const double same_motion = 1e-6;
 
-/* A motion that is told: of a root, a node, or by a joint. */
+/* A prescribed motion: of a root, of a node, or by a joint. */
 typedef struct prescribed_motion {
     const char *kind, *name;
     double x[3], v[6], a[3];
@@ -34,7 +34,7 @@ static prescribed_motion prescribed_by(const spar_member *m, const char *kind, c
     return t;
 }
 
-/* The turn is that motion's. Where nothing is said of its acceleration, its axis stands. */
+/* Sets the rotation from this motion. Without an acceleration its axis stays. */
 static void take_rotation(spari_assembly *a, const prescribed_motion *t) {
     spari_rotating_frame *g = &a->rotating;
     double inward[3];
@@ -49,7 +49,7 @@ static void take_rotation(spari_assembly *a, const prescribed_motion *t) {
     a->rotates = 1;
 }
 
-/* Whether it is part of the turn that has been found. */
+/* Whether the motion agrees with the rotation that has been found. */
 static int goes_along(const spari_assembly *a, const prescribed_motion *t) {
     double v[6], acceleration[6], apart[3], rotation[3];
     const spari_steady_rotation *g = &a->rotating.rotation;
@@ -73,7 +73,8 @@ static int refuse_rotations(const spari_assembly *a, const prescribed_motion *on
 
 /* ---- who turns it ---- */
 
-/* Takes or compares one. Nodes that stand may carry what turns, as the ground does; members on roots that stand not. */
+/* Sets the rotation from a motion, or compares the two. Nodes at rest may carry rotating parts, as the ground does;
+   members on roots at rest may not. */
 static int meet_motion(spari_assembly *a, const prescribed_motion *t, int carries, prescribed_motion *first) {
     if (!is_rotating(t) && (carries || !a->rotates)) {
         return SPAR_OK;
@@ -86,7 +87,8 @@ static int meet_motion(spari_assembly *a, const prescribed_motion *t, int carrie
     return goes_along(a, t) ? SPAR_OK : refuse_rotations(a, first, t);
 }
 
-/* Of roots and nodes that are told; twice, since those that stand come before those that turn. */
+/* Visits roots and nodes with prescribed motion. Called twice, because those at rest may come before those that
+   rotate. */
 static int meet_prescribed(spari_assembly *a, prescribed_motion *first) {
     for (int i = 0; i < 2 * a->components; i++) {
         const spar_member *m = a->component[i % a->components].member;
@@ -111,7 +113,7 @@ static int meet_prescribed(spari_assembly *a, prescribed_motion *first) {
     return SPAR_OK;
 }
 
-/* Where the joint is as the side that stands carries it, and its axes there. */
+/* Position and axes of the joint, as the side at rest carries it. */
 static void frame_of_joint(const spar_joint *j, int side, double x[3], double q[4]) {
     spari_node_pose pose[2];
     spari_joint_poses(j, pose);
@@ -131,7 +133,7 @@ static int refuse_drive(const spari_constraint *l) {
                       j->name);
 }
 
-/* A joint driven against what stands, about its one axis. */
+/* A joint driven against a side at rest, about its one axis. */
 static int meet_drive(spari_assembly *a, const spari_constraint *l, prescribed_motion *first) {
     const spar_joint *j = l->joint;
     int side = spari_constraint_fixed_side(l),
@@ -227,8 +229,8 @@ void spari_rotation_check_end(spari_assembly *a) {
 
 /* ---- what holds it ---- */
 
-/* A constraint as it is when the whole has turned on by some angle: forces on the side that turns, the rows that it
-   holds there, and its motion. */
+/* A constraint after a rotation of the whole by some angle: the forces on the rotating side, the constrained rows
+   there, and its motion. */
 typedef struct constraint_view {
     double force[6], z[6], B[6][6];
 } constraint_view;
@@ -277,7 +279,7 @@ static void look_at_constraint(const spari_assembly *a, const spari_constraint *
     spari_rotate_back(rotation, view->force + 3, view->force + 3);
 }
 
-/* Whether row x is made of the rows that are held in `view`; length: of arms. */
+/* Whether row x is a combination of the constrained rows in `view`. length: for moments. */
 static int is_constrained_in(const constraint_view *view, int given, const double x[6]) {
     double row[6][6], left[6], size = 0, rest = 0;
     int count = 0;

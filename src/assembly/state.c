@@ -1,4 +1,5 @@
-/* What an assembly's owner tells the other ranks, and what it keeps from step to step. */
+/* State of an assembly: the part that its owner sends to the other ranks, and the part that it keeps from step to
+   step. */
 #include "assembly.h"
 #include "system.h"
 
@@ -73,7 +74,7 @@ void spari_assembly_reject(spari_assembly *a) {
 
 enum { KEPT_HEAD = 7 };
 
-/* Of a factored system: what remains of the members at the joints' nodes, and of the loads' turning. */
+/* Of a factored system: the condensed members, and joint_tangent of the constraints. */
 static int64_t kept_size(const spari_assembly *a) {
     int64_t n = (int64_t)SPARI_JOINT_TANGENT * a->constraints;
     for (int i = 0; i < a->components; i++) {

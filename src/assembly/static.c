@@ -1,11 +1,11 @@
-/* Members that joints tie together, in equilibrium: Newton with exact tangents, in load steps that halve where it
-   fails.
+/* Static equilibrium of an assembly: Newton with exact tangents, in load steps that are halved where Newton fails.
 
-   Where the loads hold what no stiffness does (a body that hangs on a hinge), the tangent is singular until the joints'
-   loads are known; and Newton goes to any equilibrium, a body upside down too. There a stiffness of every motion is
-   added (a shift), as large as makes the system that of a minimum: its eigenvalues are counted (Levenberg and
-   Marquardt, with the inertia of the KKT system as in interior-point methods; Nocedal and Wright, Numerical
-   Optimization (2006), theorem 16.3). So the iteration goes downhill, and the shift is 0 at its end. */
+   If the loads stabilise a motion that no stiffness holds (a body that hangs on a hinge), the tangent is singular
+   until the joints' loads are known. Newton also goes to any equilibrium, even with a body upside down. In these
+   cases a stiffness is added to every motion (a shift), large enough that the system is that of a minimum, which the
+   count of its eigenvalues shows (Levenberg and Marquardt, with the inertia of the KKT system as in interior-point
+   methods; Nocedal and Wright, Numerical Optimization (2006), theorem 16.3). The iteration then goes downhill, and
+   the shift is 0 at its end. */
 #include "assembly.h"
 
 #include "../base/session.h"
@@ -22,10 +22,10 @@
 
 enum { REST_ITERATIONS = 60, REST_HALVINGS = 14 };
 
-/* A system whose weakest pivot is smaller than so much of its largest stiffness holds a motion by rounding alone. */
+/* A system whose smallest pivot is below this part of its largest stiffness is singular apart from rounding. */
 static const double loose = 1e-13;
 
-/* Forces less loads at the factor f, gaps with driven motions so far on their way. */
+/* Residual at the load factor f, and gaps with driven motions at the same part of their way. */
 static double balance_at_rest(spari_assembly *a, double f, double *noise) {
     double scale = 0;
     for (int i = 0; i < a->components; i++) {
@@ -51,7 +51,7 @@ static double balance_at_rest(spari_assembly *a, double f, double *noise) {
     return scale;
 }
 
-/* Corrections of all parts at rest; 0, or 1 where something is not held. */
+/* Solves for the corrections of all components. Returns 0, or 1 if a motion is not constrained. */
 static int solve_at_rest(spari_assembly *a, double f) {
     for (int i = 0; i < a->components; i++) {
         if (a->component[i].row->tangent_rest(a->component + i, f)) {
@@ -62,7 +62,7 @@ static int solve_at_rest(spari_assembly *a, double f) {
     return spari_system_solve(a, 0);
 }
 
-/* Shortened corrections come off; their size before. */
+/* Subtracts the corrections, shortened. Returns their size before. */
 static double shift_parts(spari_assembly *a, double longest, double *cut) {
     double largest = 0;
     for (int i = 0; i < a->components; i++) {
@@ -99,7 +99,7 @@ static int loads_stand(const spari_assembly *a, int it, double scale) {
 
 typedef enum rest { FOUND, FAILED, LOOSE, UNSTABLE } rest;
 
-/* Whether all forces have a potential: none follow, no moments of fixed axes, and nothing turns. */
+/* Whether all forces have a potential: no follower loads, no moments about fixed axes, no rotation. */
 static int has_potential(const spari_assembly *a, const double *(*fluid)(const spar_member *)) {
     for (int i = 0; i < a->components; i++) {
         const spar_member *m = a->component[i].member;
@@ -210,7 +210,7 @@ static void keep_point(spari_assembly *a, int back) {
     }
 }
 
-/* Loads into the parts' solvers, which stay where they are onward, else go to t^n. */
+/* Passes the loads to the components' solvers. onward: these keep their states, else they go to t^n. */
 static void begin_rest(spari_assembly *a, const double *(*fluid)(const spar_member *), int onward) {
     for (int i = 0; i < a->components; i++) {
         a->component[i].rotating = a->rotates ? &a->rotating : NULL;
@@ -222,7 +222,7 @@ static void begin_rest(spari_assembly *a, const double *(*fluid)(const spar_memb
     keep_point(a, 0);
 }
 
-/* What ended the way of the loads, and the motion that nothing holds, or that leaves the equilibrium. */
+/* Why the load steps ended, and the motion that is not constrained or unstable. */
 typedef struct rest_end {
     rest why;
     char motion[240];
@@ -276,7 +276,7 @@ static void give_up_rest(spari_assembly *a) {
     spari_assembly_discard(a);
 }
 
-/* Nothing has been found: all is as it was. */
+/* No equilibrium was found: restores everything. */
 static int refuse_rest(spari_assembly *a, double done, const rest_end *end) {
     const char *motion = end->motion[0] ? end->motion : "some motion";
     char text[500] = "; take more load_steps";

@@ -27,7 +27,7 @@ static void rotate_block(const double R[9], const double Q[9], int from, const d
     }
 }
 
-/* turn NULL: none */
+/* rotation NULL: none */
 static void matrix_of_rotation(const double *rotation, double R[9]) {
     const double none[4] = {1, 0, 0, 0};
     spari_quat_matrix(rotation ? rotation : none, R);
@@ -140,7 +140,7 @@ static void add_stiffness(spari_assembly *a, int v, int w, double f, const doubl
     }
 }
 
-/* What remains of a part, in global axes. */
+/* The condensed tangent of a component, in global axes. */
 static void rotate_part(spari_component *p) {
     const spari_condensed *c = p->condensed;
     int m = 6 * c->ends;
@@ -213,7 +213,7 @@ static void add_constraint_stiffness(spari_assembly *a, spari_constraint *l, dou
     }
 }
 
-/* The rows of a constraint as the cluster of its node on a side moves; 0: that does not move. */
+/* The rows of a constraint for the cluster of its node on one side; 0: the node does not move. */
 static int rows_of_side(const spari_assembly *a, const spari_constraint *l, int side, double rows[6][6]) {
     const spari_interface *v = moving(a, l->node[side]);
     int constrained = 0;
@@ -228,7 +228,7 @@ static int rows_of_side(const spari_assembly *a, const spari_constraint *l, int 
     return constrained;
 }
 
-/* The largest stiffness of the clusters that a constraint ties, and of its own. */
+/* The largest stiffness of the clusters that a constraint connects, and its own. */
 static double scale_of_constraint(spari_assembly *a, const spari_constraint *l) {
     double scale = 0;
     for (int i = 0; i < 144 && l->stiff; i++) {
@@ -267,8 +267,8 @@ static void add_constraint(spari_assembly *a, const spari_constraint *l, int own
     }
 }
 
-/* A constraint that closes a loop may be all that holds what it ties. The penalty keeps the blocks before its own from
-   being singular; the constraint itself is unchanged by it (the augmented Lagrangian of the constraint). */
+/* A constraint that closes a loop may be all that constrains the nodes it connects. A penalty keeps the blocks
+   before its own from being singular. The solution of the constraint does not change (augmented Lagrangian). */
 static void add_penalty(spari_assembly *a, const spari_constraint *l, double penalty) {
     double rows[2][6][6];
     int constrained[2];
@@ -381,7 +381,7 @@ static void fill_system(spari_assembly *a, double cv, double penalty) {
     }
 }
 
-/* The system of the parts and constraints as they stand. 0 or 1. */
+/* Forms the system of the components and constraints at the present positions. Returns 0 or 1. */
 static int form_system(spari_assembly *a, double cv, double penalty) {
     for (int i = 0; i < a->constraints; i++) {
         memcpy(a->constraint[i].rows, a->constraint[i].B, sizeof a->constraint[i].rows);
@@ -425,7 +425,7 @@ static void add_block_transposed(double f, const double *A, int stride, const do
     }
 }
 
-/* y += K u of the parts and constraints, [interfaces][6] */
+/* y += K u of the components and constraints, [interfaces][6] */
 static void add_forces_of(const spari_assembly *a, const double *u, double *y) {
     for (int i = 0; i < a->components; i++) {
         const spari_component *p = a->component + i;
@@ -477,7 +477,7 @@ static void solve_for_loads(const spari_constraint *l, const spari_interface *v,
     }
 }
 
-/* What the gaps ask of the interface nodes while their clusters stand; whether that is anything. */
+/* The motion of the interface nodes that closes the gaps while their clusters stay. Returns whether it is not zero. */
 static int find_gaps(spari_assembly *a) {
     int any = 0;
     for (int n = 0; n < a->interfaces; n++) {
@@ -499,7 +499,7 @@ static int find_gaps(spari_assembly *a) {
     return any;
 }
 
-/* What is left of a constraint's gaps beside them, of the constrained motions one after the other. */
+/* The remaining gaps of a constraint, of its constrained motions in order. */
 static void gaps_left(const spari_assembly *a, const spari_constraint *l, double left[6]) {
     int constrained = 0;
     for (int k = 0; k < 6; k++) {
@@ -614,7 +614,7 @@ static void find_constraint_loads(spari_assembly *a, double *y) {
     }
 }
 
-/* With what is left of the parts' forces at their ends in x. */
+/* Solves with the condensed residuals of the components in x. */
 static int solve_reduced(spari_assembly *a, double cv) {
     if (!a->standing || fabs(a->cv - cv) > 0) {
         a->standing = 0;
@@ -684,7 +684,7 @@ int spari_system_count_negative(const spari_assembly *a) {
     return spari_blocks_negative(a->system) - multipliers;
 }
 
-/* Relative motion k of a constraint in the motion x of the system, turns by the length of its member. */
+/* Relative motion k of a constraint in the motion x of the system, rotations times the length of its member. */
 static double slip_of(const spari_constraint *l, const double *x, int k) {
     double slip = 0, length = 1;
     for (int i = 0; i < 12; i++) {

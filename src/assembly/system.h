@@ -1,8 +1,10 @@
-/* The linear system of an assembly: what remains of its members at their interface nodes (condense.h), and the
-   constraints. Constraints form a tree of interface nodes, whose root is the ground. Nodes that constraints of six
-   motions tie together move as one rigid body, a cluster, and have six unknowns in common. A constraint of fewer
-   motions has its multipliers in the block of the cluster that it ties to the tree, which is eliminated before the one
-   it hangs on: what remains there is the system in relative coordinates (Featherstone, Rigid Body Dynamics Algorithms
+/* The linear system of an assembly: the members condensed to their interface nodes (condense.h), and the
+   constraints.
+
+   Constraints form a tree of interface nodes, whose root is the ground. Nodes that constraints of six motions
+   connect move as one rigid body, a cluster, and share six unknowns. A constraint of fewer motions has its
+   multipliers in the block of the cluster that it connects to the tree. This block is eliminated before its
+   parent's, and the remaining system is that in relative coordinates (Featherstone, Rigid Body Dynamics Algorithms
    (2008), 8.7). Only constraints that close loops have blocks of their own. */
 #ifndef SPARI_SYSTEM_H
 #define SPARI_SYSTEM_H
@@ -20,29 +22,29 @@ typedef enum spari_constraint_role {
     SPARI_CONSTRAINT_LOOP
 } spari_constraint_role;
 
-/* An interface node, and the constraint that ties it to the tree. */
+/* An interface node, and the constraint that connects it to the tree. */
 typedef struct spari_interface {
-    int fixed;      /* so many of its first unknowns its root condition holds */
+    int fixed;      /* how many of its first unknowns the root condition constrains */
     int parent;     /* interface node; -1: the ground, or none */
-    int constraint; /* that ties it to its parent; -1: none */
-    int side;       /* of that constraint: its own */
-    int depth;      /* how many constraints lead to it */
+    int constraint; /* the constraint with its parent; -1: none */
+    int side;       /* its own side of that constraint */
+    int depth;      /* number of constraints from the ground to it */
     int cluster;    /* the interface node whose unknowns the cluster has; -1: the ground */
     int block;      /* of that node: in the system */
-    double arm[3];  /* from that node to this, as the system was formed */
-    double gap[6];  /* its motion beside that of the cluster, from the gaps of the constraints that lead to it */
-    double E[9];    /* of a node with the unknowns of another: its small rotation by those of the constraint */
+    double arm[3];  /* from that node to this one, as the system was formed */
+    double gap[6];  /* its motion relative to the cluster, from the gaps of the constraints between them */
+    double E[9];    /* of a node in the cluster of another: its small rotation by the rotation of the constraint */
 } spari_interface;
 
-/* A joint of an assembly, as it stands in the system. */
+/* A constraint: the equations of a joint in an assembly. */
 typedef struct spari_constraint {
     spar_joint *joint;
     spari_component *component[2]; /* NULL: the ground, or a node with prescribed motion */
     int node[2];                   /* interface nodes; -1: given motion */
     spari_constraint_role role;
-    int block;          /* in the system, where it closes a loop */
-    spari_driven drive; /* at the end of the substep, */
-    spari_driven to;    /* or on the way there: there */
+    int block;          /* in the system, if it closes a loop */
+    spari_driven drive; /* prescribed motion of the joint at the end of the substep, */
+    spari_driven to;    /* and on the way there */
     spari_relative begin;
     spari_node_pose pose[2];
     double v[12], a[12], B[6][12];
@@ -58,76 +60,78 @@ typedef struct spari_constraint {
 struct spari_assembly {
     spar_session *session;
     spari_assembly *next;
-    int owner, here; /* the rank that solves it; whether this one does, or all do: where there are no components */
+    int owner, here; /* the rank that solves it; whether this rank does, or all do: if there are no components */
     int components, constraints;
     spari_component *component;
-    spari_constraint *constraint; /* on every rank; what follows is the owner's */
-    double mass;                  /* of the parts */
-    int rotates;                  /* the equilibrium under way is that of a whole that turns so (rotation_check.h) */
+    spari_constraint *constraint; /* on every rank; what follows exists on the owner */
+    double mass;                  /* of the components */
+    int rotates;                  /* the equilibrium under way is one in steady rotation (rotation_check.h) */
     spari_rotating_frame rotating;
     int interfaces;
     spari_interface *interface;
     int *order;         /* of the interface nodes: parents first */
     int clusters;       /* whether any of them has the unknowns of another */
     int loops;          /* whether constraints close loops */
-    int solved;         /* the parts and constraints stand at the end of a step */
-    spari_trace trace;  /* of Newton; strict it forgets the rate */
-    int factored_begun; /* the same two as the step began, and the constraints' turning */
+    int solved;         /* the components and constraints are at the end of a step */
+    spari_trace trace;  /* of Newton; with strict tolerances the rate is forgotten */
+    int factored_begun; /* these two at the beginning of the step, and the constraints' joint_tangent */
     spari_trace trace_begun;
     spari_snapshot before;
-    int factored;     /* whether there are tangents: how many iterations the solution took that formed them, or 0 */
-    int violent;      /* velocities are held within the step's equations */
-    int rotates_far;  /* joints turn far in a substep */
-    int standing;     /* the system below is factored, for the tangents there are and this cv, */
-    double cv, moved; /* and the parts' way since; only within a solution */
+    int factored;     /* 0: there are no tangents; else how many iterations the solution needed that formed them */
+    int violent;      /* the step's equations constrain velocities too */
+    int rotates_far;  /* joints rotate far in a substep */
+    int standing;     /* the system below is factored, for the present tangents and this cv, */
+    double cv, moved; /* and the motion of the components since; only within a solution */
     double scale;     /* its largest stiffness */
     double penalty;   /* of constraints that close loops, by their scale */
-    int potential;    /* its loads have one; at rest */
-    double shift;     /* stiffness of every motion of a cluster beside its own, N/m; at rest */
+    int potential;    /* its loads have a potential; at rest */
+    double shift;     /* additional stiffness of every motion of a cluster, N/m; at rest */
     spari_blocks *system;
     double *x, *y; /* [interfaces][6] */
     double *b;     /* of the system */
-    double *rates; /* 6 of each node of the largest part */
+    double *rates; /* 6 of each node of the largest component */
 };
 
-/* The relative motion of a constraint in the states of its parts, at the part s of the step dt where the motion of a
-   node is prescribed, and the loads on what is free; those on what is held are the multipliers, which stay. factor: of
-   the loads that the host and preloads give. */
+/* Finds the relative motion of a constraint from the states of its components, and the loads on its free motions.
+   Nodes with prescribed motion are at the part s of the step dt. The loads on constrained motions are the
+   multipliers, which stay. factor: of the host's load and of preloads. */
 void spari_constraint_find(spari_constraint *l, double s, double dt, double factor);
-/* B v */
+/* rate := B v */
 void spari_constraint_times(double B[6][12], const double v[12], double rate[6]);
-/* How far a constrained motion, or its rate, is from where it has to be. */
+/* The error of constrained motion k, and of its rate. */
 double spari_constraint_gap(const spari_constraint *l, int k);
 double spari_constraint_rate_gap(const spari_constraint *l, int k);
-/* The side that stands: the ground, or a node that is told to; -1: none. */
+/* The side that is the ground or has prescribed motion; -1: none. */
 int spari_constraint_fixed_side(const spari_constraint *l);
-/* What its dampers add to the tangent where the other side turns steadily with w: velocities go with places. */
+/* Adds the dampers to joint_tangent where the other side rotates steadily with w: there velocities depend on
+   positions. */
 void spari_constraint_rotate_dampers(spari_constraint *l, const double w[3]);
-/* The constraints' forces, subtracted from the parts' residuals; fixed unknowns out. */
+/* Subtracts the constraints' forces from the components' residuals; constrained unknowns get none. */
 void spari_constraints_add_forces(spari_assembly *a);
-/* Of the system factored last: the smallest pivot by the largest stiffness. */
+/* The smallest pivot of the system factored last, relative to the largest stiffness. */
 double spari_system_weakest_pivot(const spari_assembly *a);
-/* Of the same, where the system is watched (block_matrix.h): how many negative eigenvalues it has that are not those of
-   its multipliers. Where loads have a potential that is minimal there are none. */
+/* The number of negative eigenvalues of that system, apart from those of its multipliers, if the system counts them
+   (block_matrix.h). There are none where the potential of the loads has a minimum. */
 int spari_system_count_negative(const spari_assembly *a);
-/* What it lets go nearly freely, the motion of a joint, or of a member; text stays where it cannot be told. Spends the
-   factors. */
+/* Names the motion with the least stiffness, of a joint or of a member. text stays if the motion cannot be told.
+   Destroys the factors. */
 void spari_system_name_free(spari_assembly *a, char *text, int size);
-/* Keeps what the constraints' loads add to the tangent, with the parts' tangents as they have just been formed. */
+/* Computes joint_tangent of the constraints, for the tangents of the components that have just been formed. */
 void spari_system_keep_joint_tangents(spari_assembly *a);
-/* Of the parts' forces and the constraints' gaps: the parts' corrections and `correction` that take both away. The
-   constraint rows are those of the joints as they stand; the parts' tangents, kept, go along with their nodes. cv: as
-   for the tangents. 0 or 1. */
+/* Solves for the corrections of the components, and of the multipliers (`correction`), that remove the components'
+   residuals and the constraints' gaps. The constraints are those of the present positions; the reused tangents of
+   the components follow their nodes. cv: as for the tangents. Returns 0 or 1. */
 int spari_system_solve(spari_assembly *a, double cv);
-/* Of the gaps alone, without forces. */
+/* The same for the gaps alone, without forces. */
 int spari_system_close_gaps(spari_assembly *a, double cv);
-/* Takes down what rings along the constraints at the end of a substep, the part s of the step dt. 0 or 1. */
+/* Constraint damping: damps oscillations along the constraints at the end of a substep, at the part s of the step
+   dt. Returns 0 or 1. */
 int spari_system_damp_constraints(spari_assembly *a, double s, double dt);
-/* Whether a constraint holds motion k. */
+/* Whether motion k is constrained. */
 static inline int spari_constraint_holds(const spari_constraint *l, int k) {
     return l->joint->constrained >> k & 1;
 }
-/* How many motions it holds. */
+/* The number of constrained motions. */
 static inline int spari_constraint_count(const spari_constraint *l) {
     int count = 0;
     for (int k = 0; k < 6; k++) {
@@ -135,12 +139,12 @@ static inline int spari_constraint_count(const spari_constraint *l) {
     }
     return count;
 }
-/* Finds the tree. 0, or SPAR_ERR_MEMORY. */
+/* Finds the tree. Returns 0 or SPAR_ERR_MEMORY. */
 int spari_system_find_tree(spari_assembly *a);
-/* Removes redundant constraints from the joints that close loops, with a word to the log. The constraints' B are those
-   of the reference. 0, or SPAR_ERR_MEMORY. */
+/* Removes redundant constraints from the joints that close loops, and writes them to the log. B of the constraints:
+   of the reference. Returns 0 or SPAR_ERR_MEMORY. */
 int spari_system_drop_redundant(spari_assembly *a);
-/* Memory for the system of the tree. 0, or SPAR_ERR_MEMORY. */
+/* Allocates the system of the tree. Returns 0 or SPAR_ERR_MEMORY. */
 int spari_system_create(spari_assembly *a);
 void spari_system_free(spari_assembly *a);
 

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/* The interface node of side of a constraint; -1 where its motion is given. */
+/* The interface node of one side of a constraint; -1: its motion is prescribed. */
 static int interface_of(const spari_assembly *a, const spari_constraint *l, int side) {
     const spari_component *p = l->component[side];
     if (!p) {
@@ -53,7 +53,8 @@ static int find_part(int *part, int i) {
     return i;
 }
 
-/* Constraints join parts of the tree in their order; those whose nodes are in one part already close loops. */
+/* Constraints connect parts of the tree in their order. A constraint whose nodes are connected already closes a
+   loop. */
 static int sort_constraints(spari_assembly *a) {
     int ground = a->interfaces, *part = spari_zalloc(a->interfaces + 1, sizeof *part);
     if (!part) {
@@ -78,7 +79,7 @@ static int sort_constraints(spari_assembly *a) {
     return SPAR_OK;
 }
 
-/* The tree's constraints of each interface node, and of the ground after them: numbers 2 constraint + side. */
+/* Lists the tree's constraints of each interface node, and of the ground after them: numbers 2 constraint + side. */
 typedef struct tree_lists {
     int *begin, *entry;
 } tree_lists;
