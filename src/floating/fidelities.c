@@ -1,4 +1,4 @@
-/* Linear and modal beams: their frame created and freed, and their rows of the table. */
+/* Linear and modal beams: creation of their frames, and their rows of the table of fidelities. */
 #include "frame.h"
 
 #include "../algebra/pencil.h"

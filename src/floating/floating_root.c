@@ -1,4 +1,4 @@
-/* The root of a frame and the nodes that joints tie: made, freed; see floating_root.h. */
+/* The root of a floating frame: creation, memory, saved state. See floating_root.h. */
 #include "floating_root.h"
 
 #include "../algebra/cblas.h"

@@ -1,21 +1,19 @@
-/* The root of a frame, the nodes that joints tie, and the forces and tangent of the frame's equations.
+/* The floating frame of reference of a member with joints. Its root is integrated as a body of one node without
+   mass. The forces have the motion of the root as an unknown.
 
-   A root that is fixed or driven, and the frame of a member that no joint ties, have a prescribed motion. The equations
-   are then those of frame.h, with one sum of the matrices for the present turn. Where joints move the root, it is
-   integrated as a body of one node without mass, and the forces have the motion of the root as an unknown.
+   With y the deformation and its rates in the axes of the frame, a, alpha and omega the root's there, g gravity, s
+   the loads, R the six rigid motions of the member about its root,
 
-   With y the deformation and its rates in the axes of the frame, a, alpha and omega the root's there, g gravity, s the
-   loads, R the six rigid motions of the member about its root,
+      r   = M y'' + (D + G(omega)) y' + (K + N(omega, omega) + E(alpha)) y + f(omega, omega) + M R (a - g, alpha)
+            + S(w, w) y - s
+      r_0 = R^T (r without K, D, S) + sum over the nodes of (0, y_i x (M R (a - g, alpha) + f - s)_i) + (0, m_2)
 
-     r   = M y'' + (D + G(omega)) y' + (K + N(omega, omega) + E(alpha)) y + f(omega, omega) + M R (a - g, alpha)
-           + S(w, w) y - s
-     r_0 = R^T (r without K, D, S) + sum over the nodes of (0, y_i x (M R (a - g, alpha) + f - s)_i) + (0, m_2)
-
-   r are the forces on the unknowns, r_0 force and moment of the whole about the root, for which arms are those of the
-   deformed member and m_2 is of second order in it; internal forces have no part in them. On the unknowns and in m_2 a
-   moment m of the rigid motion counts as m + m x theta / 2, as rotation vectors theta have it. S is the geometric
-   stiffness of the axial forces that hold the centrifugal ones, w the mean turning of the member, that of the rigid
-   motion which has its momenta. docs/theory.md, (J1) to (J5), says why. */
+   r are the forces on the unknowns, r_0 is the force and moment of the whole about the root. The lever arms in r_0
+   are those of the deformed member, m_2 is of second order in the deformation, and internal forces do not enter. On
+   the unknowns and in m_2 a moment m of the rigid motion counts as m + m x theta / 2, because theta are rotation
+   vectors. S is the geometric stiffness of the axial forces that balance the centrifugal ones. w is the mean
+   rotation rate of the member, that of the rigid motion with the same momenta. docs/theory.md, (J1) to (J5), derives
+   this. */
 #ifndef SPARI_FLOATING_ROOT_H
 #define SPARI_FLOATING_ROOT_H
 

@@ -1,9 +1,9 @@
-/* A beam that is linear in the frame that moves with its root (fixed or driven): the motion of the root is exact, the
-   deformation beyond it to first order. The frame of a root that is free or pinned stands where the reference is, and
-   the motion of the whole is treated to first order. In the axes of the frame, with x = (w, theta) of the nodes,
+/* A beam that is linear in the frame of its root. If the root is fixed or driven, the motion of the root is exact
+   and the deformation relative to it is of first order. If the root is free or pinned, the frame stays at the
+   reference, and the whole motion is of first order. In the axes of the frame, with x = (w, theta) of the nodes,
 
-     M x'' + (D + G(omega)) x' + (K + N(omega, omega) + E(alpha)) x
-         = loads - M (rigid acceleration - weight) - f(omega, omega)
+      M x'' + (D + G(omega)) x' + (K + N(omega, omega) + E(alpha)) x
+          = loads - M (rigid acceleration - weight) - f(omega, omega)
 
    where G holds the Coriolis and gyroscopic terms, E those of the root's angular acceleration, N what turning with
    omega adds to the stiffness: centrifugal softening, the turned inertia of the sections, and the geometric stiffness S
@@ -18,9 +18,9 @@
 
    The time integration and the equilibrium are those of a component (time/component.h), alone or in an assembly.
 
-   The same equations in modes of M, K are the modal member. Its unknowns are amplitudes of the six rigid motions about
-   the root, of which those stay zero that the root holds, and of modes: with all six the lowest of the beam held at its
-   root, with fewer those of the beam that is free, or pinned, there. */
+   The modal member has the same equations in modes of M and K. Its unknowns are amplitudes of the six rigid motions
+   about the root, of which the root condition sets some to zero, and amplitudes of modes. If the root holds all six,
+   these are the lowest modes of the beam clamped at its root, else those of the beam that is free, or pinned, there. */
 #ifndef SPARI_FRAME_H
 #define SPARI_FRAME_H
 

@@ -1,4 +1,4 @@
-/* What a frame is made of: its matrices, from the exact member's tangents at the reference. */
+/* The matrices of a frame, from the tangents of the exact member at the reference. */
 #include "floating_root.h"
 
 #include "../algebra/cblas.h"

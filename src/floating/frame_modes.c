@@ -1,4 +1,4 @@
-/* The modes of a frame: the basis that makes a modal member of a linear one, and the modes about a turning state. */
+/* The modes of a frame: the basis of a modal member, and modes about a state of steady rotation. */
 #include "frame.h"
 
 #include "../algebra/cblas.h"

@@ -1,4 +1,5 @@
-/* How a frame moves: between the nodes' motion and its own, its turn, stages of a step; saved, and its energy. */
+/* The motion of a frame: conversion from and to the motion of the nodes, time integration, static equilibrium, saved
+   state, energy. */
 #include "frame.h"
 
 #include "../algebra/cblas.h"

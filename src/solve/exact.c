@@ -163,7 +163,7 @@ static int exact_problem(const spar_member *m, double *K, double *M) {
     return SPAR_OK;
 }
 
-/* Forces of the steady turn less the loads in use. */
+/* Residual in steady rotation, under the loads in use. */
 static int exact_left(const spar_member *m, const double *q, const double *v, const double *a, spari_pencil *to) {
     int64_t u = m->body->unique;
     double *load = spari_zalloc(6 * m->nodes + 12 * u, sizeof *load), *r = load + 6 * m->nodes, *sum = r + 6 * u;

@@ -1,4 +1,4 @@
-/* Points and external members: the host gives their motion, or drives a point as it would a root. */
+/* Points and external members: the host gives their motion. A point may also be driven like a root. */
 #include "../time/fidelity.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* The prescribed beam: its nodes follow a root that is given, as one rigid body without mass. */
+/* The prescribed beam: its nodes follow a prescribed root as one rigid body without mass. */
 #include "../base/session.h"
 #include "../time/fidelity.h"
 #include "reaction.h"

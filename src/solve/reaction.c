@@ -1,4 +1,4 @@
-/* What the root gives a member, and the energies of it. */
+/* The reaction at the root of a member, and the energies of the member. */
 #include "reaction.h"
 
 #include "../base/environment.h"

@@ -1,24 +1,24 @@
-/* What the root gives a member, and its energies. */
+/* The reaction at the root of a member, and the energies of the member. */
 #ifndef SPARI_REACTION_H
 #define SPARI_REACTION_H
 
 #include "../member/structure.h"
 
-/* What the root gives the member in the motion after. Zero where nothing holds it or spar does not solve for it.
- * Returns SPAR_ERR_MEMORY or 0. */
+/* The reaction at the root at t^{n+1}. It is zero if the root is free, or if spar does not solve for the member.
+   Returns 0 or SPAR_ERR_MEMORY. */
 int spari_member_reaction(const spar_member *member, double load[6]);
-/* The same with memory given beforehand: so many doubles. */
+/* The same with a workspace of so many doubles. */
 int64_t spari_member_reaction_size(const spar_member *member);
 void spari_member_reaction_in(const spar_member *member, double *workspace, double load[6]);
 
-/* For the rows of the table. From the balance of the root's own node, for members whose internal forces are at hand. */
+/* For the rows of the table: from the balance of the root's node, for members whose internal forces are known. */
 int64_t spari_reaction_at_root_size(const spar_member *member);
 void spari_reaction_at_root(const spar_member *member, double *workspace, double load[6]);
-/* From the balance of the whole: inertia less weight less loads, each where its node is; in linear theory about axes
-   that stand, where its node is in the reference. Internal forces have no part in it. */
+/* From the balance of the whole member: inertia less weight less loads, each at its node; in linear theory, in axes
+   at rest, at the reference position of the node. Internal forces do not enter. */
 int64_t spari_reaction_of_whole_size(const spar_member *member);
 void spari_reaction_of_whole(const spar_member *member, double *workspace, double load[6]);
-/* Kinetic, strain and potential energy of the body in the motion after. 0, or SPAR_ERR_MEMORY. */
+/* Kinetic, strain and potential energy of the body at t^{n+1}. Returns 0 or SPAR_ERR_MEMORY. */
 int spari_energy_of_body(const spar_member *member, double energy[4]);
 
 #endif

@@ -1,4 +1,5 @@
-/* The rigid beam: its nodes follow one body with the mass of the whole, which the solver of rigid bodies advances. */
+/* The rigid beam: its nodes follow one body at the root, which has the mass of the whole beam. The solver of rigid
+   bodies advances it. */
 #include "rigid_beam.h"
 
 #include "../algebra/eigen.h"
@@ -30,7 +31,7 @@ static int rigid_effects(const spar_member *m, int effects) {
 
 /* ---- the body that carries it ---- */
 
-/* Adds what the mass m[10] of weight w at x has about the root: mass, first and second moments. */
+/* Adds the mass m[10] of weight w at x: mass, first and second moments about the root. */
 static void add_mass(double w, const double *m, const double *x, const double root[3], double out[10]) {
     double a[3] = {x[0] - root[0], x[1] - root[1], x[2] - root[2]}, ac = spari_dot(a, m + 1), aa = spari_dot(a, a);
     out[0] += w * m[0];
@@ -94,7 +95,7 @@ static int rigid_create(spar_member *m) {
 
 /* ---- time ---- */
 
-/* Nodal loads as force and moment on the root, and the first moments of the forces over the arms. */
+/* Sums nodal loads to force and moment on the root, and to first moments of the forces over the reference offsets. */
 static void sum_on_root(const spar_member *m, const double *load, double sum[6], double moments[9]) {
     for (int64_t i = 0; i < m->nodes; i++) {
         const double *f = load + 6 * i;
@@ -126,8 +127,8 @@ static void rigid_restart(spar_member *m) {
     spari_solver_restart(s);
 }
 
-/* Loads at one end of the step, `left` of which is still to come, as load [6] on the root and on the arms: of the
-   fluids, dead ones, and those that the member carries where the motion q of its nodes is. */
+/* Loads at one end of the step, with the part `left` of the step still to come: load [6] on the root, and first
+   moments. They contain fluid loads, dead loads, and the member's applied loads at the motion q of its nodes. */
 static void loads_on_root(const spar_member *m, const double *fluid, double left, const double *q, double *load,
                           double moments[9]) {
     double dead[6] = {0}, dead_moments[9] = {0}, *workspace = m->body->scratch; /* the beam's own body is not in use */
@@ -150,7 +151,7 @@ static void loads_on_root(const spar_member *m, const double *fluid, double left
     }
 }
 
-/* Loads that follow the nodes are evaluated where the last pass has put them; a few passes find them. */
+/* Follower loads are evaluated at the motion of the last pass. A few passes converge. */
 enum { PASSES = 20 };
 
 static int rigid_advance(spar_member *m, double dt) {
@@ -185,7 +186,7 @@ static void arm_after(const spar_member *m, int64_t node, double arm[3]) {
     }
 }
 
-/* More force and moment on the root, the latter by the arms as they are turned. */
+/* Adds a load to force and moment on the root, with the rotated offsets. */
 static void rigid_take_more(spar_member *m, const double *load, double *sum) {
     double moments[9] = {0};
     memset(sum, 0, 6 * sizeof *sum);
@@ -215,7 +216,7 @@ static int rigid_response(spar_member *m, const double *load, double *motion) {
     return 0;
 }
 
-/* The same force and moment on the root, less what that holds, from equal forces and equal moments on all nodes. */
+/* The same force and moment on the root, without its reaction, from equal forces and equal moments on all nodes. */
 static int rigid_felt(spar_member *m, double *load) {
     double sum[6], middle[3] = {0}, moment[3];
     rigid_take_more(m, load, sum);
@@ -257,7 +258,7 @@ static spari_solver *solver_of(const spar_member *m) {
     return b->solver;
 }
 
-/* Loads that follow the nodes are those where the last iterate has put them. */
+/* Follower loads are evaluated at the latest iterate. */
 static void rigid_take_loads(spar_member *m) {
     spari_rigid_beam *b = m->solution;
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);

@@ -1,4 +1,4 @@
-/* Nodes that a root carries as one rigid body. */
+/* Nodes that follow a root as one rigid body. */
 #include "rigid_nodes.h"
 
 #include "../math/rotation.h"

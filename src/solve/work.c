@@ -126,7 +126,7 @@ static void joint_at(const spar_joint *j, int end, double z[6], double f[12]) {
     spari_kinematics_forces(B, at->load, f);
 }
 
-/* What a line's pull has beside its spring's. */
+/* The part of a line's pull that its spring does not account for. */
 static double damper_of_line(const spar_joint *j, const spari_relative *at) {
     double stretch = at->z[0] - j->length;
     return spari_joint_pull(j, at->z, at->rate, INFINITY) - j->stiffness[0] * (j->slack ? fmax(stretch, 0) : stretch);
