@@ -104,7 +104,7 @@ static int64_t size_of_saved(const spar_session *s, const spar_member *only) {
    restored without an equilibrium: each with its length in front. */
 static int save_state(spar_session *s, const spar_member *only, double **saved_state) {
     double *at = *saved_state = spari_zalloc(size_of_saved(s, only), sizeof *at);
-    SPARI_REQUIRE(s, at, SPAR_ERR_MEMORY, "no memory to put the state of the members aside");
+    SPARI_REQUIRE(s, at, SPAR_ERR_MEMORY, "no memory to save the state of the members");
     for (const spar_member *m = s->members; m; m = m->next) {
         if (!is_with(only, m)) {
             continue;

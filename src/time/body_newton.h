@@ -9,7 +9,7 @@
    kind does not exist here. */
 int spari_alpha_predict(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_guess stays,
                         spari_ends *e, double *x);
-/* The same without inertia: the member follows its root, which rotates by `turn`. */
+/* The same without inertia: the member follows its root, which rotates by `rotation`. */
 void spari_alpha_carry(const spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
                        const double rotation[4], const spari_ends *e, double *x);
 /* Prescribes the root: a driven root takes its prescribed pose, a fixed root stays. */
