@@ -46,8 +46,8 @@ static void put_size(const alpha_nodes *t, int64_t from, spari_node_size size) {
     t->s->most[from / SPARI_SPAN] = size_of_span(t, size);
 }
 
-/* The increments that bring the member, seen from its root, back to the shape that it had at t^n: where the root
-   jumps, the nodes that keep their places are left behind (root.c). `to` is not in use there. */
+/* The increments that give the member, relative to its root, the shape that it had at t^n. Used where the root jumps
+   and the nodes do not follow (root.c). Does not read `to`. */
 static void keep_shape(const spari_solver *s, const spar_member *member, spari_ends *e, double *dx) {
     const spari_pose before = spari_pose_of(s->from.q, s->from.v, s->from.a);
     const spari_state *from = &e->from, *shape = &e->to;
@@ -90,7 +90,7 @@ int spari_alpha_predict(const spari_solver *s, const spar_member *member, const 
     return 1;
 }
 
-/* Starting values without inertia: the member goes along with its root as it stands. */
+/* Starting values without inertia: the member follows its root without deformation. */
 void spari_alpha_carry(const spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_pose *root,
                        const double rotation[4], const spari_ends *e, double *x) {
     const spari_state *from = &e->from;
@@ -150,8 +150,7 @@ static void less_loads(void *context, int64_t from, int64_t to) {
     }
 }
 
-/* Residual minus loads, fixed unknowns out. Returns the size rounding in it is
- * relative to. */
+/* Forces less loads, without the constrained unknowns. Returns the size that rounding errors are relative to. */
 double spari_alpha_balance(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *at,
                            double *r) {
     const spari_body *body = s->body;
@@ -221,7 +220,7 @@ static void rotation_matrix(const double q[4], double T[9]) {
     }
 }
 
-/* The rotation vector of node i from its increment, and k = span^2 cv / 12 of what it changes by with the rates. */
+/* The rotation vector of node i from its increment, and k = span^2 cv / 12, the factor of its change with the rates. */
 static double rotation_of(const spari_scheme *c, const spari_ends *e, const double *x, int i, double psi[3]) {
     double rotation[3];
     spari_cross(e->to.v + 6 * i + 3, e->from.v + 6 * i + 3, rotation);
@@ -279,14 +278,14 @@ static void advance_span(void *context, int64_t from, int64_t to) {
     t->s->most_by[from / SPARI_SPAN] = size_of_span(t, by);
 }
 
-/* Sizes of a correction and of what it led to: relative to the member's length for translations, in radians for
-   rotations. */
+/* Sizes of a correction and of the resulting increments: translations relative to the member's length, rotations in
+   radians. */
 typedef struct corrected {
     double by, way;
 } corrected;
 
-/* x -= correction, rotations through the inverse tangent operator, shortened to `longest`. turn: what turns it forth
-   first; NULL: nothing. */
+/* x -= correction, shortened to `longest`, rotations through the inverse tangent operator. rotation: rotates the
+   correction forward first; NULL: none. */
 static corrected correct_turned(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
                                 double *rotation, double longest, double *x, double *dx) {
     double R[9], largest;
@@ -313,8 +312,8 @@ double spari_alpha_correct(const spari_solver *s, const spar_member *member, con
     return correct_turned(s, member, c, e, NULL, longest, x, dx).by;
 }
 
-/* A place goes by its node's increment and, in the term of Magnus' series, by its velocity: what that loses the
-   increment gets. */
+/* A position depends on the increment and, in the term of Magnus' series, on the velocity of its node. The increment
+   gets the part that the velocity loses. */
 void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double v, double a,
                              double b) {
     for (int i = 0; i < s->n; i++) {
@@ -341,18 +340,18 @@ double spari_alpha_size(const spari_solver *s, double *x) {
     return spari_solver_most(s);
 }
 
-/* A tangent serves on where a solution takes no more iterations than this. Where it takes more, another is formed for
-   the next solution if that pays: a tangent costs about as much as PRICE iterations, and the cost of a solution, that
-   of the tangent shared by all that it served for, is least where a solution first costs more than their mean. Where
-   new ones contract no better than old ones the mean never falls so far. */
+/* A tangent is reused as long as a solution takes no more iterations than this. Beyond, a new tangent is formed for
+   the next solution if it pays. A tangent costs about as much as PRICE iterations. The mean cost of a solution, with
+   the cost of the tangent shared by the solutions it served, has its minimum where a solution first costs more than
+   the mean. If new tangents contract no better than old ones, the mean never falls so far. */
 enum { PATIENCE = 5, PRICE = 10 };
 
-/* Where Newton ends earlier (newton_stop.h) a solution takes fewer; for the sake of a coupling it hardly does. */
+/* If Newton stops earlier (newton_stop.h), a solution takes fewer iterations, hardly so for the sake of a coupling. */
 static int patience(const spar_session *s) {
     return s->newton_strict || isfinite(s->newton_share) ? PATIENCE : PATIENCE - 2;
 }
 
-/* Whether the tangent is kept after a solution of so many iterations; fresh: it was formed in it. */
+/* Whether the tangent is reused after a solution of so many iterations. fresh: it was formed in this solution. */
 static int serves_on(spari_solver *s, int most, int iterations, int fresh) {
     if (fresh) { /* of the iterations the first few may have been without it */
         s->served = 1;

@@ -1,4 +1,4 @@
-/* The arrays and the reused tangent of a member that is solved for; save and load of both. */
+/* The solver of one body: arrays, the reused tangent, saved state. */
 #include "body_solver.h"
 
 #include "../base/poison.h"
@@ -259,10 +259,11 @@ void spari_solver_effort(const spari_solver *s, spari_effort *e) {
                         .band = spari_effort_band(6 * b->unique, 6 * b->per_element)};
 }
 
-/* Of a node: 25 doubles at either end of the step, 4 of the kept turn; 9 of what a tangent there is formed with. */
+/* Per node: 25 doubles at either end of the step, and 4 for the rotation at the reused tangent; 9 with which a
+   tangent is formed. */
 enum { STATE_HEAD = 17, STATE_NODE = 54, STATE_OPERATOR = 9, STATE_BEGUN = 7 };
 
-/* Factors; or, where there are none, what those for an answer are formed with. */
+/* The factors, or, if there are none, the data from which those for a response are formed. */
 static int64_t tangent_size(const spari_solver *s, int factored) {
     return factored ? spari_linear_state_size(s->linear) : STATE_OPERATOR * (int64_t)s->n;
 }

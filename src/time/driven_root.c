@@ -40,7 +40,7 @@ spari_pose spari_drive_between(const spari_pose *a, const spari_pose *b, double 
     return out;
 }
 
-/* Back from the end under an acceleration that is linear in time. */
+/* Integrates back from the end with an acceleration that is linear in time. */
 spari_pose spari_drive_stage(const spari_pose *from, const spari_pose *to, double h, double span) {
     double r = h - span, f = span / h, way[6], rotation[4];
     spari_pose out;

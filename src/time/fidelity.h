@@ -1,5 +1,6 @@
-/* How members move, as a table with one row for each fidelity. Every room asks the row, none asks which it is. A row is
-   a file of this room: to add one, write the file, name it in SPARI_FIDELITIES and give it its number in spar.h. */
+/* The fidelities of a member, as a table with one row each. Code calls the operations of the row and does not ask
+   which fidelity it is. To add a fidelity, write a file with its row, name it in SPARI_FIDELITIES, and give it a
+   number in spar.h. */
 #ifndef SPARI_FIDELITY_H
 #define SPARI_FIDELITY_H
 
@@ -9,95 +10,98 @@
 
 struct spari_pencil;
 
-/* A row. Of the operations NULL means: nothing to do. They are called where spari_fidelity_is_here, but for those that
-   every rank calls. 0 or a status; messages name the member, the public call puts its name before. */
+/* A row. An operation that is NULL does nothing. Operations are called where spari_fidelity_is_here; those marked
+   "every rank" on all ranks. They return 0 or a status. Their messages name the member; the public call adds its own
+   name. */
 typedef struct spari_fidelity {
     int moves;           /* spar finds the motion; else the host gives it */
-    int solved;          /* by equations: there is a body, and its owner sends the motion; else all ranks do alike */
+    int solved;          /* by equations: there is a body, and its owner sends the motion; else all ranks compute it */
     int massive;         /* the body has its mass whatever effects are in force */
     int takes_modes;     /* it is asked for with a number of modes */
     int prescribed_root; /* it needs a root that is fixed or driven */
-    int lower;           /* the SPAR_FIDELITY_* that advice goes on to from here, 0: none */
-    int whole;           /* one body carries all of its nodes, from the root */
+    int lower;           /* the next simpler SPAR_FIDELITY_*, which advice tries; 0: none */
+    int whole;           /* one rigid body at the root carries all nodes */
     spari_view seen;
 
-    /* every rank: what of the description it cannot serve; before anything is built */
+    /* every rank, before anything is built: refuses a description that it cannot serve */
     int (*check)(const spar_member *m);
-    /* every rank: of the effects that may be in force those that are left to it; NULL: all */
+    /* every rank: the effects that it has, of those given; NULL: all */
     int (*effects)(const spar_member *m, int effects);
-    /* every rank, nodes and body being there: m->solution, which a failure leaves to `free` */
+    /* every rank, after nodes and body: creates m->solution; a failure leaves it to `free` */
     int (*create)(spar_member *m);
     void (*free)(void *solution);
-    /* the body has been put in the place of one that had no damping, or another; NULL: that cannot be */
+    /* the body has been replaced by one with other damping; NULL: not possible */
     void (*renew)(spar_member *m);
-    /* every rank: m->added has another mass than before; NULL: nothing is kept that knows it */
+    /* every rank: the mass in m->added has changed; NULL: nothing depends on it */
     void (*remass)(spar_member *m);
 
-    /* the motion now has been set anew */
+    /* the motion at t^n has been set */
     void (*restart)(spar_member *m);
-    /* from t^n to t^n + dt in the session's substeps, under dead loads, load_history[0] and load_used; leaves t^n
-       alone, writes m->after and m->dissipated_step */
+    /* advances from t^n to t^n + dt in the session's substeps, under dead loads, load_history[0] and load_used;
+       reads t^n, writes m->after and m->dissipated_step */
     int (*advance)(spar_member *m, double dt);
-    /* accelerations at t^0 under dead loads and load_history[0], for steps dt; writes m->after, which is t^0 with them.
-       NULL: the host gives them */
+    /* finds accelerations at t^0 under dead loads and load_history[0], for steps dt; writes m->after, which is t^0
+       with them. NULL: the host gives them */
     int (*balance)(spar_member *m, double dt);
-    /* after a step: what a little more of load_used, `load` [nodes][6], adds to m->after: `motion` [nodes][6],
-       displacements and small turns, global axes, to first order and over the last substep. 0, or 1: there is no
-       answer. NULL: loads move nothing */
+    /* after a step: the motion [nodes][6] that a small additional load [nodes][6] causes, displacements and small
+       rotations, global axes, to first order and over the last substep. Returns 0, or 1: there is no response. NULL:
+       loads cause no motion */
     int (*response)(spar_member *m, const double *load, double *motion);
-    /* load [nodes][6] becomes one that moves the member as it does, without what moves nothing: what the root holds,
-       what cancels between the ends of two elements, what a rigid body or modes leave out. 0 or SPAR_ERR_MEMORY. NULL:
-       all loads move it. Where felt_here it is for the one who finds the motion, else for every rank, without a motion.
-     */
+    /* replaces load [nodes][6] by the part of it that moves the member: without the part that the root holds, that
+       cancels between the ends of two elements, or that a rigid body or modes do not represent. Returns 0 or
+       SPAR_ERR_MEMORY. NULL: all loads move the member. felt_here: only the rank that finds the motion can call it;
+       else every rank can, without a motion */
     int (*felt)(spar_member *m, double *load);
     int felt_here;
-    /* a step begins; t^{n+1} becomes t^n; or what is reused from step to step is again as the step began */
+    /* a step begins; is accepted: t^{n+1} becomes t^n; is rejected: data that are reused from step to step are
+       restored */
     void (*begin)(spar_member *m);
     void (*accept)(spar_member *m);
     void (*reject)(spar_member *m);
-    /* the effort of all that since the member was made; NULL: nothing to speak of */
+    /* the effort since the member was made; NULL: negligible */
     void (*effort)(const spar_member *m, spari_effort *effort);
-    /* equilibrium under dead and `fluid` loads [nodes][6], line loads and gravity; leaves t^n alone, writes m->after.
-       onward: from the shape that the last call found, if that leads there; else from t^n. NULL: there is none */
+    /* finds the equilibrium under dead and `fluid` loads [nodes][6], line loads and gravity; reads t^n, writes
+       m->after. onward: from the shape of the last call if this succeeds, else from t^n. NULL: there is none */
     int (*rest)(spar_member *m, const double *fluid, int load_steps, int onward);
 
-    /* every rank: what the root gives in the motion after (NULL: nothing), with memory given beforehand: so many
-       doubles; with that of followers and line loads, which a host may give later */
+    /* every rank: the reaction of the root in m->after (NULL: none), with a workspace of so many doubles, which
+       suffices for follower and line loads that a host may give later */
     int64_t (*reaction_size)(const spar_member *m);
     void (*reaction)(const spar_member *m, double *workspace, double load[6]);
-    /* every rank: kinetic, strain, potential of the motion after */
+    /* every rank: kinetic, strain and potential energy of m->after */
     int (*energy)(const spar_member *m, double energy[4]);
 
-    /* every rank: the unknowns that the root leaves free; K and M of the motion after, dense, their symmetric parts; a
-       vector of the unknowns as a field of the nodes [nodes][6], global axes (room: 6 of each unique node). Called only
-       where the body has mass. */
+    /* every rank: the number of unknowns that the root condition leaves free; K and M about m->after, dense,
+       symmetric parts; a vector of the unknowns as a field [nodes][6], global axes (workspace: 6 of each unique
+       node). Called only for bodies with mass. */
     int64_t (*unknowns)(const spar_member *m);
     int (*problem)(const spar_member *m, double *K, double *M);
     void (*shape)(const spar_member *m, const double *x, double *workspace, double *nodes);
-    /* every rank: its equations of small motions about the motion after, unsymmetric and with rates, seen from a frame
-       that turns with w: entries of the pencil, and what is left of its forces. SPAR_ERR_UNSUPPORTED: it can be seen
-       from the frame of its own root only, which turns otherwise */
+    /* every rank: adds the small-motion equations about m->after, unsymmetric and with rates, in a frame that
+       rotates with w, to the pencil, and the residual of the forces. SPAR_ERR_UNSUPPORTED: the equations exist only
+       in the frame of the member's own root, which rotates differently */
     int (*linearise)(const spar_member *m, const double w[3], struct spari_pencil *to);
 
-    /* Of members that joints tie to others, and that are solved with them (assembly.h): how (component.h; NULL: joints
-       cannot tie it); what it has found, into m->after; of those whose unknowns are nodes' the solver of the body, on
-       its owner, and what goes into it before a step, and before equilibrium under dead and `fluid` loads. */
+    /* For members in an assembly (assembly.h). component: its operations (component.h); NULL: joints cannot connect
+       it. publish: writes the motion found into m->after. For members whose unknowns are motions of nodes, on the
+       owner: solver; take_loads: passes the loads of a step to it; take_rest: passes dead and `fluid` loads for an
+       equilibrium. */
     const struct spari_component_row *component;
-    /* every rank: joints have come or changed, m->solution is made anew for them if it depends on them; the node of the
-       component's that a node of the unknowns is. NULL: it does not; the same */
+    /* every rank: renew_joints: joints have changed; renews m->solution if it depends on them (NULL: it does not).
+       end_of: the component's number of a node of the unknowns (NULL: the same). */
     int (*renew_joints)(spar_member *m);
     int (*end_of)(const spar_member *m, int node);
     struct spari_solver *(*solver)(const spar_member *m);
     void (*take_loads)(spar_member *m);
     void (*take_rest)(spar_member *m, const double *fluid);
-    /* after a step, as `answer` has it: a little more load [nodes][6] as forces r on its unknowns, and the motion x of
-       these as that of the nodes [nodes][6] */
+    /* after a step, for `response`: take_more: a small additional load [nodes][6] as forces r on the unknowns.
+       show_more: the motion x of the unknowns as a motion [nodes][6]. */
     void (*take_more)(spar_member *m, const double *load, double *r);
     void (*show_more)(spar_member *m, const double *x, double *motion);
     void (*publish)(spar_member *m);
 
-    /* All that the next steps depend on beside the member itself, to the last bit, as doubles; whether `count` doubles
-       can be that. NULL: nothing is kept. */
+    /* The state on which the next steps depend, to the last bit, apart from the member itself, as doubles. is_state:
+       whether `count` doubles can be such a state. NULL: there is none. */
     int64_t (*state_size)(const spar_member *m);
     void (*save)(const spar_member *m, double *state);
     int (*is_state)(const spar_member *m, const double *state, int64_t count);
@@ -119,15 +123,15 @@ extern const spari_fidelity spari_fidelity_given; /* points and external members
 const char *spari_fidelity_name(int fidelity);
 /* The row of a fidelity that there is. */
 const spari_fidelity *spari_fidelity_row(int fidelity);
-/* The row of a member, from what it is described as. */
+/* The row that the description of a member asks for. */
 const spari_fidelity *spari_fidelity_of(const spar_member *member);
-/* What of the description its row cannot serve: a status and a message. */
+/* Refuses a description that the row cannot serve: a status and a message. */
 int spari_fidelity_check(const spar_member *member);
 /* Whether this rank finds the motion of a committed member. */
 static inline int spari_fidelity_is_here(const spar_member *member) {
     return !member->row->solved || member->owner == spari_comm_rank(member->session->comm);
 }
-/* Doubles that this rank keeps of a committed member; 0: nothing. */
+/* Number of doubles in the state of a committed member on this rank; 0: none. */
 static inline int64_t spari_fidelity_state_size(const spar_member *member) {
     return member->row->state_size && spari_fidelity_is_here(member) ? member->row->state_size(member) : 0;
 }

@@ -66,7 +66,7 @@ HERE L NAME(series)(const int n, const double *c, L x) {
     return y[0];
 }
 
-/* The lanes whose angle is large: what the series are no good for. */
+/* The lanes whose angle is too large for the series. */
 TARGET SPARI_APART static void NAME(large_rotations)(const double *square, double *cosine, double *sine) {
     for (int l = 0; l < W; l++) {
         double half = 0.5 * sqrt(square[l]);
@@ -225,7 +225,7 @@ HERE spari_node_size NAME(size_of)(const L *size) {
     return (spari_node_size){NAME(largest)(0, size[0]), NAME(largest)(0, size[1])};
 }
 
-/* d of nodes with psi, as the tangent has it, becomes what x has to lose. */
+/* Converts d of nodes with rotation vectors psi from the tangent's variables to those of the increments x. */
 HERE void NAME(to_increments)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *d) {
     if (t->rotation) {
         NAME(corrections_forth_block)(whole, at, t, i, d);

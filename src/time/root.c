@@ -43,7 +43,7 @@ static void lose_of_nodes(void *context, int64_t from, int64_t to) {
     spari_nodes_lose(context, from > 0 ? from : 1, to);
 }
 
-/* Where the root jumps the nodes keep place and velocity: seen from it they lose the jump. */
+/* If the root jumps, the nodes keep position and velocity: relative to the root they lose the jump. */
 static void lose_jump(const spari_solver *solver, const spar_member *m, double h, const spari_pose *from,
                       const spari_pose *to, const spari_state *own) {
     spari_root_jump t = {.lanes = solver->body->lanes, .member = m, .own = own};
@@ -109,7 +109,7 @@ double spari_stage_rotation_rate(const spari_solver *s, const spar_member *m) {
     return spari_norm(w);
 }
 
-/* rad: a step that turns farther, or vibrates so far, does not resolve it. */
+/* rad: a step with a larger rotation, or a larger phase of vibration, does not resolve it. */
 static const double farthest = 1;
 
 static int follows(const spar_member *m, const spari_scheme *c, const spari_stage *g) {
@@ -128,8 +128,8 @@ static int make_own_states(spari_solver *s) {
     return s->own[1].q ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-/* At the beginning of a substep: the motion of the mean of the nodes, or of a pinned root, and their mean angular
-   velocity; as the displacement of the root's reference position. */
+/* The motion at the beginning of a substep: mean of the nodes, or a pinned root, and the mean angular velocity; as
+   the displacement of the root's reference position. */
 static spari_pose mean_motion(const spari_solver *s, const spar_member *m) {
     const spari_state *at = &s->from;
     spari_pose p = {.q = {0, 0, 0, 1, 0, 0, 0}};
@@ -180,8 +180,9 @@ static void arm_from(const spari_solver *s, const spar_member *m, int i, const d
     }
 }
 
-/* The angular acceleration of the rigid motion about `pivot` that is nearest to the accelerations of the nodes,
-   rotations times the length, for what its angular velocity w does not explain. a0: the acceleration at the pivot. */
+/* The angular acceleration of the rigid motion about `pivot` that fits the accelerations of the nodes best,
+   rotations times the length, apart from the part that its angular velocity w explains. a0: the acceleration of the
+   pivot. */
 static void mean_angular_acceleration(const spari_solver *s, const spar_member *m, const double pivot[3],
                                       const double a0[3], const double w[3], double alpha[3]) {
     double L2 = s->body->length * s->body->length, A[9] = {0}, right[3] = {0}, c[3][3], det;
@@ -212,8 +213,8 @@ static void mean_angular_acceleration(const spari_solver *s, const spar_member *
     }
 }
 
-/* Where the turning has no third derivative: a pinned root, the node that a joint holds, or, of what is free, the mean
-   of all nodes. 0: there are several. */
+/* A point of the rotation without third derivative: a pinned root, the node that a joint holds, or, of free members,
+   the mean of all nodes. Returns 0 if there are several. */
 static int find_pivot(const spari_solver *s, const spar_member *m, double pivot[3], double a0[3]) {
     int ends = s->condensed ? s->condensed->ends : 0, pinned = spari_member_constrained(m) == 3;
     if (ends > 1 || (ends == 1 && pinned && s->condensed->node[0] != 0)) {
@@ -234,10 +235,10 @@ static int find_pivot(const spari_solver *s, const spar_member *m, double pivot[
     return 1;
 }
 
-/* Generalised-alpha keeps velocities of stiff parts that are off the true ones by -C h^2 times the third derivative of
-   the place, with the C of (E1), for h v + h^2 ((1/2 - beta) b^n + beta b^{n+1}) is the whole increment. A step of
-   TR-BDF2 after it begins with the true ones, and it goes on with its own: v += f times that for all that turns as a
-   rigid body. */
+/* Generalised-alpha has velocities of stiff parts that differ from the true ones by -C h^2 times the third
+   derivative of the position, with C of (E1), because h v + h^2 ((1/2 - beta) b^n + beta b^{n+1}) is the whole
+   increment. A step of TR-BDF2 begins with the true velocities, and generalised-alpha continues with its own: v += f
+   times that derivative for all parts that rotate as a rigid body. */
 static void shift_rotating_nodes(const spari_solver *s, const spar_member *m, double f) {
     double w[3], pivot[3], a0[3], alpha[3];
     if (!find_pivot(s, m, pivot, a0)) {
@@ -270,8 +271,8 @@ void spari_steady_rate(const spar_member *m, const double w[3], const double a[3
     spari_cross(w, pushed, rate);
 }
 
-/* b^0 = a^0 + (alpha_m - alpha_f) h times the rate of the acceleration; and of a rigid body v^0 less C h^2 times that,
-   as shift_rotating_nodes has it of members that deform. */
+/* b^0 = a^0 + (alpha_m - alpha_f) h times the rate of the acceleration. For a rigid body also v^0 -= C h^2 times
+   this rate, as shift_rotating_nodes does for members that deform. */
 void spari_stage_remember(spari_solver *s, const spar_member *m, const spari_scheme *c) {
     double h = (c->alpha_m - c->alpha_f) * c->h, C = spari_scheme_error(c), rate[3];
     memcpy(s->begin.b, s->begin.a, (size_t)(6 * s->n) * sizeof *s->begin.b);
@@ -291,7 +292,7 @@ void spari_stage_remember(spari_solver *s, const spar_member *m, const spari_sch
     }
 }
 
-/* A substep begins, after one of the other scheme. */
+/* Begins a substep after one of the other scheme. */
 static void change_scheme(const spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part) {
     double C = spari_scheme_error(c);
     if (!spari_member_rotates_stiffly(m) || c->still) {
@@ -346,7 +347,8 @@ int spari_stage_begin(spari_solver *s, const spar_member *m, const spari_scheme 
     return spari_stage_root(s, m, c, part, g);
 }
 
-/* The algorithmic acceleration of a driven root's member is seen from there, all others in global axes. */
+/* The algorithmic acceleration of a member with a driven root is relative to the root, all others are in global
+   axes. */
 void spari_stage_restart(const spari_solver *s, const spar_member *m, const spari_scheme *c, spari_stage *g) {
     const spari_ends *e = &g->ends;
     int driven = m->root == SPAR_ROOT_DRIVEN && e->root;
@@ -359,10 +361,10 @@ void spari_stage_restart(const spari_solver *s, const spar_member *m, const spar
     }
 }
 
-/* rad, or of the length: below it in a substep there is one solution. */
+/* rad, or relative to the length: for a smaller motion a substep has one solution only. */
 static const double near = 0.1;
 
-/* By the change of place, or as far as the change of velocity would lead in h. */
+/* The change of position, or the distance that the change of velocity covers in h. */
 static double moved_by(const spari_solver *s, double h) {
     double most = 0;
     for (int i = 0; i < s->n; i++) {

@@ -59,7 +59,7 @@ void spari_scheme_loads(const spar_member *member, spari_steps *steps) {
     }
 }
 
-/* Gravity and what the member carries, at that moment of a step. */
+/* Gravity and applied loads at this time of a step. */
 static void applied_at(const spar_member *m, double left) {
     const spar_session *s = m->session;
     spari_applied_at(m, left);
@@ -131,8 +131,8 @@ spari_scheme spari_scheme_last(const spar_member *m, int damped, const spari_pat
     return pattern->even < SPARI_EVEN && !c.still ? spari_scheme_stage(&c, SPARI_BACKWARD) : c;
 }
 
-/* Of what turns freely at W, generalised-alpha feeds the parts that it does not resolve from 1 - rho_inf = 1.5 W h on
-   (docs/beam.md, "Stiff members that turn"); with rho_inf = 1 those of omega h > 4 / (W h). TR-BDF2 does not. */
+/* In free rotation at W, generalised-alpha amplifies unresolved parts from 1 - rho_inf = 1.5 W h on (docs/beam.md,
+   "Stiff members that turn"); with rho_inf = 1 those of omega h > 4 / (W h). TR-BDF2 does not. */
 static int exceeds_limit(double rotation_rate, const spari_scheme *c, const spar_session *session) {
     static const double least = 0.05;
     return 1.5 * rotation_rate * c->h > fmax(1 - session->rho_inf, least);
@@ -173,7 +173,7 @@ spari_scheme spari_scheme_resize(const spari_scheme *alpha, double h) {
     return c;
 }
 
-/* A substep from the state it begins at, which stays for another try. Status and rule of the last stage. */
+/* Solves a substep. Its initial state stays for another try. Returns the status; *c: the rule of the last stage. */
 static int try_part(const spari_stepper *how, void *self, const spari_scheme *alpha, int even, spari_part *part,
                     spari_scheme *c) {
     *c = *alpha;
@@ -188,7 +188,7 @@ static int try_part(const spari_stepper *how, void *self, const spari_scheme *al
     return how->solve(self, c, part);
 }
 
-/* The same; whether it has a solution that may stay. What fails is told to the session if `last`. */
+/* The same, with the check that the solution gains no energy. The session gets the message of a failure if `last`. */
 static int try_to_stay(const spari_stepper *how, void *self, const spari_scheme *alpha, int even, spari_part *part,
                        spari_scheme *c, const spar_session *session, int last) {
     char text[SPARI_MESSAGE_SIZE], *before = last ? NULL : spari_messages_redirect(text);
@@ -210,12 +210,12 @@ static int try_to_stay(const spari_stepper *how, void *self, const spari_scheme 
 
 enum { PARTS = 1024 };
 
-/* The node of the tree of halvings that begins at `at` and has `size` of the parts. */
+/* The node of the tree of halvings that begins at `at` and covers `size` parts. */
 static unsigned node_of(int at, int size) {
     return (unsigned)(PARTS / size + at / size);
 }
 
-/* One substep of the session, cut where that is needed. */
+/* One substep of the session, halved where necessary. */
 static int run_substep(const spari_stepper *how, void *self, const spari_scheme *whole, spari_cuts *cuts,
                        spari_pattern *pattern, const spar_session *session, double dt, double from, double to) {
     int at = 0, size = PARTS, again = 0;
@@ -281,9 +281,9 @@ void spari_scheme_stretch(double ratio, int n, const double *a, double *b) {
     }
 }
 
-/* b^n = a^n + (alpha_m - alpha_f) h a', by the change of a over the step. Motions that the step does not resolve have a
-   change that says nothing; up to a factor of 0.8 it feeds nothing after two steps of TR-BDF2, whatever rho_inf
-   (tests/stability/random_steps.c). */
+/* b^n = a^n + (alpha_m - alpha_f) h a', with a' from the change of a over the step. For motions that the step does
+   not resolve this change is arbitrary. With a factor up to 0.8 it excites nothing after two steps of TR-BDF2, for
+   any rho_inf (tests/stability/random_steps.c). */
 void spari_scheme_restart(const spari_scheme *c, int n, const double *a0, const double *a, double *b) {
     double f = fmax(c->alpha_m - c->alpha_f, -0.8);
     for (int i = 0; i < n; i++) {

@@ -1,10 +1,12 @@
-/* Static equilibrium by Newton with the exact tangent, in load steps that halve where Newton fails or leaves the path.
+/* Static equilibrium by Newton with the exact tangent, in load steps. A load step is halved if Newton fails or
+   leaves the path.
 
-   From a stable state on, the equilibria that growing dead forces lead to form a path on which the tangent, the second
-   derivative of a potential, stays positive definite until a limit or branching point. A load step that ends beyond
-   such a point, or whose iterations pass a tangent of negative determinant (a jump to another branch), is halved; when
-   it cannot be halved any more the point has been found. Moments of fixed axes and follower loads have no potential:
-   their paths are not watched (a beam rolled up by a moment, say, is held to its plane by nothing but symmetry). */
+   From a stable state on, the equilibria under growing dead forces form a path. On this path the tangent, the second
+   derivative of a potential, is positive definite up to a limit or bifurcation point. A load step is halved if it
+   ends beyond such a point, or if its iterations pass a tangent of negative determinant (a jump to another branch).
+   If it cannot be halved any more, the point has been found. Moments about fixed axes and follower loads have no
+   potential, and their paths are not watched: for example, only symmetry keeps a beam rolled up by a moment in its
+   plane. */
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
@@ -18,16 +20,16 @@
 
 enum { STATIC_ITERATIONS = 50, STATIC_HALVINGS = 14 };
 
-/* What a solution works with besides the solver's arrays. */
+/* Data of a solution, apart from the solver's arrays. */
 typedef struct loading {
-    int rotating; /* the root turns: equilibrium in its frame */
+    int rotating; /* the root rotates: equilibrium in its frame */
     spari_steady_rotation rotation, part;
-    double *mass;  /* turning: an element's mass matrix */
+    double *mass;  /* if rotating: an element's mass matrix */
     int guarded;   /* the path is watched */
-    double *v, *a; /* rates of the steady turn; NULL: at rest */
+    double *v, *a; /* rates of the steady rotation; NULL: at rest */
 } loading;
 
-/* Forces less loads at load factor f; returns what rounding in them is relative to. */
+/* Forces less loads at load factor f. Returns the size that rounding errors are relative to. */
 static double balance_at(const spari_solver *s, const spar_member *m, loading *l, double f, const double *q,
                          double *r) {
     const spari_body body = spari_body_in_part(s->body, f);
@@ -84,7 +86,7 @@ void spari_static_shift(int n, double cut, const double *dx, double *q) {
 
 typedef enum outcome { FOUND, FAILED, LOST, LONG } outcome;
 
-/* The state is in equilibrium, its rates those of the last `balance_at`: on the path, or beyond its end? */
+/* Whether a state in equilibrium, with the rates of the last `balance_at`, is on the path or beyond its end. */
 static outcome judge(const spari_solver *s, const spar_member *m, loading *l, double f, const double *q) {
     if (!l->guarded) {
         return FOUND;
@@ -97,7 +99,7 @@ static outcome judge(const spari_solver *s, const spar_member *m, loading *l, do
 static outcome equilibrium(spari_solver *s, const spar_member *member, loading *l, double f, int from_path, double *q) {
     int n = s->n;
     double last = 0, length = s->body->length;
-    const double longest = 0.8; /* a correction turns no node by more (rad), nor moves it by more of the length */
+    const double longest = 0.8; /* a correction rotates no node by more (rad), and moves it by no more of the length */
     for (int it = 0; it < STATIC_ITERATIONS; it++) {
         double scale = balance_at(s, member, l, f, q, s->r), noise = 0;
         memset(s->r, 0, (size_t)spari_member_constrained(member) * sizeof *s->r);
@@ -132,7 +134,8 @@ static outcome equilibrium(spari_solver *s, const spar_member *member, loading *
     return FAILED;
 }
 
-/* Whether the path can be watched: loads with a potential on a member that its root holds, and that is not linear. */
+/* Whether the path can be watched: the loads have a potential, the root holds the member, and the member is not
+   linear. */
 static int has_path(const spari_solver *s, const spar_member *m) {
     int moments = 0;
     for (int i = 0; i < s->n; i++) {
@@ -155,8 +158,8 @@ static int starts_on_path(const spari_solver *s, const spar_member *m, loading *
     return 1;
 }
 
-/* Load steps from 0 to all of the loads, s->to.q from `start`, which it may be; the last point in s->best. Returns the
-   part reached. */
+/* Load steps from 0 to the full load, s->to.q from `start`, which may be the same array. The last point is in
+   s->best. Returns the part of the load that was reached. */
 static double follow_path(spari_solver *s, const spar_member *member, loading *l, const double *start, int load_steps,
                           outcome *why) {
     size_t bytes = (size_t)(7 * s->n) * sizeof(double);
@@ -187,7 +190,7 @@ static double follow_path(spari_solver *s, const spar_member *member, loading *l
     return done;
 }
 
-/* Largest turn of a node of the state q against the next one, rad. */
+/* The largest rotation between neighbouring nodes of the state q, rad. */
 static double largest_bend(const spari_solver *s, const double *q) {
     double largest = 0;
     for (int i = 1; i < s->n; i++) {
@@ -200,9 +203,9 @@ static double largest_bend(const spari_solver *s, const double *q) {
     return largest;
 }
 
-/* Nodes that are turned by more against each other do not hold the shape between them: a circle of 5 turns on 24 nodes
-   (2.1 rad) is right to 5e-4, one of 7 (3 rad) is another curve. Where Newton failed, 1 rad is suspicion enough: 10
-   nodes of an element fail at 1.7. */
+/* With a larger rotation between nodes, the shape between them is not determined: a circle of 5 turns on 24 nodes
+   (2.1 rad) is accurate to 5e-4, one of 7 turns (3 rad) is another curve. If Newton has failed, 1 rad suffices for
+   this message: 10 nodes of an element fail at 1.7 rad. */
 static const double most_bend = 2.2, suspect_bend = 1;
 
 static int refuse(const spari_solver *s, const spar_member *member, double done, outcome why) {
@@ -225,7 +228,7 @@ static int refuse(const spari_solver *s, const spar_member *member, double done,
                       member->name, why == LOST ? "stable " : "", done, text);
 }
 
-/* An equilibrium of the nodes that is none of the beam. */
+/* Refuses an equilibrium of the nodes that is not one of the beam. */
 static void warn_of_bend(const spari_solver *s, const spar_member *m) {
     char text[SPARI_MESSAGE_SIZE];
     double bend = m->session->log ? largest_bend(s, s->best) : 0;
@@ -243,7 +246,7 @@ static int no_memory_to_balance(const spar_member *member) {
     return spari_fail(member->session, SPAR_ERR_MEMORY, "member '%s': no memory for its equilibrium", member->name);
 }
 
-/* The shape found, at rest or turning steadily. */
+/* Stores the shape that was found, at rest or in steady rotation. */
 static void give_equilibrium(spari_solver *s, const spar_member *member, const loading *l) {
     memcpy(s->to.q, s->best, (size_t)(7 * s->n) * sizeof *s->best);
     memset(s->to.v, 0, (size_t)(18 * s->n) * sizeof(double));

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Velocity and acceleration of node i, of a driven root's member as seen from there, in its axes. */
+/* Velocity and acceleration of node i. For a member with a driven root: relative to the root, in its axes. */
 static void rates_from_root(const spar_member *m, const spari_motion *x, int64_t i, double v[6], double a[6]) {
     memcpy(v, x->v + 6 * i, 6 * sizeof *v);
     memcpy(a, x->a + 6 * i, 6 * sizeof *a);
