@@ -151,9 +151,9 @@ static int tangent_serves(const spari_assembly *a) {
 static const double near_factored = 0.01;
 enum { LEAST_PATIENCE = 3, MOST_PATIENCE = 8 };
 
-/* What is left of the tangents for the next solution (see system.h) after one of so many iterations; took: of those
-   that it was found with, 0: it formed them. New ones take about ten iterations to form and serve for many solutions,
-   so that they are made when they would spare more than one iteration. */
+/* Updates the reuse of the tangents after a solution (see system.h) of so many iterations. took: iterations of the
+   solution that formed them; 0: this one did. New tangents cost about ten iterations and serve many solutions. They
+   are formed if they would save more than one iteration. */
 static int tangents_after(int iterations, int took) {
     int patience = took < LEAST_PATIENCE ? LEAST_PATIENCE : took < MOST_PATIENCE ? took + 1 : MOST_PATIENCE;
     if (took == 0) {
@@ -182,8 +182,7 @@ static int begin_together(void *self, int kept) {
     return t->a->factored;
 }
 
-/* Of positions. So much of a gap is none: in a step h it would ask for an acceleration of the gap / h^2, 1 m/s^2 in
-   1e-8 s. */
+/* A position gap below this counts as zero: in a step h, it causes an acceleration of gap / h^2, 1 m/s^2 for 1e-8 s. */
 static double rounding_of(const spari_constraint *l) {
     double size = 0;
     for (int side = 0; side < 2; side++) {
@@ -345,11 +344,11 @@ static int newton_all(spari_assembly *a, double s, double dt) {
     return SPAR_OK;
 }
 
-/* Generalised-alpha with constraints at position level keeps velocities that are off them by -C h^2 times the rate of
-   the acceleration, with the C of (E1), for h v + h^2 ((1/2 - beta) b^n + beta b^{n+1}) is the whole increment. It
-   begins smoothly if they are put there; else accelerations and multipliers ring with an amplitude of first order.
-   Rates of the accelerations at the joints are those of what turns steadily at t^0 (time 0), later those of the time
-   that has passed since t^n. 0 or 1. */
+/* Generalised-alpha with constraints at position level has velocities that are off the constraints by -C h^2 times
+   the rate of the acceleration, with C of (E1), because h v + h^2 ((1/2 - beta) b^n + beta b^{n+1}) is the whole
+   increment. It begins smoothly if the velocities have this error from the beginning; else accelerations and
+   multipliers oscillate with an amplitude of first order. At t^0 (time 0) the rates of the accelerations at the
+   joints are those of a steady rotation, later those of the time since t^n. Returns 0 or 1. */
 static int shift_for_alpha(spari_assembly *a, double cv, double time) {
     const spari_scheme *c = &a->component[0].alpha;
     double C = spari_scheme_error(c);
@@ -423,8 +422,8 @@ static void begin_drive(spari_constraint *l) {
     l->drive = j->drive[0];
 }
 
-/* Accelerations at t^0 of the parts and loads of the joints that belong together: body_newton.c's start, with the
- * joints. */
+/* Finds consistent accelerations of the components and loads of the joints at t^0: the start of body_newton.c, with
+   the joints. */
 static int start_all(spari_assembly *a) {
     double cm = a->component[0].scheme.cm;
     int singular = 0;
@@ -473,8 +472,8 @@ void spari_assembly_forget(spari_assembly *a) {
 
 /* ---- the step ---- */
 
-/* Positions and velocities as they are, accelerations of the balance: of a frame that turns, or a rigid beam, those of
-   its nodes depend on the velocities, and only the scheme's own are those that its loads have answered to. */
+/* Keeps positions and velocities, and computes accelerations from the balance. In a frame that rotates, and in a
+   rigid beam, the accelerations of nodes depend on the velocities. The loads belong to the velocities of the scheme. */
 static void publish_component(spari_component *p, double *rates) {
     const spar_member *m = p->member;
     size_t size = (size_t)(6 * m->nodes) * sizeof *rates;
@@ -493,10 +492,10 @@ static int fail_singular(const spari_assembly *a) {
         a->constraint[0].joint->name, a->session->time);
 }
 
-/* The motion that is seen at the end of a step has velocities on the constraints. The scheme goes on with its own,
-   which are off them by dt^2: with velocities put onto them the accelerations, and so the joints' loads, would be of
-   first order, for h^2 (1/2 - beta) b^n + h^2 beta b^{n+1} then has to make up for the whole of the way's local error.
- */
+/* The published motion at the end of a step has velocities on the constraints. The scheme continues with its own
+   velocities, which are off the constraints by dt^2. With projected velocities the accelerations and the joints'
+   loads would be of first order only, because h^2 (1/2 - beta) b^n + h^2 beta b^{n+1} would have to make up for the
+   whole local error of the positions. */
 static int publish_all(spari_assembly *a, double dt) {
     int moves = !a->component[0].scheme.still;
     for (int i = 0; i < a->components; i++) {
@@ -510,12 +509,12 @@ static int publish_all(spari_assembly *a, double dt) {
     return singular ? fail_singular(a) : SPAR_OK;
 }
 
-/* rad: beyond it in a step, constraints of positions alone ring in the joints' loads, and the ringing feeds itself: of
-   what joints turn by, and of what their nodes, and with them the directions of what is held, turn by. */
+/* rad: with a larger rotation in a step, constraints at position level alone cause growing oscillations of the
+   joints' loads. It is the rotation of the joints, and of their nodes, which carry the constrained directions. */
 static const double farthest_rotation = 0.1, farthest_spin = 0.2;
 
-/* In a long chain short members turn back and forth in less than a step under its tension: their ringing feeds itself
-   whatever they turn by (tests/stability/chains.c). So many joints with free motions are a long chain. */
+/* In a long chain under tension, short members rotate to and fro in less than a step. Their oscillation grows,
+   however small the rotation is (tests/stability/chains.c). So many joints with free motions are a long chain. */
 enum { CHAIN = 8 };
 
 static int makes_a_chain(const spari_assembly *a) {
@@ -604,7 +603,7 @@ static int form_after(spari_assembly *a) {
     return form(a);
 }
 
-/* Stored in the springs of a joint and in what the host's load and the preload can give. */
+/* Energy stored in the springs of a joint, in the host's load and in the preload. */
 static double potential_of(const spar_joint *j, double left, const double z[6]) {
     double sum = 0;
     for (int p = 0; p < 6; p++) {
@@ -688,9 +687,9 @@ static void set_scheme(spari_assembly *a, const spari_scheme *c) {
     }
 }
 
-/* Constraints are held at velocity level too where dt changes (Gear, Gupta and Leimkuhler, J. Comput. Appl. Math. 12
-   (1985)): at position level alone velocities are off them by dt^2, which a shorter step pays back as an acceleration
-   of dt_old^2 / dt_new. */
+/* If dt changes, constraints hold at velocity level too (Gear, Gupta and Leimkuhler, J. Comput. Appl. Math. 12
+   (1985)). At position level alone velocities are off the constraints by dt^2, which a shorter step turns into an
+   acceleration of dt_old^2 / dt_new. */
 static int stage_of_all(void *self, const spari_scheme *c, const spari_part *part) {
     spari_assembly *a = self;
     set_scheme(a, c);
@@ -802,8 +801,8 @@ static int respond_once(spari_assembly *a, double *stacked) {
     return 0;
 }
 
-/* Where the parts and constraints stood when the step was written to the file that it was read from. What joints have
-   moved by stays: its rates are those that were published. */
+/* Restores the components and constraints at the end of the step that was read from a file. The motions of joints
+   stay: their rates are the published ones. */
 static void look_back(spari_assembly *a) {
     for (int i = 0; i < a->components; i++) {
         a->component[i].row->look_back(a->component + i);

@@ -11,10 +11,11 @@
 
 /* ---- what it takes ---- */
 
-/* Instructions, rounded from what callgrind counts (docs/performance.md, benchmarks/chain.c): only their ratios matter.
-   An iteration of Newton: a node and its six unknowns, a quadrature point, a node that a point sees, an entry of a
-   row of the band; a linear or modal member's: a node, an entry of its matrices; a rigid body; a joint, with what
-   remains of the bodies it ties. Newton takes some iterations where a linear member takes one solution. */
+/* Costs in instructions, rounded from callgrind's counts (docs/performance.md, benchmarks/chain.c). Only their
+   ratios matter. An iteration of Newton costs a sum over: nodes with six unknowns, quadrature points, nodes that a
+   point depends on, entries of the rows of the band. A linear or modal member: nodes, entries of its matrices.
+   Others: a rigid body; a joint, with the condensed bodies that it connects. Newton takes several iterations where a
+   linear member takes one solution. */
 static const double NODE = 2500, POINT = 390, POINT_NODE = 11, ENTRY = 0.87, FRAME_NODE = 3200, FRAME_ENTRY = 2.75,
                     RIGID = 5000, JOINT = 22000, NEWTON = 2.5;
 

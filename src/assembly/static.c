@@ -91,8 +91,8 @@ static double change_of_loads(const spari_assembly *a) {
     return largest;
 }
 
-/* Whether an iteration that moves nothing is the last one: joints' loads hold or loosen what they tie, and a tangent
-   with those of before says nothing of it. */
+/* Whether an iteration without motion is the last one. Joints' loads change the stiffness of the motions they
+   connect, and a tangent with the former loads does not contain this. */
 static int loads_stand(const spari_assembly *a, int it, double scale) {
     return it >= 3 || change_of_loads(a) <= 1e-6 * scale;
 }
@@ -116,8 +116,9 @@ static int has_potential(const spari_assembly *a, const double *(*fluid)(const s
     return !a->rotates;
 }
 
-/* Corrections with the least shift, 0 or of a row that grows by 4, that makes the system one of a minimum. *kept: the
-   last that was not 0. What was wrong without it. */
+/* Solves for the corrections with the smallest shift that makes the system that of a minimum: 0, or one of a
+   sequence that grows by a factor of 4. *kept: the last shift that was not 0. Returns the fault of the system
+   without a shift. */
 static rest solve_downhill(spari_assembly *a, double f, double *kept) {
     enum { SHIFTS = 30 };
     rest why = FOUND;
@@ -139,8 +140,8 @@ static rest solve_downhill(spari_assembly *a, double f, double *kept) {
     return why;
 }
 
-/* Stable equilibrium at the factor f from the states `to`, downhill all the way. LOOSE: nothing holds some motion
-   there; UNSTABLE: it has come to one that is unstable. */
+/* Finds a stable equilibrium at the load factor f from the states `to`, always downhill. LOOSE: a motion is not
+   constrained there. UNSTABLE: the equilibrium found is unstable. */
 static rest find_downhill(spari_assembly *a, double f) {
     enum { ITERATIONS = 400 };
     const double longest = 0.3;
@@ -168,7 +169,7 @@ static rest find_downhill(spari_assembly *a, double f) {
     return FAILED;
 }
 
-/* Whether the equilibrium found is a maximum or saddle; what nothing holds is no matter here. */
+/* Whether the equilibrium is a maximum or a saddle, apart from motions without stiffness. */
 static int is_unstable(spari_assembly *a, double f) {
     spari_blocks_watch(a->system, 1);
     int singular = solve_at_rest(a, f);
@@ -249,7 +250,7 @@ static rest find_point(spari_assembly *a, double f, int first, rest_end *end) {
     return end->why;
 }
 
-/* Load steps from 0 to all of the loads, the last point kept. Returns the part reached. */
+/* Load steps from 0 to the full load. Keeps the last point. Returns the part of the load that was reached. */
 static double follow_loads(spari_assembly *a, int load_steps, rest_end *end) {
     double done = 0, step = 1.0 / load_steps;
     int halvings = 0;

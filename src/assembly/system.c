@@ -84,7 +84,7 @@ static void release_springs(const spari_constraint *l, double cv, double K[12][1
     }
 }
 
-/* K[12][12] := what the constraint takes from the tangent: the turning of its load, springs and dampers. */
+/* K[12][12] := the constraint's part of the tangent: joint_tangent, springs and dampers. */
 static void constraint_tangent(const spari_constraint *l, double cv, double K[12][12]) {
     double R[2][9];
     matrix_of_rotation(rotation_of_side(l, 0), R[0]);
@@ -99,8 +99,8 @@ static void constraint_tangent(const spari_constraint *l, double cv, double K[12
     }
 }
 
-/* A force at the end of an arm: its moment about the beginning comes to it, f[stride 0 to 5]. So do the columns of what
-   is multiplied by the motion there. */
+/* Moves a force from the end of a lever arm to its beginning, f[stride 0 to 5]. The same holds for the columns of a
+   matrix that multiplies the motion there. */
 static void carry_force(const double d[3], int stride, double *f) {
     const double x = f[0], y = f[stride], z = f[2 * stride];
     f[3 * stride] += d[1] * z - d[2] * y;
@@ -171,8 +171,8 @@ static void add_part(spari_assembly *a, spari_component *p) {
     }
 }
 
-/* Inside a cluster the load turns with its nodes, of which one is d from the other: its moment on the cluster, which is
-   0, has the derivative (theta x d) x f = (d f^T - d . f) theta. */
+/* Inside a cluster, the load rotates with its nodes, which are d apart. Its moment on the cluster is 0, and has the
+   derivative (theta x d) x f = (d f^T - d . f) theta. */
 static void add_rigid_load(spari_assembly *a, const spari_constraint *l) {
     const spari_interface *v = moving(a, l->node[0] < 0 ? l->node[1] : l->node[0]);
     double d[3], f[3], along = 0;
@@ -196,7 +196,7 @@ static void add_rigid_load(spari_assembly *a, const spari_constraint *l) {
     }
 }
 
-/* The turning of its load, springs and dampers. */
+/* Adds joint_tangent, springs and dampers of the constraint. */
 static void add_constraint_stiffness(spari_assembly *a, spari_constraint *l, double cv) {
     l->stiff = 0;
     if (is_rigid(l)) {
@@ -325,7 +325,7 @@ static int find_clusters(spari_assembly *a) {
     return 0;
 }
 
-/* The shift against every motion of the clusters, turns by their members' lengths. */
+/* Adds the shift to every motion of the clusters, rotations times the members' lengths. */
 static void add_shift(spari_assembly *a) {
     for (int i = 0; i < a->components; i++) {
         const spari_component *p = a->component + i;
@@ -393,7 +393,8 @@ static int form_system(spari_assembly *a, double cv, double penalty) {
     return 0;
 }
 
-/* Forms and factors it. With one penalty a block may be singular by chance; not with two. 0 or 1. */
+/* Forms and factors the system. With one penalty a block may be singular by chance, but not with two different ones.
+   Returns 0 or 1. */
 static int factor_system(spari_assembly *a, double cv) {
     static const double penalty[2] = {8, 27}, weak = 1e-11;
     int singular = 0;
@@ -446,8 +447,8 @@ static void add_forces_of(const spari_assembly *a, const double *u, double *y) {
     }
 }
 
-/* The rows of a rigid constraint for one node's own motion are [A C; 0 F], A orthogonal and F^-1 = E: the motion that
-   they give x, and the loads that balance a force y there. */
+/* A rigid constraint has the rows [A C; 0 F] for one node's motion, A orthogonal and F^-1 = E. Computes the motion
+   for the gaps x, and the multipliers that balance a force y. */
 static void solve_for_motion(const spari_constraint *l, const spari_interface *v, double x[6]) {
     double motion[6] = {0};
     for (int i = 0; i < 9; i++) {
@@ -574,7 +575,7 @@ static void show_motion(const spari_assembly *a, double *x) {
     }
 }
 
-/* Multipliers that stand in the system. y: what forces do not balance, they take their part off. */
+/* Corrections of the multipliers in the system. Subtracts their forces from the unbalanced forces y. */
 static void read_multipliers(spari_constraint *l, const double *b, double *y) {
     int constrained = 0;
     for (int k = 0; k < 6; k++) {
@@ -587,7 +588,7 @@ static void read_multipliers(spari_constraint *l, const double *b, double *y) {
     }
 }
 
-/* Corrections of the multipliers: those of clusters balance the forces y that are left on their nodes, from the ends of
+/* Corrections of the multipliers of clusters, which balance the remaining forces y on their nodes, from the ends of
    the tree on. */
 static void find_constraint_loads(spari_assembly *a, double *y) {
     for (int i = 0; i < a->constraints; i++) {
@@ -720,8 +721,8 @@ static void scale_motion(spari_assembly *a) {
     }
 }
 
-/* x: the motion that the system resists least, by two steps of inverse iteration from a motion of no symmetry; every
-   motion is given a little stiffness, so that there are factors. 0 or 1. */
+/* x := the motion with the least stiffness, by two steps of inverse iteration from a motion without symmetry. A
+   small stiffness is added to every motion, so that the system can be factored. Returns 0 or 1. */
 static int free_motion(spari_assembly *a) {
     int n = spari_blocks_rows(a->system);
     a->standing = 0;
@@ -752,7 +753,8 @@ static int free_motion(spari_assembly *a) {
     return 0;
 }
 
-/* Joints that move name it best; where none does, the whole goes, and the farthest motion of a member's node does. */
+/* Names the motion by the joints that move. If no joint moves, the whole does, and the member whose node moves
+   farthest names it. */
 void spari_system_name_free(spari_assembly *a, char *text, int size) {
     static const char *const motion[6] = {"x", "y", "z", "the turn about x", "the turn about y", "the turn about z"};
     double most = 0, farthest = 0;

@@ -65,8 +65,8 @@ static void copy_motion(const spar_member *m, const spari_motion *from, spari_mo
     spari_member_spread(m, m->nodes, copy_nodes, motion);
 }
 
-/* Before the first step those accelerations count that a start with initial accelerations begins with, not those that
- * it has found. */
+/* Before the first step, the accelerations count with which the search for consistent initial accelerations began,
+   not those that it found. */
 static void restart_solution(spar_member *m) {
     double *found = m->now.a;
     if (m->row->restart && spari_fidelity_is_here(m)) {
@@ -291,7 +291,7 @@ static int check_complete(spar_member *m) {
     return spari_fidelity_check(m);
 }
 
-/* What is in force: what was asked for, or is implied, as far as the description gives it something to do. */
+/* The effects in force: those requested or implied, as far as the description has data for them. */
 int spari_member_effects(const spar_member *m) {
     const int implied = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
                         SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_MASSES | SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION;

@@ -29,8 +29,7 @@ void spari_work_free(spari_work *work) {
     }
 }
 
-/* Whether moments do their work on the change of the rotation vector, as where a member is linear in axes that stand.
- */
+/* Whether moments work on the change of the rotation vector: in members that are linear in axes at rest. */
 static int rotates_linearly(const spar_member *m) {
     return m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN && !m->floats;
 }
@@ -105,7 +104,7 @@ static int keeps_account(const spar_joint *j) {
     return j->member[0]->work || (j->member[1] && j->member[1]->work);
 }
 
-/* The coordinates of a joint and its forces on its two nodes, f[12], at t^n or, at the end, in the motion after. */
+/* The coordinates of a joint and its forces on its two nodes, f[12], at t^n or (at the end) at t^{n+1}. */
 static void joint_at(const spar_joint *j, int end, double z[6], double f[12]) {
     const spari_relative *at = end ? &j->after : &j->now;
     spari_node_pose pose[2];
@@ -132,8 +131,8 @@ static double damper_of_line(const spar_joint *j, const spari_relative *at) {
     return spari_joint_pull(j, at->z, at->rate, INFINITY) - j->stiffness[0] * (j->slack ? fmax(stretch, 0) : stretch);
 }
 
-/* What its dampers take, its drives and the host's load give over the step, by the trapezoidal rule in its coordinates.
- */
+/* The work over the step that dampers absorb, and that drives and the host's load supply, by the trapezoidal rule in
+   the joint's coordinates. */
 static void add_to_account(spar_joint *j, const double from[6], const double z[6]) {
     const spari_relative *now = &j->now, *to = &j->after;
     int given = spari_joint_constrained(j), most = j->kinematics.line ? 1 : 6;
