@@ -25,8 +25,8 @@ spari_steady_rotation spari_steady_rotation_part(const spari_steady_rotation *ro
 /* Rates v, a [unique][6] of the shape q [unique][7]. */
 void spari_steady_rotation_rates(const spar_member *member, const spari_steady_rotation *rotation, const double *q,
                                  double *v, double *a);
-/* A frame that rotates steadily and carries several components. `rotation` of `centre` holds for every position relative
-   to it. */
+/* A frame that rotates steadily and carries several components. `rotation` of `centre` holds for every position
+   relative to it. */
 typedef struct spari_rotating_frame {
     spari_steady_rotation rotation;
     double centre[3];
