@@ -290,7 +290,6 @@ static void expand_frame(spari_component *p, double *x) {
         f->dx[6 * p->condensed->node[k / 6] + k % 6] = x[k];
     }
     spari_condensed_expand(p->condensed, f->dx);
-    f->solves++;
 }
 
 /* The largest motion of a node, by the member's length, and turn, of unknowns x. */
@@ -315,6 +314,7 @@ static double correction_of_frame(const spari_component *p) {
 static void correct_frame(spari_component *p, double cut) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
+    f->solves++; /* responses to loads do not count */
     for (int k = 0; k < 6 && cut < 1; k++) {
         s->dx[k] *= cut;
     }
