@@ -237,7 +237,7 @@ static int64_t frame_unknowns(const spar_member *m) {
 
 static int frame_response(spar_member *m, const double *load, double *motion) {
     spari_component p = frame_component(m);
-    return spari_component_answer(&p, load, motion);
+    return spari_component_response(&p, load, motion);
 }
 
 static void frame_effort(const spar_member *m, spari_effort *e) {

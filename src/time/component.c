@@ -147,7 +147,7 @@ int spari_component_advance(spari_component *p, double dt) {
     return spari_scheme_run(&how, p, &alpha, &p->member->cuts, &steps->solved, p->member->session, dt);
 }
 
-int spari_component_answer(spari_component *p, const double *load, double *motion) {
+int spari_component_response(spari_component *p, const double *load, double *motion) {
     p->row->look_back(p);
     if (!p->row->serves(p)) {
         (void)p->row->balance(p);

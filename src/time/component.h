@@ -119,7 +119,7 @@ int spari_component_advance(spari_component *p, double dt);
 /* Accelerations at t^0, for steps dt. */
 int spari_component_balance(spari_component *p, double dt);
 /* After a step: what a little more load [nodes][6] adds to the motion [nodes][6]. 0, or 1: there is no answer. */
-int spari_component_answer(spari_component *p, const double *load, double *motion);
+int spari_component_response(spari_component *p, const double *load, double *motion);
 /* Equilibrium under dead and `fluid` loads [nodes][6], in the frame of a root that is driven steadily. 0, or 1: there
    is none. */
 int spari_component_static(spari_component *p, const double *fluid);
