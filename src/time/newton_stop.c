@@ -8,7 +8,7 @@
 #include <math.h>
 
 /* part: the allowed Newton error relative to the error of the scheme. part_if_free: the same for free roots, whose
-   energy and momentum drift without a restoring force; a body that tumbles for 10^5 steps (tests/test_newton.c)
+   energy and momentum drift without a restoring force; a body that tumbles for 10^5 steps (tests/time/test_newton.c)
    loses 4e-4 of its energy with a part of 1e-3, of which 1e-4 comes from the scheme. most: the allowed error
    relative to the motion in the step. keeps: decay of the estimates per step, because an acceleration passes through
    0 when it reverses. */

@@ -1,4 +1,4 @@
-/* The operations of generalised-alpha on single nodes, several nodes at once (node_kinematics_lanes.h): rotations
+/* The operations of generalised-alpha on single nodes, several nodes at once (node_kinematics_lanes.c): rotations
    into the axes of the reused tangent and back, corrections, positions, and motions relative to a driven root.
    Results have the same bits at every vector width. */
 #ifndef SPARI_NODE_KINEMATICS_H

@@ -1,5 +1,5 @@
 /* Stores positions and velocities from registers directly in the host's triples, for one vector width. Included by
-   kernel.h, with its macros.
+   transfer_lanes.c, with its macros.
    The host's array may begin anywhere in a cache line of 64 bytes. With vectors of a full line, the interleaved
      numbers are rotated by this offset and combined with the rest of the previous vector. So whole lines are
      written, once each, and with non-temporal stores if wanted. (Processors collect written lines in few buffers;
