@@ -125,16 +125,16 @@ static double tolerance(const spari_assembly *a, double largest) {
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
         double way = p->row->way(p);
-        p->allowed = s->newton_strict ? 0 : spari_newton_tolerance(p->member, &p->scheme, way);
+        p->allowed = s->newton.strict ? 0 : spari_newton_tolerance(p->member, &p->scheme, way);
         size = fmax(size, way);
         most = fmax(most, p->allowed);
     }
-    for (int i = 0; i < a->components && !s->newton_strict; i++) {
+    for (int i = 0; i < a->components && !s->newton.strict; i++) {
         worst = fmax(worst, a->component[i].correction_size / fmax(a->component[i].allowed, 0.1 * most));
     }
     int stage = a->component[0].scheme.rule != SPARI_ALPHA;
     double strict =
-        stage ? spari_newton_tolerance_stage(s, &a->component[0].scheme, size) : s->newton_atol + s->newton_rtol * size;
+        stage ? spari_newton_tolerance_stage(s, &a->component[0].scheme, size) : s->newton.atol + s->newton.rtol * size;
     return worst > 0 ? fmax(strict, largest / worst) : strict;
 }
 
@@ -276,7 +276,7 @@ static const char *attempts_of(spari_assembly *a, double s, double dt, int *iter
     static const spari_newton how = {SPARI_LONGEST,    LEAST_RATE,     guess_together, begin_together,
                                      iterate_together, renew_together, end_together};
     together_step step = {a, s, dt, 0};
-    return spari_newton_solve(&how, &step, tangent_serves(a), a->session->newton_max,
+    return spari_newton_solve(&how, &step, tangent_serves(a), a->session->newton.max,
                               spari_newton_stop_begin(a->session, &a->trace), iterations);
 }
 
@@ -302,7 +302,7 @@ static const char *walk_drives_in(spari_assembly *a, double s, double dt, int pa
             }
         }
         a->trace.rate = 0;
-        wrong = spari_newton_solve(&how, &step, 0, a->session->newton_max, &a->trace, iterations);
+        wrong = spari_newton_solve(&how, &step, 0, a->session->newton.max, &a->trace, iterations);
     }
     return wrong;
 }
@@ -340,7 +340,7 @@ static int newton_all(spari_assembly *a, double s, double dt) {
         "the members that joint '%s' ties together: Newton %s (%d iterations in several attempts, each of %d at "
         "most) in the step from t = %g; take a smaller dt, more substeps or a smaller rho_inf, or look at the "
         "loads",
-        a->constraint[0].joint->name, wrong, iterations, a->session->newton_max, a->session->time);
+        a->constraint[0].joint->name, wrong, iterations, a->session->newton.max, a->session->clock.time);
     return SPAR_OK;
 }
 
@@ -413,7 +413,7 @@ static void start_residual(spari_assembly *a, double cm) {
 static void begin_drive(spari_constraint *l) {
     spar_joint *j = l->joint;
     for (int k = 0; k < 6; k++) {
-        if (j->session->step == 0 && (j->driven >> k & 1)) {
+        if (j->session->clock.step == 0 && (j->driven >> k & 1)) {
             j->drive[0].z[k] = j->after.z[k];
             j->drive[0].rate[k] = j->after.rate[k];
             j->drive[0].acceleration[k] = 0;
@@ -447,7 +447,8 @@ static int start_all(spari_assembly *a) {
     for (int i = 0; i < a->components && !singular; i++) {
         a->component[i].row->end_start(a->component + i);
     }
-    if (a->session->step == 0) { /* later the accelerations that a trial begins with are not those of a steady motion */
+    if (a->session->clock.step ==
+        0) { /* later the accelerations that a trial begins with are not those of a steady motion */
         singular = singular || shift_for_alpha(a, 0, 0);
     }
     for (int i = 0; i < a->components && !singular; i++) {
@@ -489,7 +490,7 @@ static int fail_singular(const spari_assembly *a) {
         a->session, SPAR_ERR_NUMERIC,
         "the members that joint '%s' ties together: found a singular tangent in the step from t = %g; take "
         "a smaller dt",
-        a->constraint[0].joint->name, a->session->time);
+        a->constraint[0].joint->name, a->session->clock.time);
 }
 
 /* The published motion at the end of a step has velocities on the constraints. The scheme continues with its own
@@ -565,7 +566,7 @@ static int begin_step(spari_assembly *a, double dt) {
     int started = 1;
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
-        started = p->row->take(p, dt / a->session->substeps) && started;
+        started = p->row->take(p, dt / a->session->integrator.substeps) && started;
         p->alpha = p->scheme;
     }
     begin_constraints(a);
@@ -738,7 +739,8 @@ int spari_assembly_advance(spari_assembly *a, double dt, int responses) {
         return SPAR_OK;
     }
     SPARI_TRY(begin_step(a, dt));
-    a->rotates_far = !a->component[0].scheme.still && (makes_a_chain(a) || rotates_far(a, dt / a->session->substeps));
+    a->rotates_far =
+        !a->component[0].scheme.still && (makes_a_chain(a) || rotates_far(a, dt / a->session->integrator.substeps));
     spari_pattern pattern = a->component[0].solver->steps.begin;
     int status =
         spari_scheme_run(&how, a, &a->component[0].alpha, &a->component[0].member->cuts, &pattern, a->session, dt);
@@ -810,7 +812,7 @@ static void look_back(spari_assembly *a) {
     for (int i = 0; i < a->constraints; i++) {
         spar_joint *j = a->constraint[i].joint;
         const spari_relative kept = j->after;
-        spari_constraint_find(a->constraint + i, 1, a->session->dt, 1);
+        spari_constraint_find(a->constraint + i, 1, a->session->clock.dt, 1);
         j->after = kept;
     }
     a->solved = 1;

@@ -112,7 +112,7 @@ static double mass_of_all(const spari_assembly *a) {
 
 /* Allocates the solution, on the owner. */
 static int make_system(spari_assembly *a) {
-    a->here = a->owner == spari_comm_rank(a->session->comm) || a->components == 0;
+    a->here = a->owner == spari_comm_rank(a->session->ranks.comm) || a->components == 0;
     if (!a->here || a->components == 0) {
         return SPAR_OK;
     }
@@ -271,7 +271,7 @@ static int agree_on_joints(const spar_session *s, const char *call, int status) 
 
 int spari_solvers_place(spar_session *s, const char *call) {
     SPARI_TRY(s->joints ? spari_assemblies_make(s, call) : SPAR_OK);
-    return s->started ? SPAR_OK : spari_owners_assign(s);
+    return s->clock.started ? SPAR_OK : spari_owners_assign(s);
 }
 
 int spari_assemblies_make(spar_session *s, const char *call) {

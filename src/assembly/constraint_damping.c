@@ -38,7 +38,7 @@ static void find_ringing(spari_assembly *a, double s, double dt) {
 
 int spari_system_damp_constraints(spari_assembly *a, double s, double dt) {
     const spari_scheme *c = &a->component[0].scheme;
-    double r = most / a->session->rho_inf;
+    double r = most / a->session->integrator.rho_inf;
     if (!(r < 1) || c->still) {
         return 0;
     }

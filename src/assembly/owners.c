@@ -96,7 +96,7 @@ static spari_assembly *dearest_left(const spar_session *s) {
 }
 
 int spari_owners_of_assemblies(spar_session *s) {
-    int ranks = spari_comm_size(s->comm);
+    int ranks = spari_comm_size(s->ranks.comm);
     double *busy = spari_zalloc(ranks, sizeof *busy);
     int status = busy ? SPAR_OK : SPAR_ERR_MEMORY;
     if (busy) {
@@ -148,7 +148,7 @@ static int find_free(const spar_session *s, free_member *all) {
 }
 
 static int move_free(spar_session *s, free_member *all, int n, double *busy) {
-    int ranks = spari_comm_size(s->comm);
+    int ranks = spari_comm_size(s->ranks.comm);
     qsort(all, (size_t)n, sizeof *all, compare_free);
     add_assigned(s, busy);
     for (const spari_assembly *a = s->assemblies; a; a = a->next) {
@@ -168,7 +168,7 @@ static int move_free(spar_session *s, free_member *all, int n, double *busy) {
 }
 
 int spari_owners_assign(spar_session *s) {
-    int ranks = spari_comm_size(s->comm), n = ranks > 1 ? find_free(s, NULL) : 0;
+    int ranks = spari_comm_size(s->ranks.comm), n = ranks > 1 ? find_free(s, NULL) : 0;
     if (n == 0) {
         return SPAR_OK;
     }
@@ -180,7 +180,7 @@ int spari_owners_assign(spar_session *s) {
         (void)find_free(s, all);
         status = move_free(s, all, n, busy);
     }
-    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     for (int i = 0; i < n && all; i++) {
         if (all[i].moved) {
             spari_member_end_move(all[i].member, all[i].owner_before, all[i].before, status != SPAR_OK);

@@ -195,7 +195,7 @@ static void tell(const spari_constraint *l, int k) {
     static const char *const motion[6] = {"x", "y", "z", "the turn about x", "the turn about y", "the turn about z"};
     char text[SPARI_MESSAGE_SIZE];
     const spar_session *s = l->joint->session;
-    if (s->log) {
+    if (s->callbacks.log) {
         (void)snprintf(text, sizeof text,
                        "joint '%.200s': redundant constraint ignored: %s follows from the other joints; its load is 0",
                        l->joint->name, l->joint->kinematics.line ? "its length" : motion[k]);

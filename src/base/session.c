@@ -19,10 +19,10 @@ char *spari_messages_redirect(char *text) {
 }
 
 void spari_log(const spar_session *s, int level, const char *text) {
-    if (s->log) {
+    if (s->callbacks.log) {
         spari_host host;
         spari_host_begin(&host);
-        s->log(s, level, text, s->log_context);
+        s->callbacks.log(s, level, text, s->callbacks.log_context);
         spari_host_end(&host);
     }
 }

@@ -31,79 +31,141 @@ enum {
     SPARI_VARIED = 4       /* varied by trials and advice */
 };
 
-struct spar_session {
+/* Ranks of the session, and what they agree on. */
+typedef struct spari_ranks {
     spari_comm *comm;
-    char message[SPARI_MESSAGE_SIZE];
-    int64_t failures; /* messages written so far: shows whether a callback has left one */
+    int calls_differ; /* the ranks were found in different calls: nothing more can be agreed on */
+    int reproducible;
+} spari_ranks;
+
+/* Callbacks of the host. */
+typedef struct spari_callbacks {
     spar_log log;
     void *log_context;
     spar_progress progress; /* of calls that run trials */
     void *progress_context;
+    const char *in_progress; /* callback in progress: the public call that runs the host's fluid solver; or NULL */
+} spari_callbacks;
+
+/* Settings of the time integration. */
+typedef struct spari_integrator {
+    double rho_inf;
+    int substeps;
+} spari_integrator;
+
+/* Settings of Newton's method. */
+typedef struct spari_newton_settings {
+    double atol;
+    double rtol;
+    int max;
+    int strict;   /* option newton.stop = tied (default) | strict */
+    double share; /* with newton.stop = tied: relative acceleration error that Newton may leave, from the coupling
+                     tolerance; infinite: no limit */
+} spari_newton_settings;
+
+/* Settings of the coupling. */
+typedef struct spari_coupling_settings {
+    int predictor; /* order; the same number of loads before t^n is kept */
+    int scheme;
+    double atol;
+    double rtol;
+    int max;
+    double relaxation;
+    int accept_unconverged; /* option coupling.unconverged = accept */
+    int columns;            /* of IQN-ILS */
+    int reuse;              /* of IQN-ILS */
+    double filter;
+    int patience;       /* option coupling.patience */
+    int norm_of_loads;  /* option coupling.norm = motion (default) | loads */
+    int estimate;       /* option coupling.estimate = off (default) | on */
+    double motion_atol; /* stopping test on the motion; */
+    double motion_rtol; /* both 0: none */
+    int stale;          /* settings of the coupling have changed since it was made */
+} spari_coupling_settings;
+
+/* Tolerances of the error of a step; 0: none. */
+typedef struct spari_tolerance {
+    double drift; /* m/s */
+    double rtol;  /* relative */
+} spari_tolerance;
+
+/* Settings of the exchange with fluids. */
+typedef struct spari_exchange_settings {
+    int added_by_velocity; /* option fluid.added_mass = acceleration (default) | velocity */
+    int theta_on_group;    /* option fluid.theta = average (default) | group */
+    int far_refuse;        /* option fluid.far = take (default) | refuse: nodes beyond max_distance */
+    int audit_off;         /* option fluid.audit = on (default) | off */
+} spari_exchange_settings;
+
+/* Settings of the advice. */
+typedef struct spari_advice_settings {
+    int keep_dt;       /* option advise.dt = keep */
+    int keep_nodes;    /* option advise.nodes = keep */
+    int keep_fidelity; /* option advise.fidelity = keep */
+    int keep_coupling; /* option advise.coupling = keep */
+    int goals;         /* SPAR_GOAL_* */
+    double limit;      /* option advise.limit */
+    double fluid_cost; /* option advise.fluid_cost */
+} spari_advice_settings;
+
+/* Time and number of the accepted steps, and lengths of the last steps. */
+typedef struct spari_clock {
+    double time;
+    double rest;       /* rounding error of the time, carried to the next steps */
+    double dt;         /* of the current step */
+    double dt_last[2]; /* of the two accepted before */
+    int uneven[2]; /* whether an accepted step, and the current one, differ in length from the steps before or rotate
+                      too far for generalised-alpha */
+    int64_t step;  /* accepted steps */
+    int64_t begun; /* steps ever begun */
+    int started;
+} spari_clock;
+
+/* State of the current step, static solution or trial. */
+typedef struct spari_step_state {
+    spari_phase phase;
+    int iteration;
+    int past;  /* number of loads known before those of t^n, which limits the order of the next prediction; -1: those
+                  of t^n are unknown too */
+    int order; /* order of the predictor in the current step */
+    int iterating; /* the last check asked for another iteration */
+    int rough;     /* the loads of this iteration are far from converged */
+    int failed;    /* the last check of the current step failed */
+    int standing;  /* a static solution is in progress: there is one state, whatever theta a fluid pulls at */
+    int trial;     /* a trial is in progress (trial/trial.h) */
+} spari_step_state;
+
+struct spar_session {
+    char message[SPARI_MESSAGE_SIZE];
+    int64_t failures; /* messages written so far: shows whether a callback has left one */
+    spari_ranks ranks;
+    spari_callbacks callbacks;
+
     spar_member *members;              /* list, in order of creation */
     spar_fluid *fluids;                /* list of this rank's fluids */
     spar_joint *joints;                /* list, in order of creation */
     struct spari_assembly *assemblies; /* list of assemblies: members solved as one system */
     int joints_stale;                  /* joints have changed since the assemblies were made */
-    int member_count, joint_count;
+    int member_count;
+    int joint_count;
 
     double gravity[3];
     double gravity_before[3]; /* gravity of the last accepted step */
-    double rho_inf;
-    int substeps;
-    double newton_atol, newton_rtol;
-    int newton_max;
-    int newton_strict;   /* option newton.stop = tied (default) | strict */
-    double newton_share; /* with newton.stop = tied: relative acceleration error that Newton may leave, from the
-                            coupling tolerance; infinite: no limit */
-    int predictor;       /* order; the same number of loads before t^n is kept */
-    int scheme;
-    double coupling_atol, coupling_rtol;
-    int coupling_max;
-    double relaxation;
-    int reproducible;
-    int accept_unconverged;               /* option coupling.unconverged = accept */
-    int coupling_columns, coupling_reuse; /* of IQN-ILS */
-    double coupling_filter;
-    double tolerance_drift, tolerance_rtol; /* of a step, m/s and relative; 0: none */
-    int coupling_patience;                  /* option coupling.patience */
-    int norm_of_loads;                      /* option coupling.norm = motion (default) | loads */
-    int added_by_velocity;                  /* option fluid.added_mass = acceleration (default) | velocity */
-    int coupling_estimate;                  /* option coupling.estimate = off (default) | on */
-    double motion_atol, motion_rtol;        /* stopping test on the motion; both 0: none */
-    int theta_on_group;                     /* option fluid.theta = average (default) | group */
-    int far_refuse;                         /* option fluid.far = take (default) | refuse: nodes beyond max_distance */
-    int keep_dt, keep_nodes, keep_fidelity, keep_coupling; /* options advise.* = keep */
-    int goals;                                             /* SPAR_GOAL_* of the advice */
-    double advise_limit;                                   /* option advise.limit */
-    double fluid_cost;                                     /* option advise.fluid_cost */
-    int audit_off;                                         /* option fluid.audit = on (default) | off */
+    spari_integrator integrator;
+    spari_newton_settings newton;
+    spari_coupling_settings coupling;
+    spari_tolerance tolerance;
+    spari_exchange_settings exchange;
+    spari_advice_settings advice;
+    const spari_setting *settings; /* table of all settings */
+    int setting_count;
+
+    spari_clock clock;
+    spari_step_state state;
+
     struct spari_thread_pool *pool; /* spar_session_set_threads (base/thread_pool.h); NULL: the calling thread alone */
     spari_workspace workspace;      /* work space of the calling thread, for one call; its content is nobody's */
-    int coupling_stale;             /* settings of the coupling have changed since it was made */
-
-    double time, time_rest; /* time_rest: rounding error of the clock, carried to the next steps */
-    double dt, dt_last[2];  /* dt of the current step, and of the two accepted before */
-    int uneven[2]; /* whether an accepted step, and the current one, differ in length from the steps before or rotate
-                      too far for generalised-alpha */
-    int64_t step, begun; /* accepted steps; steps ever begun */
-    int iteration;
-    spari_phase phase;
-    int past;  /* number of loads known before those of t^n, which limits the order of the next prediction; -1: those of
-                  t^n are unknown too */
-    int order; /* order of the predictor in the current step */
-    int iterating;           /* the last check asked for another iteration */
-    int rough;               /* the loads of this iteration are far from converged */
-    int started;             /* the clock has started */
-    int failed;              /* the last check of the current step failed */
-    const char *in_callback; /* callback in progress: the public call that runs the host's fluid solver; or NULL */
-    int standing;            /* a static solution is in progress: there is one state, whatever theta a fluid pulls at */
-    int trial;               /* a trial is in progress (trial/trial.h) */
-
-    const spari_setting *settings;
-    int setting_count;
-    int calls_differ; /* the ranks were found in different calls: nothing more can be agreed on */
-
-    spari_own *own; /* private data (exchange/session_private.h) */
+    spari_own *own;                 /* private data (exchange/session_private.h) */
 };
 
 /* Present value of a setting. */
@@ -121,15 +183,15 @@ static inline int spari_steps_are_equal(double h, double last) {
     return fabs(h - last) <= 1e-3 * last;
 }
 /* Advances the clock by dt with compensated summation (Kahan): exact to the last digit after any number of steps. */
-static inline void spari_clock_tick(spar_session *s, double dt) {
-    const double step = dt + s->time_rest, then = s->time + step;
-    s->time_rest = s->time >= step ? (s->time - then) + step : (step - then) + s->time;
-    s->time = then;
+static inline void spari_clock_tick(spari_clock *c, double dt) {
+    const double step = dt + c->rest, then = c->time + step;
+    c->rest = c->time >= step ? (c->time - then) + step : (step - then) + c->time;
+    c->time = then;
 }
 /* Whether a step of size dt is integrated by generalised-alpha (time/scheme.h). */
-static inline int spari_steps_even(const spar_session *s, double dt) {
-    return s->step == 0 || (spari_steps_are_equal(dt, s->dt_last[0]) &&
-                            (s->step == 1 || spari_steps_are_equal(s->dt_last[0], s->dt_last[1])));
+static inline int spari_steps_even(const spari_clock *c, double dt) {
+    return c->step == 0 || (spari_steps_are_equal(dt, c->dt_last[0]) &&
+                            (c->step == 1 || spari_steps_are_equal(c->dt_last[0], c->dt_last[1])));
 }
 
 #endif

@@ -4,9 +4,9 @@
 #include <assert.h>
 
 static int enter(spar_session *s, const char *call, const spari_agreed *must_agree, int count, int status) {
-    int result = spari_comm_enter(s->comm, call, must_agree, count, status, s->message, sizeof s->message);
+    int result = spari_comm_enter(s->ranks.comm, call, must_agree, count, status, s->message, sizeof s->message);
     if (result == SPAR_ERR_COMM) {
-        s->calls_differ = 1;
+        s->ranks.calls_differ = 1;
         (void)spari_fail(s, result, "%s", s->message); /* for the log */
     }
     return result;
@@ -24,7 +24,7 @@ int spari_enter(spar_session *s, const char *call, int status) {
 int spari_enter_agreed(spar_session *s, const char *call, const spari_agreed *must_agree, int count, int status) {
     spari_agreed all[SPARI_MOST_AGREED];
     int n = 0;
-    if (spari_comm_size(s->comm) == 1) {
+    if (spari_comm_size(s->ranks.comm) == 1) {
         return status;
     }
     assert(count + s->setting_count <= SPARI_MOST_AGREED);

@@ -33,21 +33,21 @@ void spari_coupling_free(spari_coupling **coupling) {
 }
 
 int spari_coupling_wants_motion(const spar_session *s) {
-    return s->motion_atol > 0 || s->motion_rtol > 0;
+    return s->coupling.motion_atol > 0 || s->coupling.motion_rtol > 0;
 }
 
 static int make_vectors(const spar_session *s, int scheme, spari_coupling *c) {
     int iterated = spari_coupling_scheme_of(scheme)->iterates;
     int64_t n = iterated ? c->n : 0;
     spari_accelerator_settings set = {
-        scheme, s->relaxation, s->coupling_columns, s->coupling_reuse, s->coupling_filter, c->weighs};
+        scheme, s->coupling.relaxation, s->coupling.columns, s->coupling.reuse, s->coupling.filter, c->weighs};
     int64_t largest = 0, images = c->weighs ? 2 * n : c->estimates ? c->n : 0, shifted = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
         largest = m->nodes > largest ? m->nodes : largest;
         shifted = m->added && c->weighs ? n : shifted;
     }
     images += shifted;
-    c->most = iterated ? s->coupling_max : 1;
+    c->most = iterated ? s->coupling.max : 1;
     return (c->length = spari_zalloc(c->members, sizeof(double))) &&
            (c->unit = spari_zalloc(c->members, sizeof(double))) && (c->x = spari_zalloc(n, sizeof(double))) &&
            (c->g = spari_zalloc(n, sizeof(double))) && (c->predicted = spari_zalloc(n, sizeof(double))) &&
@@ -74,7 +74,7 @@ static int64_t count_unknowns(const spar_session *s) {
 
 int spari_coupling_fits(const spar_session *s) {
     const spari_coupling *c = s->own->coupling;
-    return c && !s->coupling_stale && c->members == s->member_count && c->n == count_unknowns(s);
+    return c && !s->coupling.stale && c->members == s->member_count && c->n == count_unknowns(s);
 }
 
 int spari_coupling_create(spar_session *s, int scheme, int standing, spari_coupling **coupling) {
@@ -83,7 +83,7 @@ int spari_coupling_create(spar_session *s, int scheme, int standing, spari_coupl
         c->n = count_unknowns(s);
         c->members = s->member_count;
         int iterates = spari_coupling_scheme_of(scheme)->iterates;
-        c->estimates = !standing && !iterates && s->coupling_estimate;
+        c->estimates = !standing && !iterates && s->coupling.estimate;
         c->weighs = !standing && iterates && spari_motion_norm_is_used(s);
     }
     if (!c || !make_vectors(s, scheme, c)) {
@@ -104,7 +104,7 @@ int spari_coupling_create(spar_session *s, int scheme, int standing, spari_coupl
 
 int spari_coupling_prepare(spar_session *s) {
     spari_coupling *c;
-    SPARI_TRY(spari_coupling_create(s, s->scheme, 0, &c));
+    SPARI_TRY(spari_coupling_create(s, s->coupling.scheme, 0, &c));
     if (s->own->coupling) {
         c->report[SPAR_REPORT_UNCONVERGED] = s->own->coupling->report[SPAR_REPORT_UNCONVERGED];
         c->in_row = s->own->coupling->in_row;
@@ -214,9 +214,9 @@ double spari_coupling_share(const spar_session *s) {
     if (!c->accelerator) {
         return INFINITY;
     }
-    double mu = c->report[SPAR_REPORT_ADDED_MASS], goal = s->coupling_rtol;
+    double mu = c->report[SPAR_REPORT_ADDED_MASS], goal = s->coupling.rtol;
     if (spari_coupling_wants_motion(s)) {
-        goal = fmin(goal, s->motion_rtol);
+        goal = fmin(goal, s->coupling.motion_rtol);
     }
     return part * goal / (mu > 0 ? fmax(mu, least) : 1);
 }
@@ -231,7 +231,7 @@ void spari_coupling_begin(spar_session *s) {
         for (const spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next) {
             memcpy(at, m->load_used, (size_t)(6 * m->nodes) * sizeof *at);
         }
-        spari_accelerator_begin(c->accelerator, s->dt);
+        spari_accelerator_begin(c->accelerator, s->clock.dt);
         report_added_mass(c);
     }
 }
@@ -258,7 +258,7 @@ static void last_iteration(const spar_session *s, double *residual, double *size
 int spari_coupling_is_rough(const spar_session *s) {
     double residual, size;
     last_iteration(s, &residual, &size);
-    return s->iteration > 0 && residual > 0.1 * size;
+    return s->state.iteration > 0 && residual > 0.1 * size;
 }
 
 /* Growth factor of the residual in the last iterations; 0: it has not grown. */
@@ -272,8 +272,8 @@ static double grown_lately(const spari_coupling *c) {
 
 /* Remedies, beginning with those that are not in use. diverges: the changes grow. */
 static const char *cures_of(const spar_session *s, int diverges) {
-    int newton = spari_coupling_scheme_of(s->scheme)->columns;
-    if (s->standing) {
+    int newton = spari_coupling_scheme_of(s->coupling.scheme)->columns;
+    if (s->state.standing) {
         return newton ? "take a larger tolerance or more iterations, or look at the fluid's loads"
                       : "take SPAR_COUPLING_IQN_ILS, a larger tolerance or more iterations";
     }
@@ -332,7 +332,7 @@ static const spar_member *member_overwhelmed(const spar_session *s, double load[
 
 int spari_coupling_solve_failed(spar_session *s, const char *call, int status) {
     const spari_coupling *c = s->own->coupling;
-    double factor = c->iterations == s->iteration ? grown_lately(c) : 0, load[2];
+    double factor = c->iterations == s->state.iteration ? grown_lately(c) : 0, load[2];
     char why[SPARI_MESSAGE_SIZE / 2];
     if (status != SPAR_ERR_NUMERIC) {
         return status;
@@ -346,13 +346,13 @@ int spari_coupling_solve_failed(spar_session *s, const char *call, int status) {
     SPARI_REQUIRE(s, factor == 0, status,
                   "%s: the coupling diverges: the change of the loads has grown by a factor of %.3g from iteration to "
                   "iteration, to %.3g N in iteration %d; %s (%.400s)",
-                  call, factor, c->residual[c->iterations - 1], s->iteration, cures_of(s, 1), why);
+                  call, factor, c->residual[c->iterations - 1], s->state.iteration, cures_of(s, 1), why);
     return status;
 }
 
 /* Rounding error of positions divided by dt^2, in the accelerations for fluids: maximum over the members. */
 static double rounding_of_accelerations(const spar_session *s) {
-    const double h = s->dt / s->substeps;
+    const double h = s->clock.dt / s->integrator.substeps;
     double part = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
         double place = 0, most = 0;
@@ -379,25 +379,25 @@ static int not_converged(spar_session *s, const char *call) {
         (void)snprintf(motion, sizeof motion, ", motion by %.3g m of %.3g m", c->moved, c->travelled);
     }
     /* Before growth is looked at: what rounding leaves may grow from iteration to iteration. */
-    const double rounding = s->standing ? 0 : rounding_of_accelerations(s);
+    const double rounding = s->state.standing ? 0 : rounding_of_accelerations(s);
     SPARI_REQUIRE(
-        s, 10 * rounding < s->coupling_rtol || s->coupling_rtol == 0, SPAR_ERR_NUMERIC,
+        s, 10 * rounding < s->coupling.rtol || s->coupling.rtol == 0, SPAR_ERR_NUMERIC,
         "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g N%s%s): in a step "
         "as short as %g s the rounding of places is %.1g of the accelerations, and of loads that answer to "
         "them; take a larger dt or tolerance",
-        call, s->iteration, c->residual[last], c->size[last], motion, mass, s->dt, rounding);
+        call, s->state.iteration, c->residual[last], c->size[last], motion, mass, s->clock.dt, rounding);
     double factor = grown_lately(c);
     if (factor > 0) {
         return spari_fail(
             s, SPAR_ERR_NUMERIC,
             "%s: the coupling has not converged in %d iterations, it diverges: the change of "
             "the loads has grown by a factor of %.3g from iteration to iteration, to %.3g N of %.3g N%s%s; %s",
-            call, s->iteration, factor, c->residual[last], c->size[last], motion, mass, cures_of(s, 1));
+            call, s->state.iteration, factor, c->residual[last], c->size[last], motion, mass, cures_of(s, 1));
     }
     return spari_fail(s, SPAR_ERR_NUMERIC,
                       "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g "
                       "N%s%s); %s",
-                      call, s->iteration, c->residual[last], c->size[last], motion, mass, cures_of(s, 0));
+                      call, s->state.iteration, c->residual[last], c->size[last], motion, mass, cures_of(s, 0));
 }
 
 static spari_norm_loads weighed(const spari_coupling *c) {
@@ -407,7 +407,7 @@ static spari_norm_loads weighed(const spari_coupling *c) {
 int spari_coupling_weighs(const spar_session *s) {
     const spari_coupling *c = s->own->coupling;
     /* a step that has changed to the load norm keeps it */
-    return c->weighs && (s->iteration == 0 || spari_accelerator_imaged(c->accelerator));
+    return c->weighs && (s->state.iteration == 0 || spari_accelerator_imaged(c->accelerator));
 }
 
 /* motion := the larger of the motion due to the residual, and due to the residual relative to the settled fluid. A
@@ -433,7 +433,7 @@ static int measure_residual(spar_session *s, double size, double *residual) {
     double motion, whole;
     c->weighed = 0;
     /* a step that has changed to the load norm keeps it */
-    if (c->weighs && (s->iteration == 1 || spari_accelerator_imaged(c->accelerator))) {
+    if (c->weighs && (s->state.iteration == 1 || spari_accelerator_imaged(c->accelerator))) {
         stack(s);
         const spari_norm_loads w = weighed(c);
         SPARI_TRY(spari_motion_norm(s, &w, &motion, &whole, &c->weighed));
@@ -465,8 +465,8 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
     if (c->estimates) {
         SPARI_TRY(spari_motion_norm_miss(s, c->n, c->image, c->workspace, c->report + SPAR_REPORT_MOTION_ERROR));
     }
-    *agreed = residual <= s->coupling_atol + s->coupling_rtol * size &&
-              (!motion || c->moved <= s->motion_atol + s->motion_rtol * c->travelled);
+    *agreed = residual <= s->coupling.atol + s->coupling.rtol * size &&
+              (!motion || c->moved <= s->coupling.motion_atol + s->coupling.motion_rtol * c->travelled);
     return SPAR_OK;
 }
 
@@ -482,7 +482,7 @@ int spari_coupling_next(spar_session *s) {
     const spari_norm_loads w = weighed(c);
     /* Done first: otherwise a column of loads that move almost nothing would contain arbitrary amounts of loads that
        move nothing. */
-    int felt = c->weighed && spari_coupling_scheme_of(s->scheme)->columns;
+    int felt = c->weighed && spari_coupling_scheme_of(s->coupling.scheme)->columns;
     stack(s);
     SPARI_TRY(felt ? spari_motion_norm_felt(s, &w, c->settled, c->x) : SPAR_OK);
     SPARI_TRY(spari_accelerator_next(c->accelerator, c->x, c->g, c->weighed ? &images : NULL, c->x));
@@ -498,18 +498,18 @@ int spari_coupling_next(spar_session *s) {
 static int accept_unconverged(spar_session *s, const char *call) {
     spari_coupling *c = s->own->coupling;
     int last = c->iterations - 1;
-    if (c->in_row + 1 >= s->coupling_patience) {
+    if (c->in_row + 1 >= s->coupling.patience) {
         return not_converged(s, call);
     }
     c->unconverged = 1;
     c->report[SPAR_REPORT_UNCONVERGED] += 1;
-    if (s->log) {
+    if (s->callbacks.log) {
         char text[SPARI_MESSAGE_SIZE];
         (void)snprintf(
             text, sizeof text,
             "the coupling has not converged in %d iterations in the step from t = %g (loads change by %.3g N of "
             "%.3g N), which goes on as it is (option coupling.unconverged = accept)",
-            s->iteration, s->time, c->residual[last], c->size[last]);
+            s->state.iteration, s->clock.time, c->residual[last], c->size[last]);
         spari_log(s, SPAR_LOG_WARNING, text);
     }
     return SPAR_OK;
@@ -523,8 +523,8 @@ int spari_coupling_check(spar_session *s, const char *call, int *done) {
     if (agreed || !c->accelerator) {
         return SPAR_OK;
     }
-    if (s->iteration >= s->coupling_max) {
-        if (!s->accept_unconverged) {
+    if (s->state.iteration >= s->coupling.max) {
+        if (!s->coupling.accept_unconverged) {
             return not_converged(s, call);
         }
         return accept_unconverged(s, call);
@@ -572,9 +572,9 @@ static void tell_alternation(const spar_session *s) {
     const spari_coupling *c = s->own->coupling;
     double mean = c->log_growth / c->alternations,
            spread = sqrt(fmax(c->log_growth2 / c->alternations - mean * mean, 0));
-    double z = exp(mean), ratio = ratio_of_growth(s->order, z);
+    double z = exp(mean), ratio = ratio_of_growth(s->state.order, z);
     static const double bears[3] = {1, 1.0 / 3, 1.0 / 7};
-    if (s->log) {
+    if (s->callbacks.log) {
         char text[SPARI_MESSAGE_SIZE];
         (void)snprintf(
             text, sizeof text,
@@ -583,8 +583,8 @@ static void tell_alternation(const spar_session *s) {
             "about %.2g (+- %.1g) of the mass; an explicit scheme with a predictor of order %d is stable up to %.2g; "
             "iterate "
             "(spar_session_set_coupling) or lower the order of the predictor",
-            s->time + s->dt, c->alternations + 1, z, z * spread, ratio,
-            ratio_of_growth(s->order, z * exp(spread)) - ratio, s->order, bears[s->order]);
+            s->clock.time + s->clock.dt, c->alternations + 1, z, z * spread, ratio,
+            ratio_of_growth(s->state.order, z * exp(spread)) - ratio, s->state.order, bears[s->state.order]);
         spari_log(s, SPAR_LOG_WARNING, text);
     }
 }
@@ -604,14 +604,14 @@ static void watch(spar_session *s) {
     }
     if (c->grown >= GROWING_STEPS && !c->warned) {
         c->warned = 1;
-        if (s->log) {
+        if (s->callbacks.log) {
             char text[SPARI_MESSAGE_SIZE];
             (void)snprintf(
                 text, sizeof text,
                 "the coupling is becoming unstable at t = %g: fluid and structure differ by %.3g J of %.3g J "
                 "of work in this step, and the difference has grown for %d steps; iterate (spar_session_set_"
                 "coupling) or lower the order of the predictor",
-                s->time + s->dt, fabs(defect), whole, c->grown);
+                s->clock.time + s->clock.dt, fabs(defect), whole, c->grown);
             spari_log(s, SPAR_LOG_WARNING, text);
         }
     }
@@ -656,15 +656,15 @@ void spari_coupling_accept(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     c->in_row = c->unconverged ? c->in_row + 1 : 0;
     c->unconverged = 0;
-    if (s->phase == SPARI_CHECKED && c->missed) {
+    if (s->state.phase == SPARI_CHECKED && c->missed) {
         watch_alternation(s);
     }
-    if (s->phase == SPARI_CHECKED) {
+    if (s->state.phase == SPARI_CHECKED) {
         estimate_error(s);
         watch(s);
     }
     if (c->accelerator) {
-        int ended = s->phase == SPARI_CHECKED && spari_accelerator_contradicted(c->accelerator);
+        int ended = s->state.phase == SPARI_CHECKED && spari_accelerator_contradicted(c->accelerator);
         if (ended) {
             stack(s);
         }

@@ -23,7 +23,7 @@ int spari_motion_norm_is_used(const spar_session *s) {
             return 0;
         }
     }
-    return !s->norm_of_loads;
+    return !s->coupling.norm_of_loads;
 }
 
 /* Response of member m, whose stacked loads begin at `at`, to the loads x - from (from NULL: x), stacked. Members
@@ -64,7 +64,7 @@ static void stack_assembled(const spar_member *m, double unit, int64_t at, const
    nothing is subtracted. */
 static int respond_assembled(spar_session *s, const spari_norm_loads *c, int64_t count, const double *x, int64_t apart,
                              const double *const *from, double *image) {
-    int rank = spari_comm_rank(s->comm), singular = 0, k = 0;
+    int rank = spari_comm_rank(s->ranks.comm), singular = 0, k = 0;
     int64_t at = 0;
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         singular = spari_assembly_response(a, count, c->n, image) || singular;
@@ -109,7 +109,7 @@ static int is_symmetric(const spari_norm_loads *c, int assembled, const double *
 int spari_motion_norm(spar_session *s, const spari_norm_loads *c, double *residual, double *size, int *ok) {
     double *response = c->image, *whole = c->image + c->n, *bare = c->shift ? whole + c->n : whole;
     int64_t at = 0, images = c->shift ? 3 * c->n : 2 * c->n;
-    int rank = spari_comm_rank(s->comm), singular = 0, k = 0;
+    int rank = spari_comm_rank(s->ranks.comm), singular = 0, k = 0;
     memset(c->image, 0, (size_t)(images + 1) * sizeof *c->image);
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next, k++) {
         if (m->owner == rank && m->row->response) {
@@ -123,7 +123,7 @@ int spari_motion_norm(spar_session *s, const spari_norm_loads *c, double *residu
     if (singular) { /* its numbers would make the sums NaN, on every rank */
         c->image[0] = NAN;
     }
-    SPARI_TRY(spari_comm_sum(s->comm, c->image, images, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, c->image, images, SPAR_OK, s->message, sizeof s->message));
     double works = 0, sizes = 0, work = sum_products(c->g, response, c->x, c->n, &works),
            all = sum_products(c->g, bare, c->shift, c->n, &sizes);
     double both = c->shift ? fmax(all, sum_products(c->g, whole, NULL, c->n, &sizes)) : all;
@@ -144,7 +144,7 @@ static int is_zero(const double *x, int64_t n) {
 
 int spari_motion_norm_images(spar_session *s, const spari_norm_loads *c, int64_t count, const double *loads,
                              double *image) {
-    int rank = spari_comm_rank(s->comm), k = 0;
+    int rank = spari_comm_rank(s->ranks.comm), k = 0;
     int64_t at = 0;
     memset(image, 0, (size_t)(count * c->n + 1) * sizeof *image);
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next, k++) {
@@ -158,7 +158,7 @@ int spari_motion_norm_images(spar_session *s, const spari_norm_loads *c, int64_t
     if (respond_assembled(s, c, count, loads, c->n, NULL, image)) {
         image[0] = NAN;
     }
-    return spari_comm_sum(s->comm, image, count * c->n, SPAR_OK, s->message, sizeof s->message);
+    return spari_comm_sum(s->ranks.comm, image, count * c->n, SPAR_OK, s->message, sizeof s->message);
 }
 
 /* The part of the loads x - g that member m responds to, into off, stacked. */
@@ -176,7 +176,7 @@ static int felt_of(const spari_norm_loads *c, spar_member *m, double unit, const
 }
 
 int spari_motion_norm_felt(spar_session *s, const spari_norm_loads *c, double *off, double *x) {
-    int rank = spari_comm_rank(s->comm), asked = 0, status = SPAR_OK, k = 0;
+    int rank = spari_comm_rank(s->ranks.comm), asked = 0, status = SPAR_OK, k = 0;
     int64_t at = 0;
     memset(off, 0, (size_t)(c->n + 1) * sizeof *off);
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -190,7 +190,7 @@ int spari_motion_norm_felt(spar_session *s, const spari_norm_loads *c, double *o
     if (status != SPAR_OK) {
         (void)spari_fail(s, status, "no memory for the loads that modes feel");
     }
-    SPARI_TRY(asked ? spari_comm_sum(s->comm, off, c->n, status, s->message, sizeof s->message) : status);
+    SPARI_TRY(asked ? spari_comm_sum(s->ranks.comm, off, c->n, status, s->message, sizeof s->message) : status);
     for (int64_t i = 0; i < c->n; i++) {
         x[i] = c->g[i] + off[i];
     }
@@ -199,7 +199,7 @@ int spari_motion_norm_felt(spar_session *s, const spari_norm_loads *c, double *o
 
 /* Response of this rank's members to the loads that the prediction missed, image [n]. 1: none. */
 static int respond_to_miss(spar_session *s, double *image, double *workspace) {
-    int rank = spari_comm_rank(s->comm), singular = 0;
+    int rank = spari_comm_rank(s->ranks.comm), singular = 0;
     double *at = image;
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next) {
         if (m->owner != rank || !m->row->response) {
@@ -223,7 +223,7 @@ int spari_motion_norm_miss(spar_session *s, int64_t n, double *image, double *wo
     if (respond_to_miss(s, image, workspace)) {
         image[0] = NAN;
     }
-    SPARI_TRY(spari_comm_sum(s->comm, image, n, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, image, n, SPAR_OK, s->message, sizeof s->message));
     for (int64_t i = 0; i < n; i += 6) {
         double way = image[i] * image[i] + image[i + 1] * image[i + 1] + image[i + 2] * image[i + 2];
         square = isfinite(way) ? fmax(square, way) : INFINITY;

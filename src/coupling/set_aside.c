@@ -23,7 +23,7 @@ void spari_coupling_keep(spar_session *s) {
         s->own->coupling->report[SPAR_REPORT_UNCONVERGED] = of_steps->report[SPAR_REPORT_UNCONVERGED];
     }
     spari_coupling_free(&s->own->suspended);
-    s->coupling_stale = 1;
+    s->coupling.stale = 1;
 }
 
 static void swap_lists(double **a, double **b) {
@@ -35,7 +35,7 @@ static void swap_lists(double **a, double **b) {
 void spari_coupling_resume(spar_session *s) {
     spari_coupling *own = s->own->coupling, *of_steps = s->own->suspended;
     if (!of_steps) {
-        s->coupling_stale = 1;
+        s->coupling.stale = 1;
         return;
     }
     int most = of_steps->most;

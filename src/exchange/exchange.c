@@ -67,7 +67,7 @@ static int64_t block_of_rank(const spar_session *s, int rank) {
 static int fits_blocks(const spar_session *s) {
     const int64_t *first = s->own->first;
     int fits = 1;
-    for (int r = 0; r < spari_comm_size(s->comm) && first; r++) {
+    for (int r = 0; r < spari_comm_size(s->ranks.comm) && first; r++) {
         fits = fits && first[r + 1] - first[r] == block_of_rank(s, r);
     }
     return fits;
@@ -87,11 +87,11 @@ static int make_bins(spar_session *s, int64_t count) {
         SPARI_REQUIRE(s, s->own->bins, SPAR_ERR_MEMORY, "no memory for reproducible sums over the ranks");
         s->own->bins_capacity = count;
     }
-    return spari_comm_prepare_bins(s->comm, s->message, sizeof s->message);
+    return spari_comm_prepare_bins(s->ranks.comm, s->message, sizeof s->message);
 }
 
 int spari_session_seal(spar_session *s, int status) {
-    int ranks = spari_comm_size(s->comm);
+    int ranks = spari_comm_size(s->ranks.comm);
     int64_t count = 0;
     for (spar_member *m = s->members; m; m = m->next) {
         count += m->committed ? 6 * m->nodes : 0;
@@ -119,10 +119,10 @@ int spari_session_seal(spar_session *s, int status) {
             status = spari_fail(s, SPAR_ERR_MEMORY, "no memory for what the ranks exchange");
         }
     }
-    if (status == SPAR_OK && s->reproducible) {
+    if (status == SPAR_OK && s->ranks.reproducible) {
         status = make_bins(s, count + 2);
     }
-    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     if (status != SPAR_OK) { /* on all ranks or none: spari_session_is_sealed must agree */
         free_bins(s);
     }
@@ -130,7 +130,7 @@ int spari_session_seal(spar_session *s, int status) {
 }
 
 int spari_session_is_sealed(const spar_session *s) {
-    return !s->reproducible || s->own->bins_capacity >= s->own->pack_count + 2;
+    return !s->ranks.reproducible || s->own->bins_capacity >= s->own->pack_count + 2;
 }
 
 /* ---- loads ---- */
@@ -154,7 +154,7 @@ static int sum_bins(spar_session *s, int64_t count, double pushes) {
         }
     }
     spari_bins_add(bins + count, pushes);
-    SPARI_TRY(spari_comm_sum_bins(s->comm, bins, count + 1, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum_bins(s->ranks.comm, bins, count + 1, SPAR_OK, s->message, sizeof s->message));
     for (int64_t i = 0; i < count; i++) {
         s->own->pack[i] = 0.5 * spari_bins_value(bins + i);
     }
@@ -172,15 +172,15 @@ int spari_session_exchange_loads(spar_session *s, int *pushed) {
     }
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         if (spari_fluid_member(f)->committed) {
-            if (!s->reproducible) {
+            if (!s->ranks.reproducible) {
                 spari_fluid_add_loads(f, s->own->pack + spari_fluid_member(f)->pack_at);
             }
             *pushes += spari_fluid_has_loads(f);
         }
     }
-    SPARI_TRY(s->reproducible ? sum_bins(s, s->own->pack_count, *pushes)
-                              : spari_comm_sum(s->comm, s->own->pack, s->own->pack_count + 1, SPAR_OK, s->message,
-                                               sizeof s->message));
+    SPARI_TRY(s->ranks.reproducible ? sum_bins(s, s->own->pack_count, *pushes)
+                                    : spari_comm_sum(s->ranks.comm, s->own->pack, s->own->pack_count + 1, SPAR_OK,
+                                                     s->message, sizeof s->message));
     if (pushed) {
         *pushed = *pushes > 0;
     }
@@ -194,7 +194,7 @@ int spari_session_moved(spar_session *s, int *moved) {
         return SPAR_OK;
     }
     some[0] = spari_joints_hold_moved(s);
-    SPARI_TRY(spari_comm_sum(s->comm, some, 1, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, some, 1, SPAR_OK, s->message, sizeof s->message));
     *moved = some[0] > 0;
     return SPAR_OK;
 }
@@ -230,14 +230,14 @@ static void unpack_peer(spar_session *s, int peer, const double *at) {
 }
 
 int spari_session_share_motion(spar_session *s, int status) {
-    int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
+    int ranks = spari_comm_size(s->ranks.comm), rank = spari_comm_rank(s->ranks.comm);
     if (ranks == 1) {
         return status;
     }
     if (status == SPAR_OK) {
         pack_own(s, rank, s->own->motion + s->own->first[rank]);
     }
-    SPARI_TRY(spari_comm_share(s->comm, s->own->motion, s->own->first, status, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_share(s->ranks.comm, s->own->motion, s->own->first, status, s->message, sizeof s->message));
     for (int r = 0; r < ranks; r++) {
         if (r != rank) {
             unpack_peer(s, r, s->own->motion + s->own->first[r]);

@@ -21,7 +21,7 @@ static int overlaps(int64_t n, int64_t node, int64_t component) {
 int spar_fluid_set_layout(spar_fluid *fluid, int which, int64_t node, int64_t component) {
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
-    SPARI_FLUID_REQUIRE(fluid, !fluid->member->session->trial, SPAR_ERR_STATE,
+    SPARI_FLUID_REQUIRE(fluid, !fluid->member->session->state.trial, SPAR_ERR_STATE,
                         "a trial run is under way; its fluids are not to be changed");
     int64_t n = spari_fluid_set(fluid, which)->n, most = INT64_C(1) << LAYOUT_BITS;
     SPARI_FLUID_REQUIRE(fluid, node >= 1 && node <= SPARI_MOST && component >= 1 && component <= SPARI_MOST,

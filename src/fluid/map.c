@@ -202,7 +202,7 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
     spari_nodes_put(*made, f.element, f.xi, f.con, f.flags);
     free_points_found(&f);
     free(again);
-    if (far[0] > 0 && m->session->far_refuse) {
+    if (far[0] > 0 && m->session->exchange.far_refuse) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_MAPPING, caller,
             "%lld of %lld %s nodes lie farther than %g from the line, the first is node %lld; move them, raise "
@@ -214,7 +214,7 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
 
 /* Replaces the history by one for n nodes. */
 int spari_fluid_renew_history(spar_fluid *fluid, int64_t n) {
-    spari_history *h = spari_history_create(n, fluid->member->session->predictor);
+    spari_history *h = spari_history_create(n, fluid->member->session->coupling.predictor);
     if (!h) {
         return SPAR_ERR_MEMORY;
     }

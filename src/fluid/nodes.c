@@ -27,7 +27,7 @@ int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid)
     spar_session *session = member->session;
     SPARI_REQUIRE(session, fluid, SPAR_ERR_ARGUMENT, "%s: member '%s': the place for the handle is NULL", __func__,
                   member->name);
-    SPARI_REQUIRE(session, !session->trial, SPAR_ERR_STATE,
+    SPARI_REQUIRE(session, !session->state.trial, SPAR_ERR_STATE,
                   "%s: member '%s': a trial run is under way; create fluids before or after it", __func__,
                   member->name);
     SPARI_REQUIRE(session, name && name[0], SPAR_ERR_ARGUMENT,
@@ -205,7 +205,7 @@ void spar_fluid_destroy(spar_fluid **fluid) {
     if (!fluid || !*fluid) {
         return;
     }
-    if ((*fluid)->member->session->trial) {
+    if ((*fluid)->member->session->state.trial) {
         fall_silent(*fluid);
     } else {
         take_out(*fluid);
@@ -244,12 +244,12 @@ const char *spar_fluid_get_name(const spar_fluid *fluid) {
 /* ---- nodes from the host ---- */
 
 int spari_fluid_check_idle(const spar_fluid *fluid, const char *caller) {
-    if (fluid->member->session->phase != SPARI_IDLE) {
+    if (fluid->member->session->state.phase != SPARI_IDLE) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_STATE, caller,
             "a step is under way; change nodes and maps after spar_step_accept or spar_step_reject");
     }
-    if (fluid->member->session->trial) {
+    if (fluid->member->session->state.trial) {
         return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
                                   "a trial run is under way; its fluids cannot be changed");
     }

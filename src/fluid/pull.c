@@ -9,7 +9,7 @@
 #include <string.h>
 
 double spari_fluid_time(const spar_fluid *fluid, double theta) {
-    return fluid->member->session->standing && theta >= 0 && theta <= 1 ? 1 : theta;
+    return fluid->member->session->state.standing && theta >= 0 && theta <= 1 ? 1 : theta;
 }
 
 int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *caller) {
@@ -79,7 +79,7 @@ static int fill_states(const spar_fluid *fluid, double theta, int upto, double s
         fill_one(fluid, theta != 0, upto, fluid->field[0]);
         return 1;
     }
-    if (m->session->theta_on_group) {
+    if (m->session->exchange.theta_on_group) {
         fill_blended(fluid, theta, upto);
         return 1;
     }
@@ -106,7 +106,7 @@ static int need_second(spar_fluid *fluid, const char *caller) {
 
 /* The first average of two states allocates the second. */
 static int need_states(spar_fluid *fluid, double theta, const char *caller) {
-    return is_between(theta) && !fluid->member->session->theta_on_group ? need_second(fluid, caller) : SPAR_OK;
+    return is_between(theta) && !fluid->member->session->exchange.theta_on_group ? need_second(fluid, caller) : SPAR_OK;
 }
 
 int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller) {

@@ -78,7 +78,7 @@ static void keep_forces(spar_fluid *fluid, spari_source force) {
     for (int64_t i = 0; i < 3 * h->n; i++) {
         h->after[i] = spari_source_at(force, i / 3, (int)(i % 3));
     }
-    if (fluid->member->session->phase == SPARI_IDLE) {
+    if (fluid->member->session->state.phase == SPARI_IDLE) {
         memcpy(h->past[0], h->after, sizeof *h->after * 3 * (size_t)h->n);
     }
     h->pushed = 1;
@@ -145,7 +145,7 @@ static double bin_loads(spar_fluid *fluid, const spari_nodes *s, spari_source fo
 static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment,
                         spari_audit *audit, const char *caller) {
     const spar_member *m = fluid->member;
-    int reproducible = m->session->reproducible;
+    int reproducible = m->session->ranks.reproducible;
     double least = HUGE_VAL;
     if (reproducible && spari_fluid_make_bins(fluid) != SPAR_OK) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for reproducible sums of its loads");
@@ -180,7 +180,7 @@ static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source fo
 
 static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment, const char *caller) {
     spari_audit audit = {0};
-    int audited = !fluid->member->session->audit_off;
+    int audited = !fluid->member->session->exchange.audit_off;
     if (s->n > 0 && !force.d && !force.f) {
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
                                   "the force array is NULL though there are %lld force nodes", (long long)s->n);
@@ -192,7 +192,7 @@ static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spa
     SPARI_TRY(gather_loads(fluid, s, force, moment, audited ? &audit : NULL, caller));
     double *old = fluid->load;
     fluid->load = fluid->load_new, fluid->load_new = old;
-    if (fluid->member->session->reproducible) {
+    if (fluid->member->session->ranks.reproducible) {
         swap_bins(fluid, SPARI_OF_PUSHED, SPARI_OF_NEXT);
     } else if (fluid->bins[SPARI_OF_PUSHED]) {
         spari_fluid_drop_bins(fluid);
@@ -209,13 +209,13 @@ static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spa
 static void note_refusal(spar_fluid *fluid, int status, const char *why) {
     const spar_session *session = fluid->member->session;
     size_t size = strlen(why) + 1;
-    char *copy = session->phase == SPARI_IDLE && session->started ? NULL : malloc(size);
+    char *copy = session->state.phase == SPARI_IDLE && session->clock.started ? NULL : malloc(size);
     if (copy) {
         memcpy(copy, why, size);
     }
     spari_fluid_forget_refusal(fluid);
     fluid->why = copy;
-    fluid->refused = session->phase == SPARI_IDLE && session->started ? SPAR_OK : status;
+    fluid->refused = session->state.phase == SPARI_IDLE && session->clock.started ? SPAR_OK : status;
 }
 
 int spar_fluid_fail(spar_fluid *fluid, int status, const char *message) {
@@ -235,7 +235,7 @@ int spari_fluid_refused(const spar_fluid *fluid, const char **why) {
 static int push_loads(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
     spar_session *session = fluid->member->session;
     const spari_nodes *s = NULL;
-    if (session->phase == SPARI_IDLE && session->started) {
+    if (session->state.phase == SPARI_IDLE && session->clock.started) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_STATE, caller,
             "no step is under way; loads are pushed between spar_step_begin and spar_step_accept, or "
@@ -252,7 +252,7 @@ static int push_loads(spar_fluid *fluid, spari_source force, spari_source moment
     }
     spari_fluid_forget_refusal(fluid);
     fluid->pushes++;
-    if (session->phase == SPARI_IDLE) {
+    if (session->state.phase == SPARI_IDLE) {
         spari_fluid_keep_loads(fluid);
     }
     keep_forces(fluid, force);
@@ -324,7 +324,7 @@ static int push_parts(spar_fluid *fluid, const spari_nodes *s, double theta, con
     swap_bins(fluid, SPARI_OF_MEAN, SPARI_OF_NEXT);
     SPARI_TRY(push_loads(fluid, force, moment, caller));
     memcpy(p->end[1], fluid->load, (size_t)n * sizeof *p->end[1]);
-    int moves = !fluid->member->session->standing; /* a static solution has no end of a step */
+    int moves = !fluid->member->session->state.standing; /* a static solution has no end of a step */
     if (fluid->bins[SPARI_OF_PUSHED]) {
         memcpy(fluid->bins[SPARI_OF_END], fluid->bins[SPARI_OF_PUSHED], (size_t)n * sizeof(spari_bins));
         combine_bins(fluid, moves);
@@ -340,7 +340,7 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
     SPARI_FLUID_HANDLE(fluid);
     SPARI_FLUID_REQUIRE(fluid, theta > 0 && theta <= 1, SPAR_ERR_ARGUMENT, "theta is %g; give a number in (0, 1]",
                         theta);
-    SPARI_FLUID_REQUIRE(fluid, fluid->member->session->phase != SPARI_IDLE, SPAR_ERR_STATE,
+    SPARI_FLUID_REQUIRE(fluid, fluid->member->session->state.phase != SPARI_IDLE, SPAR_ERR_STATE,
                         "no step is under way; these loads are pushed between spar_step_begin and spar_step_accept");
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, __func__, &s));
@@ -436,7 +436,7 @@ void spari_fluid_accept(spar_fluid *fluid) {
     if (!h->pushed) { /* loads that were not pushed stay unchanged */
         memcpy(h->after, h->past[0], size);
     }
-    spari_history_shift(h->past, 3 * h->n, fluid->member->session->predictor, h->after);
+    spari_history_shift(h->past, 3 * h->n, fluid->member->session->coupling.predictor, h->after);
 }
 
 void spari_fluid_reject(spar_fluid *fluid) {

@@ -137,7 +137,7 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
     if (old->states && !f->states) {
         return no_memory_for_trial(f);
     }
-    int order = f->member->session->predictor;
+    int order = f->member->session->coupling.predictor;
     return copy_history(old->history, order, &f->history) == SPAR_OK ? SPAR_OK : no_memory_for_trial(f);
 }
 

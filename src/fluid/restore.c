@@ -192,7 +192,7 @@ static int alloc_loads(spar_fluid *fluid, const char *call, spari_taking *t) {
     if (t->head[S_PARTS] != 0 && spari_parts_prepare(fluid) != SPAR_OK) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for loads over parts of a step");
     }
-    if (fluid->load && (fluid->member->session->reproducible || fluid->bins[0]) &&
+    if (fluid->load && (fluid->member->session->ranks.reproducible || fluid->bins[0]) &&
         spari_fluid_make_bins(fluid) != SPAR_OK) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for reproducible sums of its loads");
     }
@@ -221,7 +221,7 @@ static int compare_heights(const void *a, const void *b) {
 static int alloc_nodes(spar_fluid *fluid, const char *call, spari_taking *t, const spari_nodes *s) {
     int kept = t->head[S_KEPT] != 0, width = (int)t->head[S_WIDTH];
     t->n = s->n;
-    t->history = kept ? spari_history_create(s->n, fluid->member->session->predictor) : NULL;
+    t->history = kept ? spari_history_create(s->n, fluid->member->session->coupling.predictor) : NULL;
     t->states = width > 0 ? spari_states_create(s->n, width) : NULL;
     t->positions = spari_fluid_positions(fluid, s);
     t->sorted = spari_zalloc(s->n, sizeof *t->sorted);

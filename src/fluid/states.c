@@ -35,7 +35,7 @@ int spar_fluid_get_states(const spar_fluid *fluid, int64_t *width, double *dt) {
         *width = fluid->states ? fluid->states->width : 0;
     }
     if (dt) {
-        *dt = s->phase == SPARI_IDLE || s->standing ? 0 : s->dt;
+        *dt = s->state.phase == SPARI_IDLE || s->state.standing ? 0 : s->clock.dt;
     }
     return SPAR_OK;
 }
@@ -69,8 +69,8 @@ int spar_fluid_push_states(spar_fluid *fluid, int64_t width, const double *state
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     const spar_session *session = fluid->member->session;
-    int idle = session->phase == SPARI_IDLE;
-    SPARI_FLUID_REQUIRE(fluid, !idle || !session->started, SPAR_ERR_STATE,
+    int idle = session->state.phase == SPARI_IDLE;
+    SPARI_FLUID_REQUIRE(fluid, !idle || !session->clock.started, SPAR_ERR_STATE,
                         "no step is under way; states are pushed between spar_step_begin and spar_step_accept, or "
                         "before the first step");
     spari_states *t = NULL;

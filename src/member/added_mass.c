@@ -375,9 +375,9 @@ typedef struct integration {
 } integration;
 
 static integration integration_of(const spar_session *s, double dt) {
-    double rho = s->rho_inf, am = (2 * rho - 1) / (rho + 1), af = rho / (rho + 1), gamma = 0.5 + af - am,
+    double rho = s->integrator.rho_inf, am = (2 * rho - 1) / (rho + 1), af = rho / (rho + 1), gamma = 0.5 + af - am,
            f = fmax(am - af, -0.8);
-    if (!spari_steps_even(s, dt)) {
+    if (!spari_steps_even(&s->clock, dt)) {
         return (integration){0.5, 0, 0.5, -f, 0, 1 + f, 1};
     }
     return (integration){.a0 = gamma * af / (1 - am),
@@ -386,7 +386,7 @@ static integration integration_of(const spar_session *s, double dt) {
                          .next_a0 = af / (1 - am),
                          .next_b0 = -am / (1 - am),
                          .next_a1 = (1 - af) / (1 - am),
-                         .stretch = s->step > 0 ? dt / s->dt_last[0] : 1};
+                         .stretch = s->clock.step > 0 ? dt / s->clock.dt_last[0] : 1};
 }
 
 /* Fluid that takes accelerations from velocities: its acceleration is the change of velocity over dt. A multiplies
@@ -405,7 +405,7 @@ static void predict_by_velocity(spar_member *m, const double w[3], double dt) {
 void spari_added_predict(spar_member *m, const double w[3], double dt) {
     const spari_added *d = m->added;
     const double *a[3] = {m->now.a, d->past[0], d->past[1]};
-    int by_velocity = m->session->added_by_velocity && m->session->substeps == 1;
+    int by_velocity = m->session->exchange.added_by_velocity && m->session->integrator.substeps == 1;
     if (by_velocity) {
         predict_by_velocity(m, w, dt);
     }
@@ -424,7 +424,7 @@ void spari_added_correct(const spar_member *m, double factor, double *load) {
 }
 
 const double *spari_added_shift(const spar_member *m) {
-    return m->added && !m->session->standing ? m->added->shift : NULL;
+    return m->added && !m->session->state.standing ? m->added->shift : NULL;
 }
 
 void spari_added_restart(spar_member *m) {
@@ -436,7 +436,7 @@ void spari_added_restart(spar_member *m) {
 
 static void accept_means(spar_member *m) {
     spari_added *d = m->added;
-    double *last = d->mean[2], dt = m->session->dt;
+    double *last = d->mean[2], dt = m->session->clock.dt;
     const integration g = integration_of(m->session, dt);
     d->mean[2] = d->mean[1], d->mean[1] = d->mean[0], d->mean[0] = last;
     for (int64_t i = 0; i < 6 * m->nodes; i++) {

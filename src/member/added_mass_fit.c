@@ -463,7 +463,7 @@ static void take_difference(spar_member *m, const double *seen, const nodal_view
 }
 
 void spari_learned_note(spar_member *m, int iteration) {
-    if (!m->learned || !m->added || m->session->trial) {
+    if (!m->learned || !m->added || m->session->state.trial) {
         return;
     }
     nodal_view at = view_of_nodes(m);
@@ -591,7 +591,7 @@ static void fit_mass(spari_learned *l) {
 
 void spari_learned_begin(spar_member *m) {
     spari_learned *l = m->learned;
-    if (l && m->added && !m->session->trial) {
+    if (l && m->added && !m->session->state.trial) {
         memset(l->head + STEP_LEFT, 0, (HEADS - STEP_LEFT) * sizeof *l->head);
         memset(l->step_G, 0, (size_t)(36 * l->n * (l->n + 1)) * sizeof *l->step_G);
     }
@@ -628,7 +628,7 @@ static int choose(spari_learned *l) {
 
 int spari_learned_accept(spar_member *m) {
     spari_learned *l = m->learned;
-    if (!l || !m->added || m->session->trial || !(l->head[STEP_LARGEST] > 0)) {
+    if (!l || !m->added || m->session->state.trial || !(l->head[STEP_LARGEST] > 0)) {
         return 0;
     }
     double *h = l->head, scale = 1 / sqrt(h[STEP_LARGEST]);

@@ -86,7 +86,7 @@ void spari_ramp_free(spari_ramp *r) {
 
 /* In the first step no earlier load exists. */
 static int changes(const spar_member *m, int what) {
-    return m->ramp && m->session->step > 0 && (m->ramp->changed & what);
+    return m->ramp && m->session->clock.step > 0 && (m->ramp->changed & what);
 }
 
 /* Weight of the loads at t^n. */
@@ -689,7 +689,7 @@ static int keep_loads(const spar_member *m, const char *call, const double *from
 /* Keeps the loads of a kind at t^n before they are replaced, except before the first step. After a failure nothing
    has changed. */
 static int keep_before(spar_member *m, const char *call, int what) {
-    if (m->session->step == 0 || changes(m, what)) {
+    if (m->session->clock.step == 0 || changes(m, what)) {
         return SPAR_OK;
     }
     spari_ramp *r = m->ramp = m->ramp ? m->ramp : spari_zalloc(1, sizeof *m->ramp);

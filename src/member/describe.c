@@ -16,7 +16,7 @@ static int member_create(spar_session *session, const char *call, const char *na
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     SPARI_REQUIRE(session, out, SPAR_ERR_ARGUMENT, "%s: no place for the new member (NULL)", call);
     SPARI_REQUIRE(session, name && name[0], SPAR_ERR_ARGUMENT, "%s: a member needs a name", call);
-    SPARI_REQUIRE(session, !session->started && !session->trial, SPAR_ERR_STATE,
+    SPARI_REQUIRE(session, !session->clock.started && !session->state.trial, SPAR_ERR_STATE,
                   "%s: '%s': the clock has started; create members before the first step", call, name);
     spar_member **end = &session->members;
     for (; *end; end = &(*end)->next) {
@@ -34,7 +34,7 @@ static int member_create(spar_session *session, const char *call, const char *na
     m->kind = kind;
     m->elements = m->per_element = 1;
     m->nodes = 1;
-    m->owner = session->member_count % spari_comm_size(session->comm);
+    m->owner = session->member_count % spari_comm_size(session->ranks.comm);
     m->root = kind == SPARI_BEAM ? SPAR_ROOT_FIXED : SPAR_ROOT_FREE;
     m->fidelity = SPAR_FIDELITY_EXACT;
     m->placed_q[0] = 1;
@@ -327,7 +327,7 @@ int spar_member_set_effects(spar_member *member, int effects) {
 
 int spar_member_set_owner(spar_member *member, int rank) {
     SPARI_TRY(spari_need_open(member, __func__));
-    int size = spari_comm_size(member->session->comm);
+    int size = spari_comm_size(member->session->ranks.comm);
     SPARI_REQUIRE(member->session, rank >= 0 && rank < size, SPAR_ERR_ARGUMENT,
                   "%s: '%s': there is no rank %d; the session has %d", __func__, member->name, rank, size);
     member->owner = rank;

@@ -40,7 +40,7 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
     SPARI_REQUIRE(NULL, s, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     SPARI_REQUIRE(s, out, SPAR_ERR_ARGUMENT, "%s: no place for the new joint (NULL)", call);
     SPARI_REQUIRE(s, name && name[0], SPAR_ERR_ARGUMENT, "%s: a joint needs a name", call);
-    SPARI_REQUIRE(s, !s->started && !s->trial, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, !s->clock.started && !s->state.trial, SPAR_ERR_STATE,
                   "%s: '%s': the clock has started; create joints before the first step", call, name);
     SPARI_REQUIRE(s, a, SPAR_ERR_ARGUMENT, "%s: '%s': member a is NULL; the ground can be b alone", call, name);
     SPARI_TRY(check_node(s, call, name, "a", a, node_a));
@@ -128,7 +128,7 @@ static int need_joint(const spar_joint *j, const char *call) {
 
 static int need_before_start(const spar_joint *j, const char *call) {
     SPARI_TRY(need_joint(j, call));
-    SPARI_REQUIRE(j->session, !j->session->started && !j->session->trial, SPAR_ERR_STATE,
+    SPARI_REQUIRE(j->session, !j->session->clock.started && !j->session->state.trial, SPAR_ERR_STATE,
                   "%s: '%s': the clock has started; describe joints before the first step", call, j->name);
     return SPAR_OK;
 }
@@ -288,7 +288,7 @@ int spar_joint_drive(spar_joint *joint, const double motion[6], const double rat
     spar_session *s = joint->session;
     SPARI_REQUIRE(s, joint->driven, SPAR_ERR_STATE,
                   "%s: '%s' is not driven; call spar_joint_set_driven before the first step", __func__, joint->name);
-    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: '%s': a step is under way; the motion at its end is given before spar_step_begin", __func__,
                   joint->name);
     const double *in[3] = {motion, rate ? rate : rest, acceleration ? acceleration : rest};
@@ -412,7 +412,7 @@ uint64_t spari_joint_setting(const spar_joint *j) {
 }
 
 uint64_t spari_joints_setting(const spar_session *s) {
-    int many = spari_comm_size(s->comm) > 1 && !s->joints_stale;
+    int many = spari_comm_size(s->ranks.comm) > 1 && !s->joints_stale;
     uint64_t h = 0;
     for (const spar_joint *j = many ? s->joints : NULL; j; j = j->next) {
         uint64_t of = spari_joint_setting(j);
@@ -426,7 +426,7 @@ int spari_joint_constrained(const spar_joint *j) {
 }
 
 double spari_joint_load_at(const spar_joint *j, int k, double left) {
-    return j->session->step > 0 && left > 0 ? j->given[k] + left * (j->before[k] - j->given[k]) : j->given[k];
+    return j->session->clock.step > 0 && left > 0 ? j->given[k] + left * (j->before[k] - j->given[k]) : j->given[k];
 }
 
 int spari_joint_spring(const spar_joint *j, const double z[6], const double rate[6], double speed, double factor,

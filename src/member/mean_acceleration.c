@@ -28,7 +28,7 @@ int spari_means_make(spar_member *m) {
 
 int spari_means_keep(spar_member *m) {
     const spar_session *s = m->session;
-    return s->substeps > 1 || s->uneven[0] ? spari_means_make(m) : SPAR_OK;
+    return s->integrator.substeps > 1 || s->clock.uneven[0] ? spari_means_make(m) : SPAR_OK;
 }
 
 void spari_means_free(spari_means *k) {
@@ -40,17 +40,17 @@ void spari_means_free(spari_means *k) {
 
 const double *spari_means_seen(const spar_member *m, int after) {
     const spari_means *k = m->means;
-    return k && k->has[after] && !m->session->standing ? k->seen[after] : after ? m->after.a : m->now.a;
+    return k && k->has[after] && !m->session->state.standing ? k->seen[after] : after ? m->after.a : m->now.a;
 }
 
 void spari_means_find(spar_member *m) {
     const spar_session *s = m->session;
     spari_means *k = m->means;
-    k->has[1] = (s->substeps > 1 || s->uneven[1]) && !(m->added && m->added->stands);
-    double on = k->has[0] ? s->dt / (s->dt + k->dt) : s->step > 0 || m->begun ? 1 : 0;
+    k->has[1] = (s->integrator.substeps > 1 || s->clock.uneven[1]) && !(m->added && m->added->stands);
+    double on = k->has[0] ? s->clock.dt / (s->clock.dt + k->dt) : s->clock.step > 0 || m->begun ? 1 : 0;
     const double *before = k->has[0] ? k->mean : m->now.a; /* at t^n, half as far back */
     for (int64_t i = 0; i < 6 * m->nodes && k->has[1]; i++) {
-        double mean = (m->after.v[i] - m->now.v[i]) / s->dt;
+        double mean = (m->after.v[i] - m->now.v[i]) / s->clock.dt;
         k->seen[1][i] = mean + on * (mean - before[i]);
     }
 }
@@ -58,7 +58,7 @@ void spari_means_find(spar_member *m) {
 void spari_means_accept(spar_member *m) {
     spari_means *k = m->means;
     k->has[0] = k->has[1];
-    k->dt = m->session->dt;
+    k->dt = m->session->clock.dt;
     for (int64_t i = 0; i < 6 * m->nodes && k->has[1]; i++) {
         k->mean[i] = (m->after.v[i] - m->now.v[i]) / k->dt;
         k->seen[0][i] = k->seen[1][i];

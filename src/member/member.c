@@ -81,12 +81,13 @@ int spar_member_get_loads(const spar_member *member, double *load) {
     SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "%s: '%s': load is NULL", __func__, member->name);
     const spar_session *s = member->session;
-    int used = s->phase == SPARI_BEGUN || s->phase == SPARI_SOLVED || (s->phase == SPARI_CHECKED && s->iterating);
+    int used = s->state.phase == SPARI_BEGUN || s->state.phase == SPARI_SOLVED ||
+               (s->state.phase == SPARI_CHECKED && s->state.iterating);
     const double *fluid = used ? member->load_used : member->load_pushed;
     for (int64_t i = 0; i < 6 * member->nodes; i++) {
         load[i] = member->dead[i] + fluid[i];
     }
-    if (s->phase != SPARI_IDLE && spari_added_shift(member)) {
+    if (s->state.phase != SPARI_IDLE && spari_added_shift(member)) {
         spari_added_correct(member, -1, load);
     }
     if (spari_carries_loads(member)) {

@@ -45,7 +45,7 @@ typedef enum spari_view {
    step ends, so that all coupling iterations see the same map, except for halvings caused by loads far from
    convergence. */
 typedef struct spari_cuts {
-    int64_t begun; /* session->begun of the step */
+    int64_t begun; /* session->clock.begun of the step */
     uint32_t given_up[64];
 } spari_cuts;
 
@@ -155,7 +155,7 @@ static inline spari_pose spari_pose_of(const double *q, const double *v, const d
 }
 /* Whether gravity changes between t^n and t^{n+1}. */
 static inline int spari_gravity_changes(const spar_session *session) {
-    return session->step > 0 && memcmp(session->gravity, session->gravity_before, sizeof session->gravity) != 0;
+    return session->clock.step > 0 && memcmp(session->gravity, session->gravity_before, sizeof session->gravity) != 0;
 }
 /* Hash of the description without the owner. */
 uint64_t spari_member_hash(const spar_member *member);

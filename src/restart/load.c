@@ -74,7 +74,7 @@ static void end_loading(const spar_session *s, reading *l) {
 }
 
 static int agree_to_load(spar_session *s, int status) {
-    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    return spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
 }
 
 /* Whether all ranks have allocated; SPAR_OK only if this one has. */
@@ -84,7 +84,7 @@ static int agree_on_memory(spar_session *s, int have) {
 }
 
 static int is_root(const spar_session *s) {
-    return spari_comm_rank(s->comm) == 0;
+    return spari_comm_rank(s->ranks.comm) == 0;
 }
 
 static int tell_why(spar_session *s, const reading *l, int status) {
@@ -108,14 +108,14 @@ static int tell_file(spar_session *s, reading *l, told_file *told) {
         told->sum = l->source.sum;
     }
     free(where);
-    SPARI_TRY(spari_comm_broadcast(s->comm, told, sizeof *told, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_broadcast(s->ranks.comm, told, sizeof *told, s->message, sizeof s->message));
     double blind[2] = {0, 0};
     if (!is_root(s)) {
         char why[sizeof l->why];
         int seen = spari_loading_open(&l->source, told->path, why, sizeof why) == SPAR_OK;
         blind[0] = !seen || l->source.count != told->count || l->source.sum != told->sum;
     }
-    SPARI_TRY(spari_comm_sum(s->comm, blind, 1, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, blind, 1, SPAR_OK, s->message, sizeof s->message));
     l->shared = blind[0] == 0;
     return SPAR_OK;
 }
@@ -132,7 +132,7 @@ static int share_file(spar_session *s, reading *l) {
 /* Check sum of the file: a part of it on each rank, or all of it on rank 0. */
 static int check_file_sum(spar_session *s, reading *l) {
     enum { SUM, COUNT, STATUS, WORDS };
-    int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
+    int ranks = spari_comm_size(s->ranks.comm), rank = spari_comm_rank(s->ranks.comm);
     double *part = spari_zalloc((int64_t)WORDS * ranks, sizeof *part);
     int64_t *first = spari_zalloc(ranks + 1, sizeof *first);
     int status = agree_on_memory(s, part && first);
@@ -147,7 +147,7 @@ static int check_file_sum(spar_session *s, reading *l) {
             status = tell_why(s, l, status);
         }
         memcpy(part + (ptrdiff_t)WORDS * rank, own, sizeof own);
-        status = spari_comm_share(s->comm, part, first, status, s->message, sizeof s->message);
+        status = spari_comm_share(s->ranks.comm, part, first, status, s->message, sizeof s->message);
         for (int r = 0; r < ranks && status == SPAR_OK; r++) {
             memcpy(own, part + (ptrdiff_t)WORDS * r, sizeof own);
             sum = spari_check_join(sum, own[0], own[1]);
@@ -168,7 +168,7 @@ static int open_file(spar_session *s, reading *l, const char *path) {
         status = tell_why(s, l, spari_loading_open(&l->source, path, l->why, sizeof l->why));
     }
     SPARI_TRY(agree_to_load(s, status));
-    l->shared = spari_comm_size(s->comm) == 1;
+    l->shared = spari_comm_size(s->ranks.comm) == 1;
     if (!l->shared) {
         SPARI_TRY(share_file(s, l));
     }
@@ -203,8 +203,8 @@ static int fetch_words(spar_session *s, reading *l, int to, int wanted, int64_t 
         if (root) {
             read_words(l, at + i, piece, by);
         }
-        SPARI_TRY(to < 0 ? spari_comm_broadcast(s->comm, by, 8 * piece, s->message, sizeof s->message)
-                         : spari_comm_move(s->comm, 0, to, by, 8 * piece, s->message, sizeof s->message));
+        SPARI_TRY(to < 0 ? spari_comm_broadcast(s->ranks.comm, by, 8 * piece, s->message, sizeof s->message)
+                         : spari_comm_move(s->ranks.comm, 0, to, by, 8 * piece, s->message, sizeof s->message));
     }
     return SPAR_OK;
 }
@@ -237,12 +237,12 @@ static int read_common(spar_session *s, reading *l) {
 
 /* Sends rank 0's words to all ranks. */
 static int send_image(spar_session *s, spari_image *image) {
-    SPARI_TRY(spari_comm_broadcast(s->comm, &image->count, sizeof image->count, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_broadcast(s->ranks.comm, &image->count, sizeof image->count, s->message, sizeof s->message));
     if (!is_root(s)) {
         image->word = spari_zalloc(image->count, sizeof *image->word);
     }
     SPARI_TRY(agree_to_load(s, image->word ? SPAR_OK : spari_saved_no_memory(s)));
-    return spari_comm_broadcast(s->comm, image->word, 8 * image->count, s->message, sizeof s->message);
+    return spari_comm_broadcast(s->ranks.comm, image->word, 8 * image->count, s->message, sizeof s->message);
 }
 
 static int load_common(spar_session *s, reading *l) {
@@ -472,7 +472,7 @@ static int find_keys(spar_session *s, reading *l) {
 
 /* Whether the fluids here equal those of this rank in the file, one by one. */
 static int same_fluids(const spar_session *s, reading *l) {
-    int rank = spari_comm_rank(s->comm);
+    int rank = spari_comm_rank(s->ranks.comm);
     const spar_fluid *f = s->fluids;
     for (int64_t i = 0; i < l->fluid_count; i++) {
         if (l->fluids[i].rank == rank) {
@@ -482,12 +482,12 @@ static int same_fluids(const spar_session *s, reading *l) {
             f = spari_fluid_next(f);
         }
     }
-    return !f && l->common.ranks == spari_comm_size(s->comm);
+    return !f && l->common.ranks == spari_comm_size(s->ranks.comm);
 }
 
 /* Rank whose fluid receives the loads of a key: the first with such a fluid. */
 static int find_takers(spar_session *s, reading *l) {
-    int ranks = spari_comm_size(s->comm), rank = spari_comm_rank(s->comm);
+    int ranks = spari_comm_size(s->ranks.comm), rank = spari_comm_rank(s->ranks.comm);
     double *has = spari_zalloc(l->keys * ranks + 1, sizeof *has);
     l->taker = spari_zalloc(l->keys, sizeof *l->taker);
     int status = agree_on_memory(s, has && l->taker);
@@ -498,7 +498,7 @@ static int find_takers(spar_session *s, reading *l) {
         }
     }
     if (status == SPAR_OK) {
-        status = spari_comm_sum(s->comm, has, l->keys * ranks, SPAR_OK, s->message, sizeof s->message);
+        status = spari_comm_sum(s->ranks.comm, has, l->keys * ranks, SPAR_OK, s->message, sizeof s->message);
     }
     for (int64_t i = 0; i < l->fluid_count && status == SPAR_OK; i++) {
         int *taker = l->taker + l->fluids[i].key;
@@ -521,7 +521,7 @@ static int takes(const spar_session *s, reading *l, const fluid_record *r, const
     if (!l->exact) {
         return is_record_of(l, r, s, f);
     }
-    const spar_fluid *at = r->rank == spari_comm_rank(s->comm) ? s->fluids : NULL;
+    const spar_fluid *at = r->rank == spari_comm_rank(s->ranks.comm) ? s->fluids : NULL;
     for (; at && own > 0; own--) {
         at = spari_fluid_next(at);
     }
@@ -536,7 +536,7 @@ static int take_fluid(spar_session *s, reading *l, spar_fluid *f, const double *
         if (takes(s, l, r, f, own)) {
             heads[count++] = r->head;
         }
-        own += r->rank == spari_comm_rank(s->comm);
+        own += r->rank == spari_comm_rank(s->ranks.comm);
     }
     SPARI_REQUIRE(s, count > 0, SPAR_ERR_ARGUMENT, "fluid '%s' of member '%s' is not in the file",
                   spar_fluid_get_name(f), spari_fluid_member(f)->name);
@@ -600,7 +600,7 @@ static int fetch_piece(spar_session *s, reading *l, const fluid_record *r, int w
 }
 
 static int fetch_fluid(spar_session *s, reading *l, const fluid_record *r, int64_t own) {
-    int rank = spari_comm_rank(s->comm), wanted = 0, broken = 0;
+    int rank = spari_comm_rank(s->ranks.comm), wanted = 0, broken = 0;
     const double *words = (const double *)(const void *)l->buffer;
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         wanted |= takes(s, l, r, f, own);
@@ -656,7 +656,7 @@ static int fetch_fluids(spar_session *s, reading *l) {
     for (int64_t i = 0; i < l->fluid_count; i++) {
         int status = fetch_fluid(s, l, l->fluids + i, own);
         found = found == SPAR_OK ? status : found;
-        own += l->fluids[i].rank == spari_comm_rank(s->comm);
+        own += l->fluids[i].rank == spari_comm_rank(s->ranks.comm);
     }
     return agree_to_load(s, l->status != SPAR_OK ? tell_why(s, l, l->status) : found);
 }
@@ -664,7 +664,7 @@ static int fetch_fluids(spar_session *s, reading *l) {
 /* Whether this is true on any rank. */
 static int is_any(spar_session *s, int here, int *any) {
     double count[2] = {here, 0};
-    SPARI_TRY(spari_comm_sum(s->comm, count, 1, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, count, 1, SPAR_OK, s->message, sizeof s->message));
     *any = count[0] > 0;
     return SPAR_OK;
 }
@@ -718,7 +718,7 @@ int spar_session_load(spar_session *session, const char *path) {
     spar_session *s = session;
     reading l = {.call = __func__};
     int status = spari_saved_check_call(s, __func__, path);
-    if (status == SPAR_OK && s->phase != SPARI_IDLE) {
+    if (status == SPAR_OK && s->state.phase != SPARI_IDLE) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", __func__);
     }
     SPARI_TRY(spari_enter_agreed(s, __func__, NULL, 0, status));

@@ -91,7 +91,7 @@ static int put_own(spari_image *image, const spar_session *s, const char *call) 
 /* ---- the file ---- */
 
 static int agree_to_save(spar_session *s, int status) {
-    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    return spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
 }
 
 enum { PIECE = 1 << 13 }; /* words sent through rank 0 at once */
@@ -115,12 +115,12 @@ static int64_t part_count(const save_plan *p, int rank) {
 
 /* Size and check sum of each rank's words, which are in the byte order of the file from here on. */
 static int share_parts(spar_session *s, save_plan *p, spari_image *own) {
-    int ranks = spari_comm_size(s->comm);
+    int ranks = spari_comm_size(s->ranks.comm);
     int64_t *first = spari_zalloc(ranks + 1, sizeof *first);
     p->part = spari_zalloc((int64_t)PART_WORDS * ranks, sizeof *p->part);
     int status = agree_to_save(s, first && p->part ? SPAR_OK : spari_saved_no_memory(s));
     if (first && p->part && status == SPAR_OK) {
-        double *mine = p->part + (ptrdiff_t)PART_WORDS * spari_comm_rank(s->comm);
+        double *mine = p->part + (ptrdiff_t)PART_WORDS * spari_comm_rank(s->ranks.comm);
         spari_words_to_disc(own->word, own->count);
         uint64_t sum = spari_check_bytes(0, own->word, 8 * (size_t)own->count);
         mine[PART_COUNT] = (double)own->count;
@@ -128,7 +128,7 @@ static int share_parts(spar_session *s, save_plan *p, spari_image *own) {
         for (int r = 0; r < ranks; r++) {
             first[r + 1] = first[r] + PART_WORDS;
         }
-        status = spari_comm_share(s->comm, p->part, first, SPAR_OK, s->message, sizeof s->message);
+        status = spari_comm_share(s->ranks.comm, p->part, first, SPAR_OK, s->message, sizeof s->message);
     }
     free(first);
     return status;
@@ -141,7 +141,7 @@ static int begin_file(spar_session *s, save_plan *p, const spari_image *own, con
         return spari_saved_no_memory(s);
     }
     p->count = p->common.count;
-    for (int r = 0; r < spari_comm_size(s->comm); r++) {
+    for (int r = 0; r < spari_comm_size(s->ranks.comm); r++) {
         p->count += part_count(p, r);
     }
     int status = spari_saving_begin(&p->file, path, p->count, p->why, sizeof p->why);
@@ -172,12 +172,13 @@ static void offer_file(save_plan *p) {
 static int is_seen_by_all(spar_session *s, save_plan *p, int *all) {
     int64_t told[2] = {p->count, 0};
     memcpy(told + 1, &p->mark, sizeof p->mark);
-    SPARI_TRY(spari_comm_broadcast(s->comm, p->temporary, sizeof p->temporary, s->message, sizeof s->message));
-    SPARI_TRY(spari_comm_broadcast(s->comm, told, sizeof told, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_broadcast(s->ranks.comm, p->temporary, sizeof p->temporary, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_broadcast(s->ranks.comm, told, sizeof told, s->message, sizeof s->message));
     p->count = told[0];
     memcpy(&p->mark, told + 1, sizeof p->mark);
-    double blind[2] = {spari_comm_rank(s->comm) > 0 && !spari_saving_is_marked(p->temporary, p->count, p->mark), 0};
-    SPARI_TRY(spari_comm_sum(s->comm, blind, 1, SPAR_OK, s->message, sizeof s->message));
+    double blind[2] = {spari_comm_rank(s->ranks.comm) > 0 && !spari_saving_is_marked(p->temporary, p->count, p->mark),
+                       0};
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, blind, 1, SPAR_OK, s->message, sizeof s->message));
     *all = blind[0] == 0;
     return SPAR_OK;
 }
@@ -200,7 +201,8 @@ static int64_t part_at(const save_plan *p, int rank, int ranks) {
 /* Each rank but 0 writes its own part. Then each verifies the next one's, because not all file systems keep what two
    machines write side by side. *whole: everything is there. */
 static int write_own_part(spar_session *s, save_plan *p, const spari_image *own, int *whole) {
-    int rank = spari_comm_rank(s->comm), ranks = spari_comm_size(s->comm), next = (rank + 1) % ranks, status = SPAR_OK;
+    int rank = spari_comm_rank(s->ranks.comm), ranks = spari_comm_size(s->ranks.comm), next = (rank + 1) % ranks,
+        status = SPAR_OK;
     if (rank > 0) {
         status =
             spari_saving_put_part(p->temporary, part_at(p, rank, ranks), own->count, own->word, p->why, sizeof p->why);
@@ -209,7 +211,7 @@ static int write_own_part(spar_session *s, save_plan *p, const spari_image *own,
     SPARI_TRY(agree_to_save(s, status));
     double lost[2] = {
         !spari_saving_has_part(p->temporary, part_at(p, next, ranks), part_count(p, next), part_sum(p, next)), 0};
-    SPARI_TRY(spari_comm_sum(s->comm, lost, 1, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, lost, 1, SPAR_OK, s->message, sizeof s->message));
     *whole = lost[0] == 0;
     for (int r = 1; rank == 0 && *whole && r < ranks; r++) {
         spari_saving_skip(&p->file, part_count(p, r), part_sum(p, r));
@@ -219,11 +221,11 @@ static int write_own_part(spar_session *s, save_plan *p, const spari_image *own,
 
 /* Sends through rank 0. Rank 0 receives also what it cannot write, and reports the failure at the end. */
 static int send_own_part(spar_session *s, save_plan *p, const spari_image *own) {
-    int rank = spari_comm_rank(s->comm);
-    for (int r = 1; r < spari_comm_size(s->comm); r++) {
+    int rank = spari_comm_rank(s->ranks.comm);
+    for (int r = 1; r < spari_comm_size(s->ranks.comm); r++) {
         for (int64_t at = 0; at < part_count(p, r) && (rank == 0 || rank == r); at += PIECE) {
             int64_t n = part_count(p, r) - at < PIECE ? part_count(p, r) - at : PIECE;
-            SPARI_TRY(spari_comm_move(s->comm, r, 0, rank == r ? own->word + at : p->piece, 8 * n, s->message,
+            SPARI_TRY(spari_comm_move(s->ranks.comm, r, 0, rank == r ? own->word + at : p->piece, 8 * n, s->message,
                                       sizeof s->message));
             if (rank == 0) {
                 spari_saving_put(&p->file, p->piece, n);
@@ -235,7 +237,7 @@ static int send_own_part(spar_session *s, save_plan *p, const spari_image *own) 
 
 static int write_parts(spar_session *s, save_plan *p, const spari_image *own) {
     int seen = 0, whole = 0;
-    if (spari_comm_rank(s->comm) == 0) {
+    if (spari_comm_rank(s->ranks.comm) == 0) {
         offer_file(p);
     }
     SPARI_TRY(is_seen_by_all(s, p, &seen));
@@ -247,7 +249,7 @@ static int write_parts(spar_session *s, save_plan *p, const spari_image *own) {
 
 /* Rank 0 moves the file to its final path, or removes it. */
 static int end_file(spar_session *s, save_plan *p, int status) {
-    if (spari_comm_rank(s->comm) == 0 && p->file.file.stream) {
+    if (spari_comm_rank(s->ranks.comm) == 0 && p->file.file.stream) {
         if (status != SPAR_OK || !spari_file_hold(&p->file.file)) {
             spari_file_drop(&p->file.file);
             status = status != SPAR_OK ? status
@@ -263,12 +265,12 @@ static int end_file(spar_session *s, save_plan *p, int status) {
 
 static int write_file(spar_session *s, spari_image *own, const char *path) {
     save_plan *p = spari_zalloc(1, sizeof *p);
-    int root = spari_comm_rank(s->comm) == 0;
+    int root = spari_comm_rank(s->ranks.comm) == 0;
     int status = agree_to_save(s, p ? SPAR_OK : spari_saved_no_memory(s));
     status = p && status == SPAR_OK ? share_parts(s, p, own) : status;
     if (p && status == SPAR_OK) {
         status = agree_to_save(s, root ? begin_file(s, p, own, path) : SPAR_OK);
-        if (status == SPAR_OK && spari_comm_size(s->comm) > 1) {
+        if (status == SPAR_OK && spari_comm_size(s->ranks.comm) > 1) {
             status = write_parts(s, p, own);
         }
         status = end_file(s, p, status);

@@ -26,8 +26,8 @@ int spari_saved_no_memory(const spar_session *s) {
 }
 
 int spari_saved_check_call(const spar_session *s, const char *call, const char *path) {
-    SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
-    SPARI_REQUIRE(s, !s->standing, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
+    SPARI_REQUIRE(s, !s->state.standing, SPAR_ERR_STATE,
                   "%s: a static solution or a start is under way; save or load "
                   "after it",
                   call);
@@ -93,26 +93,26 @@ static void pass_step_control(passage *t, spari_step_control *p) {
 }
 
 static void pass_clock(passage *t, spar_session *s) {
-    int phase = (int)s->phase;
-    pass(t, &s->time, 1);
-    pass(t, &s->time_rest, 1);
-    pass(t, &s->dt, 1);
-    pass(t, s->dt_last, 2);
-    pass_int(t, &s->uneven[0]);
-    pass_int(t, &s->uneven[1]);
-    pass(t, &s->step, 1);
-    pass_int(t, &s->iteration);
-    pass_int(t, &s->iterating);
-    pass_int(t, &s->failed);
-    pass_int(t, &s->order);
-    pass_int(t, &s->past);
-    pass_int(t, &s->started);
+    int phase = (int)s->state.phase;
+    pass(t, &s->clock.time, 1);
+    pass(t, &s->clock.rest, 1);
+    pass(t, &s->clock.dt, 1);
+    pass(t, s->clock.dt_last, 2);
+    pass_int(t, &s->clock.uneven[0]);
+    pass_int(t, &s->clock.uneven[1]);
+    pass(t, &s->clock.step, 1);
+    pass_int(t, &s->state.iteration);
+    pass_int(t, &s->state.iterating);
+    pass_int(t, &s->state.failed);
+    pass_int(t, &s->state.order);
+    pass_int(t, &s->state.past);
+    pass_int(t, &s->clock.started);
     pass_int(t, &phase);
     pass(t, s->gravity_before, 3);
     pass_step_control(t, &s->own->step_control);
     if (t->mode == READ) {
-        s->phase = (spari_phase)phase;
-        s->past = s->past < s->predictor ? s->past : s->predictor;
+        s->state.phase = (spari_phase)phase;
+        s->state.past = s->state.past < s->coupling.predictor ? s->state.past : s->coupling.predictor;
     }
 }
 
@@ -225,7 +225,7 @@ static void pass_begun(passage *t, spar_member *m) {
 static void pass_cuts(passage *t, spar_member *m) {
     enum { WORDS = sizeof m->cuts.given_up / sizeof(double) };
     const spar_session *s = m->session;
-    const int under_way = s->phase != SPARI_IDLE && m->cuts.begun == s->begun;
+    const int under_way = s->state.phase != SPARI_IDLE && m->cuts.begun == s->clock.begun;
     double has = 0;
     for (size_t i = 0; i < sizeof m->cuts.given_up / sizeof *m->cuts.given_up && under_way; i++) {
         has = has != 0 || m->cuts.given_up[i] != 0;
@@ -237,7 +237,7 @@ static void pass_cuts(passage *t, spar_member *m) {
         t->image->failed = has != 0 && has != 1;
     }
     if (t->mode == READ) {
-        m->cuts = (spari_cuts){.begun = s->begun};
+        m->cuts = (spari_cuts){.begun = s->clock.begun};
     }
     if (has != 0) {
         pass(t, m->cuts.given_up, WORDS);
@@ -362,7 +362,7 @@ static void put_coupling(spari_image *image, spar_session *s) {
 
 void spari_saved_put(spari_image *image, spar_session *s) {
     passage t = {image, WRITE};
-    spari_image_put_int(image, spari_comm_size(s->comm));
+    spari_image_put_int(image, spari_comm_size(s->ranks.comm));
     spari_image_put_int(image, s->member_count);
     for (const spar_member *m = s->members; m; m = m->next) {
         uint64_t hash = spari_member_hash(m);
@@ -431,15 +431,17 @@ static int check_clock(spar_session *s, spari_saved *l) {
     passage t = {&l->image, READ};
     spar_session then = *s;
     pass_clock(&t, &then);
-    int phase = (int)then.phase, within = phase > SPARI_IDLE;
-    int ok = !l->image.failed && isfinite(then.time) && isfinite(then.time_rest) && isfinite(then.dt) && then.dt >= 0 &&
-             (!within || then.dt > 0) && is_within(then.step, 0, INT64_C(1) << 53) &&
-             is_within(then.iteration, 0, 1 << 30) && is_within(phase, SPARI_IDLE, SPARI_CHECKED) &&
-             is_within(then.order, 0, 2) && is_within(then.past, within && then.step == 0 ? -1 : 0, then.predictor) &&
-             then.started == (within || then.step > 0) && spari_first_nonfinite(then.gravity_before, 3) < 0;
+    int phase = (int)then.state.phase, within = phase > SPARI_IDLE;
+    int ok = !l->image.failed && isfinite(then.clock.time) && isfinite(then.clock.rest) && isfinite(then.clock.dt) &&
+             then.clock.dt >= 0 && (!within || then.clock.dt > 0) && is_within(then.clock.step, 0, INT64_C(1) << 53) &&
+             is_within(then.state.iteration, 0, 1 << 30) && is_within(phase, SPARI_IDLE, SPARI_CHECKED) &&
+             is_within(then.state.order, 0, 2) &&
+             is_within(then.state.past, within && then.clock.step == 0 ? -1 : 0, then.coupling.predictor) &&
+             then.clock.started == (within || then.clock.step > 0) && spari_first_nonfinite(then.gravity_before, 3) < 0;
     for (int k = 0; k < 2; k++) { /* divisors of a prediction */
-        int used = then.past > k || (within && then.order > k);
-        ok = ok && isfinite(then.dt_last[k]) && then.dt_last[k] >= 0 && (!used || then.dt_last[k] > 0);
+        int used = then.state.past > k || (within && then.state.order > k);
+        ok =
+            ok && isfinite(then.clock.dt_last[k]) && then.clock.dt_last[k] >= 0 && (!used || then.clock.dt_last[k] > 0);
     }
     l->phase = phase;
     return ok ? SPAR_OK : spari_saved_broken(s);
@@ -458,7 +460,7 @@ static int check_coupling(spar_session *s, spari_saved *l) {
     int own = spari_settings_of_coupling(s, settings);
     const uint64_t *saved = spari_image_get(&l->image, own);
     if (saved && memcmp(saved, settings, (size_t)own * sizeof *settings) == 0) {
-        SPARI_TRY(spari_coupling_create(s, s->scheme, 0, &l->coupling));
+        SPARI_TRY(spari_coupling_create(s, s->coupling.scheme, 0, &l->coupling));
         passage t = {&l->image, READ};
         pass_coupling(&t, l->coupling);
         if (l->coupling->accelerator) {
@@ -509,7 +511,7 @@ void spari_saved_load(spar_session *s, spari_saved *l) {
     for (spar_joint *j = s->joints; j; j = j->next) {
         pass_joint(&t, j);
     }
-    s->coupling_stale = !l->coupling;
+    s->coupling.stale = !l->coupling;
     if (l->coupling) {
         spari_coupling_free(&s->own->coupling);
         s->own->coupling = l->coupling;

@@ -14,8 +14,8 @@ static int check_within(spar_session *s, const char *call, const double *dt, dou
     SPARI_TRY(spari_need_dt(s, call, first));
     SPARI_REQUIRE(s, spari_step_control_is_set(s), SPAR_ERR_STATE,
                   "%s: no tolerance is set; call spar_session_set_tolerance first", call);
-    SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
-    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
                   call);
     return SPAR_OK;
 }
@@ -42,7 +42,7 @@ static const double clock_resolves = 1e-12;
 
 static int fail_within(const spar_session *s, const char *call, const tries *t) {
     const char *why = "the motion needs smaller steps than these; begin with a smaller dt, or give a larger drift";
-    int at_clock = 0.2 * t->dt <= clock_resolves * fabs(s->time); /* next_dt reduces to a fifth at most */
+    int at_clock = 0.2 * t->dt <= clock_resolves * fabs(s->clock.time); /* next_dt reduces to a fifth at most */
     if (t->stuck && t->power < -0.5) {
         why = "the error grows as dt falls, from the rounding of positions; give a larger drift or rtol";
     } else if (t->stuck || at_clock) {
@@ -52,7 +52,7 @@ static int fail_within(const spar_session *s, const char *call, const tries *t) 
     return spari_fail(s, SPAR_ERR_NUMERIC,
                       "%s: from t = %g no dt down to %g keeps the tolerance, the error of the last is %.2g times as "
                       "large: %s",
-                      call, s->time, t->dt, t->ratio, why);
+                      call, s->clock.time, t->dt, t->ratio, why);
 }
 
 int spar_step_within(spar_session *session, double *dt, spar_before_step before, spar_fluid_solver solve, void *context,
@@ -66,7 +66,7 @@ int spar_step_within(spar_session *session, double *dt, spar_before_step before,
     const spari_agreed must_agree[] = {spari_real("dt", h), spari_given("before", before != NULL)};
     SPARI_TRY(spari_enter_agreed(s, __func__, must_agree, 2, check_within(s, __func__, dt, h)));
     tries done = {0};
-    for (int k = 0; k < TRIES && done.stuck < STUCK && (k == 0 || h > clock_resolves * fabs(s->time)); k++) {
+    for (int k = 0; k < TRIES && done.stuck < STUCK && (k == 0 || h > clock_resolves * fabs(s->clock.time)); k++) {
         SPARI_TRY(spari_named(s, __func__, spari_callback_before_step(s, before, h, context)));
         SPARI_TRY(spari_named(s, __func__, spar_step_begin(s, h)));
         SPARI_TRY(spari_step_run(s, __func__, solve, context));

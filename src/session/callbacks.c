@@ -5,10 +5,10 @@
 #include "../comm/comm.h"
 
 int spari_callback_refuse(spar_session *s, const char *call) {
-    SPARI_REQUIRE(s, !s->in_callback, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, !s->callbacks.in_progress, SPAR_ERR_STATE,
                   "%s: %s is under way and has called this fluid solver; pull, push and return from it, or make the "
                   "step by spar_step_begin, spar_step_solve, spar_step_check, spar_step_accept",
-                  call, s->in_callback);
+                  call, s->callbacks.in_progress);
     return SPAR_OK;
 }
 
@@ -18,13 +18,13 @@ int spari_callback_run(spar_session *s, const char *lender, spar_fluid_solver so
     }
     int64_t failures = s->failures;
     spari_host host;
-    s->calls_differ = 0;
+    s->ranks.calls_differ = 0;
     spari_host_begin(&host);
-    s->in_callback = lender;
-    int result = solve(s, s->time, dt, s->iteration, context);
-    s->in_callback = NULL;
+    s->callbacks.in_progress = lender;
+    int result = solve(s, s->clock.time, dt, s->state.iteration, context);
+    s->callbacks.in_progress = NULL;
     spari_host_end(&host);
-    if (s->calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
+    if (s->ranks.calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
     if (result == 0) {
@@ -32,7 +32,7 @@ int spari_callback_run(spar_session *s, const char *lender, spar_fluid_solver so
     }
     int told = s->failures != failures; /* the failure there */
     return spari_fail(s, SPAR_ERR_USER, "%s: the fluid solver returned %d in iteration %d%s%.800s", lender, result,
-                      s->iteration, told ? ": " : "", told ? s->message : "");
+                      s->state.iteration, told ? ": " : "", told ? s->message : "");
 }
 
 int spari_callback_before_step(spar_session *s, spar_before_step before, double dt, void *context) {
@@ -40,12 +40,12 @@ int spari_callback_before_step(spar_session *s, spar_before_step before, double 
         return SPAR_OK;
     }
     int64_t failures = s->failures;
-    s->calls_differ = 0;
+    s->ranks.calls_differ = 0;
     spari_host host;
     spari_host_begin(&host);
-    int result = before(s, s->time, dt, context), status = SPAR_OK;
+    int result = before(s, s->clock.time, dt, context), status = SPAR_OK;
     spari_host_end(&host);
-    if (s->calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
+    if (s->ranks.calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
     if (result != 0 && s->failures == failures) {
@@ -53,25 +53,25 @@ int spari_callback_before_step(spar_session *s, spar_before_step before, double 
     } else if (result != 0) {
         status = SPAR_ERR_USER;
     }
-    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    return spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
 }
 
 /* ---- how far trials are ---- */
 
 spari_progress spari_progress_of(const spar_session *s, const char *call) {
-    return (spari_progress){.call = call, .tell = s->progress, .context = s->progress_context};
+    return (spari_progress){.call = call, .tell = s->callbacks.progress, .context = s->callbacks.progress_context};
 }
 
 /* Between trials the session stands as the host left it; what would try or save it is refused as within one. */
 static int ask_host(spar_session *s, const spari_progress *p, double done, double expected) {
     spari_host host;
-    s->calls_differ = 0;
+    s->ranks.calls_differ = 0;
     spari_host_begin(&host);
-    s->trial = 1;
+    s->state.trial = 1;
     int result = p->tell(s, done, expected, p->context);
-    s->trial = 0;
+    s->state.trial = 0;
     spari_host_end(&host);
-    if (s->calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
+    if (s->ranks.calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
     int status = result == 0 ? SPAR_OK
@@ -79,7 +79,7 @@ static int ask_host(spar_session *s, const spari_progress *p, double done, doubl
                                           "%s: the host has stopped it: its progress call returned %d, after %.3g of "
                                           "%.3g trials expected",
                                           p->call, result, done, expected);
-    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    return spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
 }
 
 int spari_progress_tell(spar_session *s, spari_progress *p, double done, double expected) {

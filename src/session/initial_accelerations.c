@@ -17,10 +17,10 @@
 #include <string.h>
 
 static int check_start(spar_session *s, const char *call, double dt) {
-    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
                   call);
-    SPARI_REQUIRE(s, s->step == 0, SPAR_ERR_STATE,
-                  "%s: the clock has run to t = %g; a start is balanced before the first step", call, s->time);
+    SPARI_REQUIRE(s, s->clock.step == 0, SPAR_ERR_STATE,
+                  "%s: the clock has run to t = %g; a start is balanced before the first step", call, s->clock.time);
     SPARI_TRY(spari_need_dt(s, call, dt));
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
@@ -45,7 +45,7 @@ int spari_start_begin(spar_session *s, const char *call, double dt) {
     }
     SPARI_TRY(spari_named(s, call, spari_session_seal(s, status)));
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
-    int scheme = spari_coupling_scheme_of(s->scheme)->iterates ? s->scheme : SPAR_COUPLING_IQN_ILS;
+    int scheme = spari_coupling_scheme_of(s->coupling.scheme)->iterates ? s->coupling.scheme : SPAR_COUPLING_IQN_ILS;
     SPARI_TRY(spari_named(s, call, spari_coupling_suspend(s, scheme)));
     for (spar_member *m = s->members; m; m = m->next) {
         copy_start_loads(m, m->load_pushed, m->load_before);
@@ -54,11 +54,11 @@ int spari_start_begin(spar_session *s, const char *call, double dt) {
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_begin(f, 0, 1, last);
     }
-    s->dt = dt;
-    s->iteration = s->iterating = s->failed = 0;
+    s->clock.dt = dt;
+    s->state.iteration = s->state.iterating = s->state.failed = 0;
     spari_coupling_begin(s);
-    s->started = s->standing = 1;
-    s->phase = SPARI_BEGUN;
+    s->clock.started = s->state.standing = 1;
+    s->state.phase = SPARI_BEGUN;
     return SPAR_OK;
 }
 
@@ -74,10 +74,10 @@ static int balance_members(spar_session *s) {
     }
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         int own = !m->assembly && m->row->balance && spari_fidelity_is_here(m);
-        status = own ? m->row->balance(m, s->dt) : SPAR_OK;
+        status = own ? m->row->balance(m, s->clock.dt) : SPAR_OK;
     }
     for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
-        status = spari_assembly_balance(a, s->dt);
+        status = spari_assembly_balance(a, s->clock.dt);
     }
     return status;
 }
@@ -101,18 +101,18 @@ int spari_start_solve(spar_session *s, const char *call) {
             spari_member_again(m);
         }
     }
-    s->failed = 0;
-    s->phase = status == SPAR_OK ? SPARI_SOLVED : SPARI_BEGUN;
+    s->state.failed = 0;
+    s->state.phase = status == SPAR_OK ? SPARI_SOLVED : SPARI_BEGUN;
     return spari_coupling_solve_failed(s, call, spari_named(s, call, status));
 }
 
 static void end_start(spar_session *s) {
-    s->phase = SPARI_IDLE;
-    s->started = s->standing = 0;
+    s->state.phase = SPARI_IDLE;
+    s->clock.started = s->state.standing = 0;
 }
 
 void spari_start_accept(spar_session *s) {
-    int checked = s->phase == SPARI_CHECKED;
+    int checked = s->state.phase == SPARI_CHECKED;
     for (spar_member *m = s->members; m; m = m->next) {
         if (!checked) {
             copy_start_loads(m, m->load_used, m->load_pushed);
@@ -128,7 +128,7 @@ void spari_start_accept(spar_session *s) {
         spari_fluid_commit_state(f);
     }
     spari_coupling_keep(s);
-    s->past = 0;
+    s->state.past = 0;
     end_start(s);
 }
 
@@ -149,5 +149,5 @@ void spari_start_reject(spar_session *s) {
 }
 
 int spari_start_stands(const spar_session *s) {
-    return s->phase == SPARI_IDLE && s->members && s->members->begun;
+    return s->state.phase == SPARI_IDLE && s->members && s->members->begun;
 }

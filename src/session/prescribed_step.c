@@ -19,21 +19,21 @@ static void end_forced(spar_session *s, double dt) {
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_accept(f);
     }
-    spari_clock_tick(s, dt);
-    s->step++;
-    s->dt_last[1] = s->dt_last[0];
-    s->dt_last[0] = dt;
-    s->phase = SPARI_IDLE;
+    spari_clock_tick(&s->clock, dt);
+    s->clock.step++;
+    s->clock.dt_last[1] = s->clock.dt_last[0];
+    s->clock.dt_last[0] = dt;
+    s->state.phase = SPARI_IDLE;
 }
 
 int spari_forced_step(spar_session *s, const char *call, double dt, spar_fluid_solver solve, void *context) {
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_begin(f, 0, dt, s->dt_last);
+        spari_fluid_begin(f, 0, dt, s->clock.dt_last);
     }
-    s->dt = dt;
-    s->order = s->iteration = s->iterating = s->failed = 0;
-    s->started = 1;
-    s->phase = SPARI_SOLVED;
+    s->clock.dt = dt;
+    s->state.order = s->state.iteration = s->state.iterating = s->state.failed = 0;
+    s->clock.started = 1;
+    s->state.phase = SPARI_SOLVED;
     int status = spari_callback_run(s, call, solve, dt, context);
     if (status == SPAR_ERR_COMM) {
         return status;

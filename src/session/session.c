@@ -32,7 +32,7 @@ static spar_session *session_new(void) {
 int spar_session_create(spar_session **session) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: no place for the new session (NULL)", __func__);
     spar_session *s = session_new();
-    int status = s ? spari_comm_create_self(&s->comm) : SPAR_ERR_MEMORY;
+    int status = s ? spari_comm_create_self(&s->ranks.comm) : SPAR_ERR_MEMORY;
     if (!s || status != SPAR_OK) {
         free(s);
         return spari_fail(NULL, SPAR_ERR_MEMORY, "%s: no memory for the session", __func__);
@@ -56,7 +56,7 @@ int spar_session_create_fcomm(int comm, spar_session **session) {
         free(s);
         return spari_fail(NULL, status, "%s: %s", __func__, why);
     }
-    s->comm = ranks;
+    s->ranks.comm = ranks;
     *session = s;
     return SPAR_OK;
 }
@@ -81,7 +81,7 @@ void spar_session_destroy(spar_session **session) {
     }
     spari_threads_free(s);
     spari_workspace_free(&s->workspace);
-    spari_comm_destroy(&s->comm);
+    spari_comm_destroy(&s->ranks.comm);
     spari_coupling_free(&s->own->coupling);
     spari_coupling_free(&s->own->suspended);
     if (s->own->kept) {
@@ -98,15 +98,15 @@ void spar_session_destroy(spar_session **session) {
 
 int spar_session_set_log(spar_session *session, spar_log log, void *context) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    session->log = log;
-    session->log_context = context;
+    session->callbacks.log = log;
+    session->callbacks.log_context = context;
     return SPAR_OK;
 }
 
 int spar_session_set_progress(spar_session *session, spar_progress progress, void *context) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    session->progress = progress;
-    session->progress_context = context;
+    session->callbacks.progress = progress;
+    session->callbacks.progress_context = context;
     return SPAR_OK;
 }
 
@@ -114,13 +114,13 @@ int spar_session_get_time(const spar_session *session, double *t, int64_t *step,
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     if (t) {
-        *t = session->time;
+        *t = session->clock.time;
     }
     if (step) {
-        *step = session->step;
+        *step = session->clock.step;
     }
     if (iteration) {
-        *iteration = session->iteration;
+        *iteration = session->state.iteration;
     }
     return SPAR_OK;
 }
@@ -130,8 +130,8 @@ int spar_session_get_phase(const spar_session *session, int *phase) {
         [SPARI_BEGUN] = SPAR_PHASE_BEGUN, [SPARI_SOLVED] = SPAR_PHASE_SOLVED, [SPARI_CHECKED] = SPAR_PHASE_CHECKED};
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     if (phase) {
-        int rest = session->started ? SPAR_PHASE_BETWEEN : SPAR_PHASE_START;
-        *phase = session->phase == SPARI_IDLE ? rest : result[session->phase];
+        int rest = session->clock.started ? SPAR_PHASE_BETWEEN : SPAR_PHASE_START;
+        *phase = session->state.phase == SPARI_IDLE ? rest : result[session->state.phase];
     }
     return SPAR_OK;
 }

@@ -59,54 +59,57 @@ static const spari_setting settings[] = {
     ALONG("gravity (x)", 0),
     ALONG("gravity (y)", 1),
     ALONG("gravity (z)", 2),
-    REAL(INTEGRATOR, "integrator", "rho_inf", rho_inf, 0, 1, "0 (most damping) to 1 (none)", 0.9, SPARI_AGREED),
-    WHOLE(INTEGRATOR, "integrator", "substeps", substeps, 1, INT32_MAX, one_or_more, 1, SPARI_AGREED | SPARI_VARIED),
-    REAL(NEWTON, "newton", "atol", newton_atol, 0, DBL_MAX, not_negative, 1e-15, SPARI_AGREED),
-    REAL(NEWTON, "newton", "rtol", newton_rtol, 0, DBL_MAX, not_negative, 1e-12, SPARI_AGREED | SPARI_VARIED),
-    WHOLE(NEWTON, "newton", "max_iterations", newton_max, 1, INT32_MAX, one_or_more, 50, SPARI_AGREED),
-    WHOLE(PREDICTOR, "predictor", "order", predictor, 0, 2, "0, 1 or 2", 1, SPARI_AGREED | SPARI_VARIED),
-    WHOLE(COUPLING, "coupling", "scheme", scheme, 0, SPARI_SCHEME_COUNT - 1, "a SPAR_COUPLING_*",
+    REAL(INTEGRATOR, "integrator", "rho_inf", integrator.rho_inf, 0, 1, "0 (most damping) to 1 (none)", 0.9,
+         SPARI_AGREED),
+    WHOLE(INTEGRATOR, "integrator", "substeps", integrator.substeps, 1, INT32_MAX, one_or_more, 1,
+          SPARI_AGREED | SPARI_VARIED),
+    REAL(NEWTON, "newton", "atol", newton.atol, 0, DBL_MAX, not_negative, 1e-15, SPARI_AGREED),
+    REAL(NEWTON, "newton", "rtol", newton.rtol, 0, DBL_MAX, not_negative, 1e-12, SPARI_AGREED | SPARI_VARIED),
+    WHOLE(NEWTON, "newton", "max_iterations", newton.max, 1, INT32_MAX, one_or_more, 50, SPARI_AGREED),
+    WHOLE(PREDICTOR, "predictor", "order", coupling.predictor, 0, 2, "0, 1 or 2", 1, SPARI_AGREED | SPARI_VARIED),
+    WHOLE(COUPLING, "coupling", "scheme", coupling.scheme, 0, SPARI_SCHEME_COUNT - 1, "a SPAR_COUPLING_*",
           SPAR_COUPLING_EXPLICIT, SPARI_AGREED | SPARI_OF_COUPLING | SPARI_VARIED),
-    REAL(COUPLING, "coupling", "atol", coupling_atol, 0, DBL_MAX, not_negative, 1e-9, SPARI_AGREED),
-    REAL(COUPLING, "coupling", "rtol", coupling_rtol, 0, DBL_MAX, not_negative, 1e-6, SPARI_AGREED | SPARI_VARIED),
-    WHOLE(COUPLING, "coupling", "max_iterations", coupling_max, 1, INT32_MAX, one_or_more, 50,
+    REAL(COUPLING, "coupling", "atol", coupling.atol, 0, DBL_MAX, not_negative, 1e-9, SPARI_AGREED),
+    REAL(COUPLING, "coupling", "rtol", coupling.rtol, 0, DBL_MAX, not_negative, 1e-6, SPARI_AGREED | SPARI_VARIED),
+    WHOLE(COUPLING, "coupling", "max_iterations", coupling.max, 1, INT32_MAX, one_or_more, 50,
           SPARI_AGREED | SPARI_OF_COUPLING),
-    REAL(RELAXATION, "relaxation", "omega", relaxation, DBL_MIN, 2, "a number in (0, 2]", 1,
+    REAL(RELAXATION, "relaxation", "omega", coupling.relaxation, DBL_MIN, 2, "a number in (0, 2]", 1,
          SPARI_AGREED | SPARI_OF_COUPLING),
-    WHOLE(REPRODUCIBLE, "reproducible", "on", reproducible, 0, 1, "0 or 1", 0, SPARI_AGREED),
-    REAL(TOLERANCE, "tolerance", "drift", tolerance_drift, 0, DBL_MAX, not_negative, 0, SPARI_AGREED),
-    REAL(TOLERANCE, "tolerance", "rtol", tolerance_rtol, 0, 1, "a number from 0 to 1", 0, SPARI_AGREED),
-    WHOLE(GOAL, "goal", "goals", goals, 1, 31, "SPAR_GOAL_* or-ed, one of them at least", SPAR_GOAL_MOTION,
+    WHOLE(REPRODUCIBLE, "reproducible", "on", ranks.reproducible, 0, 1, "0 or 1", 0, SPARI_AGREED),
+    REAL(TOLERANCE, "tolerance", "drift", tolerance.drift, 0, DBL_MAX, not_negative, 0, SPARI_AGREED),
+    REAL(TOLERANCE, "tolerance", "rtol", tolerance.rtol, 0, 1, "a number from 0 to 1", 0, SPARI_AGREED),
+    WHOLE(GOAL, "goal", "goals", advice.goals, 1, 31, "SPAR_GOAL_* or-ed, one of them at least", SPAR_GOAL_MOTION,
           SPARI_AGREED),
-    OPTION_WORD("newton.stop", newton_strict, "tied", "strict", SPARI_AGREED | SPARI_VARIED),
-    OPTION_WORD("coupling.unconverged", accept_unconverged, "error", "accept", SPARI_AGREED),
-    OPTION_WHOLE("coupling.patience", coupling_patience, 1, 1000000, "a whole number from 1 to 1000000", 3,
+    OPTION_WORD("newton.stop", newton.strict, "tied", "strict", SPARI_AGREED | SPARI_VARIED),
+    OPTION_WORD("coupling.unconverged", coupling.accept_unconverged, "error", "accept", SPARI_AGREED),
+    OPTION_WHOLE("coupling.patience", coupling.patience, 1, 1000000, "a whole number from 1 to 1000000", 3,
                  SPARI_AGREED),
-    OPTION_WORD("coupling.norm", norm_of_loads, "motion", "loads", SPARI_AGREED | SPARI_OF_COUPLING),
-    OPTION_WORD("fluid.added_mass", added_by_velocity, "acceleration", "velocity", SPARI_AGREED),
-    OPTION_WORD("coupling.estimate", coupling_estimate, "off", "on", SPARI_AGREED | SPARI_OF_COUPLING),
-    OPTION_WHOLE("coupling.columns", coupling_columns, 1, 10000, "a whole number from 1 to 10000", 30,
+    OPTION_WORD("coupling.norm", coupling.norm_of_loads, "motion", "loads", SPARI_AGREED | SPARI_OF_COUPLING),
+    OPTION_WORD("fluid.added_mass", exchange.added_by_velocity, "acceleration", "velocity", SPARI_AGREED),
+    OPTION_WORD("coupling.estimate", coupling.estimate, "off", "on", SPARI_AGREED | SPARI_OF_COUPLING),
+    OPTION_WHOLE("coupling.columns", coupling.columns, 1, 10000, "a whole number from 1 to 10000", 30,
                  SPARI_AGREED | SPARI_OF_COUPLING),
-    OPTION_WHOLE("coupling.reuse", coupling_reuse, 0, 10000, "a whole number from 0 to 10000", 5,
+    OPTION_WHOLE("coupling.reuse", coupling.reuse, 0, 10000, "a whole number from 0 to 10000", 5,
                  SPARI_AGREED | SPARI_OF_COUPLING),
-    OPTION_REAL("coupling.filter", coupling_filter, 0, 0.5, "a number from 0 to 0.5", 1e-4,
+    OPTION_REAL("coupling.filter", coupling.filter, 0, 0.5, "a number from 0 to 0.5", 1e-4,
                 SPARI_AGREED | SPARI_OF_COUPLING),
-    OPTION_REAL("coupling.motion_atol", motion_atol, 0, 1e300, "a number >= 0 (metres)", 0,
+    OPTION_REAL("coupling.motion_atol", coupling.motion_atol, 0, 1e300, "a number >= 0 (metres)", 0,
                 SPARI_AGREED | SPARI_OF_COUPLING),
-    OPTION_REAL("coupling.motion_rtol", motion_rtol, 0, 1, "a number from 0 to 1", 0, SPARI_AGREED | SPARI_OF_COUPLING),
-    OPTION_WORD("fluid.theta", theta_on_group, "average", "group", SPARI_AGREED),
-    OPTION_WORD("fluid.far", far_refuse, "take", "refuse", 0),
-    OPTION_WORD("fluid.audit", audit_off, "on", "off", 0),
-    OPTION_WORD("advise.dt", keep_dt, "vary", "keep", SPARI_AGREED),
-    OPTION_WORD("advise.nodes", keep_nodes, "vary", "keep", SPARI_AGREED),
-    OPTION_WORD("advise.fidelity", keep_fidelity, "vary", "keep", SPARI_AGREED),
-    OPTION_WORD("advise.coupling", keep_coupling, "vary", "keep", SPARI_AGREED),
-    OPTION_REAL("advise.limit", advise_limit, 0, 1e300, "a number >= 0 (trials)", 0, SPARI_AGREED),
-    OPTION_REAL("advise.fluid_cost", fluid_cost, 0, 1e300, "a number >= 0 (seconds)", 0, SPARI_AGREED),
+    OPTION_REAL("coupling.motion_rtol", coupling.motion_rtol, 0, 1, "a number from 0 to 1", 0,
+                SPARI_AGREED | SPARI_OF_COUPLING),
+    OPTION_WORD("fluid.theta", exchange.theta_on_group, "average", "group", SPARI_AGREED),
+    OPTION_WORD("fluid.far", exchange.far_refuse, "take", "refuse", 0),
+    OPTION_WORD("fluid.audit", exchange.audit_off, "on", "off", 0),
+    OPTION_WORD("advise.dt", advice.keep_dt, "vary", "keep", SPARI_AGREED),
+    OPTION_WORD("advise.nodes", advice.keep_nodes, "vary", "keep", SPARI_AGREED),
+    OPTION_WORD("advise.fidelity", advice.keep_fidelity, "vary", "keep", SPARI_AGREED),
+    OPTION_WORD("advise.coupling", advice.keep_coupling, "vary", "keep", SPARI_AGREED),
+    OPTION_REAL("advise.limit", advice.limit, 0, 1e300, "a number >= 0 (trials)", 0, SPARI_AGREED),
+    OPTION_REAL("advise.fluid_cost", advice.fluid_cost, 0, 1e300, "a number >= 0 (seconds)", 0, SPARI_AGREED),
     STATE("numbers of members", member_count),
     STATE("numbers of joints", joint_count),
-    STATE("calls that set the coupling", coupling_stale),
-    STATE("calls of spar_session_set_predictor", past),
+    STATE("calls that set the coupling", coupling.stale),
+    STATE("calls of spar_session_set_predictor", state.past),
 };
 enum { SETTINGS = sizeof settings / sizeof *settings };
 
@@ -117,7 +120,7 @@ static void store(spar_session *s, const spari_setting *of, double x) {
     } else {
         *(int *)field = (int)x;
     }
-    s->coupling_stale |= of->flags & SPARI_OF_COUPLING ? 1 : 0;
+    s->coupling.stale |= of->flags & SPARI_OF_COUPLING ? 1 : 0;
 }
 
 static int is_allowed(const spari_setting *of, double x) {
@@ -164,20 +167,20 @@ double *spari_settings_place(double *values, size_t field) {
 }
 
 void spari_settings_vary(spar_session *s, const double *values) {
-    int stale = s->coupling_stale;
+    int stale = s->coupling.stale;
     for (int i = 0; i < SETTINGS; i++) {
         if (settings[i].flags & SPARI_VARIED) {
             store(s, settings + i, *values++);
         }
     }
-    s->coupling_stale = stale;
+    s->coupling.stale = stale;
 }
 
 /* ---- setters and getters ---- */
 
 static int settable(spar_session *session, const char *call) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
-    SPARI_REQUIRE(session, session->phase == SPARI_IDLE, SPAR_ERR_STATE,
+    SPARI_REQUIRE(session, session->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is under way; change settings between steps", call);
     return SPAR_OK;
 }
@@ -251,12 +254,12 @@ int spar_session_set_integrator(spar_session *session, double rho_inf, int subst
     SPARI_GUARD_ENVIRONMENT;
     const double given[] = {rho_inf, substeps};
     SPARI_TRY(check_given(session, __func__, INTEGRATOR, given));
-    int status = SPAR_OK, before = session->substeps;
-    session->substeps = substeps;
+    int status = SPAR_OK, before = session->integrator.substeps;
+    session->integrator.substeps = substeps;
     for (spar_member *m = session->members; m && status == SPAR_OK; m = m->next) {
         status = m->committed ? spari_means_keep(m) : SPAR_OK;
     }
-    session->substeps = before;
+    session->integrator.substeps = before;
     SPARI_TRY(spari_named(session, __func__, status));
     store_given(session, INTEGRATOR, given);
     return SPAR_OK;
@@ -268,7 +271,7 @@ int spar_session_get_integrator(const spar_session *session, double *rho_inf, in
 
 int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations) {
     SPARI_TRY(set(session, __func__, NEWTON, (const double[]){atol, rtol, max_iterations}));
-    session->newton_strict = 1;
+    session->newton.strict = 1;
     return SPAR_OK;
 }
 
@@ -288,7 +291,7 @@ int spar_session_set_predictor(spar_session *session, int order) {
     }
     SPARI_REQUIRE(session, status == SPAR_OK, status, "%s: no memory for the loads of order %d", __func__, order);
     store_given(session, PREDICTOR, (const double[]){order});
-    session->past = session->past < order ? session->past : order;
+    session->state.past = session->state.past < order ? session->state.past : order;
     return SPAR_OK;
 }
 

@@ -37,14 +37,14 @@ static int check_member_static(const spar_member *m, const char *call, int load_
     spar_session *s = m->session;
     SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first",
                   call, m->name);
-    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: '%s': a step is under way; accept or reject it first",
-                  call, m->name);
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "%s: '%s': a step is under way; accept or reject it first", call, m->name);
     SPARI_REQUIRE(s, load_steps >= 1 && load_steps <= SPARI_STATIC_MOST, SPAR_ERR_ARGUMENT,
                   "%s: '%s': %d load steps; give 1 to %d", call, m->name, load_steps, SPARI_STATIC_MOST);
     SPARI_REQUIRE(s, m->row->rest, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)",
                   call, m->name);
     SPARI_TRY(check_held(m, call));
-    return s->started ? SPAR_OK : spari_session_pushes(s, call);
+    return s->clock.started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
 /* Whether m is solved together with a member (by joints, or the member itself); NULL: all are. */
@@ -159,7 +159,7 @@ static void commit_member(spar_member *m, const double *fluid) {
 
 static int find_rest(spar_member *m, int load_steps) {
     spar_session *s = m->session;
-    if (!s->started) {
+    if (!s->clock.started) {
         SPARI_TRY(spari_session_exchange_loads(s, NULL));
         for (spar_member *with = s->members; with; with = with->next) {
             if (is_with(m, with)) {
@@ -219,14 +219,14 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
 /* ---- all members, with the fluid ---- */
 
 static int check_session_static(spar_session *s, const char *call, int load_steps) {
-    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
                   call);
     SPARI_REQUIRE(s, load_steps >= 1 && load_steps <= SPARI_STATIC_MOST, SPAR_ERR_ARGUMENT,
                   "%s: %d load steps; give 1 to %d", call, load_steps, SPARI_STATIC_MOST);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_TRY(check_held(m, call));
     }
-    return s->started ? SPAR_OK : spari_session_pushes(s, call);
+    return s->clock.started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
 /* Allows fluids to push and pull as in a step. */
@@ -236,7 +236,7 @@ static int begin_static(spar_session *s) {
         copy_loads(m, m->load_pushed, m->load_before);
         copy_loads(m, m->load_pushed, m->load_used);
     }
-    if (!s->started) { /* loads pushed before the first step are those at t^0 */
+    if (!s->clock.started) { /* loads pushed before the first step are those at t^0 */
         SPARI_TRY(spari_session_exchange_loads(s, NULL));
         for (spar_member *m = s->members; m; m = m->next) {
             spari_session_take_loads(s, m, m->load_used);
@@ -245,17 +245,17 @@ static int begin_static(spar_session *s) {
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_begin(f, 0, 1, last);
     }
-    s->iteration = s->iterating = s->failed = 0;
-    s->started = s->standing = 1;
-    s->phase = SPARI_SOLVED;
+    s->state.iteration = s->state.iterating = s->state.failed = 0;
+    s->clock.started = s->state.standing = 1;
+    s->state.phase = SPARI_SOLVED;
     spari_coupling_begin(s);
     return SPAR_OK;
 }
 
 static void end_static(spar_session *s) {
-    s->phase = SPARI_IDLE;
-    s->started = s->step > 0;
-    s->standing = 0;
+    s->state.phase = SPARI_IDLE;
+    s->clock.started = s->clock.step > 0;
+    s->state.standing = 0;
 }
 
 static void commit_all(spar_session *s) {
@@ -271,7 +271,7 @@ static void commit_all(spar_session *s) {
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_commit_state(f);
     }
-    s->past = 0; /* the past is no basis for extrapolation */
+    s->state.past = 0; /* the past is no basis for extrapolation */
 }
 
 static void discard_static(spar_session *s, const double *saved_state) {
@@ -324,7 +324,7 @@ static const spar_member *most_changed(const spar_session *s) {
 }
 
 static const char *cure_for(const spar_session *s) {
-    return spari_coupling_scheme_of(s->scheme)->columns
+    return spari_coupling_scheme_of(s->coupling.scheme)->columns
                ? "where loads grow faster with the shape than the stiffness (static divergence) there is no stable "
                  "equilibrium: lower the loads or stiffen the member"
                : "take another scheme (spar_session_set_coupling, IQN-ILS) or a smaller relaxation; where loads grow "
@@ -379,16 +379,16 @@ static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve,
     for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load_pushed);
     }
-    s->iteration++;
+    s->state.iteration++;
     return SPAR_OK;
 }
 
 /* A change of the loads that returns amplified grows in time, even if an accelerated iteration converges. */
 static void warn_of_divergence(const spar_session *s, const char *call) {
     char text[SPARI_MESSAGE_SIZE];
-    int learns = spari_coupling_scheme_of(s->scheme)->learn != NULL;
+    int learns = spari_coupling_scheme_of(s->coupling.scheme)->learn != NULL;
     double ratio = learns ? spari_accelerator_ratio(s->own->coupling->accelerator) : 0;
-    if (!s->log || ratio >= -1) {
+    if (!s->callbacks.log || ratio >= -1) {
         return;
     }
     (void)snprintf(text, sizeof text,
@@ -411,7 +411,7 @@ static int stands_under_response(spar_session *s) {
 static int find_equilibrium(spar_session *s, const char *call, int load_steps, spar_fluid_solver solve, void *context) {
     int agreed = 0;
     while (!agreed) {
-        int status = solve_all(s, load_steps, s->iteration > 0);
+        int status = solve_all(s, load_steps, s->state.iteration > 0);
         if (status != SPAR_OK) {
             return not_solved(s, call, status);
         }
@@ -420,10 +420,10 @@ static int find_equilibrium(spar_session *s, const char *call, int load_steps, s
         if (status != SPAR_OK) {
             return not_committed(s, call, status, "they are beyond the range of numbers");
         }
-        if (!spari_coupling_scheme_of(s->scheme)->iterates) {
+        if (!spari_coupling_scheme_of(s->coupling.scheme)->iterates) {
             break;
         }
-        if (!agreed && s->iteration >= s->coupling_max) {
+        if (!agreed && s->state.iteration >= s->coupling.max) {
             return not_committed(s, call, SPAR_ERR_NUMERIC, NULL);
         }
         if (!agreed) {
@@ -447,7 +447,7 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
     double *saved_state = NULL;
     int status = spari_solvers_place(s, __func__);
     status = status == SPAR_OK ? spari_session_seal(s, save_state(s, NULL, &saved_state)) : status;
-    status = status == SPAR_OK ? spari_coupling_suspend(s, s->scheme) : status;
+    status = status == SPAR_OK ? spari_coupling_suspend(s, s->coupling.scheme) : status;
     if (status != SPAR_OK) {
         free(saved_state);
         return spari_named(s, __func__, status);
@@ -455,7 +455,7 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
     status = begin_static(s);
     status = status == SPAR_OK ? find_equilibrium(s, __func__, load_steps, solve, context) : status;
     if (iterations) {
-        *iterations = s->iteration;
+        *iterations = s->state.iteration;
     }
     if (status == SPAR_OK) {
         commit_all(s);

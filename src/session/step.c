@@ -32,34 +32,34 @@ static const char *const phase_name[] = {"no step is under way", "the step has b
                                          "the step is solved and not checked", "the step is checked"};
 
 static int wrong_phase(spar_session *s, const char *call, const char *cure) {
-    return spari_fail(s, SPAR_ERR_STATE, "%s: %s; %s", call, phase_name[s->phase], cure);
+    return spari_fail(s, SPAR_ERR_STATE, "%s: %s; %s", call, phase_name[s->state.phase], cure);
 }
 
 /* ---- begin ---- */
 
 /* Whether fluids are to see mean accelerations from the step dt on (member/mean_acceleration.h). */
 static int is_uneven(const spar_session *s, double dt) {
-    return s->uneven[0] || !spari_steps_even(s, dt) || spari_scheme_rotates(s, dt);
+    return s->clock.uneven[0] || !spari_steps_even(&s->clock, dt) || spari_scheme_rotates(s, dt);
 }
 
 /* uneven: result of is_uneven. */
 static int check_begin(spar_session *s, const char *call, double dt, int uneven) {
-    if (s->phase != SPARI_IDLE) {
+    if (s->state.phase != SPARI_IDLE) {
         return wrong_phase(s, call, "accept or reject it first");
     }
     SPARI_TRY(spari_need_dt(s, call, dt));
-    SPARI_REQUIRE(s, isfinite(s->time + dt), SPAR_ERR_ARGUMENT,
-                  "%s: the clock stands at %g s and cannot go on by %g s; give a smaller dt", call, s->time, dt);
+    SPARI_REQUIRE(s, isfinite(s->clock.time + dt), SPAR_ERR_ARGUMENT,
+                  "%s: the clock stands at %g s and cannot go on by %g s; give a smaller dt", call, s->clock.time, dt);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
                       "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
     }
-    const int mean = s->substeps > 1 || uneven;
+    const int mean = s->integrator.substeps > 1 || uneven;
     for (spar_member *m = s->members; m && mean; m = m->next) {
         SPARI_TRY(spari_named(s, call, spari_means_make(m)));
     }
     SPARI_TRY(spari_named(s, call, spari_threads_prepare(s)));
-    return s->started ? SPAR_OK : spari_session_pushes(s, call);
+    return s->clock.started ? SPAR_OK : spari_session_pushes(s, call);
 }
 
 typedef struct load_extrapolation {
@@ -104,7 +104,7 @@ static void begin_member(spar_member *m, const void *context) {
         const double rest[6] = {0};
         m->drive[1] = spari_pose_of(m->drive[0].q, rest, rest);
     }
-    predict_loads(m, t->order, t->dt, t->s->dt_last);
+    predict_loads(m, t->order, t->dt, t->s->clock.dt_last);
     spari_learned_begin(m);
     spari_member_begin(m);
 }
@@ -113,7 +113,7 @@ static void begin_member(spar_member *m, const void *context) {
 static int begin_loads(spar_session *s) {
     int pushed = 0;
     SPARI_TRY(spari_session_exchange_loads(s, &pushed));
-    s->past = pushed ? s->past : -1; /* zeros that nobody has pushed are nothing to extrapolate from */
+    s->state.past = pushed ? s->state.past : -1; /* zeros that nobody has pushed are nothing to extrapolate from */
     for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load_history[0]);
         memcpy(m->load_before, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
@@ -133,20 +133,20 @@ int spar_step_begin(spar_session *session, double dt) {
     const spari_agreed must_agree[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew),
                                        spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
     SPARI_TRY(spari_enter_agreed(s, __func__, must_agree, 3, check_begin(s, __func__, dt, uneven)));
-    if (!s->started) {
+    if (!s->clock.started) {
         SPARI_TRY(spari_named(s, __func__, spari_solvers_place(s, __func__)));
     }
     if (anew) { /* discards the report of the coupling: done after all checks that may refuse */
         SPARI_TRY(spari_named(s, __func__, spari_enter(s, "coupling", spari_coupling_prepare(s))));
-        s->coupling_stale = 0;
+        s->coupling.stale = 0;
     }
-    if (!s->started || !spari_session_is_sealed(s)) {
+    if (!s->clock.started || !spari_session_is_sealed(s)) {
         SPARI_TRY(spari_named(s, __func__, spari_session_seal(s, SPAR_OK)));
     }
-    if (!s->started) {
+    if (!s->clock.started) {
         SPARI_TRY(begin_loads(s));
     }
-    int order = s->past > 0 ? s->past : 0;
+    int order = s->state.past > 0 ? s->state.past : 0;
     spari_threads_each(s, begin_member, &(step_begun){s, order, dt});
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         spari_assembly_begin(a);
@@ -155,18 +155,18 @@ int spar_step_begin(spar_session *session, double dt) {
         spari_joint_hold(j);
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_begin(f, order, dt, s->dt_last);
+        spari_fluid_begin(f, order, dt, s->clock.dt_last);
     }
-    s->dt = dt;
-    s->uneven[1] = uneven;
-    s->order = order;
-    s->iteration = 0;
-    s->iterating = 0;
-    s->failed = 0;
+    s->clock.dt = dt;
+    s->clock.uneven[1] = uneven;
+    s->state.order = order;
+    s->state.iteration = 0;
+    s->state.iterating = 0;
+    s->state.failed = 0;
     spari_coupling_begin(s);
-    s->phase = SPARI_BEGUN;
-    s->begun++;
-    s->started = 1;
+    s->state.phase = SPARI_BEGUN;
+    s->clock.begun++;
+    s->clock.started = 1;
     return SPAR_OK;
 }
 
@@ -205,13 +205,13 @@ int spar_step_solve(spar_session *session) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_TRY(spari_callback_refuse(s, __func__));
-    int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "call spar_step_begin first") : SPAR_OK;
+    int status = s->state.phase == SPARI_IDLE ? wrong_phase(s, __func__, "call spar_step_begin first") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
-    if (s->standing) {
+    if (s->state.standing) {
         return spari_start_solve(s, __func__);
     }
-    s->newton_share = spari_coupling_share(s);
-    s->rough = spari_coupling_is_rough(s);
+    s->newton.share = spari_coupling_share(s);
+    s->state.rough = spari_coupling_is_rough(s);
     status = spari_threads_solve(s);
     status = spari_session_share_motion(s, status);
     if (status != SPAR_OK) { /* t^n is unchanged; discards the failed iterate */
@@ -221,12 +221,12 @@ int spar_step_solve(spar_session *session) {
             }
         }
         reject_joints(s);
-        s->phase = SPARI_BEGUN;
+        s->state.phase = SPARI_BEGUN;
         return spari_coupling_solve_failed(s, __func__, spari_named(s, __func__, status));
     }
     spari_threads_each(s, solved_member, NULL);
-    s->failed = 0;
-    s->phase = SPARI_SOLVED;
+    s->state.failed = 0;
+    s->state.phase = SPARI_SOLVED;
     return SPAR_OK;
 }
 
@@ -234,8 +234,8 @@ int spar_step_solve(spar_session *session) {
 
 /* status: of what this rank's host has done since the solution */
 static int check_iteration(spar_session *s, const char *call, int status, int *done) {
-    int ended = 0, solved = s->phase == SPARI_SOLVED;
-    if (s->phase != SPARI_SOLVED) {
+    int ended = 0, solved = s->state.phase == SPARI_SOLVED;
+    if (s->state.phase != SPARI_SOLVED) {
         status = wrong_phase(s, call, "call spar_step_solve, then push, then check");
     } else if (!done) {
         status = spari_fail(s, SPAR_ERR_ARGUMENT, "%s: done is NULL", call);
@@ -244,26 +244,26 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     }
     status = spari_enter(s, call, status);
     if (status != SPAR_OK) {
-        s->failed = s->failed ||
-                    (solved && status != SPAR_ERR_COMM); /* the same on all ranks, because they were in this call */
+        /* the same on all ranks, because they were in this call */
+        s->state.failed = s->state.failed || (solved && status != SPAR_ERR_COMM);
         return status;
     }
-    s->failed = 1; /* until everything below has succeeded */
+    s->state.failed = 1; /* until everything below has succeeded */
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load_pushed);
-        if (!s->standing) {
-            spari_learned_note(m, s->iteration + 1);
+        if (!s->state.standing) {
+            spari_learned_note(m, s->state.iteration + 1);
         }
-        if (m->added && !s->standing) {
+        if (m->added && !s->state.standing) {
             spari_added_correct(m, 1, m->load_pushed);
         }
     }
-    s->iteration++;
-    s->phase = SPARI_CHECKED;
+    s->state.iteration++;
+    s->state.phase = SPARI_CHECKED;
     SPARI_TRY(spari_coupling_check(s, call, &ended));
-    s->failed = 0;
-    s->iterating = !ended;
+    s->state.failed = 0;
+    s->state.iterating = !ended;
     *done = ended;
     return SPAR_OK;
 }
@@ -289,17 +289,17 @@ static int has_joints_alone(const spar_member *m) {
 static void shift_history(spar_member *m, const void *session) {
     const spar_session *s = session;
     /* a step that was never checked has the loads of its solution, and those of joints */
-    if (s->phase != SPARI_CHECKED && has_joints_alone(m)) {
+    if (s->state.phase != SPARI_CHECKED && has_joints_alone(m)) {
         memset(m->load_pushed, 0, (size_t)(6 * m->nodes) * sizeof(double));
         spari_joints_on_external(m, m->load_pushed);
-    } else if (s->phase != SPARI_CHECKED) {
+    } else if (s->state.phase != SPARI_CHECKED) {
         memcpy(m->load_pushed, m->load_used, (size_t)(6 * m->nodes) * sizeof(double));
     }
     if (m->added) {
         spari_added_correct(m, -1, m->load_pushed);
         spari_added_accept(m);
     }
-    spari_history_shift(m->load_history, 6 * m->nodes, s->predictor, m->load_pushed);
+    spari_history_shift(m->load_history, 6 * m->nodes, s->coupling.predictor, m->load_pushed);
 }
 
 static void accept_member(spar_member *m, const void *unused) {
@@ -328,19 +328,19 @@ int spar_step_accept(spar_session *session) {
     spar_session *s = session;
     SPARI_TRY(spari_callback_refuse(s, __func__));
     int status = SPAR_OK;
-    if (s->phase != SPARI_CHECKED && s->phase != SPARI_SOLVED) {
+    if (s->state.phase != SPARI_CHECKED && s->state.phase != SPARI_SOLVED) {
         status = wrong_phase(s, __func__, "begin and solve a step first");
-    } else if (s->failed) {
+    } else if (s->state.failed) {
         status =
             spari_fail(s, SPAR_ERR_STATE,
                        "%s: the last spar_step_check failed, its loads and motion do not belong together; push and "
                        "check again where a push was refused, else solve again or reject the step",
                        __func__);
-    } else if (s->phase == SPARI_SOLVED) {
+    } else if (s->state.phase == SPARI_SOLVED) {
         status = spari_session_pushes(s, __func__);
     }
     SPARI_TRY(spari_enter(s, __func__, status));
-    if (s->standing) {
+    if (s->state.standing) {
         spari_start_accept(s);
         return SPAR_OK;
     }
@@ -361,39 +361,39 @@ int spar_step_accept(spar_session *session) {
         spari_fluid_accept(f);
     }
     learn_added(s);
-    s->past = s->past < s->predictor ? s->past + 1 : s->predictor;
-    spari_clock_tick(s, s->dt);
-    s->step++;
-    s->uneven[0] = s->uneven[1];
+    s->state.past = s->state.past < s->coupling.predictor ? s->state.past + 1 : s->coupling.predictor;
+    spari_clock_tick(&s->clock, s->clock.dt);
+    s->clock.step++;
+    s->clock.uneven[0] = s->clock.uneven[1];
     memcpy(s->gravity_before, s->gravity, sizeof s->gravity_before);
-    s->dt_last[1] = s->dt_last[0];
-    s->dt_last[0] = s->dt;
-    s->phase = SPARI_IDLE;
+    s->clock.dt_last[1] = s->clock.dt_last[0];
+    s->clock.dt_last[0] = s->clock.dt;
+    s->state.phase = SPARI_IDLE;
     return SPAR_OK;
 }
 
 /* Local: executed on all ranks when the step ends on all of them. */
 static void reject(spar_session *s) {
-    if (s->standing) {
+    if (s->state.standing) {
         spari_start_reject(s);
         return;
     }
     spari_coupling_reject(s);
     spari_step_control_reject(s);
-    s->uneven[1] = s->uneven[0];
+    s->clock.uneven[1] = s->clock.uneven[0];
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
         spari_learned_begin(m);
-        memcpy(m->load_pushed, s->step > 0 ? m->load_history[0] : m->load_before,
+        memcpy(m->load_pushed, s->clock.step > 0 ? m->load_history[0] : m->load_before,
                (size_t)(6 * m->nodes) * sizeof(double));
     }
     reject_joints(s);
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_reject(f);
     }
-    s->phase = SPARI_IDLE;
-    s->started = s->step > 0;
-    s->past = s->past > 0 ? s->past : 0;
+    s->state.phase = SPARI_IDLE;
+    s->clock.started = s->clock.step > 0;
+    s->state.past = s->state.past > 0 ? s->state.past : 0;
 }
 
 int spar_step_reject(spar_session *session) {
@@ -401,7 +401,7 @@ int spar_step_reject(spar_session *session) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_TRY(spari_callback_refuse(s, __func__));
-    int status = s->phase == SPARI_IDLE ? wrong_phase(s, __func__, "there is nothing to reject") : SPAR_OK;
+    int status = s->state.phase == SPARI_IDLE ? wrong_phase(s, __func__, "there is nothing to reject") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
     reject(s);
     return SPAR_OK;
@@ -410,7 +410,7 @@ int spar_step_reject(spar_session *session) {
 /* ---- the whole step ---- */
 
 static int solve_for(spar_session *s, const char *call) {
-    if (!s->standing) {
+    if (!s->state.standing) {
         return spar_step_solve(s);
     }
     SPARI_TRY(spari_enter(s, call, SPAR_OK));
@@ -421,7 +421,7 @@ static int iterate(spar_session *s, const char *call, spar_fluid_solver solve, v
     int done = 0;
     while (!done) {
         SPARI_TRY(solve_for(s, call));
-        int status = spari_callback_run(s, call, solve, s->standing ? 0 : s->dt, context);
+        int status = spari_callback_run(s, call, solve, s->state.standing ? 0 : s->clock.dt, context);
         if (status == SPAR_ERR_COMM) {
             return status;
         }
@@ -452,7 +452,7 @@ int spari_step_run(spar_session *s, const char *call, spar_fluid_solver solve, v
 static int run_begun(spar_session *s, const char *call, spar_fluid_solver solve, void *context, int *iterations) {
     int status = spari_step_run(s, call, solve, context);
     if (iterations) {
-        *iterations = s->iteration;
+        *iterations = s->state.iteration;
     }
     SPARI_TRY(status);
     status = spar_step_accept(s);

@@ -17,7 +17,7 @@ static double find_error(const spar_member *m, double *speed) {
     if (!spari_step_error_applies(m)) {
         return 0;
     }
-    const spari_scheme c = spari_scheme_of(m, 0, s->dt / s->substeps);
+    const spari_scheme c = spari_scheme_of(m, 0, s->clock.dt / s->integrator.substeps);
     const spari_step_change of = spari_step_change_of(m, 1);
     *speed = of.speed;
     return spari_step_error_is_known(s) ? spari_step_error(&c, of.change) : 0;
@@ -35,7 +35,7 @@ static double judge_member(const spar_member *m, double *error, double *speed) {
     const spar_session *s = m->session;
     *error = find_error(m, speed);
     *speed = fmax(*speed, m->speed);
-    return *error / s->dt / (s->tolerance_drift + s->tolerance_rtol * *speed);
+    return *error / s->clock.dt / (s->tolerance.drift + s->tolerance.rtol * *speed);
 }
 
 /* Decays the last ratio: at a turning point the acceleration is stationary and the error is in the velocity, so the
@@ -58,7 +58,7 @@ static double next_dt(const spar_session *s, double ratio) {
     } else {
         by = fmin(by, safety);
     }
-    return s->dt * fmax(by, least);
+    return s->clock.dt * fmax(by, least);
 }
 
 double spari_step_control_ratio(const spar_session *s) {
@@ -70,7 +70,7 @@ double spari_step_control_ratio(const spar_session *s) {
 }
 
 void spari_step_control_accept(spar_session *s) {
-    if (!spari_step_control_is_set(s) || s->trial) {
+    if (!spari_step_control_is_set(s) || s->state.trial) {
         return;
     }
     spari_step_control *p = &s->own->step_control;
@@ -79,14 +79,15 @@ void spari_step_control_accept(spar_session *s) {
         ratio = fmax(ratio, judge_member(m, &m->step_error, &speed));
         m->speed = speed;
     }
-    p->next = spari_step_error_is_known(s) ? next_dt(s, ratio) : s->dt;
+    p->next = spari_step_error_is_known(s) ? next_dt(s, ratio) : s->clock.dt;
     p->ratio = spari_step_error_is_known(s) ? fade(p, ratio) : 0;
     p->last = ratio;
     p->cut = 0;
 }
 
 void spari_step_control_reject(spar_session *s) {
-    if (!spari_step_control_is_set(s) || s->trial || s->phase < SPARI_SOLVED || s->failed || s->standing) {
+    if (!spari_step_control_is_set(s) || s->state.trial || s->state.phase < SPARI_SOLVED || s->state.failed ||
+        s->state.standing) {
         return;
     }
     spari_step_control *p = &s->own->step_control;
@@ -106,7 +107,7 @@ int spar_session_get_pace(const spar_session *session, int64_t capacity, double 
     SPARI_REQUIRE(s, spari_step_control_is_set(s), SPAR_ERR_STATE,
                   "%s: no tolerance is set, and steps are not judged; call spar_session_set_tolerance first", __func__);
     SPARI_TRY(spari_need_capacity(s, __func__, capacity));
-    int judged = s->phase >= SPARI_SOLVED && !s->standing && !s->trial;
+    int judged = s->state.phase >= SPARI_SOLVED && !s->state.standing && !s->state.trial;
     SPARI_REQUIRE(s, judged || p->next > 0, SPAR_ERR_STATE,
                   "%s: no step has been solved since the tolerance was set; make one first", __func__);
     double ratio = judged ? spari_step_control_ratio(s) : p->last;
@@ -114,7 +115,7 @@ int spar_session_get_pace(const spar_session *session, int64_t capacity, double 
         [SPAR_PACE_RATIO] = ratio,
         [SPAR_PACE_NEXT_DT] = !judged                        ? p->next
                               : spari_step_error_is_known(s) ? next_dt(s, ratio)
-                                                             : s->dt,
+                                                             : s->clock.dt,
         [SPAR_PACE_REJECT] = judged && ratio > 1,
         [SPAR_PACE_REJECTED] = (double)p->rejected,
     };

@@ -6,7 +6,7 @@
 #include "../base/session.h"
 
 static inline int spari_step_control_is_set(const spar_session *session) {
-    return session->tolerance_drift > 0;
+    return session->tolerance.drift > 0;
 }
 /* The step under way, whose motion has been found, becomes the last one; or it is given up. Local. */
 void spari_step_control_accept(spar_session *session);

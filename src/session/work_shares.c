@@ -35,16 +35,16 @@ static int check_motion(const spar_member *m) {
             m->session, bad < 0, SPAR_ERR_NUMERIC,
             "member '%s': the motion of node %lld is beyond the range of numbers in the step from t = %g; look "
             "at its loads, gravity and the motion of its root, or at their units",
-            m->name, (long long)(bad / all[k].width), m->session->time);
+            m->name, (long long)(bad / all[k].width), m->session->clock.time);
     }
     return spari_member_check_rotations(m);
 }
 
 static int solve_unit(spar_session *s, spar_member *m, spari_assembly *a) {
     if (a) {
-        return spari_assembly_advance(a, s->dt, spari_coupling_weighs(s));
+        return spari_assembly_advance(a, s->clock.dt, spari_coupling_weighs(s));
     }
-    SPARI_TRY(m->row->advance(m, s->dt));
+    SPARI_TRY(m->row->advance(m, s->clock.dt));
     return m->row->moves ? check_motion(m) : SPAR_OK;
 }
 
@@ -213,7 +213,7 @@ int spar_session_set_threads(spar_session *session, int threads) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
-    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is under way; change the number of threads between steps", __func__);
     SPARI_REQUIRE(s, threads >= 1 && threads <= SPARI_MOST_THREADS, SPAR_ERR_ARGUMENT, "%s: %d threads; give 1 to %d",
                   __func__, threads, SPARI_MOST_THREADS);

@@ -203,7 +203,7 @@ void spari_member_reject(spar_member *m) {
     if (m->row->reject && spari_fidelity_is_here(m)) {
         m->row->reject(m);
     }
-    if (m->session->step == 0) { /* the first step's accelerations at t^0 depend on its dt */
+    if (m->session->clock.step == 0) { /* the first step's accelerations at t^0 depend on its dt */
         restart_solution(m);
     }
 }
@@ -244,7 +244,7 @@ int spar_member_set_initial_velocity(spar_member *member, const double x0[3], co
     SPARI_GUARD_ENVIRONMENT;
     static const double zero[3] = {0, 0, 0};
     SPARI_TRY(spari_need_member(member, __func__));
-    SPARI_REQUIRE(member->session, !member->session->started, SPAR_ERR_STATE,
+    SPARI_REQUIRE(member->session, !member->session->clock.started, SPAR_ERR_STATE,
                   "%s: '%s': the clock has started; give initial velocities before the first step", __func__,
                   member->name);
     const double *in[3] = {x0 ? x0 : zero, v0 ? v0 : zero, omega ? omega : zero};
@@ -286,7 +286,7 @@ static int check_complete(spar_member *m) {
                       "pinned; leave that out, choose another fidelity, or fix or drive the root",
                       m->name);
     }
-    SPARI_REQUIRE(m->session, !m->session->started, SPAR_ERR_STATE,
+    SPARI_REQUIRE(m->session, !m->session->clock.started, SPAR_ERR_STATE,
                   "member '%s': the clock has started; commit members before the first step", m->name);
     return spari_fidelity_check(m);
 }
@@ -311,7 +311,7 @@ int spari_member_effects(const spar_member *m) {
 
 static int make_node_arrays(spar_member *m) {
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
-        if (spari_nodal_table[k].order > m->session->predictor) {
+        if (spari_nodal_table[k].order > m->session->coupling.predictor) {
             continue;
         }
         double *x = spari_zalloc(spari_nodal_table[k].width * m->nodes, sizeof *x);
@@ -492,7 +492,8 @@ int spar_member_commit(spar_member *member) {
         return spari_named(s, __func__, agreed);
     }
     member->committed = 1;
-    if (member->kind == SPARI_BEAM && member->row->solved && !member->row->whole && spari_comm_rank(s->comm) == 0) {
+    if (member->kind == SPARI_BEAM && member->row->solved && !member->row->whole &&
+        spari_comm_rank(s->ranks.comm) == 0) {
         spari_beam_tell_locking(member);
     }
     return SPAR_OK;
@@ -521,7 +522,7 @@ int spar_member_set_motion(spar_member *member, const double *q, const double *v
         s, member->external || member->kind == SPARI_POINT, SPAR_ERR_STATE,
         "%s: spar solves for '%s' itself; set_motion is for points and external members (spar_member_set_external)",
         __func__, member->name);
-    SPARI_REQUIRE(s, s->phase != SPARI_IDLE || !s->started, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, s->state.phase != SPARI_IDLE || !s->clock.started, SPAR_ERR_STATE,
                   "%s: '%s': no step is under way; give the motion at t^{n+1} after spar_step_begin", __func__,
                   member->name);
     if (q) {
@@ -534,7 +535,7 @@ int spar_member_set_motion(spar_member *member, const double *q, const double *v
     if (a) {
         SPARI_TRY(spari_need_finite(s, __func__, member->name, "a", 6 * n, a));
     }
-    spari_motion *to = s->phase == SPARI_IDLE ? &member->now : &member->after;
+    spari_motion *to = s->state.phase == SPARI_IDLE ? &member->now : &member->after;
     for (int64_t i = 0; q && i < n; i++) {
         memcpy(to->q + 7 * i, q + 7 * i, 7 * sizeof *q);
         spari_quat_normalise(to->q + 7 * i + 3);
@@ -545,7 +546,7 @@ int spar_member_set_motion(spar_member *member, const double *q, const double *v
     if (a) {
         memcpy(to->a, a, (size_t)n * 6 * sizeof *a);
     }
-    if (s->phase == SPARI_IDLE) {
+    if (s->state.phase == SPARI_IDLE) {
         spari_member_restart(member);
     } else {
         member->motion_given = 1;
@@ -562,7 +563,7 @@ int spar_member_drive_root(spar_member *member, const double q[7], const double 
                   SPAR_ERR_STATE,
                   "%s: the root of '%s' is not driven; call spar_member_set_root with SPAR_ROOT_DRIVEN before commit",
                   __func__, member->name);
-    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: '%s': a step is under way; the root's motion at its end is given before spar_step_begin",
                   __func__, member->name);
     SPARI_TRY(spari_need_finite(s, __func__, member->name, "q", 7, q));

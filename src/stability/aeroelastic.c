@@ -127,7 +127,7 @@ static void hand_eigenvalues(const coupled_ask *ask, const coupled *c) {
 static int solve_coupled(spar_session *s, const char *call, coupled_ask *ask, double frame[3]) {
     coupled c = {.shape = NULL};
     int status = find_structure(s, ask, &c);
-    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     if (status == SPAR_OK) {
         ask->fluid.motions = &c.motions;
         ask->fluid.shape = c.nodes;
@@ -136,7 +136,7 @@ static int solve_coupled(spar_session *s, const char *call, coupled_ask *ask, do
     }
     if (status == SPAR_OK) {
         status = find_eigenvalues(s, ask, &c);
-        status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+        status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     }
     if (status == SPAR_OK) {
         hand_eigenvalues(ask, &c);
@@ -166,7 +166,7 @@ static int check_coupled(spar_session *s, const char *call, const coupled_ask *a
                          const double shift[2], const double *eigenvalue) {
     const spari_response_query *f = &ask->fluid;
     SPARI_TRY(spari_trial_check(s, call, &f->run));
-    SPARI_TRY(s->started ? SPAR_OK : spari_session_pushes(s, call));
+    SPARI_TRY(s->clock.started ? SPAR_OK : spari_session_pushes(s, call));
     SPARI_REQUIRE(s, f->run.solve, SPAR_ERR_UNSUPPORTED,
                   "%s: without a fluid solver there is no answer; give the one that spar_step is given, or see "
                   "spar_member_solve_eigenvalues",

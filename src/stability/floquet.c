@@ -142,12 +142,12 @@ static int run_period(spar_session *s, void *self) {
     floquet *f = self;
     const spari_run *run = &f->run;
     int iterations;
-    s->newton_strict = 1;
+    s->newton.strict = 1;
     if (f->mode >= 0) {
         displace(s, f, f->kind == 0 ? f->size : 0, f->kind == 1 ? f->size * f->rate[f->mode] : 0);
     }
-    s->step = 0;
-    s->started = 0;
+    s->clock.step = 0;
+    s->clock.started = 0;
     SPARI_TRY(spar_session_start(s, run->dt, run->solve, run->context, &iterations));
     for (int64_t i = 0; i <= f->steps; i++) {
         SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->context));
@@ -284,7 +284,7 @@ static int find_multipliers(spar_session *s, floquet *f, int64_t n, double *eige
 static int solve_floquet(spar_session *s, floquet *f, int64_t n, double *eigenvalue) {
     int status = find_shapes_of_period(s, f);
     status = status == SPAR_OK ? weigh_shapes(s, f) : status;
-    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     spari_trial_settings trial_settings = {.member = NULL};
     status = status == SPAR_OK ? spari_trial_settings_create(s, &trial_settings) : status;
     if (status == SPAR_OK) {
@@ -293,7 +293,7 @@ static int solve_floquet(spar_session *s, floquet *f, int64_t n, double *eigenva
     }
     if (status == SPAR_OK) {
         status = find_multipliers(s, f, n, eigenvalue);
-        status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+        status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     }
     return status;
 }
@@ -301,7 +301,7 @@ static int solve_floquet(spar_session *s, floquet *f, int64_t n, double *eigenva
 static int check_floquet(spar_session *s, const floquet *f, int64_t modes, int64_t n, const double *eigenvalue) {
     const char *call = f->call;
     SPARI_TRY(spari_trial_check(s, call, &f->run));
-    SPARI_TRY(s->started ? SPAR_OK : spari_session_pushes(s, call));
+    SPARI_TRY(s->clock.started ? SPAR_OK : spari_session_pushes(s, call));
     SPARI_REQUIRE(s, f->steps >= 1 && isfinite(f->run.dt * (double)f->steps), SPAR_ERR_ARGUMENT,
                   "%s: %lld steps; give as many as a period has", call, (long long)f->steps);
     SPARI_REQUIRE(s, f->amplitude > 0 && f->amplitude <= largest_amplitude, SPAR_ERR_ARGUMENT,

@@ -292,11 +292,11 @@ int spari_fluid_response_find(spar_session *s, const char *call, const spari_res
     double *workspace = spari_zalloc(13 * ask->nodes + 3 * n + 2 * response->count * n, sizeof *workspace);
     int status =
         response->load && workspace ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the fluid's answer");
-    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     spari_trial_settings trial_settings = {.member = NULL};
     status = status == SPAR_OK ? spari_trial_settings_create(s, &trial_settings) : status;
     if (status == SPAR_OK) {
-        SPARI_VARY(trial_settings.setting, substeps, 1);
+        SPARI_VARY(trial_settings.setting, integrator.substeps, 1);
         status = run_trials(s, call, ask, &trial_settings, response, workspace);
         spari_trial_settings_free(&trial_settings);
     }

@@ -178,7 +178,7 @@ static int check_pair(const spar_member *m, const int64_t mode[2], const double 
                   "member '%s' is not committed, its modes are not known; call it "
                   "between spar_member_commit and the first step",
                   m->name);
-    SPARI_REQUIRE(s, !s->started && s->phase == SPARI_IDLE, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, !s->clock.started && s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "member '%s': the clock has started; choose the damping before the first step", m->name);
     SPARI_REQUIRE(
         s, m->body && !(m->effects_given && !(m->effects & SPAR_EFFECT_DAMPING)), SPAR_ERR_STATE,

@@ -348,7 +348,7 @@ enum { PATIENCE = 5, PRICE = 10 };
 
 /* If Newton stops earlier (newton_stop.h), a solution takes fewer iterations, hardly so for the sake of a coupling. */
 static int patience(const spar_session *s) {
-    return s->newton_strict || isfinite(s->newton_share) ? PATIENCE : PATIENCE - 2;
+    return s->newton.strict || isfinite(s->newton.share) ? PATIENCE : PATIENCE - 2;
 }
 
 /* Whether the tangent is reused after a solution of so many iterations. fresh: it was formed in this solution. */
@@ -459,12 +459,12 @@ static int newton(const alpha_step *t) {
     const spar_session *session = t->member->session;
     alpha_step step = *t;
     int iterations = 0;
-    const char *wrong = spari_newton_solve(&how, &step, tangent_serves_alone(t), session->newton_max,
+    const char *wrong = spari_newton_solve(&how, &step, tangent_serves_alone(t), session->newton.max,
                                            spari_newton_stop_begin(session, &t->s->trace), &iterations);
     SPARI_REQUIRE(t->member->session, !wrong, SPAR_ERR_NUMERIC,
                   "member '%s': Newton %s (%d iterations in several attempts, each of %d at most) in the step from t = "
                   "%g; take a smaller dt, more substeps or a smaller rho_inf, or look at the loads",
-                  t->member->name, wrong, iterations, session->newton_max, session->time);
+                  t->member->name, wrong, iterations, session->newton.max, session->clock.time);
     return SPAR_OK;
 }
 
@@ -567,7 +567,7 @@ static void name_alone(const void *self, char *text, int size) {
 int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
     static const spari_stepper how = {enter_alone,  rotation_rate_alone, solve_alone,
                                       finish_alone, gains_alone,         name_alone};
-    const spari_scheme c = spari_scheme_of(member, s->body->D != NULL, dt / member->session->substeps);
+    const spari_scheme c = spari_scheme_of(member, s->body->D != NULL, dt / member->session->integrator.substeps);
     alpha_run t = {.s = s, .member = member};
     if (!s->steps.started && !c.still) {
         SPARI_TRY(start(s, member, &c));
@@ -579,7 +579,7 @@ int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
 }
 
 int spari_solver_balance(spari_solver *s, spar_member *member, double dt) {
-    const spari_scheme c = spari_scheme_of(member, 0, dt / member->session->substeps);
+    const spari_scheme c = spari_scheme_of(member, 0, dt / member->session->integrator.substeps);
     spari_stage at;
     if (!s->steps.started && !c.still) {
         SPARI_TRY(start(s, member, &c));

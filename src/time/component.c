@@ -84,13 +84,13 @@ static int solve_stage(void *self, const spari_scheme *c, const spari_part *part
     int iterations = 0;
     p->scheme = *c;
     SPARI_TRY(p->row->stage(p, part));
-    const char *wrong = spari_newton_solve(&how, &stage, p->row->serves(p), session->newton_max,
+    const char *wrong = spari_newton_solve(&how, &stage, p->row->serves(p), session->newton.max,
                                            spari_newton_stop_begin(session, &p->solver->trace), &iterations);
     SPARI_REQUIRE(
         session, !wrong, SPAR_ERR_NUMERIC,
         "member '%s': its equations have no solution in the step from t = %g (Newton %s); look at the turning "
         "speed of its root, or at loads that follow it",
-        p->member->name, session->time, wrong);
+        p->member->name, session->clock.time, wrong);
     return SPAR_OK;
 }
 
@@ -130,7 +130,7 @@ static int start_component(spari_component *p) {
 }
 
 int spari_component_balance(spari_component *p, double dt) {
-    int started = p->row->take(p, dt / p->member->session->substeps);
+    int started = p->row->take(p, dt / p->member->session->integrator.substeps);
     if (!started && !p->scheme.still) {
         SPARI_TRY(start_component(p));
     }

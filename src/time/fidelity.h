@@ -129,7 +129,7 @@ const spari_fidelity *spari_fidelity_of(const spar_member *member);
 int spari_fidelity_check(const spar_member *member);
 /* Whether this rank finds the motion of a committed member. */
 static inline int spari_fidelity_is_here(const spar_member *member) {
-    return !member->row->solved || member->owner == spari_comm_rank(member->session->comm);
+    return !member->row->solved || member->owner == spari_comm_rank(member->session->ranks.comm);
 }
 /* Number of doubles in the state of a committed member on this rank; 0: none. */
 static inline int64_t spari_fidelity_state_size(const spar_member *member) {

@@ -16,11 +16,11 @@ double spari_newton_tolerance(const spar_member *member, const spari_scheme *c, 
    accelerations follow from increments with cm = 11.7 / h^2 (generalised-alpha: 4 / h^2), and the next step, which
    may be much longer, begins with these accelerations. */
 static inline double spari_newton_tolerance_stage(const spar_session *session, const spari_scheme *c, double way) {
-    return 0.25 * (fmin(session->newton_atol, 1e-6 * c->h * c->h) + session->newton_rtol * way);
+    return 0.25 * (fmin(session->newton.atol, 1e-6 * c->h * c->h) + session->newton.rtol * way);
 }
 /* Called at the beginning of a solution. With strict tolerances the contraction of earlier solutions does not count. */
 static inline spari_trace *spari_newton_stop_begin(const spar_session *session, spari_trace *trace) {
-    trace->rate = session->newton_strict ? 0 : trace->rate;
+    trace->rate = session->newton.strict ? 0 : trace->rate;
     return trace;
 }
 

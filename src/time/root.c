@@ -282,7 +282,7 @@ void spari_stage_remember(spari_solver *s, const spar_member *m, const spari_sch
         memcpy(s->begin.b, s->own[0].a, (size_t)(6 * s->n) * sizeof *s->begin.b);
         return;
     }
-    for (int i = 0; i < s->n && !spari_member_root_is_prescribed(m) && m->session->step == 0; i++) {
+    for (int i = 0; i < s->n && !spari_member_root_is_prescribed(m) && m->session->clock.step == 0; i++) {
         double *v = s->begin.v + 6 * i, *b = s->begin.b + 6 * i;
         spari_steady_rate(m, v + 3, s->begin.a + 6 * i, rate);
         for (int k = 0; k < 3; k++) {

@@ -14,7 +14,7 @@
 enum { START_PASSES = 4, SPAN = 4096 };
 
 spari_scheme spari_scheme_of(const spar_member *member, int damped, double h) {
-    double rho = member->session->rho_inf;
+    double rho = member->session->integrator.rho_inf;
     spari_scheme c = {.rule = SPARI_ALPHA, .h = h, .span = h};
     c.alpha_m = (2 * rho - 1) / (rho + 1);
     c.alpha_f = rho / (rho + 1);
@@ -135,7 +135,7 @@ spari_scheme spari_scheme_last(const spar_member *m, int damped, const spari_pat
    "Stiff members that turn"); with rho_inf = 1 those of omega h > 4 / (W h). TR-BDF2 does not. */
 static int exceeds_limit(double rotation_rate, const spari_scheme *c, const spar_session *session) {
     static const double least = 0.05;
-    return 1.5 * rotation_rate * c->h > fmax(1 - session->rho_inf, least);
+    return 1.5 * rotation_rate * c->h > fmax(1 - session->integrator.rho_inf, least);
 }
 
 void spari_mean_rotation(int64_t n, const double *v, double w[3]) {
@@ -152,7 +152,7 @@ int spari_member_rotates_stiffly(const spar_member *m) {
 }
 
 int spari_scheme_rotates(const spar_session *s, double dt) {
-    const spari_scheme c = {.h = dt / s->substeps};
+    const spari_scheme c = {.h = dt / s->integrator.substeps};
     int turns = 0;
     for (const spar_member *m = s->members; m && !turns; m = m->next) {
         if (spari_member_rotates_stiffly(m)) {
@@ -196,14 +196,14 @@ static int try_to_stay(const spari_stepper *how, void *self, const spari_scheme 
     if (!last) {
         (void)spari_messages_redirect(before);
     }
-    if (status == SPAR_OK && how->gains && !c->still && !session->rough && how->gains(self, part)) {
+    if (status == SPAR_OK && how->gains && !c->still && !session->state.rough && how->gains(self, part)) {
         status = SPAR_ERR_NUMERIC;
         char name[160];
         how->name(self, name, sizeof name);
         SPARI_REQUIRE(session, !last, status,
                       "%s: the step from t = %g gains energy that no load gives, in 1024 parts too; take a smaller dt, "
                       "or look at the loads",
-                      name, session->time);
+                      name, session->clock.time);
     }
     return status;
 }
@@ -264,9 +264,9 @@ static int run_substep(const spari_stepper *how, void *self, const spari_scheme 
 
 int spari_scheme_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_cuts *cuts,
                      spari_pattern *pattern, const spar_session *session, double dt) {
-    int substeps = session->substeps;
-    if (cuts->begun != session->begun || session->rough) {
-        *cuts = (spari_cuts){.begun = session->begun};
+    int substeps = session->integrator.substeps;
+    if (cuts->begun != session->clock.begun || session->state.rough) {
+        *cuts = (spari_cuts){.begun = session->clock.begun};
     }
     for (int k = 1; k <= substeps; k++) {
         SPARI_TRY(

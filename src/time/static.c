@@ -231,7 +231,7 @@ static int refuse(const spari_solver *s, const spar_member *member, double done,
 /* Refuses an equilibrium of the nodes that is not one of the beam. */
 static void warn_of_bend(const spari_solver *s, const spar_member *m) {
     char text[SPARI_MESSAGE_SIZE];
-    double bend = m->session->log ? largest_bend(s, s->best) : 0;
+    double bend = m->session->callbacks.log ? largest_bend(s, s->best) : 0;
     if (bend <= most_bend) {
         return;
     }

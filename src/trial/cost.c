@@ -113,8 +113,8 @@ double spari_cost_fluids(const spar_session *s) {
 
 double spari_cost_solution(const spar_session *s, double by_nodes, double seconds, int64_t solutions) {
     const spari_prices *p = &spari_rule.price;
-    if (s->fluid_cost > 0) {
-        return whole(fmin(s->fluid_cost * p->second, 1e15));
+    if (s->advice.fluid_cost > 0) {
+        return whole(fmin(s->advice.fluid_cost * p->second, 1e15));
     }
     /* the time of a solution, relative to what its nodes lead one to expect */
     double timed = solutions > 0 ? seconds / (double)solutions * p->second : 0,

@@ -195,7 +195,7 @@ static int add_state(spar_session *s, void *to) {
             so_far->rate = fmax(so_far->rate, spari_norm(m->now.v + 6 * i + 3));
         }
     }
-    return spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    return spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
 }
 
 /* Terms of the whole run, relative to the largest. */
@@ -246,10 +246,10 @@ const char *spar_effect_name(int r) {
 /* asked: what the fluids of all ranks have pulled and pushed */
 static int in_force(const spar_session *s, int r, int asked) {
     if (r == SPAR_ROW_PREDICTOR) {
-        return s->predictor > 0;
+        return s->coupling.predictor > 0;
     }
     if (r == SPAR_ROW_ITERATION) {
-        return s->scheme != SPAR_COUPLING_EXPLICIT;
+        return s->coupling.scheme != SPAR_COUPLING_EXPLICIT;
     }
     int any = rows[r].effect == 0;
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -264,9 +264,9 @@ static int in_force(const spar_session *s, int r, int asked) {
 
 static void leave_row_out(const spar_session *s, int r, spari_trial_settings *trial_settings) {
     if (r == SPAR_ROW_PREDICTOR) {
-        SPARI_VARY(trial_settings->setting, predictor, 0);
+        SPARI_VARY(trial_settings->setting, coupling.predictor, 0);
     } else if (r == SPAR_ROW_ITERATION) {
-        SPARI_VARY(trial_settings->setting, scheme, SPAR_COUPLING_EXPLICIT);
+        SPARI_VARY(trial_settings->setting, coupling.scheme, SPAR_COUPLING_EXPLICIT);
     } else if (rows[r].effect == 0) {
         trial_settings->mute = rows[r].part;
     }
@@ -290,7 +290,7 @@ static double cost_of_row(const spari_record *record, int r) {
 
 static void tell_failure(spar_session *s, const char *call, int r) {
     char text[SPARI_MESSAGE_SIZE + 100];
-    if (s->log) {
+    if (s->callbacks.log) {
         (void)snprintf(text, sizeof text, "%s: without %s the run fails: %s", call, rows[r].name, s->message);
         spari_log(s, SPAR_LOG_INFO, text);
     }
@@ -368,7 +368,7 @@ static int asked_anywhere(spar_session *s, int *asked) {
     for (int k = 0; k < BITS; k++) {
         bit[k] = *asked >> k & 1;
     }
-    SPARI_TRY(spari_comm_sum(s->comm, bit, BITS, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, bit, BITS, SPAR_OK, s->message, sizeof s->message));
     *asked = 0;
     for (int k = 0; k < BITS; k++) {
         *asked |= bit[k] > 0 ? 1 << k : 0;

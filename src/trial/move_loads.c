@@ -30,7 +30,7 @@ static uint64_t hash_of(const moved_sums *c) {
 }
 
 static int alloc_sums(spar_session *s, moved_sums *c) {
-    int64_t ranks = spari_comm_size(s->comm), most = 0;
+    int64_t ranks = spari_comm_size(s->ranks.comm), most = 0;
     for (int64_t k = 0; k < c->count; k++) {
         int64_t n = spari_fluid_moved_size(c->fluids[k].before);
         c->sums += n;
@@ -46,11 +46,11 @@ static int alloc_sums(spar_session *s, moved_sums *c) {
     for (int64_t r = 0; r < ranks; r++) {
         c->first[r + 1] = (r + 1) * c->words;
     }
-    return spari_comm_prepare_bins(s->comm, s->message, sizeof s->message);
+    return spari_comm_prepare_bins(s->ranks.comm, s->message, sizeof s->message);
 }
 
 static void flag_own(const spar_session *s, moved_sums *c) {
-    double *own = c->here + c->first[spari_comm_rank(s->comm)];
+    double *own = c->here + c->first[spari_comm_rank(s->ranks.comm)];
     for (int64_t k = 0; k < c->count; k++) {
         int64_t n = 0;
         (void)spar_fluid_get_count(c->fluids[k].fluid, SPAR_NODES_FORCE, &n);
@@ -60,7 +60,7 @@ static void flag_own(const spar_session *s, moved_sums *c) {
 
 /* First rank with force nodes of the k-th fluid; 0 if none. */
 static int holder_of(const spar_session *s, const moved_sums *c, int64_t k) {
-    for (int r = 0; r < spari_comm_size(s->comm); r++) {
+    for (int r = 0; r < spari_comm_size(s->ranks.comm); r++) {
         if ((uint32_t)c->here[c->first[r] + k / FLAGS] >> k % FLAGS & 1) {
             return r;
         }
@@ -76,7 +76,7 @@ static void put_sums(const spar_session *s, const moved_sums *c) {
         for (int64_t i = 0; i < n; i++) {
             c->value[i] = 0.5 * spari_bins_value(sum++);
         }
-        int holds = holder_of(s, c, k) == spari_comm_rank(s->comm);
+        int holds = holder_of(s, c, k) == spari_comm_rank(s->ranks.comm);
         spari_fluid_put_moved(f->fluid, f->before, holds ? c->value : NULL);
     }
 }
@@ -86,20 +86,20 @@ static int carry(spar_session *s, const char *call, moved_sums *c) {
     const spari_agreed must_agree[] = {spari_hash("list of fluids (reproducible sums, on other nodes)", hash_of(c))};
     SPARI_TRY(spari_enter_agreed(s, call, must_agree, 1, status));
     flag_own(s, c);
-    SPARI_TRY(spari_comm_share(s->comm, c->here, c->first, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_share(s->ranks.comm, c->here, c->first, SPAR_OK, s->message, sizeof s->message));
     spari_bins *at = c->sum;
     for (int64_t k = 0; k < c->count; k++) {
         spari_fluid_add_moved(c->fluids[k].old, c->fluids[k].before, at);
         at += spari_fluid_moved_size(c->fluids[k].before);
     }
-    SPARI_TRY(spari_comm_sum_bins(s->comm, c->sum, c->sums, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum_bins(s->ranks.comm, c->sum, c->sums, SPAR_OK, s->message, sizeof s->message));
     put_sums(s, c);
     return SPAR_OK;
 }
 
 int spari_move_loads(spar_session *s, const char *call, int any, const spari_moved_loads *fluids, int64_t count) {
     moved_sums c = {.fluids = fluids, .count = count};
-    if (!any || !s->reproducible || spari_comm_size(s->comm) == 1) {
+    if (!any || !s->ranks.reproducible || spari_comm_size(s->ranks.comm) == 1) {
         return SPAR_OK;
     }
     int status = carry(s, call, &c);

@@ -279,12 +279,12 @@ static int look_at_goals(const spari_record *r, spar_session *s, double *now) {
     }
     if (r->goals & SPARI_GOAL(SPARI_OF_SECTION)) {
         status = look_at_sections(s, now + r->first[SPARI_OF_SECTION]);
-        status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+        status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     }
     if (r->goals & SPARI_GOAL(SPARI_OF_NUMBERS) && status == SPAR_OK) {
         double sum[SPARI_MOST_NUMBERS + 1];
         memcpy(sum, s->own->number, sizeof s->own->number);
-        status = spari_comm_sum(s->comm, sum, SPARI_MOST_NUMBERS, SPAR_OK, s->message, sizeof s->message);
+        status = spari_comm_sum(s->ranks.comm, sum, SPARI_MOST_NUMBERS, SPAR_OK, s->message, sizeof s->message);
         memcpy(now + r->first[SPARI_OF_NUMBERS], sum, sizeof s->own->number);
     }
     return status;

@@ -31,7 +31,7 @@ int spari_trial_settings_create(spar_session *s, spari_trial_settings *trial_set
         *r = spari_rebuild_of(m);
     }
     int status = r ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for a trial run");
-    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     if (status != SPAR_OK) {
         spari_trial_settings_free(trial_settings);
     }
@@ -50,13 +50,14 @@ void spari_trial_settings_free(spari_trial_settings *trial_settings) {
     { offsetof(spar_session, field), sizeof((spar_session *)NULL)->field }
 static const struct {
     size_t at, size;
-} saved[] = {
-    SPARI_SAVED(failures),     SPARI_SAVED(log),           SPARI_SAVED(log_context), SPARI_SAVED(coupling_stale),
-    SPARI_SAVED(time),         SPARI_SAVED(time_rest),     SPARI_SAVED(dt),          SPARI_SAVED(dt_last),
-    SPARI_SAVED(uneven),       SPARI_SAVED(step),          SPARI_SAVED(iteration),   SPARI_SAVED(phase),
-    SPARI_SAVED(past),         SPARI_SAVED(order),         SPARI_SAVED(iterating),   SPARI_SAVED(started),
-    SPARI_SAVED(failed),       SPARI_SAVED(in_callback),   SPARI_SAVED(standing),    SPARI_SAVED(trial),
-    SPARI_SAVED(calls_differ), SPARI_SAVED(gravity_before)};
+} saved[] = {SPARI_SAVED(failures),       SPARI_SAVED(callbacks.log),   SPARI_SAVED(callbacks.log_context),
+             SPARI_SAVED(coupling.stale), SPARI_SAVED(clock.time),      SPARI_SAVED(clock.rest),
+             SPARI_SAVED(clock.dt),       SPARI_SAVED(clock.dt_last),   SPARI_SAVED(clock.uneven),
+             SPARI_SAVED(clock.step),     SPARI_SAVED(state.iteration), SPARI_SAVED(state.phase),
+             SPARI_SAVED(state.past),     SPARI_SAVED(state.order),     SPARI_SAVED(state.iterating),
+             SPARI_SAVED(clock.started),  SPARI_SAVED(state.failed),    SPARI_SAVED(callbacks.in_progress),
+             SPARI_SAVED(state.standing), SPARI_SAVED(state.trial),     SPARI_SAVED(ranks.calls_differ),
+             SPARI_SAVED(gravity_before)};
 
 static void copy_field(spar_session *to, const spar_session *from, size_t at, size_t size) {
     memcpy((char *)to + at, (const char *)from + at, size);
@@ -114,10 +115,10 @@ static int snapshot_create(spar_session *s, snapshot *t) {
         return status;
     }
     own->coupling = NULL;
-    s->coupling_stale = 1;
+    s->coupling.stale = 1;
     own->pack = own->motion = NULL;
     own->first = NULL;
-    s->log = NULL;
+    s->callbacks.log = NULL;
     return SPAR_OK;
 }
 
@@ -131,7 +132,7 @@ static const spar_member *member_before(const spar_session *s, const snapshot *t
 
 static int make_anew(spar_session *s, snapshot *t, const spari_trial_settings *trial_settings) {
     spari_settings_vary(s, trial_settings->setting);
-    s->past = s->past < s->predictor ? s->past : s->predictor;
+    s->state.past = s->state.past < s->coupling.predictor ? s->state.past : s->coupling.predictor;
     for (spar_member *m = s->members; m; m = m->next, t->made++) {
         int status = spari_member_rebuild(m, trial_settings->member + t->made, t->members + t->made);
         status = status == SPAR_OK ? spari_joints_follow_rebuild(m, t->members + t->made) : status;
@@ -148,7 +149,7 @@ static int make_anew(spar_session *s, snapshot *t, const spari_trial_settings *t
         }
         spari_fluid_mute(f, trial_settings->mute);
     }
-    s->trial = 1;
+    s->state.trial = 1;
     return SPAR_OK;
 }
 
@@ -200,7 +201,7 @@ static void free_kept(spari_record *kept) {
 int spari_trial_keep(spar_session *s, spari_record *record) {
     spari_record *kept = spari_zalloc(1, sizeof *kept);
     int status = kept ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the record of a trial run");
-    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     if (status != SPAR_OK) {
         free(kept);
         return status;
@@ -276,10 +277,10 @@ static int check_use(spar_session *s, const spari_run *run, int64_t i, spari_rec
         return SPAR_OK;
     }
     double found[3] = {r->work + spari_cost_members(s, NULL)}, part = (double)i / (double)run->steps;
-    if (run->beside && spari_comm_rank(s->comm) == 0) {
+    if (run->beside && spari_comm_rank(s->ranks.comm) == 0) {
         found[1] = spari_record_least_error(r, run->beside, run->goals, i);
     }
-    SPARI_TRY(spari_comm_sum(s->comm, found, 2, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, found, 2, SPAR_OK, s->message, sizeof s->message));
     double so_far = found[0] + run->fluid * (double)r->solutions;
     r->dear = run->most > 0 &&
               (so_far > run->most || (part >= 0.125 && i >= SPARI_MULTIPLE && so_far > 1.5 * part * run->most));
@@ -312,9 +313,9 @@ static int share_costs(spar_session *s, spari_record *r) {
     enum { COSTS = 4 };
     double cost[COSTS + 1] = {r->seconds, r->fluid_seconds, r->work + spari_cost_members(s, r->member_work),
                               spari_cost_fluids(s)};
-    SPARI_TRY(spari_comm_sum(s->comm, cost, COSTS, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, cost, COSTS, SPAR_OK, s->message, sizeof s->message));
     r->seconds = cost[0], r->fluid_seconds = cost[1], r->work = cost[2], r->fluid = cost[3];
-    return spari_comm_sum(s->comm, r->member_work, r->members, SPAR_OK, s->message, sizeof s->message);
+    return spari_comm_sum(s->ranks.comm, r->member_work, r->members, SPAR_OK, s->message, sizeof s->message);
 }
 
 /* The members and fluids there now are the trial's. balanced: the run begins with a start with initial accelerations.
@@ -353,7 +354,7 @@ static int share_failure(spar_session *s, int own, double *work) {
     }
     there[own] = 1;
     there[CODES] = *work;
-    SPARI_TRY(spari_comm_sum(s->comm, there, CODES + 1, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, there, CODES + 1, SPAR_OK, s->message, sizeof s->message));
     *work = there[CODES];
     if (there[SPAR_ERR_MEMORY] > 0 || there[SPAR_ERR_IO] > 0) {
         return own == SPAR_ERR_MEMORY || own == SPAR_ERR_IO || own == SPAR_ERR_PEER
@@ -374,7 +375,7 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_trial_set
     *record = (spari_record){0};
     int status = snapshot_create(s, &t), away = status == SPAR_OK;
     status = away ? make_anew(s, &t, trial_settings) : status;
-    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     status = status == SPAR_OK ? carry_loads(s, &t) : status;
     status = status == SPAR_OK && s->joints ? spari_assemblies_make(s, "a trial run") : status;
     if (status == SPAR_OK && run->instead) {
@@ -404,8 +405,8 @@ int spari_trial_enter(spar_session *s, const char *call, const spari_run *run, d
 }
 
 int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
-    SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
-    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
                   call);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
@@ -417,8 +418,8 @@ int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
                   SPARI_MULTIPLE);
     /* advice varies dt, and runs longer than requested */
     const double longer = 1e6;
-    SPARI_REQUIRE(s, isfinite(s->time + longer * (double)run->steps * run->dt), SPAR_ERR_ARGUMENT,
+    SPARI_REQUIRE(s, isfinite(s->clock.time + longer * (double)run->steps * run->dt), SPAR_ERR_ARGUMENT,
                   "%s: %lld steps of %g s from t = %g are beyond the range of numbers", call, (long long)run->steps,
-                  run->dt, s->time);
+                  run->dt, s->clock.time);
     return SPAR_OK;
 }

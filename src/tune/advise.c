@@ -142,7 +142,7 @@ static int try_elements(spari_advisor *d, spari_plan *p, int g, const shaping *w
 
 static void tell_kept(const spari_advisor *d, const spar_member *m, const char *why) {
     char text[SPARI_MESSAGE_SIZE];
-    if (d->session->log) {
+    if (d->session->callbacks.log) {
         (void)snprintf(text, sizeof text, "%s: '%.100s' keeps its %d elements: %s", SPARI_ADVISE, m->name, m->elements,
                        why);
         spari_log(d->session, SPAR_LOG_INFO, text);
@@ -278,7 +278,7 @@ static int choose_stiff_nodes(spari_advisor *d, spari_plan *p, int g, const shap
     int now = p->group[g].nodes, own = spari_plan_member(d, g)->per_element;
     spari_plan q = *p;
     q.group[g].nodes = spari_rule.least_nodes;
-    if (!d->session->keep_nodes && q.group[g].nodes < own &&
+    if (!d->session->advice.keep_nodes && q.group[g].nodes < own &&
         shape_pays(d, w, *cost, with_nodes(d, w, g, *cost, now, spari_rule.least_nodes))) {
         const spari_use use = {spari_rule.at_most * *cost, spari_rule.fidelity};
         SPARI_TRY(spari_plan_distance(d, &q, &w->base, use, &part, &took));
@@ -295,13 +295,13 @@ static int choose_shapes(spari_advisor *d, spari_plan *p, const shaping *w) {
     double cost = base_cost(d, w);
     for (int g = 0; g < d->groups && !d->misled; g++) {
         double part = 0;
-        if (!d->session->keep_fidelity) {
+        if (!d->session->advice.keep_fidelity) {
             SPARI_TRY(choose_fidelity(d, p, g, w, &cost, &part));
         }
         if (is_elastic(p, g)) {
             SPARI_TRY(choose_points(d, p, g, w, &cost));
-            SPARI_TRY(d->session->keep_nodes ? SPAR_OK : choose_nodes(d, p, g, w, part, &cost));
-            SPARI_TRY(d->session->keep_nodes || d->misled ? SPAR_OK : choose_elements(d, p, g, w, &cost));
+            SPARI_TRY(d->session->advice.keep_nodes ? SPAR_OK : choose_nodes(d, p, g, w, part, &cost));
+            SPARI_TRY(d->session->advice.keep_nodes || d->misled ? SPAR_OK : choose_elements(d, p, g, w, &cost));
         } else {
             SPARI_TRY(choose_stiff_nodes(d, p, g, w, &cost));
         }
@@ -323,7 +323,7 @@ static int run_base(spari_advisor *d, const spari_plan *finest, spari_plan *p, s
     memcpy(p->group, finest->group, sizeof p->group);
     p->newton = fmax(p->newton, spari_rule.rough_newton * d->tolerance);
     p->predictor = 1;
-    if (!d->session->keep_coupling && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT)) {
+    if (!d->session->advice.keep_coupling && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT)) {
         spari_plan q = *p;
         q.scheme = SPAR_COUPLING_EXPLICIT;
         SPARI_TRY(spari_plan_compare(d, &q, &rough->record, (spari_use){INFINITY, spari_rule.rough}, base, &away));
@@ -337,7 +337,7 @@ static int run_base(spari_advisor *d, const spari_plan *finest, spari_plan *p, s
         }
         spari_record_free(base);
     }
-    p->rtol = d->session->keep_coupling ? p->rtol : fmax(p->rtol, spari_rule.rough_rtol * d->tolerance);
+    p->rtol = d->session->advice.keep_coupling ? p->rtol : fmax(p->rtol, spari_rule.rough_rtol * d->tolerance);
     return spari_plan_run(d, p, 1, INFINITY, base);
 }
 
@@ -447,7 +447,7 @@ static spari_plan coupled_by(const spari_plan *structure, int scheme, int predic
 static int search_steps(spari_advisor *d, const spari_plan *p, int64_t from, spari_outcome *best) {
     spari_outcome o;
     spari_plan q = *p;
-    if (!d->session->keep_dt) {
+    if (!d->session->advice.keep_dt) {
         return coarsest_steps(d, q, spari_plan_grid(d, from > 0 ? from : spari_plan_least_steps(d)), best);
     }
     q.steps = d->run.steps;
@@ -480,8 +480,8 @@ static int try_explicit(spari_advisor *d, const spari_plan *structure, int at, i
     *better = (spari_outcome){.error = INFINITY, .cost = INFINITY};
     for (; predictor <= 2 && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT) && !spari_plan_is_good(d, better); predictor++) {
         spari_outcome o;
-        spari_plan p = coupled_by(structure, SPAR_COUPLING_EXPLICIT, predictor, d->session->coupling_rtol);
-        p.steps = d->session->keep_dt ? d->run.steps : spari_plan_steps(d, at);
+        spari_plan p = coupled_by(structure, SPAR_COUPLING_EXPLICIT, predictor, d->session->coupling.rtol);
+        p.steps = d->session->advice.keep_dt ? d->run.steps : spari_plan_steps(d, at);
         SPARI_TRY(spari_plan_measure(d, &p, INFINITY, &o));
         *better = o.error < better->error ? o : *better;
     }
@@ -519,11 +519,11 @@ static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outc
     const spar_session *s = d->session;
     double goal = spari_rule.good * d->tolerance;
     spari_outcome direct, seen;
-    for (int predictor = 1; predictor <= 2 && s->keep_coupling; predictor++) {
-        const spari_plan p = coupled_by(structure, s->scheme, predictor, s->coupling_rtol);
+    for (int predictor = 1; predictor <= 2 && s->advice.keep_coupling; predictor++) {
+        const spari_plan p = coupled_by(structure, s->coupling.scheme, predictor, s->coupling.rtol);
         SPARI_TRY(search_steps(d, &p, 0, best));
     }
-    if (s->keep_coupling) {
+    if (s->advice.keep_coupling) {
         return SPAR_OK;
     }
     int least = spari_plan_grid(d, spari_plan_least_steps(d)), begin = begin_explicit(d, structure, &seen),
@@ -563,7 +563,7 @@ typedef int (*move)(const spari_advisor *d, spari_plan *p, int g);
 static int coarser(const spari_advisor *d, spari_plan *p, int g) {
     (void)g;
     int64_t steps = spari_plan_steps(d, spari_plan_grid(d, p->steps) - 1);
-    int moved = !d->session->keep_dt && steps < p->steps;
+    int moved = !d->session->advice.keep_dt && steps < p->steps;
     p->steps = moved ? steps : p->steps;
     return moved;
 }
@@ -571,15 +571,15 @@ static int coarser(const spari_advisor *d, spari_plan *p, int g) {
 static int finer(const spari_advisor *d, spari_plan *p, int g) {
     (void)g;
     p->steps = spari_plan_steps(d, spari_plan_grid(d, p->steps) + 1);
-    return !d->session->keep_dt;
+    return !d->session->advice.keep_dt;
 }
 
 static int fewer_nodes(const spari_advisor *d, spari_plan *p, int g) {
-    return !d->session->keep_nodes && p->group[g].nodes-- > spari_rule.least_nodes;
+    return !d->session->advice.keep_nodes && p->group[g].nodes-- > spari_rule.least_nodes;
 }
 
 static int more_nodes(const spari_advisor *d, spari_plan *p, int g) {
-    return !d->session->keep_nodes && is_elastic(p, g) && p->group[g].nodes++ < SPARI_MAX_NODES;
+    return !d->session->advice.keep_nodes && is_elastic(p, g) && p->group[g].nodes++ < SPARI_MAX_NODES;
 }
 
 static int fewer_points(const spari_advisor *d, spari_plan *p, int g) {
@@ -591,7 +591,7 @@ static int fewer_points(const spari_advisor *d, spari_plan *p, int g) {
 
 static int lower_fidelity(const spari_advisor *d, spari_plan *p, int g) {
     spari_shape *b = &p->group[g];
-    if (d->session->keep_fidelity) {
+    if (d->session->advice.keep_fidelity) {
         return 0;
     }
     if (b->modes > 1) {
@@ -709,7 +709,7 @@ static int try_stabler(spari_advisor *d, const spari_outcome *now, const spari_p
         SPARI_TRY(spari_plan_measure(d, &p, most, &o));
     }
     *best = next_best(d, drifts, 0);
-    if (!(best->cost < most) && !d->session->keep_coupling) {
+    if (!(best->cost < most) && !d->session->advice.keep_coupling) {
         o = (spari_outcome){.error = INFINITY, .cost = INFINITY};
         SPARI_TRY(try_iterated(d, drifts, &o));
         *best = next_best(d, drifts, 0);
@@ -937,13 +937,13 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
     spari_rebuild **copies = NULL;
-    d.goals = d.run.goals = s->goals;
-    d.limit = s->advise_limit > 0 ? s->advise_limit : INFINITY;
+    d.goals = d.run.goals = s->advice.goals;
+    d.limit = s->advice.limit > 0 ? s->advice.limit : INFINITY;
     d.longer = fmax(1, length / (dt * (double)steps));
     d.runs = fmax(d.longer, spari_rule.least_runs);
     int status = spari_plan_groups(&d);
     status = status == SPAR_OK ? alloc_rebuilds(&d, &copies) : status;
-    status = spari_comm_agree(s->comm, status, s->message, sizeof s->message);
+    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     if (status == SPAR_OK) {
         spari_plan present = spari_plan_present(&d);
         status = spari_progress_ends(&d.progress, search_plans(&d, &present, &now, &best));

@@ -59,7 +59,7 @@ static int change_create(spar_session *s, change *c) {
 
 static void put_settings(spar_session *s, const double *values, int past) {
     spari_settings_vary(s, values);
-    s->past = past < s->predictor ? past : s->predictor;
+    s->state.past = past < s->coupling.predictor ? past : s->coupling.predictor;
 }
 
 static int is_as_advised(const spar_member *m) {
@@ -79,7 +79,7 @@ static int rebuild_members(spar_session *s, change *c) {
     }
     for (spar_member *m = s->members; m; m = m->next) {
         if (is_as_advised(m) && !(joints_moved && spari_member_has_joints(m))) {
-            SPARI_REQUIRE(s, spari_history_keep(m->load_history, 6 * m->nodes, s->predictor) == SPAR_OK,
+            SPARI_REQUIRE(s, spari_history_keep(m->load_history, 6 * m->nodes, s->coupling.predictor) == SPAR_OK,
                           SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
             SPARI_TRY(spari_means_keep(m));
             continue;
@@ -102,7 +102,7 @@ static int rebuild_fluids(spar_session *s, change *c) {
             of = c->made[k].member == spari_fluid_member(f) ? &c->made[k] : of;
         }
         if (!of) {
-            SPARI_REQUIRE(s, spari_fluid_keep(f, s->predictor) == SPAR_OK, SPAR_ERR_MEMORY,
+            SPARI_REQUIRE(s, spari_fluid_keep(f, s->coupling.predictor) == SPAR_OK, SPAR_ERR_MEMORY,
                           "no memory for the forces of '%s'", spar_fluid_get_name(f));
             continue;
         }
@@ -174,7 +174,7 @@ static void confirm(spar_session *s, change *c) {
         }
     }
     spari_joints_drop_snapshot(s, &c->joint_snapshot);
-    s->coupling_stale = 1;
+    s->coupling.stale = 1;
     s->own->advised->of = spari_advised_of(s);
 }
 
@@ -182,8 +182,8 @@ static void confirm(spar_session *s, change *c) {
 
 static int check_apply(spar_session *s, const char *call) {
     const spari_advised *a = s->own->advised;
-    SPARI_REQUIRE(s, !s->trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
-    SPARI_REQUIRE(s, s->phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
                   call);
     SPARI_REQUIRE(s, a && a->given, SPAR_ERR_STATE, "%s: there is no advice yet; call %s first", call,
                   "spar_session_advise");
@@ -208,8 +208,8 @@ int spar_session_apply_advice(spar_session *session, double *dt) {
     if (begun) {
         detach_exchange(s->own, &c);
         (void)spari_settings_varied(s, c.before);
-        c.past = s->past;
-        put_settings(s, s->own->advised->setting, s->past);
+        c.past = s->state.past;
+        put_settings(s, s->own->advised->setting, s->state.past);
         status = rebuild_members(s, &c);
         status = status == SPAR_OK ? rebuild_fluids(s, &c) : status;
     }

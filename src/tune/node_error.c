@@ -84,7 +84,7 @@ static int correct_shape(const spar_member *m, spari_solver *s, const finer *f, 
 /* The member is the finer one. -1: no result. */
 static double distance(const spar_member *m, const finer *f) {
     spari_solver *s = m->solution;
-    double h = m->session->dt_last[0], sum = 0, size = INFINITY, last;
+    double h = m->session->clock.dt_last[0], sum = 0, size = INFINITY, last;
     int constrained = spari_member_constrained(m) == 6;
     if (!constrained && h <= 0) {
         return -1;
@@ -145,7 +145,7 @@ static int find_nodes_error(spar_member *m, double *error) {
         settings.per_element = n;
         settings.left_out = SPAR_EFFECT_WORK; /* a new work account would reset those of the joints */
         int owner = m->owner;
-        m->owner = spari_comm_rank(m->session->comm);
+        m->owner = spari_comm_rank(m->session->ranks.comm);
         status = spari_member_rebuild(m, &settings, &old);
         old.owner = owner;
         status = status == SPAR_OK ? finer_create(m, onto, &f) : status;
@@ -175,12 +175,12 @@ int spar_member_get_error(spar_member *member, double *step, double *nodes) {
         s, !step || spari_step_control_is_set(s), SPAR_ERR_STATE,
         "%s: errors of steps are not kept; call spar_session_set_tolerance first, or ask for that of the nodes",
         __func__);
-    SPARI_REQUIRE(s, !s->standing && !s->trial, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, !s->state.standing && !s->state.trial, SPAR_ERR_STATE,
                   "%s: a static solution, a start or a trial is under way; ask between steps", __func__);
-    SPARI_REQUIRE(s, !nodes || s->phase == SPARI_IDLE, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, !nodes || s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is under way; the error of the nodes is found between steps", __func__);
     if (step) {
-        found[0] = s->phase >= SPARI_SOLVED ? spari_step_control_error(m) : m->step_error;
+        found[0] = s->state.phase >= SPARI_SOLVED ? spari_step_control_error(m) : m->step_error;
     }
     if (nodes && has_nodes(m)) {
         found[1] = -1;

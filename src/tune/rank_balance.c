@@ -12,7 +12,7 @@ enum { BALANCE_MEMBERS, BALANCE_EXPECTED, BALANCE_COUNTED, BALANCE_COLUMNS };
 
 /* This rank's cost, from what it solves. */
 static void find_balance(const spar_session *s, double own[BALANCE_COLUMNS]) {
-    int rank = spari_comm_rank(s->comm);
+    int rank = spari_comm_rank(s->ranks.comm);
     for (const spar_member *m = s->members; m; m = m->next) {
         if (m->committed && m->row->solved && m->owner == rank) {
             own[BALANCE_MEMBERS]++;
@@ -30,7 +30,7 @@ int spar_session_get_balance(const spar_session *session, int64_t capacity, int6
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = (spar_session *)(uintptr_t)session; /* writes its message; the state is not changed */
-    int64_t ranks = spari_comm_size(s->comm);
+    int64_t ranks = spari_comm_size(s->ranks.comm);
     double *all = NULL;
     int status = spari_need_capacity(s, __func__, capacity);
     if (status == SPAR_OK) {
@@ -39,9 +39,10 @@ int spar_session_get_balance(const spar_session *session, int64_t capacity, int6
     }
     status = spari_enter(s, __func__, status);
     if (status == SPAR_OK && all) {
-        find_balance(s, all + BALANCE_COLUMNS * spari_comm_rank(s->comm));
+        find_balance(s, all + BALANCE_COLUMNS * spari_comm_rank(s->ranks.comm));
         status = spari_named(
-            s, __func__, spari_comm_sum(s->comm, all, BALANCE_COLUMNS * ranks, SPAR_OK, s->message, sizeof s->message));
+            s, __func__,
+            spari_comm_sum(s->ranks.comm, all, BALANCE_COLUMNS * ranks, SPAR_OK, s->message, sizeof s->message));
     }
     for (int64_t r = 0; r < capacity && status == SPAR_OK && all; r++) {
         const double *of = r < ranks ? all + BALANCE_COLUMNS * r : NULL;

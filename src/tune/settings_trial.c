@@ -83,8 +83,8 @@ spari_plan spari_plan_present(const spari_advisor *d) {
     spari_plan p;
     memset(&p, 0, sizeof p);
     p.steps = d->run.steps;
-    p.substeps = s->substeps, p.scheme = s->scheme, p.predictor = s->predictor;
-    p.rtol = s->coupling_rtol, p.newton = s->newton_rtol, p.strict = s->newton_strict;
+    p.substeps = s->integrator.substeps, p.scheme = s->coupling.scheme, p.predictor = s->coupling.predictor;
+    p.rtol = s->coupling.rtol, p.newton = s->newton.rtol, p.strict = s->newton.strict;
     for (int g = 0; g < d->groups; g++) {
         const spar_member *m = spari_plan_member(d, g);
         p.group[g].elements = m->elements;
@@ -96,12 +96,12 @@ spari_plan spari_plan_present(const spari_advisor *d) {
 }
 
 void spari_plan_settings(const spari_plan *p, double *values) {
-    SPARI_VARY(values, substeps, p->substeps);
-    SPARI_VARY(values, scheme, p->scheme);
-    SPARI_VARY(values, predictor, p->predictor);
-    SPARI_VARY(values, coupling_rtol, p->rtol);
-    SPARI_VARY(values, newton_rtol, p->newton);
-    SPARI_VARY(values, newton_strict, p->strict);
+    SPARI_VARY(values, integrator.substeps, p->substeps);
+    SPARI_VARY(values, coupling.scheme, p->scheme);
+    SPARI_VARY(values, coupling.predictor, p->predictor);
+    SPARI_VARY(values, coupling.rtol, p->rtol);
+    SPARI_VARY(values, newton.rtol, p->newton);
+    SPARI_VARY(values, newton.strict, p->strict);
 }
 
 int64_t spari_plan_steps(const spari_advisor *d, int j) {
@@ -210,7 +210,7 @@ static const char *describe_plan(const spari_advisor *d, const spari_plan *p, ch
 static void tell_plan(const spari_advisor *d, const spari_plan *p, double error, double cost) {
     spar_session *s = d->session;
     char what[SPARI_MESSAGE_SIZE / 2], text[SPARI_MESSAGE_SIZE];
-    if (!s->log || d->progress.stopped != SPAR_OK) {
+    if (!s->callbacks.log || d->progress.stopped != SPAR_OK) {
         return;
     }
     (void)describe_plan(d, p, what, sizeof what);
@@ -230,8 +230,8 @@ double spari_plan_cost(const spari_advisor *d, const spari_record *r) {
 /* Error of a relative to b, over a run `longer` times as long; all ranks use rank 0's bits. */
 static int compare_runs(spari_advisor *d, const spari_record *a, const spari_record *b, double longer, double *error) {
     spar_session *s = d->session;
-    double found[2] = {spari_comm_rank(s->comm) == 0 ? spari_record_error(a, b, d->goals, longer) : 0, 0};
-    SPARI_TRY(spari_comm_sum(s->comm, found, 1, SPAR_OK, s->message, sizeof s->message));
+    double found[2] = {spari_comm_rank(s->ranks.comm) == 0 ? spari_record_error(a, b, d->goals, longer) : 0, 0};
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, found, 1, SPAR_OK, s->message, sizeof s->message));
     *error = found[0];
     return SPAR_OK;
 }
@@ -356,13 +356,13 @@ static void weigh_fluid(spari_advisor *d, const spari_record *r) {
     d->spent += d->fluid * (double)d->solutions;
     d->weighed = 1;
     d->run.timed = 0;
-    if (s->log) {
+    if (s->callbacks.log) {
         (void)snprintf(text, sizeof text,
                        "%s: one solution of the fluid is counted as %.4g (%.4g by its nodes), one second as %.4g",
                        SPARI_ADVISE, d->fluid, r->fluid, spari_rule.price.second);
         spari_log(s, SPAR_LOG_INFO, text);
     }
-    if (s->log && spari_cost_wavers(s, r->fluid, r->fluid_seconds, r->solutions)) {
+    if (s->callbacks.log && spari_cost_wavers(s, r->fluid, r->fluid_seconds, r->solutions)) {
         (void)snprintf(text, sizeof text,
                        "%s: the fluid's time, %.3g s a solution, is between two classes: another run may get other "
                        "advice; the option advise.fluid_cost says what it costs",
@@ -372,7 +372,7 @@ static void weigh_fluid(spari_advisor *d, const spari_record *r) {
 }
 
 int spari_plan_try_present(spari_advisor *d, const spari_plan *present, spari_record *record) {
-    d->run.timed = d->session->fluid_cost <= 0;
+    d->run.timed = d->session->advice.fluid_cost <= 0;
     int status = spari_plan_run(d, present, 1, INFINITY, record);
     if (status == SPAR_OK) {
         weigh_fluid(d, record);
@@ -390,25 +390,25 @@ int spari_plan_try_present(spari_advisor *d, const spari_plan *present, spari_re
    accumulates over the run, changes the observed order. */
 static spari_plan reference_plan(const spari_advisor *d, const spari_plan *present, int level, int more) {
     const spar_session *s = d->session;
-    const double falls = s->keep_dt ? 1 : pow(4, -fmax(0, level));
+    const double falls = s->advice.keep_dt ? 1 : pow(4, -fmax(0, level));
     spari_plan p = *present;
     p.newton = fmax(spari_rule.reference_newton * d->tolerance, 1e-12);
     p.strict = 1;
     p.substeps = 1;
     p.predictor = 2;
-    if (!s->keep_coupling) {
+    if (!s->advice.keep_coupling) {
         p.scheme = SPAR_COUPLING_IQN_ILS;
         p.rtol = fmax(spari_rule.reference_rtol * d->tolerance * falls, 1e-10);
         p.newton = fmax(fmin(p.newton, p.rtol), 1e-12);
     }
-    p.steps = s->keep_dt ? present->steps : spari_plan_steps(d, 2 * level);
+    p.steps = s->advice.keep_dt ? present->steps : spari_plan_steps(d, 2 * level);
     for (int g = 0; g < d->groups; g++) {
         spari_shape *b = &p.group[g];
-        if (!s->keep_fidelity) {
+        if (!s->advice.keep_fidelity) {
             b->fidelity = SPAR_FIDELITY_EXACT;
             b->modes = 0;
         }
-        if (!s->keep_nodes) {
+        if (!s->advice.keep_nodes) {
             b->nodes = b->nodes + more < SPARI_MAX_NODES ? b->nodes + more : SPARI_MAX_NODES;
             b->nodes = d->cap > 0 && b->nodes > d->cap ? d->cap : b->nodes;
         }
@@ -441,14 +441,14 @@ static int run_level(spari_advisor *d, const spari_plan *p, int *made) {
 static spari_plan rough_plan(const spari_advisor *d, const spari_plan *present, int level, int more) {
     spari_plan p = reference_plan(d, present, level, more);
     p.newton = fmax(p.newton, spari_rule.rough_newton * d->tolerance);
-    p.rtol = d->session->keep_coupling ? p.rtol : fmax(p.rtol, spari_rule.rough_rtol * d->tolerance);
+    p.rtol = d->session->advice.keep_coupling ? p.rtol : fmax(p.rtol, spari_rule.rough_rtol * d->tolerance);
     p.predictor = 1;
     return p;
 }
 
 /* Coarsest level that completes. */
 static int run_coarsest(spari_advisor *d, const spari_plan *present, int *level, int more, spari_record *run) {
-    int last = d->session->keep_dt ? 0 : SPARI_FINEST, status;
+    int last = d->session->advice.keep_dt ? 0 : SPARI_FINEST, status;
     spari_plan p = rough_plan(d, present, *level, more);
     for (; (status = spari_plan_run(d, &p, 1, most_of_level(d, &p), run)) != SPAR_OK;
          p = rough_plan(d, present, ++*level, more)) {
@@ -467,7 +467,7 @@ static int run_coarsest(spari_advisor *d, const spari_plan *present, int *level,
    finer dt shows the effect of the nodes. If it shows the same, the nodes are the cause from then on. */
 static int is_dt(spari_advisor *d, int level, double part, double before) {
     const double same = 0.8;
-    int stalls = part > before && isfinite(part) && level < SPARI_FINEST && !d->session->keep_dt;
+    int stalls = part > before && isfinite(part) && level < SPARI_FINEST && !d->session->advice.keep_dt;
     if (stalls && d->stalls <= 1) {
         d->stalls = part > same * d->stalled ? d->stalls + 1 : 1;
         d->stalled = part;
@@ -546,7 +546,7 @@ static int more_reference_nodes(spari_advisor *d, const spari_plan *present, int
 static int reference_nodes(spari_advisor *d, const spari_plan *present, int *level, int *more, double *left) {
     const double spectral = 0.25; /* maximum fraction of the error that remains with two more nodes */
     const spar_session *s = d->session;
-    const int begun = d->thorough || s->keep_dt ? 2 : 0;
+    const int begun = d->thorough || s->advice.keep_dt ? 2 : 0;
     int status, finer;
     do {
         spari_record base = {0};
@@ -554,7 +554,7 @@ static int reference_nodes(spari_advisor *d, const spari_plan *present, int *lev
         finer = 0;
         *more = begun;
         status = run_coarsest(d, present, level, begun, &base);
-        if (status == SPAR_OK && begun == 0 && !s->keep_nodes) {
+        if (status == SPAR_OK && begun == 0 && !s->advice.keep_nodes) {
             status = fewer_reference_nodes(d, present, *level, &base, &shown, &two, &finer);
         }
         *left = spectral * shown * d->tolerance;
@@ -604,7 +604,7 @@ static int copy_reference(spari_advisor *d) {
     int status = d->reference.value && d->reference.recent
                      ? SPAR_OK
                      : spari_fail(d->session, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);
-    SPARI_TRY(spari_comm_agree(d->session->comm, status, d->session->message, sizeof d->session->message));
+    SPARI_TRY(spari_comm_agree(d->session->ranks.comm, status, d->session->message, sizeof d->session->message));
     if (part > 0) {
         spari_record_extrapolate(&d->reference, &d->level[d->levels - 2].record, part);
     }
@@ -633,7 +633,7 @@ static int finer_pays(spari_advisor *d) {
 /* Halves dt until the errors of steps and nodes are a small fraction of the tolerance, or small enough if the next
    run would not pay. */
 static int refine(spari_advisor *d, const spari_plan *present, int level, int more, double nodes) {
-    int made, keeps = d->session->keep_dt, ends = keeps ? level : SPARI_FINEST;
+    int made, keeps = d->session->advice.keep_dt, ends = keeps ? level : SPARI_FINEST;
     double goal = spari_rule.reference_ends * d->tolerance, part;
     d->reference_error = INFINITY;
     for (; level <= ends && d->levels < SPARI_LEVELS && d->reference_error > goal; level++) {
@@ -658,7 +658,7 @@ static int refine(spari_advisor *d, const spari_plan *present, int level, int mo
 /* Warns if the motion still grows at the end of the trials: a longer run is then not covered. */
 static void tell_growth(const spari_advisor *d, double T, double swells) {
     char text[SPARI_MESSAGE_SIZE];
-    if (d->session->log && d->longer > spari_rule.foreseen && swells > spari_rule.swells) {
+    if (d->session->callbacks.log && d->longer > spari_rule.foreseen && swells > spari_rule.swells) {
         (void)snprintf(
             text, sizeof text,
             "%s: the motion still grows in the trials of %.4g s (%.3g times from the second third to the "
@@ -680,12 +680,12 @@ static int check_reference(spari_advisor *d) {
         "whether the fluid solver is repeatable",
         SPARI_ADVISE, (double)d->level[d->levels - 1].plan.steps / (double)d->run.steps, d->reference_error,
         spari_rule.reference_most * d->tolerance, d->tolerance);
-    if (spari_comm_rank(s->comm) == 0) {
+    if (spari_comm_rank(s->ranks.comm) == 0) {
         said[0] = spari_record_shortest(&d->reference, d->tolerance);
         said[1] = d->longer > spari_rule.foreseen ? spari_record_vouches(&d->reference) : 1;
         said[2] = spari_record_swells(&d->reference);
     }
-    SPARI_TRY(spari_comm_sum(s->comm, said, 3, SPAR_OK, d->session->message, sizeof d->session->message));
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, said, 3, SPAR_OK, d->session->message, sizeof d->session->message));
     d->shortest = said[0];
     SPARI_REQUIRE(s, said[1] > 0, SPAR_ERR_NUMERIC,
                   "%s: trials of %.4g s do not tell what a run of %.4g s does: the motion neither settles in them nor "
@@ -696,7 +696,7 @@ static int check_reference(spari_advisor *d) {
 }
 
 int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan *finest) {
-    int level = d->session->keep_dt ? 0 : -SPARI_COARSEST, more; /* the coarsest there may be */
+    int level = d->session->advice.keep_dt ? 0 : -SPARI_COARSEST, more; /* the coarsest there may be */
     double nodes;
     while (level < 0 && spari_plan_steps(d, 2 * level) < 2 * SPARI_MULTIPLE) {
         level++;
@@ -763,7 +763,7 @@ static int seesaws(const spari_advisor *d, const spari_plan *p, const spari_reco
 /* Comparison settings for the longer run: tight coupling, and half the dt if the coupling is tight already. */
 static spari_plan last_look_plan(const spari_advisor *d, const spari_plan *p) {
     spari_plan q = *p;
-    int keeps = d->session->keep_coupling;
+    int keeps = d->session->advice.keep_coupling;
     q.predictor = 1;
     q.newton = fmin(q.newton, fmax(spari_rule.stays_newton, spari_rule.rough_newton * d->tolerance));
     q.strict = 1;
@@ -833,7 +833,8 @@ int spari_plan_stays(spari_advisor *d, const spari_plan *p, int trusts, double m
     *stays = 0;
     if (status == SPAR_OK) {
         seen[0] = verdict_of(d, p, &run, longer);
-        status = spari_comm_sum(d->session->comm, seen, 1, SPAR_OK, d->session->message, sizeof d->session->message);
+        status =
+            spari_comm_sum(d->session->ranks.comm, seen, 1, SPAR_OK, d->session->message, sizeof d->session->message);
         *stays = status == SPAR_OK && seen[0] == LOOKS_FINE;
     }
     tell_plan(d, p, status == SPAR_OK ? seen[0] : INFINITY, spari_plan_cost(d, &run));

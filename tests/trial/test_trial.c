@@ -522,7 +522,8 @@ static void test_apply_refuses(void **state) {
     assert_non_null(strstr(spar_session_message(c.s), "spar_session_apply_advice"));
     *c.body->advice = right;
     same_file(c.s, before, size);
-    assert_true(c.s->predictor == 1 && c.s->scheme == SPAR_COUPLING_EXPLICIT && c.s->newton_rtol == 1e-12);
+    assert_true(c.s->coupling.predictor == 1 && c.s->coupling.scheme == SPAR_COUPLING_EXPLICIT &&
+                c.s->newton.rtol == 1e-12);
     OK(c.s, spar_fluid_set_force_nodes(c.g, 1, x));
     assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
     assert_non_null(strstr(spar_session_message(c.s), "not mapped"));
@@ -585,9 +586,10 @@ static void test_apply_in_a_run(void **state) {
     assert_true(dt == advice[SPAR_ADVICE_DT]);
     assert_true(after.nodes == 2 * nodes && after.nodes != before.nodes);
     assert_true(c.b->fidelity == fidelity && c.b->modes == modes);
-    assert_true(c.s->scheme == (int)advice[SPAR_ADVICE_SCHEME] && c.s->predictor == (int)advice[SPAR_ADVICE_PREDICTOR]);
-    assert_true(c.s->substeps == (int)advice[SPAR_ADVICE_SUBSTEPS]);
-    assert_true(c.s->newton_rtol == advice[SPAR_ADVICE_NEWTON_RTOL]);
+    assert_true(c.s->coupling.scheme == (int)advice[SPAR_ADVICE_SCHEME] &&
+                c.s->coupling.predictor == (int)advice[SPAR_ADVICE_PREDICTOR]);
+    assert_true(c.s->integrator.substeps == (int)advice[SPAR_ADVICE_SUBSTEPS]);
+    assert_true(c.s->newton.rtol == advice[SPAR_ADVICE_NEWTON_RTOL]);
     for (int i = 0; i < 3; i++) {
         NEAR(after.sum[i], before.sum[i], 1e-11);
         NEAR(after.tip[i], before.tip[i], 1e-13);
