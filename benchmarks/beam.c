@@ -38,7 +38,7 @@ static void measure(const deck *d, nrel5mw *turbine, int repeats, figures *f) {
         took[k] = (now() - start) / (d->steps - 1);
         f->newton = (double)(solver->newton - newton) / (d->steps - 1);
         f->factors = (double)(solver->factors - factors) / (d->steps - 1);
-        f->points = s.member->body->first[s.member->elements];
+        f->points = s.member->body->first[s.member->mesh.elements];
         tip(s.member, f->u);
         spar_session_destroy(&s.session);
     }

@@ -742,8 +742,8 @@ int spari_assembly_advance(spari_assembly *a, double dt, int responses) {
     a->rotates_far =
         !a->component[0].scheme.still && (makes_a_chain(a) || rotates_far(a, dt / a->session->integrator.substeps));
     spari_pattern pattern = a->component[0].solver->steps.begin;
-    int status =
-        spari_scheme_run(&how, a, &a->component[0].alpha, &a->component[0].member->cuts, &pattern, a->session, dt);
+    int status = spari_scheme_run(&how, a, &a->component[0].alpha, &a->component[0].member->state.cuts, &pattern,
+                                  a->session, dt);
     if (status != SPAR_OK) {
         a->factored = 0;
         return status;

@@ -49,7 +49,7 @@ void spari_assembly_load(spari_assembly *assembly, const double *state);
 /* Advances all members from t^n to t^n + dt, on the owner. For joints between nodes with prescribed motion: on every
    rank. responses: spari_assembly_response will be called, and its tangents shall serve the next solution too. */
 int spari_assembly_advance(spari_assembly *assembly, double dt, int responses);
-/* Finds the accelerations of the members and the loads of the joints at t^0 under load_history[0], for steps dt. The
+/* Finds the accelerations of the members and the loads of the joints at t^0 under load.history[0], for steps dt. The
    motion at t^{n+1} becomes that of t^0 with them. If this was done before, the present joint loads stay. */
 int spari_assembly_balance(spari_assembly *assembly, double dt);
 /* The motion that a small additional load causes, to first order and over the last substep. After a step, on the

@@ -167,7 +167,7 @@ static int refuse_loads_across(const spari_assembly *a, const spar_member *m, co
                   "turn (spar_session_set_gravity), or go on in steps until what is left is periodic",
                   m->name, axis[0], axis[1], axis[2], g[0], g[1], g[2]);
     for (int64_t i = 0; i < 2 * m->nodes; i++) {
-        SPARI_REQUIRE(s, !spari_across(axis, m->dead + 3 * i), SPAR_ERR_UNSUPPORTED,
+        SPARI_REQUIRE(s, !spari_across(axis, m->load.dead + 3 * i), SPAR_ERR_UNSUPPORTED,
                       "'%s' turns about (%.4g, %.4g, %.4g), and the dead load of node %lld goes across that axis: it "
                       "stands while the node turns; give it as SPAR_LOAD_FOLLOWER, or the part along the axis",
                       m->name, axis[0], axis[1], axis[2], (long long)(i / 2));
@@ -176,7 +176,7 @@ static int refuse_loads_across(const spari_assembly *a, const spar_member *m, co
                   "'%s' turns about (%.4g, %.4g, %.4g), and its dead line load goes across that axis: it stands while "
                   "the line turns; give it as SPAR_LOAD_FOLLOWER, or the part along the axis",
                   m->name, axis[0], axis[1], axis[2]);
-    SPARI_REQUIRE(s, !m->foundation, SPAR_ERR_UNSUPPORTED,
+    SPARI_REQUIRE(s, !m->load.foundation, SPAR_ERR_UNSUPPORTED,
                   "'%s' turns, and springs along it lead to the ground, which stands: no state is steady; take the "
                   "foundation away, or go on in steps",
                   m->name);

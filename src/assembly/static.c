@@ -105,11 +105,11 @@ static int has_potential(const spari_assembly *a, const double *(*fluid)(const s
         const spar_member *m = a->component[i].member;
         const double *other = fluid(m);
         for (int64_t k = 0; k < m->nodes; k++) {
-            if (spari_norm(m->dead + 6 * k + 3) > 0 || spari_norm(other + 6 * k + 3) > 0) {
+            if (spari_norm(m->load.dead + 6 * k + 3) > 0 || spari_norm(other + 6 * k + 3) > 0) {
                 return 0;
             }
         }
-        if (m->applied && !spari_applied_potential(m)) {
+        if (m->load.applied && !spari_applied_potential(m)) {
             return 0;
         }
     }

@@ -123,8 +123,8 @@ static void stack(const spar_session *s) {
     for (const spar_member *m = s->members; m; m = m->next, k++) {
         for (int64_t i = 0; i < 6 * m->nodes; i++, at++) {
             double unit = i % 6 < 3 ? 1 : c->unit[k];
-            c->x[at] = unit * m->load_used[i];
-            c->g[at] = unit * m->load_pushed[i];
+            c->x[at] = unit * m->load.used[i];
+            c->g[at] = unit * m->load.pushed[i];
             if (c->shift) {
                 c->shift[at] = m->added ? unit * m->added->shift[i] : 0;
             }
@@ -138,22 +138,22 @@ static void unstack(const spar_session *s) {
     int k = 0;
     for (spar_member *m = s->members; m; m = m->next, k++) {
         for (int64_t i = 0; i < 6 * m->nodes; i++, at++) {
-            m->load_used[i] = c->x[at] / (i % 6 < 3 ? 1 : c->unit[k]);
+            m->load.used[i] = c->x[at] / (i % 6 < 3 ? 1 : c->unit[k]);
         }
     }
 }
 
-/* Root sum of squares of the change from `from` (stacked by member; NULL: load_used) to the loads that came back,
+/* Root sum of squares of the change from `from` (stacked by member; NULL: load.used) to the loads that came back,
    and of these loads, [N]. */
 static void load_norms(const spar_session *s, const double *from, double *change, double *size) {
     double r2 = 0, f2 = 0;
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
-        const double *used = from ? from : m->load_used;
+        const double *used = from ? from : m->load.used;
         double per_length = 1 / s->own->coupling->length[k];
         const double *shift = spari_added_shift(m);
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
-            double w = i % 6 < 3 ? 1 : per_length, f = w * m->load_pushed[i], r = f - w * used[i];
+            double w = i % 6 < 3 ? 1 : per_length, f = w * m->load.pushed[i], r = f - w * used[i];
             f -= shift ? w * shift[i] : 0;
             r2 += r * r;
             f2 += f * f;
@@ -229,7 +229,7 @@ void spari_coupling_begin(spar_session *s) {
     if (c->accelerator) {
         double *at = c->predicted;
         for (const spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next) {
-            memcpy(at, m->load_used, (size_t)(6 * m->nodes) * sizeof *at);
+            memcpy(at, m->load.used, (size_t)(6 * m->nodes) * sizeof *at);
         }
         spari_accelerator_begin(c->accelerator, s->clock.dt);
         report_added_mass(c);
@@ -316,9 +316,9 @@ static const spar_member *member_overwhelmed(const spar_session *s, double load[
     const spar_member *worst = NULL;
     double most = TOO_MUCH;
     for (const spar_member *m = s->members; m; m = m->next) {
-        double now = largest_load(m, m->load_used), before = INFINITY;
+        double now = largest_load(m, m->load.used), before = INFINITY;
         for (int k = 0; k < 3; k++) {
-            double of = largest_load(m, m->load_history[k]);
+            double of = largest_load(m, m->load.history[k]);
             before = of > 0 ? fmin(before, of) : before;
         }
         if (now > most * before) {
@@ -552,8 +552,8 @@ static double work_defect(const spar_session *s, double *whole) {
         for (int64_t i = 0; i < m->nodes; i++) {
             travel(m->now.q + 7 * i, m->after.q + 7 * i, d);
             for (int k = 0; k < 6; k++) {
-                double f = m->load_pushed[6 * i + k];
-                defect += 0.5 * (f - m->load_used[6 * i + k]) * d[k];
+                double f = m->load.pushed[6 * i + k];
+                defect += 0.5 * (f - m->load.used[6 * i + k]) * d[k];
                 *whole += 0.5 * fabs((f - (shift ? shift[6 * i + k] : 0)) * d[k]);
             }
         }
@@ -629,7 +629,7 @@ static void watch_alternation(spar_session *s) {
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
         for (int64_t i = 0; i < 6 * m->nodes; i++, e++) {
-            double miss = (m->load_pushed[i] - m->load_used[i]) / (i % 6 < 3 ? 1 : c->length[k]);
+            double miss = (m->load.pushed[i] - m->load.used[i]) / (i % 6 < 3 ? 1 : c->length[k]);
             both += miss * *e;
             now += miss * miss;
             before += *e * *e;

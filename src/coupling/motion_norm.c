@@ -207,7 +207,7 @@ static int respond_to_miss(spar_session *s, double *image, double *workspace) {
         }
         double *miss = m->assembly ? at : workspace; /* replaced later by the response of connected members */
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
-            miss[i] = m->load_pushed[i] - m->load_used[i];
+            miss[i] = m->load.pushed[i] - m->load.used[i];
         }
         singular = (!m->assembly && m->row->response(m, workspace, at)) || singular;
     }

@@ -31,7 +31,7 @@ static int64_t pack_motion(const spar_member *m, double *to) {
         spari_member_to_unique(m, 6, m->after.v, to + 7 * n);
         spari_member_to_unique(m, 6, m->after.a, to + 13 * n);
         if (is_damped(m)) {
-            to[19 * n] = m->dissipated_step;
+            to[19 * n] = m->state.dissipated_step;
         }
     }
     return motion_size(m);
@@ -44,7 +44,7 @@ static int64_t unpack_motion(spar_member *m, const double *from) {
         spari_member_from_unique(m, 7, from, m->after.q);
         spari_member_from_unique(m, 6, from + 7 * n, m->after.v);
         spari_member_from_unique(m, 6, from + 13 * n, m->after.a);
-        m->dissipated_step = is_damped(m) ? from[19 * n] : 0;
+        m->state.dissipated_step = is_damped(m) ? from[19 * n] : 0;
     }
     return motion_size(m);
 }
@@ -150,7 +150,7 @@ static int sum_bins(spar_session *s, int64_t count, double pushes) {
     memset(bins, 0, (size_t)(count + 2) * sizeof *bins);
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         if (spari_fluid_member(f)->committed) {
-            spari_fluid_add_bins(f, bins + spari_fluid_member(f)->pack_at);
+            spari_fluid_add_bins(f, bins + spari_fluid_member(f)->load.pack_at);
         }
     }
     spari_bins_add(bins + count, pushes);
@@ -167,13 +167,13 @@ int spari_session_exchange_loads(spar_session *s, int *pushed) {
     memset(s->own->pack, 0, (size_t)(s->own->pack_count + 2) * sizeof *s->own->pack);
     int64_t at = 0;
     for (spar_member *m = s->members; m; m = m->next) {
-        m->pack_at = at;
+        m->load.pack_at = at;
         at += m->committed ? 6 * m->nodes : 0;
     }
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         if (spari_fluid_member(f)->committed) {
             if (!s->ranks.reproducible) {
-                spari_fluid_add_loads(f, s->own->pack + spari_fluid_member(f)->pack_at);
+                spari_fluid_add_loads(f, s->own->pack + spari_fluid_member(f)->load.pack_at);
             }
             *pushes += spari_fluid_has_loads(f);
         }
@@ -200,7 +200,7 @@ int spari_session_moved(spar_session *s, int *moved) {
 }
 
 void spari_session_take_loads(const spar_session *s, const spar_member *m, double *load) {
-    memcpy(load, s->own->pack + m->pack_at, (size_t)(6 * m->nodes) * sizeof *load);
+    memcpy(load, s->own->pack + m->load.pack_at, (size_t)(6 * m->nodes) * sizeof *load);
     spari_joints_on_external(m, load);
 }
 

@@ -91,7 +91,7 @@ static void begin_floating_component(spari_component *p) {
     spari_solver_poison(p->solver);
     copy_to(f);
     p->stage.before = p->member->drive[0];
-    p->member->dissipated_step = 0;
+    p->member->state.dissipated_step = 0;
     p->stage.power = spari_frame_damped_power(f, &f->begin);
 }
 
@@ -501,7 +501,7 @@ static void shift_start_of_frame(spari_component *p) {
 static void rest_frame(spari_component *p, const double *fluid, int onward) {
     spari_frame *f = p->frame;
     spari_solver *s = p->solver;
-    spari_member_gather(p->member, p->member->dead, f->steps.load);
+    spari_member_gather(p->member, p->member->load.dead, f->steps.load);
     spari_member_gather(p->member, fluid, f->steps.load1);
     cblas_daxpy(6 * f->nodes, 1, f->steps.load1, 1, f->steps.load, 1);
     if (!onward) {

@@ -68,7 +68,7 @@ static int allocate_work(spari_frame *f, const spar_member *m) {
     if (f->N[0]) {
         ok = ok && (f->sumK = spari_zalloc(f->size, sizeof(double))) && (f->sumf = spari_zalloc(f->n, sizeof(double)));
     }
-    int64_t block = 6 * (int64_t)m->per_element;
+    int64_t block = 6 * (int64_t)m->mesh.per_element;
     ok = ok && (!f->A || !m->learned || (f->dense_A = spari_zalloc(block * (block + f->n), sizeof(double))));
     return !ok;
 }
@@ -126,7 +126,7 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
             spari_added_tangent(m, e, 1, NULL, f->A + (int64_t)f->block * f->block * e);
         }
     }
-    for (int e = 0; e < f->elements && status == SPAR_OK && m->foundation; e++) {
+    for (int e = 0; e < f->elements && status == SPAR_OK && m->load.foundation; e++) {
         spari_foundation_tangent(m, e, 1, f->K + (int64_t)f->block * f->block * e);
     }
     if (status == SPAR_OK && f->floats) {
@@ -149,7 +149,7 @@ static int frame_create(spar_member *m) {
                   "on",
                   m->name);
     SPARI_REQUIRE(
-        m->session, !m->floats || !m->foundation, SPAR_ERR_UNSUPPORTED,
+        m->session, !m->floats || !m->load.foundation, SPAR_ERR_UNSUPPORTED,
         "member '%s' is linear in the frame of a root that joints move, and has springs to the ground along it "
         "(spar_beam_set_foundation), which that frame moves against; keep SPAR_FIDELITY_EXACT, or fix the root",
         m->name);
@@ -164,7 +164,7 @@ static int frame_create(spar_member *m) {
     f->floats = m->floats;
     f->constrained = f->floats ? 6 : spari_member_constrained(m);
     f->nodes = m->body->unique;
-    f->elements = m->elements, f->block = 6 * m->per_element, f->overlap = 6, f->n = 6 * f->nodes;
+    f->elements = m->mesh.elements, f->block = 6 * m->mesh.per_element, f->overlap = 6, f->n = 6 * f->nodes;
     f->size = (int64_t)f->elements * f->block * f->block;
     int status = spari_floating_root_create(f, m);
     status = status == SPAR_OK ? fill_frame(f, m) : status;
@@ -180,7 +180,8 @@ static int frame_create(spar_member *m) {
 
 static int modal_check(const spar_member *m) {
     int constrained = spari_member_constrained(m);
-    int64_t most = 6 * ((int64_t)m->elements * (m->per_element - 1) + 1) - constrained, least = 6 - constrained;
+    int64_t most = 6 * ((int64_t)m->mesh.elements * (m->mesh.per_element - 1) + 1) - constrained,
+            least = 6 - constrained;
     SPARI_REQUIRE(m->session, m->beam->mass, SPAR_ERR_STATE,
                   "member '%s' has no mass, which a modal member needs; give its sections mass", m->name);
     SPARI_REQUIRE(m->session, m->modes <= most, SPAR_ERR_ARGUMENT,
@@ -246,7 +247,7 @@ static void frame_effort(const spar_member *m, spari_effort *e) {
                         .tangents = f->factors,
                         .nodes = f->nodes,
                         .elements = f->elements,
-                        .per_element = m->per_element,
+                        .per_element = m->mesh.per_element,
                         .unknowns = f->n,
                         .band = spari_effort_band(f->n, f->block)};
 }

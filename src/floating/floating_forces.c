@@ -18,7 +18,7 @@ static int steps_on(const spari_frame *f) {
 }
 
 int spari_carriage_is_linear(const spari_frame *f, const spar_member *m) {
-    return !m->applied && !(m->added && steps_on(f));
+    return !m->load.applied && !(m->added && steps_on(f));
 }
 
 /* The latest iterate, for loads that depend on it. */
@@ -38,14 +38,14 @@ static void gather_loads_of(spari_frame *f, const spar_member *m, const spari_po
     int n = f->nodes, n6 = 6 * n, guessed = m->added && steps_on(f);
     double *q = f->turned, *v = q + 7 * n, *a = v + n6;
     memset(c->loads, 0, (size_t)n6 * sizeof *c->loads);
-    if (m->applied || guessed) {
+    if (m->load.applied || guessed) {
         const double *xd = spari_frame_nodal(f, c->speeds, f->nodal),
                      *xdd = spari_frame_nodal(f, c->rates, f->nodal + n6);
         for (int i = 0; i < n; i++) {
             spari_frame_node(m, root, i, c->x + 6 * i, xd + 6 * i, xdd + 6 * i, q + 7 * i, v + 6 * i, a + 6 * i);
         }
     }
-    if (m->applied) {
+    if (m->load.applied) {
         spari_applied_residual(m, q, c->factor, c->loads);
     }
     if (guessed) {

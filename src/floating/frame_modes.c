@@ -233,7 +233,7 @@ int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
     free(part);
     f->elements = 1, f->block = cols, f->overlap = 6, f->n = cols;
     f->size = (int64_t)cols * cols;
-    no_strain(f, m->foundation || f->pull ? NULL : f->K); /* or what holds them is strained already */
+    no_strain(f, m->load.foundation || f->pull ? NULL : f->K); /* or what holds them is strained already */
     no_strain(f, f->D);
     for (int i = 0; i < cols && m->body->drag > 0 && !bad; i++) { /* but damping by mass brakes them */
         for (int j = 0; j < cols; j++) {
@@ -247,10 +247,10 @@ int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
 
 void spari_frame_remass(spar_member *m) {
     spari_frame *f = m->solution;
-    int block = 6 * m->per_element, cols = f->n;
+    int block = 6 * m->mesh.per_element, cols = f->n;
     double *X = f->dense_A, *half = X + (int64_t)block * block;
     memset(f->A, 0, (size_t)f->size * sizeof *f->A);
-    for (int e = 0; e < m->elements; e++) {
+    for (int e = 0; e < m->mesh.elements; e++) {
         const double *b = f->basis ? f->basis + (int64_t)e * (block - 6) * cols : NULL;
         double *to = b ? X : f->A + (int64_t)block * block * e;
         memset(to, 0, (size_t)(block * block) * sizeof *to);

@@ -32,7 +32,7 @@ static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion 
     double *x = f->nodal, *xd = x + 6 * (int64_t)f->nodes;
     const spari_pose pose = spari_member_pose(m, nodes);
     for (int64_t i = 0; i < m->nodes; i++) {
-        int64_t u = m->elements == 1 ? i : i - i / m->per_element;
+        int64_t u = m->mesh.elements == 1 ? i : i - i / m->mesh.per_element;
         spari_member_deformation(m, &pose, nodes, i, x + 6 * u, xd + 6 * u);
     }
     if (!f->basis) {
@@ -129,9 +129,9 @@ void spari_frame_publish(spar_member *m) {
     double *q = f->turned, *v = q + 7 * n, *a = v + 6 * n;
     to_nodes(f, m, s, q, v, a);
     const double *x = f->basis ? f->nodal : s->y;
-    m->overturned = 0;
+    m->state.overturned = 0;
     for (int i = 0; i < f->nodes; i++) {
-        m->overturned |= spari_norm(x + 6 * i + 3) > M_PI;
+        m->state.overturned |= spari_norm(x + 6 * i + 3) > M_PI;
     }
     spari_member_publish(m, q, v, a, &m->after);
 }
@@ -308,8 +308,8 @@ int spari_frame_felt(spar_member *m, double *load) {
         spari_rotate(root + 3, f->nodal + i, f->turned + i);
     }
     spari_member_from_unique(m, 6, f->turned, load);
-    for (int64_t e = 1; e < m->elements; e++) { /* its ends bear half of it each */
-        double *left = load + 6 * (e * m->per_element - 1);
+    for (int64_t e = 1; e < m->mesh.elements; e++) { /* its ends bear half of it each */
+        double *left = load + 6 * (e * m->mesh.per_element - 1);
         for (int k = 0; k < 12; k++) {
             left[k] *= 0.5;
         }
@@ -484,7 +484,7 @@ int spari_frame_energy(const spar_member *m, double energy[4]) {
     }
     from_nodes(f, m, &m->after, y, rate);
     energy[1] = half_form(f, f->K, y) + (f->pull ? cblas_ddot(f->n, f->pull, 1, y, 1) : 0);
-    energy[1] -= m->foundation ? spari_foundation_energy(m, m->after.q) : 0;
+    energy[1] -= m->load.foundation ? spari_foundation_energy(m, m->after.q) : 0;
     if (m->root != SPAR_ROOT_DRIVEN && !m->floats) { /* the frame stands: these are what the equations keep */
         energy[0] = f->M && (m->effects & SPAR_EFFECT_INERTIA) ? half_form(f, f->M, rate) : 0;
         energy[2] = 0;

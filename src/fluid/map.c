@@ -18,7 +18,7 @@ static int prepare_member(spar_fluid *fluid) {
     if (fluid->modal) {
         return SPAR_OK;
     }
-    fluid->modal = spari_zalloc((int64_t)m->per_element * m->per_element, sizeof *fluid->modal);
+    fluid->modal = spari_zalloc((int64_t)m->mesh.per_element * m->mesh.per_element, sizeof *fluid->modal);
     fluid->reference = spari_zalloc(nodes * SPARI_FIELDS, sizeof *fluid->reference);
     double *q = spari_zalloc(nodes * 7, sizeof *q);
     struct {
@@ -44,11 +44,11 @@ static int prepare_member(spar_fluid *fluid) {
         fluid->modal = fluid->reference = NULL;
         return SPAR_ERR_MEMORY;
     }
-    spari_modal_matrix(m->per_element, fluid->modal);
+    spari_modal_matrix(m->mesh.per_element, fluid->modal);
     for (int64_t l = 0; l < nodes; l++) {
         memcpy(q + 7 * l + 3, m->qr + 4 * l, 4 * sizeof *q);
     }
-    spari_field_fill(m->elements, m->per_element, fluid->modal, 0, SPARI_UPTO_POSITION, m->xr, q, NULL, NULL,
+    spari_field_fill(m->mesh.elements, m->mesh.per_element, fluid->modal, 0, SPARI_UPTO_POSITION, m->xr, q, NULL, NULL,
                      fluid->reference);
     free(q);
     return SPAR_OK;
@@ -56,7 +56,7 @@ static int prepare_member(spar_fluid *fluid) {
 
 int64_t spari_fluid_workspace_size(const spar_fluid *fluid) {
     const spar_member *m = fluid->member;
-    int64_t gather = spari_gather_workspace_size(m->elements, m->per_element);
+    int64_t gather = spari_gather_workspace_size(m->mesh.elements, m->mesh.per_element);
     int64_t pull = (fluid->field[1] ? SPARI_PULL_BOTH : SPARI_PULL_ONE) * SPARI_ROW;
     return gather > pull ? gather : pull;
 }
@@ -90,7 +90,7 @@ void spari_fluid_series(const double *c, int modes, int offset, int n, double xi
 
 /* Reference position and orientation of a nearest point (T2). */
 void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, double x[3], double q[4]) {
-    int modes = fluid->member->per_element;
+    int modes = fluid->member->mesh.per_element;
     const double *c = fluid->reference + (ptrdiff_t)element * modes * SPARI_FIELDS;
     spari_fluid_series(c, modes, SPARI_F_POSITION, 3, xi, x);
     spari_fluid_series(c, modes, SPARI_F_QUAT, 4, xi, q);
@@ -108,10 +108,10 @@ void spari_fluid_frame(const spar_fluid *fluid, const spari_node_set *set, int64
 /* Element and local coordinate of a coordinate along the whole line; an element boundary belongs to the lower
    element. */
 static int locate(const spar_member *m, double xi, double *local) {
-    double eta = 0.5 * (xi + 1) * m->elements;
+    double eta = 0.5 * (xi + 1) * m->mesh.elements;
     int e = (int)ceil(eta) - 1;
-    e = e < 0 ? 0 : e > m->elements - 1 ? m->elements - 1 : e;
-    *local = m->per_element > 1 ? 2 * (eta - e) - 1 : 0;
+    e = e < 0 ? 0 : e > m->mesh.elements - 1 ? m->mesh.elements - 1 : e;
+    *local = m->mesh.per_element > 1 ? 2 * (eta - e) - 1 : 0;
     return e;
 }
 
@@ -178,7 +178,7 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
     int64_t far[2] = {0, 0}, n = set->pending ? set->n : set->nodes->n;
     points_found f;
     double *again = set->pending ? NULL : spari_fluid_positions(fluid, set->nodes);
-    *made = spari_nodes_create(n, m->elements, m->per_element);
+    *made = spari_nodes_create(n, m->mesh.elements, m->mesh.per_element);
     if (alloc_points_found(&f, n) != SPAR_OK || !*made || !(set->pending || again)) {
         free_points_found(&f);
         free(again);
@@ -263,7 +263,7 @@ int spar_fluid_map(spar_fluid *fluid) {
                         "the member is not committed; call spar_member_commit first");
     SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, prepare_member(fluid) == SPAR_OK, SPAR_ERR_MEMORY, "no memory to map");
-    spari_line *line = spari_line_create(m->elements, m->per_element, m->xr);
+    spari_line *line = spari_line_create(m->mesh.elements, m->mesh.per_element, m->xr);
     SPARI_FLUID_REQUIRE(fluid, line, SPAR_ERR_MEMORY, "no memory to map");
     spari_nodes *made[2] = {NULL, NULL};
     int status = SPAR_OK, fresh = spari_fluid_set(fluid, SPAR_NODES_FORCE)->pending;
@@ -391,7 +391,7 @@ int spar_fluid_get_basis(const spar_fluid *fluid, int which, int64_t *first_node
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, which, __func__, &s));
-    int n = fluid->member->per_element;
+    int n = fluid->member->mesh.per_element;
     double x[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
     spari_gll(n, x, NULL, bary);
     for (int64_t p = 0; s && p < s->n; p++) {

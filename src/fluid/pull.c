@@ -26,7 +26,7 @@ static void blend_motion(const spar_member *m, int64_t first, double theta, doub
                          double (*a)[6]) {
     const double *q0 = m->now.q + 7 * first, *q1 = m->after.q + 7 * first, *a0 = spari_means_seen(m, 0),
                  *a1 = spari_means_seen(m, 1);
-    for (int l = 0; l < m->per_element; l++, q0 += 7, q1 += 7) {
+    for (int l = 0; l < m->mesh.per_element; l++, q0 += 7, q1 += 7) {
         double back[4], rotation[4], psi[3];
         for (int i = 0; i < 3; i++) {
             q[l][i] = (1 - theta) * q0[i] + theta * q1[i];
@@ -51,11 +51,11 @@ static void blend_motion(const spar_member *m, int64_t first, double theta, doub
 SPARI_APART static void fill_blended(const spar_fluid *fluid, double theta, int upto) {
     const spar_member *m = fluid->member;
     double q[SPARI_MAX_NODES][7], v[SPARI_MAX_NODES][6], a[SPARI_MAX_NODES][6];
-    for (int e = 0; e < m->elements; e++) {
-        int64_t first = (int64_t)e * m->per_element;
+    for (int e = 0; e < m->mesh.elements; e++) {
+        int64_t first = (int64_t)e * m->mesh.per_element;
         blend_motion(m, first, theta, q, v, a);
-        spari_field_fill(1, m->per_element, fluid->modal, fluid->consistent, upto, m->xr + 3 * first, q[0], v[0], a[0],
-                         fluid->field[0] + first * SPARI_FIELDS);
+        spari_field_fill(1, m->mesh.per_element, fluid->modal, fluid->consistent, upto, m->xr + 3 * first, q[0], v[0],
+                         a[0], fluid->field[0] + first * SPARI_FIELDS);
     }
 }
 
@@ -63,7 +63,7 @@ SPARI_APART static void fill_blended(const spar_fluid *fluid, double theta, int 
 static void fill_one(const spar_fluid *fluid, int after, int upto, double *field) {
     const spar_member *m = fluid->member;
     const spari_motion *at = after ? &m->after : &m->now;
-    spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent, upto, m->xr, at->q, at->v,
+    spari_field_fill(m->mesh.elements, m->mesh.per_element, fluid->modal, fluid->consistent, upto, m->xr, at->q, at->v,
                      spari_means_seen(m, after), field);
 }
 

@@ -159,7 +159,7 @@ static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source fo
         return SPAR_OK;
     }
     if (audit || !reproducible) {
-        spari_field_fill(m->elements, m->per_element, fluid->modal, fluid->consistent,
+        spari_field_fill(m->mesh.elements, m->mesh.per_element, fluid->modal, fluid->consistent,
                          audit ? SPARI_UPTO_RATE : SPARI_UPTO_POSITION, m->xr, m->after.q, m->after.v, m->after.a,
                          fluid->field[0]);
         least = spari_gather_loads(s, fluid->modal, fluid->field[0], fluid->consistent, m->after.q, force, moment,

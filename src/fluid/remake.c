@@ -175,7 +175,7 @@ int spari_fluid_rebuild(spar_fluid *fluid, const spar_member *before, spar_fluid
     was = *fluid;
     spar_member as_it_was = *before;
     was.member = &as_it_was; /* the map was made on this line */
-    const spari_mesh from = spari_member_mesh(before), to = spari_member_mesh(fluid->member);
+    const spari_mesh from = before->mesh, to = fluid->member->mesh;
     SPARI_TRY(begin(fluid, &was, spari_mesh_is_equal(from, to)));
     spari_resample_loads(from, to, was.load, fluid->load);
     spari_resample_loads(from, to, was.load_accepted, fluid->load_accepted);
@@ -215,7 +215,7 @@ void spari_fluid_put_moved(spar_fluid *f, const spar_member *before, const doubl
     int64_t n = 6 * before->nodes;
     for (int k = 0; k < CARRIED; k++) {
         if (to[k] && values) {
-            spari_resample_loads(spari_member_mesh(before), spari_member_mesh(f->member), values + k * n, to[k]);
+            spari_resample_loads(before->mesh, f->member->mesh, values + k * n, to[k]);
         } else if (to[k]) {
             memset(to[k], 0, 6 * (size_t)f->member->nodes * sizeof *to[k]);
         }

@@ -94,7 +94,7 @@ static int line_distances(const spar_fluid *fluid, double **distance, const char
                                   "the member is not committed, so that there is no line to measure from; call "
                                   "spar_member_commit first, or give distances");
     }
-    spari_line *line = spari_line_create(m->elements, m->per_element, m->xr);
+    spari_line *line = spari_line_create(m->mesh.elements, m->mesh.per_element, m->xr);
     double *x = reference_positions(fluid), *nearest = spari_zalloc(3 * n, sizeof *nearest),
            *xi = spari_zalloc(n, sizeof *xi);
     int *element = spari_zalloc(n, sizeof *element);

@@ -106,9 +106,9 @@ static int allocate_strips(spari_strips *p, int elements, int per_element, int i
 
 /* One Gauss point per element more than it has nodes. */
 static int make_strips_of_beam(const spar_member *m, spari_strips *p) {
-    int P = m->per_element, points = P + 1;
+    int P = m->mesh.per_element, points = P + 1;
     double xi[SPARI_MAX_NODES + 1], w[SPARI_MAX_NODES + 1];
-    SPARI_TRY(allocate_strips(p, m->elements, P, points));
+    SPARI_TRY(allocate_strips(p, m->mesh.elements, P, points));
     spari_station *s = spari_zalloc(p->count, sizeof *s);
     int ok = s != NULL;
     spari_gauss(points, xi, w);
@@ -187,7 +187,7 @@ void spari_added_fill(spar_member *m, int64_t n, const double *eta, const double
 /* The mass is kept at the strips, or at one point that combines them all. */
 static int allocate_points(const spar_member *m, spari_added *d) {
     const spari_strips *p = &d->strips;
-    d->elements = d->whole ? 1 : m->elements;
+    d->elements = d->whole ? 1 : m->mesh.elements;
     d->per_element = d->whole ? 1 : p->per_element;
     d->points = d->whole ? 1 : p->in_element;
     int64_t count = (int64_t)d->elements * d->points;
@@ -399,7 +399,7 @@ static void predict_by_velocity(spar_member *m, const double w[3], double dt) {
         double a = m->now.a[i], b = a + g.stretch * (d->scheme[i] - a);
         d->shift[i] = w[0] * d->mean[0][i] + w[1] * d->mean[1][i] + w[2] * d->mean[2][i] - g.a0 * a - g.b0 * b;
     }
-    (void)spari_added_times(m, SPARI_NODES, SPARI_NODES, d->shift, 1 / g.a1, m->load_used);
+    (void)spari_added_times(m, SPARI_NODES, SPARI_NODES, d->shift, 1 / g.a1, m->load.used);
 }
 
 void spari_added_predict(spar_member *m, const double w[3], double dt) {
@@ -411,7 +411,7 @@ void spari_added_predict(spar_member *m, const double w[3], double dt) {
     }
     for (int k = 0; k < 3 && !by_velocity; k++) {
         if (w[k] != 0) {
-            (void)spari_added_times(m, SPARI_NODES, SPARI_NODES, a[k], w[k], m->load_used);
+            (void)spari_added_times(m, SPARI_NODES, SPARI_NODES, a[k], w[k], m->load.used);
         }
     }
     spari_added_see(m);
@@ -463,6 +463,6 @@ void spari_added_carry(const spar_member *from, spar_member *m) {
     const double *was[] = {old->past[0], old->past[1], old->mean[0], old->mean[1], old->mean[2], old->scheme};
     double *is[] = {d->past[0], d->past[1], d->mean[0], d->mean[1], d->mean[2], d->scheme};
     for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
-        spari_resample_values(spari_member_mesh(from), spari_member_mesh(m), 6, -1, was[k], is[k]);
+        spari_resample_values(from->mesh, m->mesh, 6, -1, was[k], is[k]);
     }
 }

@@ -4,7 +4,7 @@
 
    With A the added mass, rotated with the member at t^n, a step solves
      forces(q, v, a) + A a = y,     y = loads + A a of the last iterate,
-   y in place of the fluids' loads: load_used always, load_pushed from a check to the end of the step. The difference
+   y in place of the fluids' loads: load.used always, load.pushed from a check to the end of the step. The difference
    between the two is the shift A a(after). */
 #ifndef SPARI_ADDED_MASS_H
 #define SPARI_ADDED_MASS_H
@@ -55,7 +55,7 @@ double spari_added_times(const spar_member *m, spari_numbering from, spari_numbe
    is at its reference. */
 void spari_added_tangent(const spar_member *m, int e, double cm, const double *tinv, double *S);
 
-/* Predicts y; w: the predictor's weights in a step dt. load_used += A (w[0] a^n + w[1] a^{n-1} + w[2] a^{n-2}), and
+/* Predicts y; w: the predictor's weights in a step dt. load.used += A (w[0] a^n + w[1] a^{n-1} + w[2] a^{n-2}), and
    the shift is that of t^n. For a fluid that takes accelerations from velocities see (T19) of docs/theory.md. */
 void spari_added_predict(spar_member *m, const double w[3], double dt);
 /* Resets the past after the motion was set: as if it had always had the present acceleration. */
@@ -64,7 +64,7 @@ void spari_added_restart(spar_member *m);
 void spari_added_see(spar_member *m);
 /* load += factor times the shift */
 void spari_added_correct(const spar_member *m, double factor, double *load);
-/* [nodes][6] difference between load_used (and load_pushed, once checked) and the fluids' loads; NULL: none. */
+/* [nodes][6] difference between load.used (and load.pushed, once checked) and the fluids' loads; NULL: none. */
 const double *spari_added_shift(const spar_member *m);
 /* Call before the motion `after` becomes that of t^n. */
 void spari_added_accept(spar_member *m);

@@ -248,7 +248,7 @@ int spari_learned_create(spar_member *m) {
     if (!m->learned || !m->added) {
         return SPAR_OK;
     }
-    int P = m->per_element;
+    int P = m->mesh.per_element;
     double xi[SPARI_MAX_NODES] = {0};
     if (!(m->added->last = spari_zalloc(34 * m->nodes, sizeof(double)))) {
         return SPAR_ERR_MEMORY;
@@ -283,12 +283,12 @@ static void to_section(const spar_member *m, int64_t e, const double *phi, const
 
 /* Differences from the iteration before at the nodes, in section axes. */
 static void differ_at_nodes(const spar_member *m, const double *seen, const nodal_view *at) {
-    int P = m->per_element;
+    int P = m->mesh.per_element;
     for (int64_t i = 0; i < m->nodes; i++) {
         double phi[SPARI_MAX_NODES] = {0}, df[6], da[6];
         phi[i % P] = 1;
         for (int k = 0; k < 6; k++) {
-            df[k] = m->load_pushed[6 * i + k] - at->load[6 * i + k];
+            df[k] = m->load.pushed[6 * i + k] - at->load[6 * i + k];
             da[k] = seen[6 * i + k] - at->rate[6 * i + k];
         }
         to_section(m, i / P, phi, at->R + 9 * i, df, at->f + 6 * i);
@@ -471,7 +471,7 @@ void spari_learned_note(spar_member *m, int iteration) {
     if (iteration > 1) {
         take_difference(m, seen, &at);
     }
-    memcpy(at.load, m->load_pushed, (size_t)(6 * m->nodes) * sizeof *at.load);
+    memcpy(at.load, m->load.pushed, (size_t)(6 * m->nodes) * sizeof *at.load);
     memcpy(at.rate, seen, (size_t)(6 * m->nodes) * sizeof *at.rate);
 }
 

@@ -18,7 +18,7 @@ void spari_learned_take_back(const spar_member *m);
 
 /* Begins or rejects a step: discards its differences. */
 void spari_learned_begin(spar_member *m);
-/* Records load_pushed, from the fluids, as the response to the motion `after`. `iteration`: number of the check in
+/* Records load.pushed, from the fluids, as the response to the motion `after`. `iteration`: number of the check in
    the step, from 1. */
 void spari_learned_note(spar_member *m, int iteration);
 /* Accepts a step. Returns whether the mass in the equations must change (spari_learned_put). */

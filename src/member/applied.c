@@ -48,7 +48,7 @@ struct spari_foundation {
 };
 
 static double *has_capacity_for(const spar_member *m) {
-    return spari_zalloc(28 * (int64_t)m->per_element * m->per_element, sizeof(double));
+    return spari_zalloc(28 * (int64_t)m->mesh.per_element * m->mesh.per_element, sizeof(double));
 }
 
 static void line_free(line_load *line) {
@@ -86,22 +86,22 @@ void spari_ramp_free(spari_ramp *r) {
 
 /* In the first step no earlier load exists. */
 static int changes(const spar_member *m, int what) {
-    return m->ramp && m->session->clock.step > 0 && (m->ramp->changed & what);
+    return m->load.ramp && m->session->clock.step > 0 && (m->load.ramp->changed & what);
 }
 
 /* Weight of the loads at t^n. */
 static double left_of(const spar_member *m, int what) {
-    return changes(m, what) ? m->ramp->left : 0;
+    return changes(m, what) ? m->load.ramp->left : 0;
 }
 
 void spari_applied_at(const spar_member *m, double left) {
-    if (m->ramp) {
-        m->ramp->left = left;
+    if (m->load.ramp) {
+        m->load.ramp->left = left;
     }
 }
 
 const double *spari_dead_before(const spar_member *m) {
-    return changes(m, RAMP_DEAD) ? m->ramp->dead : m->dead;
+    return changes(m, RAMP_DEAD) ? m->load.ramp->dead : m->load.dead;
 }
 
 /* ---- forces ---- */
@@ -109,7 +109,7 @@ const double *spari_dead_before(const spar_member *m) {
 /* Nodal quaternions of an element in one hemisphere; those of a linear member stay at the reference. */
 static void element_field(const spar_member *m, const double *q, double z[][4]) {
     int linear = spari_member_is_linear_in_place(m);
-    for (int l = 0; l < m->per_element; l++) {
+    for (int l = 0; l < m->mesh.per_element; l++) {
         const double unit[4] = {1, 0, 0, 0}, *ql = linear ? unit : q + 7 * l + 3;
         double sign = l > 0 && spari_quat_dot(ql, z[l - 1]) < 0 ? -1 : 1;
         for (int i = 0; i < 4; i++) {
@@ -151,7 +151,7 @@ static void pure_times(const double m[3], const double q[4], double c[4]) {
 /* g [P][7] += part * nodal forces and 4-vectors of one line load on element e */
 SPARI_APART static void line_forces(const spar_member *m, const line_load *line, int follows, int e, double part,
                                     double z[][4], double *g) {
-    int P = m->per_element;
+    int P = m->mesh.per_element;
     for (int k = line->first ? line->first[e] : 0; k < (line->first ? line->first[e + 1] : 0); k++) {
         const double *phi = line->phi + (int64_t)k * P;
         double r[4], f[3], c[3], m4[4], N = point_rotation(P, phi, z, r);
@@ -177,13 +177,13 @@ static void symmetric_times(const double k[6], const double u[3], double f[3]) {
 
 /* Doubles per element for node pairs. */
 static int64_t pairs_of(const spar_member *m) {
-    return 3 * (int64_t)m->per_element * (m->per_element + 1);
+    return 3 * (int64_t)m->mesh.per_element * (m->mesh.per_element + 1);
 }
 
 /* out [P][6] -= factor * spring forces, q [P][7]; returns the work done on the springs. */
 static double element_springs(const spar_member *m, int e, const double *q, double factor, double *out) {
-    const double *k = m->foundation->pair + pairs_of(m) * e;
-    int P = m->per_element;
+    const double *k = m->load.foundation->pair + pairs_of(m) * e;
+    int P = m->mesh.per_element;
     double work = 0, back[3 * SPARI_MAX_NODES] = {0};
     for (int i = 0; i < P; i++) {
         for (int j = i; j < P; j++, k += 6) {
@@ -216,8 +216,8 @@ static void add_springs_of(const double k[6], double factor, int stride, double 
 }
 
 void spari_foundation_tangent(const spar_member *m, int e, double factor, double *S) {
-    const double *k = m->foundation->pair + pairs_of(m) * e;
-    int P = m->per_element, stride = 6 * P;
+    const double *k = m->load.foundation->pair + pairs_of(m) * e;
+    int P = m->mesh.per_element, stride = 6 * P;
     for (int i = 0; i < P; i++) {
         for (int j = i; j < P; j++, k += 6) {
             add_springs_of(k, factor, stride, S + 6 * (stride * i + j));
@@ -230,13 +230,13 @@ void spari_foundation_tangent(const spar_member *m, int e, double factor, double
 
 /* Whether springs are separate forces: a linear member has them in its matrix. */
 static int springs_apart(const spar_member *m) {
-    return m->foundation && m->seen != SPARI_SEEN_LINEAR;
+    return m->load.foundation && m->seen != SPARI_SEEN_LINEAR;
 }
 
 /* out [P][6] += factor * loads `follower` of element e, rotated with its nodes */
 static void add_followers(const spar_member *m, int e, const double *follower, double factor, double z[][4],
                           double *out) {
-    int P = m->per_element;
+    int P = m->mesh.per_element;
     for (int l = 0; l < P && follower && factor != 0; l++) {
         double f[3], t[3];
         load_now(follower + 6 * ((int64_t)e * P + l), 1, z[l], f, t);
@@ -249,8 +249,8 @@ static void add_followers(const spar_member *m, int e, const double *follower, d
 
 /* out [P][6] += factor * loads of element e for the state q [P][7] of its nodes, without springs */
 static void element_loads(const spar_member *m, int e, const double *q, double factor, double *out) {
-    const spari_applied *a = m->applied;
-    int P = m->per_element;
+    const spari_applied *a = m->load.applied;
+    int P = m->mesh.per_element;
     double z[SPARI_MAX_NODES][4], g[7 * SPARI_MAX_NODES] = {0};
     if (!a) {
         return;
@@ -260,7 +260,7 @@ static void element_loads(const spar_member *m, int e, const double *q, double f
         double left = left_of(m, 1 << k);
         line_forces(m, &a->line[k], k == SPAR_LOAD_FOLLOWER, e, 1 - left, z, g);
         if (left > 0) {
-            line_forces(m, &m->ramp->before.line[k], k == SPAR_LOAD_FOLLOWER, e, left, z, g);
+            line_forces(m, &m->load.ramp->before.line[k], k == SPAR_LOAD_FOLLOWER, e, left, z, g);
         }
     }
     for (int l = 0; l < P; l++) {
@@ -275,18 +275,18 @@ static void element_loads(const spar_member *m, int e, const double *q, double f
     double left = left_of(m, RAMP_FOLLOWER);
     add_followers(m, e, a->follower, (1 - left) * factor, z, out);
     if (left > 0) {
-        add_followers(m, e, m->ramp->before.follower, left * factor, z, out);
+        add_followers(m, e, m->load.ramp->before.follower, left * factor, z, out);
     }
 }
 
 const double *spari_applied_follower(const spar_member *m) {
-    return m->applied ? m->applied->follower : NULL;
+    return m->load.applied ? m->load.applied->follower : NULL;
 }
 
 double spari_applied_residual(const spar_member *m, const double *q, double factor, double *r) {
-    int P = m->per_element;
+    int P = m->mesh.per_element;
     double largest = 0, out[6 * SPARI_MAX_NODES];
-    for (int e = 0; e < m->elements; e++) {
+    for (int e = 0; e < m->mesh.elements; e++) {
         int64_t first = (int64_t)e * (P - 1);
         memset(out, 0, sizeof out);
         element_loads(m, e, q + 7 * first, factor, out);
@@ -302,32 +302,32 @@ double spari_applied_residual(const spar_member *m, const double *q, double fact
 }
 
 void spari_applied_nodal(const spar_member *m, const double *q, double *load) {
-    for (int e = 0; e < m->elements; e++) {
-        int64_t first = (int64_t)e * m->per_element;
+    for (int e = 0; e < m->mesh.elements; e++) {
+        int64_t first = (int64_t)e * m->mesh.per_element;
         element_loads(m, e, q + 7 * first, 1, load + 6 * first);
     }
-    if (m->foundation) {
+    if (m->load.foundation) {
         spari_foundation_nodal(m, q, 1, load);
     }
 }
 
 int spari_applied_potential(const spar_member *m) {
-    const spari_applied *a = m->applied;
+    const spari_applied *a = m->load.applied;
     if (!a) {
         return 1;
     }
     const line_load *dead = &a->line[SPAR_LOAD_DEAD];
     int moments = 0;
-    for (int k = 0; dead->first && k < dead->first[m->elements]; k++) {
+    for (int k = 0; dead->first && k < dead->first[m->mesh.elements]; k++) {
         moments |= spari_norm(dead->load + 6 * (int64_t)k + 3) > 0;
     }
     return !a->follower && !a->line[SPAR_LOAD_FOLLOWER].first && !moments;
 }
 
 int spari_applied_across(const spar_member *m, const double axis[3]) {
-    const line_load *dead = m->applied ? &m->applied->line[SPAR_LOAD_DEAD] : NULL;
+    const line_load *dead = m->load.applied ? &m->load.applied->line[SPAR_LOAD_DEAD] : NULL;
     int across = 0;
-    for (int k = 0; dead && dead->first && k < 2 * dead->first[m->elements]; k++) {
+    for (int k = 0; dead && dead->first && k < 2 * dead->first[m->mesh.elements]; k++) {
         across = across || spari_across(axis, dead->load + 3 * (int64_t)k);
     }
     return across;
@@ -375,7 +375,7 @@ static void point_tangent(const double *load, int follows, const double r[4], do
 /* Change of 1/2 Im(g q*) with q: -1/4 (s I + w~), (s, w) = g q*. */
 SPARI_APART static void turned_forces_tangent(const spar_member *m, const line_load *line, int follows, int e,
                                               double z[][4], double factor, double *S) {
-    int P = m->per_element, stride = 6 * P;
+    int P = m->mesh.per_element, stride = 6 * P;
     double g[7 * SPARI_MAX_NODES] = {0};
     line_forces(m, line, follows, e, 1, z, g);
     for (int l = 0; l < P; l++) {
@@ -417,7 +417,7 @@ static void project_nodes(int P, const double *B, double E[][4][3], double facto
 
 SPARI_APART static void line_tangent(const spar_member *m, const line_load *line, int follows, int e, double z[][4],
                                      double factor, double *S) {
-    int P = m->per_element;
+    int P = m->mesh.per_element;
     double *B = line->workspace, E[SPARI_MAX_NODES][4][3];
     if (!line->first || factor == 0) {
         return;
@@ -454,7 +454,7 @@ SPARI_APART static void line_tangent(const spar_member *m, const line_load *line
 
 static void follower_tangent(const spar_member *m, int e, const double *follower, double factor, double z[][4],
                              double *S) {
-    int P = m->per_element;
+    int P = m->mesh.per_element;
     for (int l = 0; l < P && follower && factor != 0; l++) {
         double f[3], t[3];
         load_now(follower + 6 * ((int64_t)e * P + l), 1, z[l], f, t);
@@ -464,9 +464,9 @@ static void follower_tangent(const spar_member *m, int e, const double *follower
 }
 
 void spari_applied_tangent(const spar_member *m, int e, const double *q, double factor, double *S) {
-    const spari_applied *a = m->applied;
-    int P = m->per_element;
-    if (m->foundation) {
+    const spari_applied *a = m->load.applied;
+    int P = m->mesh.per_element;
+    if (m->load.foundation) {
         spari_foundation_tangent(m, e, factor, S);
     }
     if (!a) {
@@ -478,25 +478,25 @@ void spari_applied_tangent(const spar_member *m, int e, const double *q, double 
         double left = left_of(m, 1 << k);
         line_tangent(m, &a->line[k], k == SPAR_LOAD_FOLLOWER, e, z, (1 - left) * factor, S);
         if (left > 0) {
-            line_tangent(m, &m->ramp->before.line[k], k == SPAR_LOAD_FOLLOWER, e, z, left * factor, S);
+            line_tangent(m, &m->load.ramp->before.line[k], k == SPAR_LOAD_FOLLOWER, e, z, left * factor, S);
         }
     }
     double left = left_of(m, RAMP_FOLLOWER);
     follower_tangent(m, e, a->follower, (1 - left) * factor, z, S);
     if (left > 0) {
-        follower_tangent(m, e, m->ramp->before.follower, left * factor, z, S);
+        follower_tangent(m, e, m->load.ramp->before.follower, left * factor, z, S);
     }
 }
 
 /* ---- save and load ---- */
 
 static void put_line(const spar_member *m, const line_load *line, spari_image *image) {
-    int64_t points = line->first ? line->first[m->elements] : -1;
+    int64_t points = line->first ? line->first[m->mesh.elements] : -1;
     spari_image_put_int(image, points);
-    for (int e = 0; e < m->elements && points >= 0; e++) {
+    for (int e = 0; e < m->mesh.elements && points >= 0; e++) {
         spari_image_put_int(image, line->first[e + 1]);
     }
-    spari_image_put(image, line->phi, points > 0 ? points * m->per_element : 0);
+    spari_image_put(image, line->phi, points > 0 ? points * m->mesh.per_element : 0);
     spari_image_put(image, line->load, points > 0 ? points * 6 : 0);
     if (points >= 0) {
         spari_image_put_int(image, line->stations);
@@ -518,17 +518,17 @@ static void put_applied(const spar_member *m, const spari_applied *a, spari_imag
    eta and values. */
 void spari_applied_save(const spar_member *m, spari_image *image) {
     int64_t at = image->count;
-    int changed = changes(m, RAMP_ALL) ? m->ramp->changed : 0;
+    int changed = changes(m, RAMP_ALL) ? m->load.ramp->changed : 0;
     spari_image_put_int(image, 0);
-    if (m->applied || changed) {
+    if (m->load.applied || changed) {
         spari_image_put_int(image, changed);
-        spari_image_put(image, changed & RAMP_DEAD ? m->ramp->dead : NULL, changed & RAMP_DEAD ? 6 * m->nodes : 0);
+        spari_image_put(image, changed & RAMP_DEAD ? m->load.ramp->dead : NULL, changed & RAMP_DEAD ? 6 * m->nodes : 0);
         if (changed & ~RAMP_DEAD) {
-            put_applied(m, &m->ramp->before, image);
+            put_applied(m, &m->load.ramp->before, image);
         }
-        spari_image_put_int(image, m->applied != NULL);
-        if (m->applied) {
-            put_applied(m, m->applied, image);
+        spari_image_put_int(image, m->load.applied != NULL);
+        if (m->load.applied) {
+            put_applied(m, m->load.applied, image);
         }
     }
     if (!image->failed) {
@@ -567,16 +567,16 @@ static void take_line(const spar_member *m, spari_image *image, line_load *line)
     if (points < 0 || image->failed) {
         return;
     }
-    line->first = spari_zalloc(m->elements + 1, sizeof *line->first);
+    line->first = spari_zalloc(m->mesh.elements + 1, sizeof *line->first);
     image->no_memory |= !line->first;
     image->failed |= !line->first || points > INT32_MAX;
-    for (int e = 0; e < m->elements && !image->failed; e++) {
+    for (int e = 0; e < m->mesh.elements && !image->failed; e++) {
         int64_t next = spari_image_get_int(image);
         image->failed |= next < line->first[e] || next > points;
         line->first[e + 1] = (int)next;
     }
     if (!image->failed) {
-        line->phi = take(image, points * m->per_element);
+        line->phi = take(image, points * m->mesh.per_element);
         line->load = take(image, points * 6);
         line->workspace = has_capacity_for(m);
         image->no_memory |= !line->workspace;
@@ -598,7 +598,7 @@ static void take_ramp(spar_member *m, spari_image *image) {
     if (changed == 0 || image->failed) {
         return;
     }
-    spari_ramp *r = m->ramp_next = spari_zalloc(1, sizeof *r);
+    spari_ramp *r = m->load.ramp_next = spari_zalloc(1, sizeof *r);
     if (!r) {
         image->failed = image->no_memory = 1;
         return;
@@ -611,45 +611,45 @@ static void take_ramp(spar_member *m, spari_image *image) {
 }
 
 void spari_applied_check(spar_member *m, spari_image *image) {
-    spari_applied_free(m->applied_next);
-    spari_ramp_free(m->ramp_next);
-    m->applied_next = NULL;
-    m->ramp_next = NULL;
+    spari_applied_free(m->load.applied_next);
+    spari_ramp_free(m->load.ramp_next);
+    m->load.applied_next = NULL;
+    m->load.ramp_next = NULL;
     int64_t count = spari_image_get_int(image), begin = image->at;
     if (count == 0 || image->failed) {
         return;
     }
     take_ramp(m, image);
     if (!image->failed && spari_image_get_int(image)) {
-        m->applied_next = spari_zalloc(1, sizeof *m->applied_next);
-        image->failed = image->no_memory = !m->applied_next;
+        m->load.applied_next = spari_zalloc(1, sizeof *m->load.applied_next);
+        image->failed = image->no_memory = !m->load.applied_next;
     }
-    if (m->applied_next) {
-        take_applied(m, image, m->applied_next);
+    if (m->load.applied_next) {
+        take_applied(m, image, m->load.applied_next);
     }
     /* replaced loads must exist; the count also allows skipping them */
-    image->failed |=
-        (m->ramp_next && (m->ramp_next->changed & ~RAMP_DEAD) && !m->applied_next) || image->at - begin != count;
+    image->failed |= (m->load.ramp_next && (m->load.ramp_next->changed & ~RAMP_DEAD) && !m->load.applied_next) ||
+                     image->at - begin != count;
 }
 
 void spari_applied_load(spar_member *m, spari_image *image) {
     spari_image_get(image, spari_image_get_int(image));
-    spari_applied_free(m->applied);
-    spari_ramp_free(m->ramp);
-    m->applied = m->applied_next;
-    m->ramp = m->ramp_next;
-    m->applied_next = NULL;
-    m->ramp_next = NULL;
+    spari_applied_free(m->load.applied);
+    spari_ramp_free(m->load.ramp);
+    m->load.applied = m->load.applied_next;
+    m->load.ramp = m->load.ramp_next;
+    m->load.applied_next = NULL;
+    m->load.ramp_next = NULL;
 }
 
 /* ---- set by the host ---- */
 
 static int need_applied(spar_member *member, const char *call) {
     SPARI_TRY(spari_need_committed(member, call));
-    if (!member->applied) {
-        member->applied = spari_zalloc(1, sizeof *member->applied);
+    if (!member->load.applied) {
+        member->load.applied = spari_zalloc(1, sizeof *member->load.applied);
     }
-    SPARI_REQUIRE(member->session, member->applied, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", call,
+    SPARI_REQUIRE(member->session, member->load.applied, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", call,
                   member->name);
     return SPAR_OK;
 }
@@ -662,14 +662,14 @@ static int need_kind(const spar_member *m, const char *call, int kind) {
 
 /* Frees the loads if none is applied any more, now or at t^n. */
 static void drop_empty(spar_member *m) {
-    spari_applied *a = m->applied;
+    spari_applied *a = m->load.applied;
     int any = a->line[0].first || a->line[1].first || changes(m, RAMP_LINE | RAMP_FOLLOWER);
     for (int64_t i = 0; a->follower && i < 6 * m->nodes && !any; i++) {
         any = a->follower[i] != 0;
     }
     if (!any) {
         spari_applied_free(a);
-        m->applied = NULL;
+        m->load.applied = NULL;
     }
 }
 
@@ -692,12 +692,12 @@ static int keep_before(spar_member *m, const char *call, int what) {
     if (m->session->clock.step == 0 || changes(m, what)) {
         return SPAR_OK;
     }
-    spari_ramp *r = m->ramp = m->ramp ? m->ramp : spari_zalloc(1, sizeof *m->ramp);
+    spari_ramp *r = m->load.ramp = m->load.ramp ? m->load.ramp : spari_zalloc(1, sizeof *m->load.ramp);
     SPARI_REQUIRE(m->session, r, SPAR_ERR_MEMORY, "%s: no memory for the loads of '%s'", call, m->name);
     if (what == RAMP_DEAD) {
-        SPARI_TRY(keep_loads(m, call, m->dead, &r->dead));
+        SPARI_TRY(keep_loads(m, call, m->load.dead, &r->dead));
     } else if (what == RAMP_FOLLOWER) {
-        SPARI_TRY(keep_loads(m, call, m->applied ? m->applied->follower : NULL, &r->before.follower));
+        SPARI_TRY(keep_loads(m, call, m->load.applied ? m->load.applied->follower : NULL, &r->before.follower));
     } else {
         line_free(&r->before.line[what >> 1]);
     }
@@ -706,7 +706,7 @@ static int keep_before(spar_member *m, const char *call, int what) {
 }
 
 void spari_applied_accept(spar_member *m) {
-    spari_ramp *r = m->ramp;
+    spari_ramp *r = m->load.ramp;
     if (!r || !r->changed) {
         return;
     }
@@ -714,14 +714,14 @@ void spari_applied_accept(spar_member *m) {
     r->left = 0;
     line_free(&r->before.line[0]);
     line_free(&r->before.line[1]);
-    if (m->applied) {
+    if (m->load.applied) {
         drop_empty(m);
     }
 }
 
 static int set_follower(spar_member *member, const char *call, int64_t node, const double load[6]) {
     SPARI_TRY(need_applied(member, call));
-    spari_applied *a = member->applied;
+    spari_applied *a = member->load.applied;
     double turned[6];
     spari_rotate(member->qr + 4 * node, load, turned);
     spari_rotate(member->qr + 4 * node, load + 3, turned + 3);
@@ -746,9 +746,9 @@ int spar_member_set_load(spar_member *member, int64_t node, int kind, const doub
     if (kind == SPAR_LOAD_FOLLOWER) {
         return set_follower(member, __func__, node, load);
     }
-    if (memcmp(member->dead + 6 * node, load, 6 * sizeof *load) != 0) {
+    if (memcmp(member->load.dead + 6 * node, load, 6 * sizeof *load) != 0) {
         SPARI_TRY(keep_before(member, __func__, RAMP_DEAD));
-        memcpy(member->dead + 6 * node, load, 6 * sizeof *load);
+        memcpy(member->load.dead + 6 * node, load, 6 * sizeof *load);
     }
     return SPAR_OK;
 }
@@ -757,7 +757,7 @@ int spar_member_set_load(spar_member *member, int64_t node, int kind, const doub
    stored beside it. */
 static int load_points(const spar_member *m, int e, int64_t n, const double *eta, spari_station *s, double *w,
                        double *at) {
-    double gx[SPARI_MAX_NODES + 4], gw[SPARI_MAX_NODES + 4], E = m->elements;
+    double gx[SPARI_MAX_NODES + 4], gw[SPARI_MAX_NODES + 4], E = m->mesh.elements;
     int count = 0, whole = n == 1;
     for (int64_t i = 0; i < (whole ? 1 : n - 1); i++) {
         double from = whole ? -1 : fmax(2 * (eta[i] * E - e) - 1, -1),
@@ -766,7 +766,7 @@ static int load_points(const spar_member *m, int e, int64_t n, const double *eta
             continue;
         }
         double half = 0.5 * (to - from);
-        int points = 2 + (int)ceil(half * (m->per_element - 1) - 1e-9); /* the whole element: degree 2 P + 1 */
+        int points = 2 + (int)ceil(half * (m->mesh.per_element - 1) - 1e-9); /* the whole element: degree 2 P + 1 */
         spari_gauss(points, gx, gw);
         for (int k = 0; k < points && s; k++) {
             s[count + k].element = e;
@@ -792,7 +792,7 @@ static void rotate_springs(const double R[9], double k[6]) {
 
 static int line_build(const spar_member *m, int kind, int64_t n, const double *eta, const double *load,
                       line_load *line) {
-    int E = m->elements, P = m->per_element, points = 0;
+    int E = m->mesh.elements, P = m->mesh.per_element, points = 0;
     for (int e = 0; e < E; e++) {
         points += load_points(m, e, n, eta, NULL, NULL, NULL);
     }
@@ -853,7 +853,7 @@ static int line_set(const spar_member *m, int kind, int64_t n, const double *eta
 static int rebuild_loads(const spar_member *from, const spar_member *m, const double *was, double **is) {
     *is = was ? spari_zalloc(6 * m->nodes, sizeof **is) : NULL;
     if (*is) {
-        spari_resample_loads(spari_member_mesh(from), spari_member_mesh(m), was, *is);
+        spari_resample_loads(from->mesh, m->mesh, was, *is);
     }
     return *is || !was ? SPAR_OK : SPAR_ERR_MEMORY;
 }
@@ -868,19 +868,19 @@ static int rebuild(const spar_member *from, const spar_member *m, const spari_ap
 }
 
 static int rebuild_ramp(const spar_member *from, spar_member *m) {
-    spari_ramp *r = m->ramp = spari_zalloc(1, sizeof *r);
-    SPARI_TRY(r ? rebuild_loads(from, m, from->ramp->dead, &r->dead) : SPAR_ERR_MEMORY);
-    r->changed = from->ramp->changed;
-    return rebuild(from, m, &from->ramp->before, &r->before);
+    spari_ramp *r = m->load.ramp = spari_zalloc(1, sizeof *r);
+    SPARI_TRY(r ? rebuild_loads(from, m, from->load.ramp->dead, &r->dead) : SPAR_ERR_MEMORY);
+    r->changed = from->load.ramp->changed;
+    return rebuild(from, m, &from->load.ramp->before, &r->before);
 }
 
 int spari_applied_rebuild(const spar_member *from, spar_member *m) {
     int status = SPAR_OK;
-    if (from->applied) {
-        m->applied = spari_zalloc(1, sizeof *m->applied);
-        status = m->applied ? rebuild(from, m, from->applied, m->applied) : SPAR_ERR_MEMORY;
+    if (from->load.applied) {
+        m->load.applied = spari_zalloc(1, sizeof *m->load.applied);
+        status = m->load.applied ? rebuild(from, m, from->load.applied, m->load.applied) : SPAR_ERR_MEMORY;
     }
-    if (status == SPAR_OK && from->ramp && from->ramp->changed) {
+    if (status == SPAR_OK && from->load.ramp && from->load.ramp->changed) {
         status = rebuild_ramp(from, m);
     }
     SPARI_REQUIRE(m->session, status == SPAR_OK, status, "no memory for the loads of a trial of '%s'", m->name);
@@ -897,24 +897,24 @@ void spari_foundation_free(spari_foundation *f) {
 }
 
 void spari_foundation_nodal(const spar_member *m, const double *q, double factor, double *load) {
-    for (int e = 0; e < m->elements; e++) {
-        int64_t first = (int64_t)e * m->per_element;
+    for (int e = 0; e < m->mesh.elements; e++) {
+        int64_t first = (int64_t)e * m->mesh.per_element;
         (void)element_springs(m, e, q + 7 * first, factor, load + 6 * first);
     }
 }
 
 double spari_foundation_energy(const spar_member *m, const double *q) {
     double sum = 0;
-    for (int e = 0; e < m->elements; e++) {
-        sum += element_springs(m, e, q + 7 * (int64_t)e * m->per_element, 0, NULL);
+    for (int e = 0; e < m->mesh.elements; e++) {
+        sum += element_springs(m, e, q + 7 * (int64_t)e * m->mesh.per_element, 0, NULL);
     }
     return sum;
 }
 
 /* Converts stiffness at points to node pairs. */
 static void gather_pairs(const spar_member *m, const line_load *line, double *pair) {
-    int P = m->per_element;
-    for (int e = 0; e < m->elements; e++) {
+    int P = m->mesh.per_element;
+    for (int e = 0; e < m->mesh.elements; e++) {
         for (int k = line->first[e]; k < line->first[e + 1]; k++) {
             const double *phi = line->phi + (int64_t)k * P, *stiffness = line->load + 6 * (int64_t)k;
             double *to = pair + pairs_of(m) * e;
@@ -931,15 +931,16 @@ static void gather_pairs(const spar_member *m, const line_load *line, double *pa
 
 int spari_foundation_build(spar_member *m) {
     const spari_beam *b = m->kind == SPARI_BEAM ? m->beam : NULL;
-    spari_foundation_free(m->foundation);
-    m->foundation = NULL;
+    spari_foundation_free(m->load.foundation);
+    m->load.foundation = NULL;
     if (!b || b->spring_count == 0 || !(m->effects & SPAR_EFFECT_FOUNDATION)) {
         return SPAR_OK;
     }
     line_load line = {0};
     double *load = spari_zalloc(6 * b->spring_count, sizeof *load);
-    m->foundation = spari_zalloc(1, sizeof *m->foundation);
-    int status = load && m->foundation && (m->foundation->pair = spari_zalloc(pairs_of(m) * m->elements, sizeof *load))
+    m->load.foundation = spari_zalloc(1, sizeof *m->load.foundation);
+    int status = load && m->load.foundation &&
+                         (m->load.foundation->pair = spari_zalloc(pairs_of(m) * m->mesh.elements, sizeof *load))
                      ? SPAR_OK
                      : SPAR_ERR_MEMORY;
     for (int64_t i = 0; status == SPAR_OK && i < b->spring_count; i++) {
@@ -949,11 +950,11 @@ int spari_foundation_build(spar_member *m) {
                                : spari_fail(m->session, status, "no memory for the foundation of '%s'", m->name);
     free(load);
     if (status == SPAR_OK) {
-        gather_pairs(m, &line, m->foundation->pair);
+        gather_pairs(m, &line, m->load.foundation->pair);
         line_free(&line);
     } else {
-        spari_foundation_free(m->foundation);
-        m->foundation = NULL;
+        spari_foundation_free(m->load.foundation);
+        m->load.foundation = NULL;
     }
     return status;
 }
@@ -1030,9 +1031,9 @@ int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double
         line_free(&line);
     }
     if (status == SPAR_OK) {
-        line_load *now = &beam->applied->line[kind];
+        line_load *now = &beam->load.applied->line[kind];
         if (changes(beam, 1 << kind) && !again) { /* the present loads become those of t^n */
-            beam->ramp->before.line[kind] = *now;
+            beam->load.ramp->before.line[kind] = *now;
         } else {
             line_free(now);
         }

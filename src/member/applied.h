@@ -20,7 +20,7 @@ void spari_applied_accept(spar_member *member);
 
 /* Whether there are applied loads of these kinds. */
 static inline int spari_carries_loads(const spar_member *member) {
-    return member->applied || member->foundation;
+    return member->load.applied || member->load.foundation;
 }
 /* r [unique][6] -= factor * loads for the state q [unique][7]; returns the largest entry subtracted. The springs of
    a linear member are in its matrix and are left out. */
@@ -33,8 +33,8 @@ void spari_applied_nodal(const spar_member *member, const double *q, double *loa
 int spari_applied_potential(const spar_member *member);
 /* Whether dead distributed loads have components perpendicular to the unit vector `axis`. */
 int spari_applied_across(const spar_member *member, const double axis[3]);
-/* Save to a file, and load in two passes: the first reads into member->applied_next (sets image->failed on errors),
-   the second takes it. */
+/* Save to a file, and load in two passes: the first reads into member->load.applied_next (sets image->failed on
+   errors), the second takes it. */
 void spari_applied_save(const spar_member *member, spari_image *image);
 void spari_applied_check(spar_member *member, spari_image *image);
 void spari_applied_load(spar_member *member, spari_image *image);

@@ -97,7 +97,7 @@ static int fit_element(const spari_beam *beam, int elements, int e, int P, const
    point there). */
 static int fit_axis(const spar_member *member, const double *gll, const double *bary, double *x) {
     const spari_beam *beam = member->beam;
-    int E = member->elements, P = member->per_element;
+    int E = member->mesh.elements, P = member->mesh.per_element;
     size_t n = (size_t)beam->axis_count;
     double *column = spari_zalloc(beam->axis_count, sizeof *column),
            *spline_x = spari_zalloc(3 * member->nodes, sizeof *spline_x);
@@ -255,7 +255,7 @@ static void described_tangent(const spari_beam *b, int64_t i, double t[3]) {
 /* Smallest sine of the angle between tangents and z, at the axis points or the given nodes; and at the root. */
 static double steepest(const spar_member *member, const double *gll, const double *bary, const double *x,
                        double *root) {
-    const int P = member->per_element, by_nodes = member->beam->node_x != NULL;
+    const int P = member->mesh.per_element, by_nodes = member->beam->node_x != NULL;
     const int64_t n = by_nodes ? member->nodes : member->beam->axis_count;
     double least = 1, y[3];
     for (int64_t i = 0; i < n; i++) {
@@ -273,7 +273,7 @@ static double steepest(const spar_member *member, const double *gll, const doubl
 }
 
 static int make_framing(const spar_member *member, const double *gll, const double *bary, const double *x, framing *f) {
-    int P = member->per_element;
+    int P = member->mesh.per_element;
     line_point p, q;
     memset(f, 0, sizeof *f);
     double y[3], root = 1;
@@ -303,7 +303,7 @@ static int make_framing(const spar_member *member, const double *gll, const doub
 
 static void frame_at(const spar_member *member, const framing *f, const double *gll, const double *bary,
                      const double *x, int e, double xi, double R[9]) {
-    int P = member->per_element, below = 0;
+    int P = member->mesh.per_element, below = 0;
     const double *xe = x + 3 * (int64_t)e * P;
     line_point p, q;
     double y[3];
@@ -326,7 +326,7 @@ static void frame_at(const spar_member *member, const framing *f, const double *
 /* Nodes in the beam's own frame, before placement: x and, if requested, q. */
 static int own_nodes(const spar_member *member, const double *gll, const double *bary, double *x, double *q) {
     const spari_beam *beam = member->beam;
-    int P = member->per_element;
+    int P = member->mesh.per_element;
     if (beam->node_x) {
         memcpy(x, beam->node_x, (size_t)member->nodes * 3 * sizeof *x);
     } else if (beam->axis_count <= P) {
@@ -357,7 +357,7 @@ static int own_nodes(const spar_member *member, const double *gll, const double 
 static int check_forward(const spar_member *member, const double *gll, const double *bary, const double *x,
                          double length) {
     enum { PARTS = 8 };
-    const int P = member->per_element;
+    const int P = member->mesh.per_element;
     for (int64_t i = 1; i < member->nodes; i++) {
         const double *xe = x + 3 * (i / P) * P,
                      d[3] = {x[3 * i] - x[3 * i - 3], x[3 * i + 1] - x[3 * i - 2], x[3 * i + 2] - x[3 * i - 1]};
@@ -371,7 +371,8 @@ static int check_forward(const spar_member *member, const double *gll, const dou
             line_at(P, gll, bary, xe, gll[i % P - 1] + (gll[i % P] - gll[i % P - 1]) * k / PARTS, &p);
             back |= !(spari_dot(before.t, p.t) > 0);
         }
-        SPARI_REQUIRE(member->session, !back && spari_norm(d) > 1e-9 * length / member->elements, SPAR_ERR_ARGUMENT,
+        SPARI_REQUIRE(member->session, !back && spari_norm(d) > 1e-9 * length / member->mesh.elements,
+                      SPAR_ERR_ARGUMENT,
                       "member '%s': its line goes back or stands still between nodes %lld and %lld; give distinct "
                       "places in order, spaced like Gauss-Lobatto-Legendre points",
                       member->name, (long long)(i - 1), (long long)i);
@@ -381,14 +382,14 @@ static int check_forward(const spar_member *member, const double *gll, const dou
 
 /* Checks that the line advances and that sections are perpendicular to it. */
 static int check_line(spar_member *member, const double *gll, const double *bary, const double *x, const double *q) {
-    int P = member->per_element;
+    int P = member->mesh.per_element;
     double length = 0, far = 0;
     for (int64_t i = 1; i < member->nodes; i++) {
         double d[3] = {x[3 * i] - x[3 * i - 3], x[3 * i + 1] - x[3 * i - 2], x[3 * i + 2] - x[3 * i - 1]};
         length += spari_norm(d);
     }
     for (int k = 0; k < 3; k++) { /* positions lose digits with the distance from the origin */
-        far = fmax(far, fmax(fabs(x[k]), fabs(member->placed_x[k])));
+        far = fmax(far, fmax(fabs(x[k]), fabs(member->placement.x[k])));
     }
     SPARI_REQUIRE(member->session, length >= 1e-9 * far && length >= 1e-9, SPAR_ERR_ARGUMENT,
                   "member '%s': its points coincide: its line is %.3g m long; give at least 1e-9 m, and 1e-9 of its "
@@ -399,7 +400,7 @@ static int check_line(spar_member *member, const double *gll, const double *bary
         line_point p;
         double along[3] = {1, 0, 0};
         line_at(P, gll, bary, x + 3 * (i / P) * P, gll[i % P], &p);
-        SPARI_REQUIRE(member->session, p.jacobian > 1e-9 * length / member->elements, SPAR_ERR_ARGUMENT,
+        SPARI_REQUIRE(member->session, p.jacobian > 1e-9 * length / member->mesh.elements, SPAR_ERR_ARGUMENT,
                       "member '%s': its line has no direction at node %lld (points coincide); give distinct places",
                       member->name, (long long)i);
         spari_rotate(q + 4 * i, along, along);
@@ -413,16 +414,16 @@ static int check_line(spar_member *member, const double *gll, const double *bary
 
 int spari_beam_place_nodes(spar_member *member) {
     double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
-    spari_gll(member->per_element, gll, NULL, bary);
+    spari_gll(member->mesh.per_element, gll, NULL, bary);
     SPARI_TRY(own_nodes(member, gll, bary, member->xr, member->qr));
     SPARI_TRY(check_line(member, gll, bary, member->xr, member->qr));
     for (int64_t i = 0; i < member->nodes; i++) {
         double *x = member->xr + 3 * i, *q = member->qr + 4 * i;
-        spari_rotate(member->placed_q, x, x);
+        spari_rotate(member->placement.q, x, x);
         for (int c = 0; c < 3; c++) {
-            x[c] += member->placed_x[c];
+            x[c] += member->placement.x[c];
         }
-        spari_quat_mul(member->placed_q, q, q);
+        spari_quat_mul(member->placement.q, q, q);
         spari_quat_normalise(q);
     }
     return SPAR_OK;
@@ -534,11 +535,11 @@ int64_t spari_beam_points(const spar_member *m, int elements, int per_element, i
    from the nodes. */
 static void reference_frame(const spar_member *member, const framing *f, const double *gll, const double *bary,
                             const double *x, int e, double xi, double R[9]) {
-    int P = member->per_element;
+    int P = member->mesh.per_element;
     if (!member->beam->node_q) {
         double own[9], position[9];
         frame_at(member, f, gll, bary, x, e, xi, own);
-        spari_quat_matrix(member->placed_q, position);
+        spari_quat_matrix(member->placement.q, position);
         for (int i = 0; i < 3; i++) {
             for (int j = 0; j < 3; j++) {
                 R[3 * i + j] =
@@ -639,7 +640,7 @@ static void fill_point_masses(const spar_member *member, const framing *f, const
 
 /* Number of quadrature points per element, points[elements], and its maximum. */
 static int count_points(const spar_member *member, int *points, int *most) {
-    int E = member->elements, P = member->per_element;
+    int E = member->mesh.elements, P = member->mesh.per_element;
     for (int e = 0; e < E; e++) {
         points[e] = element_points(member->beam, E, e, P, NULL, NULL);
         SPARI_REQUIRE(member->session, points[e] >= P - 1, SPAR_ERR_ARGUMENT,
@@ -653,7 +654,7 @@ static int count_points(const spar_member *member, int *points, int *most) {
 
 /* All points of a body, at most `most` per element. */
 static int fill_body(const spar_member *member, int most, const double mu[6], spari_body *b) {
-    int E = member->elements, P = member->per_element, status = SPAR_OK;
+    int E = member->mesh.elements, P = member->mesh.per_element, status = SPAR_OK;
     double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
     double *xi = spari_zalloc(most, sizeof *xi), *w = spari_zalloc(most, sizeof *w),
            *x = spari_zalloc(3 * member->nodes, sizeof *x), *q = spari_zalloc(4 * member->nodes, sizeof *q);
@@ -684,15 +685,15 @@ static int fill_body(const spar_member *member, int most, const double mu[6], sp
 }
 
 int spari_beam_build(const spar_member *member, int massive, const double mu[6], spari_body **body) {
-    int *points = spari_zalloc(member->elements, sizeof *points), most = 0;
+    int *points = spari_zalloc(member->mesh.elements, sizeof *points), most = 0;
     int status = points ? count_points(member, points, &most) : no_memory_for(member, "its quadrature points");
     spari_body *b = NULL;
     if (status == SPAR_OK) {
         massive = massive || (member->beam->mass && (member->effects & (SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY)));
-        for (int e = 0; e < member->elements && shows_point_masses(member, massive); e++) {
+        for (int e = 0; e < member->mesh.elements && shows_point_masses(member, massive); e++) {
             points[e] += spari_point_masses_of(member, e);
         }
-        b = spari_body_create(member->elements, member->per_element, points, 1, mu != NULL, massive);
+        b = spari_body_create(member->mesh.elements, member->mesh.per_element, points, 1, mu != NULL, massive);
         if (b && (member->effects & SPAR_EFFECT_PRETENSION) && spari_body_set_pre(b)) {
             spari_body_free(b);
             b = NULL;
@@ -729,18 +730,18 @@ int spari_beam_drag(const spar_member *member, spari_body *body) {
 }
 
 int spari_beam_stations(const spar_member *member, int64_t n, spari_station *s) {
-    int P = member->per_element;
+    int P = member->mesh.per_element;
     double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES], back[4];
     double *x = spari_zalloc(3 * member->nodes, sizeof *x);
     if (!x) {
         return no_memory_for(member, "its frames");
     }
     spari_gll(P, gll, NULL, bary);
-    spari_quat_conj(member->placed_q, back);
+    spari_quat_conj(member->placement.q, back);
     for (int64_t i = 0; i < member->nodes; i++) { /* nodes in the beam's own frame */
         double d[3];
         for (int c = 0; c < 3; c++) {
-            d[c] = member->xr[3 * i + c] - member->placed_x[c];
+            d[c] = member->xr[3 * i + c] - member->placement.x[c];
         }
         spari_rotate(back, d, x + 3 * i);
     }

@@ -32,12 +32,12 @@ static int member_create(spar_session *session, const char *call, const char *na
     memcpy(m->name, name, size);
     m->session = session;
     m->kind = kind;
-    m->elements = m->per_element = 1;
+    m->mesh.elements = m->mesh.per_element = 1;
     m->nodes = 1;
     m->owner = session->member_count % spari_comm_size(session->ranks.comm);
     m->root = kind == SPARI_BEAM ? SPAR_ROOT_FIXED : SPAR_ROOT_FREE;
     m->fidelity = SPAR_FIDELITY_EXACT;
-    m->placed_q[0] = 1;
+    m->placement.q[0] = 1;
     session->member_count++;
     *end = m;
     *out = m;
@@ -58,11 +58,11 @@ static int check_place(spar_session *session, const char *call, const char *name
 
 static void set_place(spar_member *m, const double x[3], const double q[4]) {
     if (x) {
-        memcpy(m->placed_x, x, sizeof m->placed_x);
+        memcpy(m->placement.x, x, sizeof m->placement.x);
     }
     if (q) {
-        memcpy(m->placed_q, q, sizeof m->placed_q);
-        spari_quat_normalise(m->placed_q);
+        memcpy(m->placement.q, q, sizeof m->placement.q);
+        spari_quat_normalise(m->placement.q);
     }
 }
 
@@ -115,8 +115,8 @@ int spar_beam_create(spar_session *session, const char *name, int elements, int 
         return status;
     }
     m->beam = beam; /* NOLINT(clang-analyzer-core.NullDereference): create has set it */
-    m->elements = elements;
-    m->per_element = nodes_per_element;
+    m->mesh.elements = elements;
+    m->mesh.per_element = nodes_per_element;
     m->nodes = (int64_t)elements * nodes_per_element;
     *member = m;
     return SPAR_OK;
@@ -157,7 +157,7 @@ int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const dou
     spar_session *session = beam->session;
     SPARI_REQUIRE(session, n == beam->nodes, SPAR_ERR_ARGUMENT,
                   "%s: '%s': %lld nodes; it has %d elements of %d nodes, give %lld", __func__, beam->name, (long long)n,
-                  beam->elements, beam->per_element, (long long)beam->nodes);
+                  beam->mesh.elements, beam->mesh.per_element, (long long)beam->nodes);
     SPARI_TRY(spari_need_finite(session, __func__, beam->name, "x", 3 * n, x));
     if (q) {
         SPARI_TRY(spari_need_finite(session, __func__, beam->name, "q", 4 * n, q));
@@ -167,13 +167,13 @@ int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const dou
     for (int64_t i = 3; i < 3 * n; i++) {
         size = fmax(size, fabs(x[i] - x[i % 3]));
     }
-    for (int64_t i = beam->per_element; i < n; i += beam->per_element) {
+    for (int64_t i = beam->mesh.per_element; i < n; i += beam->mesh.per_element) {
         for (int c = 0; c < 3; c++) {
             SPARI_REQUIRE(
                 session, fabs(x[3 * i + c] - x[3 * i - 3 + c]) <= 1e-9 * size, SPAR_ERR_ARGUMENT,
                 "%s: '%s': elements %lld and %lld share a node, and it is given at two places (nodes %lld and %lld)",
-                __func__, beam->name, (long long)(i / beam->per_element - 1), (long long)(i / beam->per_element),
-                (long long)i - 1, (long long)i);
+                __func__, beam->name, (long long)(i / beam->mesh.per_element - 1),
+                (long long)(i / beam->mesh.per_element), (long long)i - 1, (long long)i);
         }
     }
     double *copies[2] = {spari_copy(x, 3 * n), q ? spari_copy(q, 4 * n) : NULL};
@@ -345,8 +345,8 @@ static void hand_int(int *to, int from) {
 
 int spar_beam_get_elements(const spar_member *beam, int *elements, int *nodes_per_element) {
     SPARI_TRY(spari_need_any_beam(beam, __func__));
-    hand_int(elements, beam->elements);
-    hand_int(nodes_per_element, beam->per_element);
+    hand_int(elements, beam->mesh.elements);
+    hand_int(nodes_per_element, beam->mesh.per_element);
     return SPAR_OK;
 }
 
@@ -376,10 +376,10 @@ int spar_beam_get_mass_damping(const spar_member *beam, double *alpha) {
 int spar_member_get_placement(const spar_member *member, double x[3], double q[4]) {
     SPARI_TRY(spari_need_member(member, __func__));
     if (x) {
-        memcpy(x, member->placed_x, sizeof member->placed_x);
+        memcpy(x, member->placement.x, sizeof member->placement.x);
     }
     if (q) {
-        memcpy(q, member->placed_q, sizeof member->placed_q);
+        memcpy(q, member->placement.q, sizeof member->placement.q);
     }
     return SPAR_OK;
 }
@@ -432,8 +432,8 @@ int spar_member_get_owner(const spar_member *member, int *rank) {
 /* FNV-1a hash of everything the ranks must agree on. */
 uint64_t spari_member_copy_hash(const spar_member *m) {
     uint64_t h = SPARI_HASH_BEGIN;
-    int numbers[] = {m->kind,     m->external,    m->root,     m->effects,   m->effects_given,
-                     m->elements, m->per_element, m->fidelity, (int)m->modes};
+    int numbers[] = {m->kind,          m->external,         m->root,     m->effects,   m->effects_given,
+                     m->mesh.elements, m->mesh.per_element, m->fidelity, (int)m->modes};
     h = spari_hash_bytes(h, numbers, sizeof numbers);
     h = spari_hash_bytes(h, m->mass, sizeof m->mass);
     if (m->guess_count > 0) {
@@ -473,8 +473,8 @@ uint64_t spari_member_copy_hash(const spar_member *m) {
 
 uint64_t spari_member_hash(const spar_member *m) {
     uint64_t h = spari_hash_bytes(spari_member_copy_hash(m), m->name, strlen(m->name));
-    h = spari_hash_bytes(h, m->placed_x, sizeof m->placed_x);
-    h = spari_hash_bytes(h, m->placed_q, sizeof m->placed_q);
-    h = spari_hash_bytes(h, &m->velocity_given, sizeof m->velocity_given);
-    return spari_hash_bytes(h, m->velocity, sizeof m->velocity);
+    h = spari_hash_bytes(h, m->placement.x, sizeof m->placement.x);
+    h = spari_hash_bytes(h, m->placement.q, sizeof m->placement.q);
+    h = spari_hash_bytes(h, &m->initial.velocity_given, sizeof m->initial.velocity_given);
+    return spari_hash_bytes(h, m->initial.velocity, sizeof m->initial.velocity);
 }

@@ -356,7 +356,7 @@ double spari_joint_pull(const spar_joint *j, const double z[6], const double rat
 }
 
 int spari_member_unique(const spar_member *m, int64_t node) {
-    return (int)(m->elements == 1 ? node : node - node / m->per_element);
+    return (int)(m->mesh.elements == 1 ? node : node - node / m->mesh.per_element);
 }
 
 int spari_member_has_joints(const spar_member *m) {

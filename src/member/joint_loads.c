@@ -60,7 +60,7 @@ int spari_joints_hold_moved(const spar_session *s) {
     int count = 0;
     for (const spar_joint *j = s->joints; j && !count; j = j->next) {
         for (int side = 0; side < 2; side++) {
-            count = count || (is_given(j->member[side]) && j->member[side]->motion_given);
+            count = count || (is_given(j->member[side]) && j->member[side]->state.motion_given);
         }
     }
     return count;

@@ -33,16 +33,16 @@ static double stiffness_ratio(const double C[36]) {
 /* Largest ratio of the elements, and of the member with its whole length; *element: the element. */
 static double largest_ratio(const spar_member *m, double *whole, int *element) {
     double most = 0, length = 0, section = 0;
-    for (int e = 0; e < m->elements; e++) {
+    for (int e = 0; e < m->mesh.elements; e++) {
         double h = 0, ratio = 0;
-        for (int i = 1; i < m->per_element; i++) {
-            const double *x = m->xr + 3 * ((int64_t)e * m->per_element + i);
+        for (int i = 1; i < m->mesh.per_element; i++) {
+            const double *x = m->xr + 3 * ((int64_t)e * m->mesh.per_element + i);
             const double d[3] = {x[0] - x[-3], x[1] - x[-2], x[2] - x[-1]};
             h += spari_norm(d);
         }
         for (int k = 0; k < 3; k++) {
             double C[36];
-            spari_beam_section_at(m->beam, m->beam->stiffness, (e + 0.5 * k) / m->elements, C);
+            spari_beam_section_at(m->beam, m->beam->stiffness, (e + 0.5 * k) / m->mesh.elements, C);
             ratio = fmax(ratio, stiffness_ratio(C));
         }
         length += h, section = fmax(section, ratio);
@@ -61,7 +61,7 @@ static int is_bent(const spar_member *m) {
         spari_rotate(m->qr + 4 * (i - 1), x, before);
         spari_rotate(m->qr + 4 * i, x, after);
         spari_cross(before, after, turn);
-        if (i % m->per_element != 0 && spari_norm(turn) > 0.01) {
+        if (i % m->mesh.per_element != 0 && spari_norm(turn) > 0.01) {
             return 1;
         }
     }
@@ -73,13 +73,13 @@ void spari_beam_tell_locking(const spar_member *m) {
     char text[SPARI_MESSAGE_SIZE];
     double whole = 0;
     int element = 0, exact = m->seen != SPARI_SEEN_LINEAR;
-    const double ratio = largest_ratio(m, &whole, &element), most = bearable(m->per_element, exact || is_bent(m));
+    const double ratio = largest_ratio(m, &whole, &element), most = bearable(m->mesh.per_element, exact || is_bent(m));
     if (ratio > most) {
         (void)snprintf(text, sizeof text,
                        "member '%s': element %d has %d nodes and locks: axial or shear stiffness is %.2g times its "
                        "bending stiffness by length squared, and it bends too little; take %d nodes an element, or "
                        "%.3g times as many elements",
-                       m->name, element, m->per_element, ratio, ENOUGH, ceil(sqrt(ratio / most)));
+                       m->name, element, m->mesh.per_element, ratio, ENOUGH, ceil(sqrt(ratio / most)));
         spari_log(m->session, SPAR_LOG_WARNING, text);
     } else if (whole > rounding && m->beam->pre_count == 0) {
         (void)snprintf(text, sizeof text,

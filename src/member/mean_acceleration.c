@@ -47,7 +47,7 @@ void spari_means_find(spar_member *m) {
     const spar_session *s = m->session;
     spari_means *k = m->means;
     k->has[1] = (s->integrator.substeps > 1 || s->clock.uneven[1]) && !(m->added && m->added->stands);
-    double on = k->has[0] ? s->clock.dt / (s->clock.dt + k->dt) : s->clock.step > 0 || m->begun ? 1 : 0;
+    double on = k->has[0] ? s->clock.dt / (s->clock.dt + k->dt) : s->clock.step > 0 || m->initial.acceleration ? 1 : 0;
     const double *before = k->has[0] ? k->mean : m->now.a; /* at t^n, half as far back */
     for (int64_t i = 0; i < 6 * m->nodes && k->has[1]; i++) {
         double mean = (m->after.v[i] - m->now.v[i]) / s->clock.dt;
@@ -86,7 +86,7 @@ void spari_means_carry(const spar_member *from, spar_member *m) {
     const double *rows[3] = {old->mean, old->seen[0], old->seen[1]};
     double *to[3] = {k->mean, k->seen[0], k->seen[1]};
     for (int i = 0; i < 3; i++) {
-        spari_resample_values(spari_member_mesh(from), spari_member_mesh(m), 6, -1, rows[i], to[i]);
+        spari_resample_values(from->mesh, m->mesh, 6, -1, rows[i], to[i]);
     }
     k->dt = old->dt;
     k->has[0] = k->has[1] = 1;

@@ -14,23 +14,15 @@
 #define SPARI_ROW(name, width, order, kind)                                                                            \
     { offsetof(spar_member, name), width, order, SPARI_NODAL_##kind }
 const spari_nodal spari_nodal_table[SPARI_NODAL_COUNT] = {
-    SPARI_ROW(xr, 3, 0, REFERENCE),
-    SPARI_ROW(qr, 4, 0, REFERENCE),
-    SPARI_ROW(now.q, 7, 0, MOTION),
-    SPARI_ROW(now.v, 6, 0, MOTION),
-    SPARI_ROW(now.a, 6, 0, MOTION),
-    SPARI_ROW(after.q, 7, 0, MOTION),
-    SPARI_ROW(after.v, 6, 0, MOTION),
-    SPARI_ROW(after.a, 6, 0, MOTION),
-    SPARI_ROW(dead, 6, 0, LOAD),
-    SPARI_ROW(load_used, 6, 0, LOAD),
-    SPARI_ROW(load_pushed, 6, 0, LOAD),
-    SPARI_ROW(load_before, 6, 0, LOAD),
-    SPARI_ROW(load_history[0], 6, 0, LOAD),
-    SPARI_ROW(load_history[1], 6, 1, LOAD),
-    SPARI_ROW(load_history[2], 6, 2, LOAD),
-    SPARI_ROW(load_solved[0], 6, 0, LOAD),
-    SPARI_ROW(load_solved[1], 6, 0, LOAD),
+    SPARI_ROW(xr, 3, 0, REFERENCE),         SPARI_ROW(qr, 4, 0, REFERENCE),
+    SPARI_ROW(now.q, 7, 0, MOTION),         SPARI_ROW(now.v, 6, 0, MOTION),
+    SPARI_ROW(now.a, 6, 0, MOTION),         SPARI_ROW(after.q, 7, 0, MOTION),
+    SPARI_ROW(after.v, 6, 0, MOTION),       SPARI_ROW(after.a, 6, 0, MOTION),
+    SPARI_ROW(load.dead, 6, 0, LOAD),       SPARI_ROW(load.used, 6, 0, LOAD),
+    SPARI_ROW(load.pushed, 6, 0, LOAD),     SPARI_ROW(load.before, 6, 0, LOAD),
+    SPARI_ROW(load.history[0], 6, 0, LOAD), SPARI_ROW(load.history[1], 6, 1, LOAD),
+    SPARI_ROW(load.history[2], 6, 2, LOAD), SPARI_ROW(load.solved[0], 6, 0, LOAD),
+    SPARI_ROW(load.solved[1], 6, 0, LOAD),
 };
 
 double spari_member_length(const spar_member *m) {
@@ -83,9 +75,9 @@ int spar_member_get_loads(const spar_member *member, double *load) {
     const spar_session *s = member->session;
     int used = s->state.phase == SPARI_BEGUN || s->state.phase == SPARI_SOLVED ||
                (s->state.phase == SPARI_CHECKED && s->state.iterating);
-    const double *fluid = used ? member->load_used : member->load_pushed;
+    const double *fluid = used ? member->load.used : member->load.pushed;
     for (int64_t i = 0; i < 6 * member->nodes; i++) {
-        load[i] = member->dead[i] + fluid[i];
+        load[i] = member->load.dead[i] + fluid[i];
     }
     if (s->state.phase != SPARI_IDLE && spari_added_shift(member)) {
         spari_added_correct(member, -1, load);
@@ -101,8 +93,8 @@ int spar_member_get_loads(const spar_member *member, double *load) {
 
 /* Unknowns count element boundaries once: host node i is unique node i - i / P (e P + k -> e (P-1) + k). */
 void spari_member_to_unique(const spar_member *m, int width, const double *nodes, double *unique) {
-    int P = m->per_element;
-    if (m->elements == 1) {
+    int P = m->mesh.per_element;
+    if (m->mesh.elements == 1) {
         memcpy(unique, nodes, (size_t)(width * m->nodes) * sizeof *nodes);
         return;
     }
@@ -121,14 +113,14 @@ typedef struct two_views {
 
 static void nodes_of_unique(void *context, int64_t from, int64_t to) {
     const two_views *t = context;
-    int P = t->m->per_element, width = t->width;
+    int P = t->m->mesh.per_element, width = t->width;
     for (int64_t i = from; i < to; i++) {
         memcpy(t->to + width * i, t->from + width * (i - i / P), (size_t)width * sizeof *t->to);
     }
 }
 
 void spari_member_from_unique(const spar_member *m, int width, const double *unique, double *nodes) {
-    if (m->elements == 1) {
+    if (m->mesh.elements == 1) {
         memcpy(nodes, unique, (size_t)(width * m->nodes) * sizeof *nodes);
         return;
     }
@@ -144,7 +136,7 @@ void spari_member_publish(const spar_member *m, const double *q, const double *v
 /* An element boundary is the end of one element and the beginning of the next. */
 static void gather_nodes(void *context, int64_t from, int64_t to) {
     const two_views *t = context;
-    int64_t steps = t->m->per_element - 1, last = t->m->elements * steps;
+    int64_t steps = t->m->mesh.per_element - 1, last = t->m->mesh.elements * steps;
     for (int64_t u = from; u < to; u++) {
         int64_t e = u > 0 ? (u - 1) / steps : 0;
         const double *load = t->from + 6 * (u + e);
@@ -160,7 +152,7 @@ static void gather_nodes(void *context, int64_t from, int64_t to) {
 }
 
 void spari_member_gather(const spar_member *m, const double *nodal, double *unique) {
-    if (m->elements == 1) {
+    if (m->mesh.elements == 1) {
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
             unique[i] = 0 + nodal[i];
         }
@@ -170,9 +162,9 @@ void spari_member_gather(const spar_member *m, const double *nodal, double *uniq
 }
 
 void spari_member_even_loads(const spar_member *m, double *load) {
-    int P = m->per_element;
+    int P = m->mesh.per_element;
     memset(load, 0, (size_t)spari_member_constrained(m) * sizeof *load);
-    for (int64_t e = 1; e < m->elements; e++) {
+    for (int64_t e = 1; e < m->mesh.elements; e++) {
         double *left = load + 6 * (e * P - 1), *right = left + 6;
         for (int k = 0; k < 6; k++) {
             left[k] = right[k] = 0.5 * (left[k] + right[k]);

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 
 int spari_point_mass_element(const spar_member *member, int64_t k, double *xi) {
-    double along = member->beam->point_mass_eta[k] * member->elements;
+    double along = member->beam->point_mass_eta[k] * member->mesh.elements;
     int e = (int)ceil(along - 1e-9) - 1; /* an element boundary belongs to the element before it */
-    e = e < 0 ? 0 : e > member->elements - 1 ? member->elements - 1 : e;
+    e = e < 0 ? 0 : e > member->mesh.elements - 1 ? member->mesh.elements - 1 : e;
     *xi = fmin(fmax(2 * (along - e) - 1, -1), 1);
     return e;
 }

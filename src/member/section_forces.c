@@ -30,8 +30,8 @@ struct spari_beyond {
 };
 
 int spari_beyond_is_known(const spar_member *m) {
-    return m->balanced[1] && m->body && m->body->C && m->body->elements == m->elements &&
-           m->body->per_element == m->per_element;
+    return m->state.balanced[1] && m->body && m->body->C && m->body->elements == m->mesh.elements &&
+           m->body->per_element == m->mesh.per_element;
 }
 
 static int is_standing(const spar_member *m) {
@@ -115,7 +115,7 @@ static void element_inertia(const spari_body *body, const inertial *w, int e, do
 static void take_masses(spari_beyond *b, const inertial *w, int e, double *weights) {
     const spar_member *m = b->member;
     const spari_body *body = m->body;
-    const int P = m->per_element, points = body->first[e + 1] - body->first[e],
+    const int P = m->mesh.per_element, points = body->first[e + 1] - body->first[e],
               point_masses = spari_point_masses_of(m, e);
     double *at = weights + body->slot[e], r[6 * SPARI_MAX_NODES], phi[SPARI_MAX_NODES];
     int next = points - point_masses;
@@ -159,13 +159,13 @@ static int add_inertia(spari_beyond *b) {
                   !(m->effects & SPAR_EFFECT_INERTIA)};
     fill_motion(m, &w);
     memcpy(weights, body->weight, (size_t)slots * sizeof *weights);
-    for (int e = 0; e < m->elements && body->mass; e++) {
-        double r[6 * SPARI_MAX_NODES], *to = b->spread + 6 * (int64_t)e * m->per_element;
+    for (int e = 0; e < m->mesh.elements && body->mass; e++) {
+        double r[6 * SPARI_MAX_NODES], *to = b->spread + 6 * (int64_t)e * m->mesh.per_element;
         if (lumped) {
             take_masses(b, &w, e, weights);
         }
         element_inertia(body, &w, e, weights, r);
-        for (int i = 0; i < 6 * m->per_element; i++) {
+        for (int i = 0; i < 6 * m->mesh.per_element; i++) {
             to[i] -= r[i];
         }
     }
@@ -185,8 +185,8 @@ static void gather_loads_at(spari_beyond *b) {
     for (int64_t i = 0; i < m->nodes; i++) {
         double at_node[6] = {0};
         for (int k = 0; k < 6; k++) {
-            at_node[k] = m->dead[6 * i + k];
-            b->spread[6 * i + k] += m->load_solved[1][6 * i + k] - at_node[k];
+            at_node[k] = m->load.dead[6 * i + k];
+            b->spread[6 * i + k] += m->load.solved[1][6 * i + k] - at_node[k];
         }
         for (int k = 0; k < 6 && follower; k += 3) {
             double f[3];
@@ -210,8 +210,8 @@ static void gather_loads_at(spari_beyond *b) {
 
 static void sum_elements(spari_beyond *b) {
     const spar_member *m = b->member;
-    const int P = m->per_element;
-    for (int e = m->elements - 1; e >= 0; e--) {
+    const int P = m->mesh.per_element;
+    for (int e = m->mesh.elements - 1; e >= 0; e--) {
         double *sum = b->sum + 6 * (int64_t)e;
         memcpy(sum, sum + 6, 6 * sizeof *sum);
         for (int64_t i = (int64_t)e * P; i < (int64_t)(e + 1) * P; i++) {
@@ -235,14 +235,14 @@ spari_beyond *spari_beyond_create(const spar_member *m) {
     b->x = spari_zalloc(3 * m->nodes, sizeof *b->x);
     b->spread = spari_zalloc(6 * m->nodes, sizeof *b->spread);
     b->point = spari_zalloc(6 * m->nodes, sizeof *b->point);
-    b->sum = spari_zalloc(6 * ((int64_t)m->elements + 1), sizeof *b->sum);
+    b->sum = spari_zalloc(6 * ((int64_t)m->mesh.elements + 1), sizeof *b->sum);
     b->mass = spari_zalloc(m->beam->point_mass_count + 1, sizeof *b->mass);
     if (!b->x || !b->spread || !b->point || !b->sum || !b->mass) {
         spari_beyond_free(b);
         return NULL;
     }
-    spari_gll(m->per_element, b->gll, NULL, b->bary);
-    spari_gauss(m->per_element, b->gauss, b->weight);
+    spari_gll(m->mesh.per_element, b->gll, NULL, b->bary);
+    spari_gauss(m->mesh.per_element, b->gauss, b->weight);
     for (int64_t i = 0; i < 3 * m->nodes; i++) {
         b->x[i] = m->xr[i] + (spari_beyond_is_undeformed(m) ? 0 : m->after.q[7 * (i / 3) + i % 3]);
     }
@@ -258,7 +258,7 @@ spari_beyond *spari_beyond_create(const spar_member *m) {
 /* Distributed loads on the station's element beyond it: forces by their shares. Their moment is the integral of the
    line's slope times the force beyond, which Gauss quadrature integrates exactly. */
 static void add_share(const spari_beyond *b, const spari_station *s, double force[6]) {
-    const int P = b->member->per_element;
+    const int P = b->member->mesh.per_element;
     const int64_t from = (int64_t)s->element * P;
     double share[SPARI_MAX_NODES], phi[SPARI_MAX_NODES], dphi[SPARI_MAX_NODES];
     const double half = 0.5 * (1 - s->xi);
@@ -288,7 +288,7 @@ static void add_share(const spari_beyond *b, const spari_station *s, double forc
 
 void spari_beyond_at(const spari_beyond *b, const spari_station *s, double force[6]) {
     const spar_member *m = b->member;
-    const int P = m->per_element;
+    const int P = m->mesh.per_element;
     const double *sum = b->sum + 6 * ((int64_t)s->element + 1), near = 1e-9;
     double x[3] = {0}, phi[SPARI_MAX_NODES], moment[3];
     spari_lagrange(P, b->gll, b->bary, s->xi, phi, NULL);

@@ -27,7 +27,7 @@ static void imaginary(const double a[4], const double b[4], double c[3]) { /* 2 
 }
 
 static void section_at(const spar_member *m, const spari_station *s, section_field *f) {
-    int P = m->per_element;
+    int P = m->mesh.per_element;
     const double *q = m->after.q + 7 * (int64_t)s->element * P, *v = m->after.v + 6 * (int64_t)s->element * P;
     double last[4] = {0}, Q[4] = {0};
     memset(f, 0, sizeof *f);
@@ -81,7 +81,7 @@ static void strains(const spari_station *s, const section_field *f, double e[6],
 
 /* The same of linear members: (w' - theta x x0', theta') of the deformation that their equations know. */
 static void linear_strains(const spar_member *m, const spari_station *s, double e[6], double ed[6]) {
-    int P = m->per_element;
+    int P = m->mesh.per_element;
     double theta[3] = {0}, omega[3] = {0}, c[3];
     const spari_pose pose = spari_member_pose(m, &m->after);
     memset(e, 0, 6 * sizeof *e);
@@ -215,7 +215,7 @@ int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta,
     }
     spari_station *s = spari_zalloc(n, sizeof *s);
     SPARI_REQUIRE(session, s, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, beam->name);
-    int E = beam->elements;
+    int E = beam->mesh.elements;
     for (int64_t i = 0; i < n; i++) { /* an element boundary belongs to the element before it */
         int e = (int)ceil(eta[i] * E - 1e-9) - 1;
         e = e < 0 ? 0 : e > E - 1 ? E - 1 : e;

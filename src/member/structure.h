@@ -49,11 +49,80 @@ typedef struct spari_cuts {
     uint32_t given_up[64];
 } spari_cuts;
 
+/* clang-format off */
+/* Loads of a member. The nodal loads are [n][6], in global axes. Contents of the arrays during a step:
+
+     array            between steps    step begun    solved                 checked
+     dead             applied by the host until replaced; values at t^n: spari_dead_before
+     pushed           at t^n           at t^n        at t^n                 at t^{n+1}, from the fluids
+     used             -                predicted     used in the solution   for the next solution, if any
+     solved[1]        as [0]           as [0]        dead + used            dead + used, of the motion `after`
+     solved[0]        all loads with which the motion at t^n was computed
+     history[k]       accepted loads of the fluids at t^n, t^{n-1}, t^{n-2}, as far as the predictor's order needs
+     before           `pushed` before the first step, restored if that step is rejected
+
+   Accepting a step makes `pushed` the newest of the history (`used` if nothing was checked), and solved[1] becomes
+   solved[0]. Rejecting it restores both. For an external member the fluids' loads include those of its joints. */
+/* clang-format on */
+typedef struct spari_member_loads {
+    double *dead;
+    double *used;
+    double *pushed;
+    double *before;
+    double *history[3];
+    double *solved[2];
+    spari_applied *applied;       /* follower and distributed loads; NULL: none */
+    spari_ramp *ramp;             /* applied loads at t^n if others are given for t^{n+1}; NULL: never */
+    spari_applied *applied_next;  /* of a file being loaded */
+    spari_ramp *ramp_next;        /* likewise */
+    spari_foundation *foundation; /* springs along the line in force; NULL: none */
+    int64_t pack_at;              /* offset of the loads in the vector that the ranks sum */
+} spari_member_loads;
+
+/* Placement of a member in space. */
+typedef struct spari_placement {
+    double x[3];
+    double q[4];
+} spari_placement;
+
+/* Initial conditions of a member. */
+typedef struct spari_initial {
+    double velocity[3][3]; /* x0, v0, omega of the initial rigid-body field */
+    int velocity_given;
+    double *acceleration;      /* [nodes][6] initial guess of the consistent accelerations at t^0, if requested, until
+                                  the first step is accepted; NULL: present accelerations */
+    double *acceleration_next; /* the same for a file being loaded */
+} spari_initial;
+
+/* State of a member, beside its motion. */
+typedef struct spari_member_state {
+    int balanced[2];        /* whether the motion `now`, and `after`, is in equilibrium with its loads */
+    int overturned;         /* linear: a node has rotated by more than half a revolution */
+    int motion_given;       /* set_motion was called in this step */
+    int drive_given;        /* drive_root was called for this or the next step */
+    double dissipated;      /* energy dissipated by damping up to t^n */
+    double dissipated_step; /* energy dissipated by damping in this step */
+    spari_cuts cuts;        /* of this step; for connected members, those of the first one */
+} spari_member_state;
+
+/* Measures of a member's motion, for the step error and the tolerance of Newton. */
+typedef struct spari_accuracy {
+    double step_error;   /* with a tolerance: error of the last step, m */
+    double speed;        /* with a tolerance: largest speed so far, m/s */
+    double jerk;         /* option newton.stop = tied: rate of change of the acceleration in the last steps, relative to
+                            the length, 1/s^3 (time/newton_stop.h); 0: unknown */
+    double acceleration; /* likewise: acceleration, relative to the length, 1/s^2 */
+} spari_accuracy;
+
 struct spar_member {
     spar_session *session;
     spar_member *next; /* in order of creation, the same on every rank */
     char *name;
-    int kind, external, root, owner, committed;
+    int kind;
+    int external;
+    int root;
+    int committed;
+    int owner;
     int owner_given;                  /* by the host; otherwise the least loaded rank is chosen, */
     int owner_assigned;               /* and this is set */
     int effects;                      /* SPAR_EFFECT_*: requested; after commit those in force */
@@ -64,68 +133,32 @@ struct spar_member {
     const struct spari_fidelity *row; /* table row of its fidelity (time/fidelity.h); after commit */
     spari_view seen;                  /* after commit */
     int floats;                       /* linear with a root that is not prescribed but connected by joints */
-    int balanced[2];                  /* whether the motion `now`, and `after`, is in equilibrium with its loads */
-    int overturned;                   /* linear: a node has rotated by more than half a revolution */
-    int motion_given;                 /* set_motion was called in this step */
-    int drive_given;                  /* drive_root was called for this or the next step */
 
-    int elements, per_element;
+    spari_mesh mesh; /* elements and nodes of its line */
     int64_t nodes;
-    double *xr, *qr; /* reference positions [n][3] and orientations [n][4], placed; after commit */
-    double placed_x[3], placed_q[4];
+    double *xr; /* reference positions [n][3], placed; after commit */
+    double *qr; /* reference orientations [n][4], placed; after commit */
+    spari_placement placement;
     double mass[36];     /* rigid */
     int64_t guess_count; /* stations of the host's added mass (a rigid body: 1); 0: none */
-    double *guess_eta, *guess;
+    double *guess_eta;
+    double *guess;
     spari_learned *learned; /* NULL: not requested; shared with the member rebuilt from it in a trial */
-    double velocity[3][3];  /* x0, v0, omega of the initial rigid-body field */
-    int velocity_given;
     spari_beam *beam;
     spari_body *body; /* of members that are solved */
 
-    spari_motion now, after; /* at t^n and t^{n+1} (latest iterate; equal to `now` between steps) */
-    double *begun; /* [nodes][6] initial guess of the consistent accelerations at t^0, if requested, until the first
-                      step is accepted; NULL: present accelerations */
-    double *begun_next;  /* the same for a file being loaded */
+    spari_motion now;   /* at t^n */
+    spari_motion after; /* at t^{n+1} (latest iterate; equal to `now` between steps) */
+    spari_initial initial;
     spari_pose drive[2]; /* root at t^n and t^{n+1} */
 
-    /* clang-format off */
-    /* Nodal loads [n][6], global axes. Contents of the arrays during a step:
-
-         array            between steps    step begun    solved                 checked
-         dead             applied by the host until replaced; values at t^n: spari_dead_before
-         load_pushed      at t^n           at t^n        at t^n                 at t^{n+1}, from the fluids
-         load_used        -                predicted     used in the solution   for the next solution, if any
-         load_solved[1]   as [0]           as [0]        dead + load_used       dead + load_used, of the motion `after`
-         load_solved[0]   all loads with which the motion at t^n was computed
-         load_history[k]  accepted load_pushed at t^n, t^{n-1}, t^{n-2}, as far as the predictor's order needs
-         load_before      load_pushed before the first step, restored if that step is rejected
-
-       Accepting a step makes load_pushed the newest of the history (load_used if nothing was checked), and
-       load_solved[1] becomes load_solved[0]. Rejecting it restores both. For an external member the fluids' loads
-       include those of its joints. */
-    /* clang-format on */
-    double *dead;
-    double *load_used;
-    double *load_pushed;
-    double *load_before;
-    double *load_history[3];
-    double *load_solved[2];
-    spari_applied *applied;             /* follower and distributed loads; NULL: none */
-    spari_ramp *ramp;                   /* applied loads at t^n if others are given for t^{n+1}; NULL: never */
-    spari_applied *applied_next;        /* of a file being loaded */
-    spari_ramp *ramp_next;              /* likewise */
-    spari_foundation *foundation;       /* springs along the line in force; NULL: none */
-    int64_t pack_at;                    /* offset of its loads in the vector that the ranks sum */
-    double dissipated, dissipated_step; /* energy dissipated by damping up to t^n, and in this step */
-    double step_error, speed;           /* with a tolerance: error of the last step, m, and largest speed so far, m/s */
-    double jerk,
-        acceleration_scale; /* option newton.stop = tied: relative to the length, rate of change of the acceleration in
-                  the last steps, 1/s^3, and acceleration, 1/s^2 (time/newton_stop.h); 0: unknown */
-    void *solution;         /* solver data of its fidelity; NULL: none, or not on this rank */
+    spari_member_loads load;
+    spari_member_state state;
+    spari_accuracy accuracy;
+    void *solution;           /* solver data of its fidelity; NULL: none, or not on this rank */
     spari_assembly *assembly; /* solved as part of it; NULL: alone */
     spari_work *work;         /* NULL: not requested */
     spari_added *added;       /* NULL: no added mass; otherwise the loads above follow added_mass.h */
-    spari_cuts cuts;          /* of this step; for connected members, those of the first one */
     spari_means *means;       /* accelerations for fluids with substeps; NULL: those of the motion */
     spari_rebuild *advice;    /* of spar_session_advise; NULL: none */
 };
@@ -169,7 +202,7 @@ void spari_member_from_unique(const spar_member *m, int width, const double *uni
 void spari_member_publish(const spar_member *m, const double *q, const double *v, const double *a, spari_motion *to);
 /* Reference position of a unique node, and its lever arm from the root. */
 static inline const double *spari_member_position(const spar_member *member, int unique) {
-    int P = member->per_element;
+    int P = member->mesh.per_element;
     return member->xr +
            3 * (unique + (P > 1 && unique > 0 ? (unique - 1) / (P - 1) : 0)); /* element boundaries are stored twice */
 }
@@ -203,14 +236,10 @@ static inline int spari_member_is_linear_in_place(const spar_member *member) {
 static inline int spari_member_constrained(const spar_member *member) {
     return member->root == SPAR_ROOT_FREE ? 0 : member->root == SPAR_ROOT_PINNED ? 3 : 6;
 }
-/* Elements and nodes of its line. */
-static inline spari_mesh spari_member_mesh(const spar_member *member) {
-    return (spari_mesh){member->elements, member->per_element};
-}
 /* Coordinate along the whole line of element and local xi, and back (an element boundary belongs to the lower
    element). */
 static inline double spari_member_xi(const spar_member *member, int element, double local) {
-    return 2.0 * ((double)element + 0.5 * (1.0 + local)) / (double)member->elements - 1.0;
+    return 2.0 * ((double)element + 0.5 * (1.0 + local)) / (double)member->mesh.elements - 1.0;
 }
 
 #endif

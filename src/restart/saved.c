@@ -200,35 +200,35 @@ static void pass_means(passage *t, spar_member *m) {
 
 /* Initial accelerations of the first step after consistent initial conditions: in the file if there are any. */
 static void pass_begun(passage *t, spar_member *m) {
-    double has = m->begun != NULL;
+    double has = m->initial.acceleration != NULL;
     const double *in_file = (const double *)(const void *)(t->image->word + t->image->at);
     pass(t, &has, 1);
     if (t->mode == CHECK && !t->image->failed) {
         has = *in_file;
         t->image->failed = has != 0 && has != 1;
     }
-    if (t->mode == CHECK && has != 0 && !m->begun_next) {
-        m->begun_next = spari_zalloc(6 * m->nodes, sizeof *m->begun_next);
-        t->image->no_memory |= !m->begun_next;
+    if (t->mode == CHECK && has != 0 && !m->initial.acceleration_next) {
+        m->initial.acceleration_next = spari_zalloc(6 * m->nodes, sizeof *m->initial.acceleration_next);
+        t->image->no_memory |= !m->initial.acceleration_next;
     }
     if (t->mode == READ) {
-        free(m->begun);
-        m->begun = has != 0 ? m->begun_next : NULL;
-        m->begun_next = has != 0 ? NULL : m->begun_next;
+        free(m->initial.acceleration);
+        m->initial.acceleration = has != 0 ? m->initial.acceleration_next : NULL;
+        m->initial.acceleration_next = has != 0 ? NULL : m->initial.acceleration_next;
     }
     if (has != 0) {
-        pass_numbers(t, t->mode == CHECK ? NULL : m->begun, 6 * m->nodes);
+        pass_numbers(t, t->mode == CHECK ? NULL : m->initial.acceleration, 6 * m->nodes);
     }
 }
 
 /* Halved substeps of a step in progress: in the file if there are any. */
 static void pass_cuts(passage *t, spar_member *m) {
-    enum { WORDS = sizeof m->cuts.given_up / sizeof(double) };
+    enum { WORDS = sizeof m->state.cuts.given_up / sizeof(double) };
     const spar_session *s = m->session;
-    const int under_way = s->state.phase != SPARI_IDLE && m->cuts.begun == s->clock.begun;
+    const int under_way = s->state.phase != SPARI_IDLE && m->state.cuts.begun == s->clock.begun;
     double has = 0;
-    for (size_t i = 0; i < sizeof m->cuts.given_up / sizeof *m->cuts.given_up && under_way; i++) {
-        has = has != 0 || m->cuts.given_up[i] != 0;
+    for (size_t i = 0; i < sizeof m->state.cuts.given_up / sizeof *m->state.cuts.given_up && under_way; i++) {
+        has = has != 0 || m->state.cuts.given_up[i] != 0;
     }
     const double *in_file = (const double *)(const void *)(t->image->word + t->image->at);
     pass(t, &has, 1);
@@ -237,10 +237,10 @@ static void pass_cuts(passage *t, spar_member *m) {
         t->image->failed = has != 0 && has != 1;
     }
     if (t->mode == READ) {
-        m->cuts = (spari_cuts){.begun = s->clock.begun};
+        m->state.cuts = (spari_cuts){.begun = s->clock.begun};
     }
     if (has != 0) {
-        pass(t, m->cuts.given_up, WORDS);
+        pass(t, m->state.cuts.given_up, WORDS);
     }
 }
 
@@ -254,16 +254,16 @@ static void pass_member(passage *t, spar_member *m) {
         }
     }
     pass(t, m->drive, 2 * (int64_t)(sizeof *m->drive / sizeof(double)));
-    pass(t, &m->dissipated, 1);
-    pass(t, &m->dissipated_step, 1);
-    pass_numbers(t, &m->step_error, 1);
-    pass_numbers(t, &m->speed, 1);
-    pass_numbers(t, &m->jerk, 1);
-    pass_numbers(t, &m->acceleration_scale, 1);
-    pass_int(t, &m->balanced[0]);
-    pass_int(t, &m->balanced[1]);
-    pass_int(t, &m->motion_given);
-    pass_int(t, &m->drive_given);
+    pass(t, &m->state.dissipated, 1);
+    pass(t, &m->state.dissipated_step, 1);
+    pass_numbers(t, &m->accuracy.step_error, 1);
+    pass_numbers(t, &m->accuracy.speed, 1);
+    pass_numbers(t, &m->accuracy.jerk, 1);
+    pass_numbers(t, &m->accuracy.acceleration, 1);
+    pass_int(t, &m->state.balanced[0]);
+    pass_int(t, &m->state.balanced[1]);
+    pass_int(t, &m->state.motion_given);
+    pass_int(t, &m->state.drive_given);
     if (m->added) {
         pass_added(t, m);
     }

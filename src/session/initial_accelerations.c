@@ -48,8 +48,8 @@ int spari_start_begin(spar_session *s, const char *call, double dt) {
     int scheme = spari_coupling_scheme_of(s->coupling.scheme)->iterates ? s->coupling.scheme : SPAR_COUPLING_IQN_ILS;
     SPARI_TRY(spari_named(s, call, spari_coupling_suspend(s, scheme)));
     for (spar_member *m = s->members; m; m = m->next) {
-        copy_start_loads(m, m->load_pushed, m->load_before);
-        spari_session_take_loads(s, m, m->load_used);
+        copy_start_loads(m, m->load.pushed, m->load.before);
+        spari_session_take_loads(s, m, m->load.used);
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_begin(f, 0, 1, last);
@@ -69,7 +69,7 @@ static int balance_members(spar_session *s) {
         spari_joint_reject(j);
     }
     for (spar_member *m = s->members; m; m = m->next) {
-        copy_start_loads(m, m->load_used, m->load_history[0]);
+        copy_start_loads(m, m->load.used, m->load.history[0]);
         spari_member_again(m);
     }
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
@@ -96,7 +96,7 @@ int spari_start_solve(spar_session *s, const char *call) {
     status = spari_session_share_motion(s, status);
     for (spar_member *m = s->members; m; m = m->next) {
         if (status == SPAR_OK) {
-            spari_member_solved(m, m->load_used);
+            spari_member_solved(m, m->load.used);
         } else { /* discards the failed iterate */
             spari_member_again(m);
         }
@@ -115,10 +115,10 @@ void spari_start_accept(spar_session *s) {
     int checked = s->state.phase == SPARI_CHECKED;
     for (spar_member *m = s->members; m; m = m->next) {
         if (!checked) {
-            copy_start_loads(m, m->load_used, m->load_pushed);
+            copy_start_loads(m, m->load.used, m->load.pushed);
         }
-        copy_start_loads(m, m->load_pushed, m->load_history[0]);
-        copy_start_loads(m, m->load_pushed, m->load_before);
+        copy_start_loads(m, m->load.pushed, m->load.history[0]);
+        copy_start_loads(m, m->load.pushed, m->load.before);
         spari_member_end_start(m, 1);
     }
     for (spar_joint *j = s->joints; j; j = j->next) {
@@ -134,8 +134,8 @@ void spari_start_accept(spar_session *s) {
 
 void spari_start_reject(spar_session *s) {
     for (spar_member *m = s->members; m; m = m->next) {
-        copy_start_loads(m, m->load_before, m->load_pushed);
-        copy_start_loads(m, m->load_before, m->load_history[0]);
+        copy_start_loads(m, m->load.before, m->load.pushed);
+        copy_start_loads(m, m->load.before, m->load.history[0]);
         spari_member_end_start(m, 0);
     }
     for (spar_joint *j = s->joints; j; j = j->next) {
@@ -149,5 +149,5 @@ void spari_start_reject(spar_session *s) {
 }
 
 int spari_start_stands(const spar_session *s) {
-    return s->state.phase == SPARI_IDLE && s->members && s->members->begun;
+    return s->state.phase == SPARI_IDLE && s->members && s->members->initial.acceleration;
 }

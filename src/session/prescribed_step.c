@@ -14,7 +14,7 @@ static void end_forced(spar_session *s, double dt) {
         memcpy(m->now.q, m->after.q, (size_t)m->nodes * 7 * sizeof(double));
         memcpy(m->now.v, m->after.v, (size_t)m->nodes * 6 * sizeof(double));
         memcpy(m->now.a, m->after.a, (size_t)m->nodes * 6 * sizeof(double));
-        m->motion_given = m->drive_given = 0;
+        m->state.motion_given = m->state.drive_given = 0;
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_accept(f);
@@ -42,7 +42,7 @@ int spari_forced_step(spar_session *s, const char *call, double dt, spar_fluid_s
     SPARI_TRY(spari_enter(s, call, status));
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m; m = m->next) {
-        spari_session_take_loads(s, m, m->load_pushed);
+        spari_session_take_loads(s, m, m->load.pushed);
     }
     end_forced(s, dt);
     return SPAR_OK;

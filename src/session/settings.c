@@ -284,7 +284,7 @@ int spar_session_set_predictor(spar_session *session, int order) {
     SPARI_TRY(check_given(session, __func__, PREDICTOR, (const double[]){order}));
     int status = SPAR_OK;
     for (spar_member *m = session->members; m && status == SPAR_OK; m = m->next) {
-        status = m->committed ? spari_history_keep(m->load_history, 6 * m->nodes, order) : SPAR_OK;
+        status = m->committed ? spari_history_keep(m->load.history, 6 * m->nodes, order) : SPAR_OK;
     }
     for (spar_fluid *f = session->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
         status = spari_fluid_keep(f, order);

@@ -53,11 +53,11 @@ static int is_with(const spar_member *member, const spar_member *m) {
 }
 
 static const double *pushed(const spar_member *m) {
-    return m->load_pushed;
+    return m->load.pushed;
 }
 
 static const double *used(const spar_member *m) {
-    return m->load_used;
+    return m->load.used;
 }
 
 static int solve_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps,
@@ -151,7 +151,7 @@ static void put_back(spar_session *s, const spar_member *only, const double *sav
 
 /* Makes the motion `after`, under `fluid` loads, the state at t^n. */
 static void commit_member(spar_member *m, const double *fluid) {
-    m->dissipated_step = 0;
+    m->state.dissipated_step = 0;
     spari_member_solved(m, fluid);
     spari_member_commit_state(m);
     memcpy(m->session->gravity_before, m->session->gravity, sizeof m->session->gravity_before);
@@ -163,11 +163,11 @@ static int find_rest(spar_member *m, int load_steps) {
         SPARI_TRY(spari_session_exchange_loads(s, NULL));
         for (spar_member *with = s->members; with; with = with->next) {
             if (is_with(m, with)) {
-                spari_session_take_loads(s, with, with->load_pushed);
+                spari_session_take_loads(s, with, with->load.pushed);
             }
         }
     }
-    return spari_session_share_motion(s, solve_member_static(m, m->load_pushed, load_steps, 0));
+    return spari_session_share_motion(s, solve_member_static(m, m->load.pushed, load_steps, 0));
 }
 
 /* Accepts the equilibrium as the state at t^n, or restores everything. */
@@ -177,10 +177,10 @@ static void end_member_static(spar_member *member, int status, const double *sav
             continue;
         }
         if (status == SPAR_OK) {
-            commit_member(m, m->load_pushed);
+            commit_member(m, m->load.pushed);
         } else {
             spari_member_reject(m);
-            copy_loads(m, m->load_before, m->load_pushed);
+            copy_loads(m, m->load.before, m->load.pushed);
         }
     }
     if (status != SPAR_OK) {
@@ -206,7 +206,7 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
     if (status == SPAR_OK) {
         for (spar_member *m = s->members; m; m = m->next) {
             if (is_with(member, m)) {
-                copy_loads(m, m->load_pushed, m->load_before);
+                copy_loads(m, m->load.pushed, m->load.before);
             }
         }
         status = find_rest(member, load_steps);
@@ -233,13 +233,13 @@ static int check_session_static(spar_session *s, const char *call, int load_step
 static int begin_static(spar_session *s) {
     static const double last[2] = {1, 1};
     for (spar_member *m = s->members; m; m = m->next) {
-        copy_loads(m, m->load_pushed, m->load_before);
-        copy_loads(m, m->load_pushed, m->load_used);
+        copy_loads(m, m->load.pushed, m->load.before);
+        copy_loads(m, m->load.pushed, m->load.used);
     }
     if (!s->clock.started) { /* loads pushed before the first step are those at t^0 */
         SPARI_TRY(spari_session_exchange_loads(s, NULL));
         for (spar_member *m = s->members; m; m = m->next) {
-            spari_session_take_loads(s, m, m->load_used);
+            spari_session_take_loads(s, m, m->load.used);
         }
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
@@ -260,10 +260,10 @@ static void end_static(spar_session *s) {
 
 static void commit_all(spar_session *s) {
     for (spar_member *m = s->members; m; m = m->next) {
-        copy_loads(m, m->load_pushed, m->load_history[0]);
-        copy_loads(m, m->load_pushed, m->load_before);
-        m->motion_given = 0;
-        commit_member(m, m->load_pushed);
+        copy_loads(m, m->load.pushed, m->load.history[0]);
+        copy_loads(m, m->load.pushed, m->load.before);
+        m->state.motion_given = 0;
+        commit_member(m, m->load.pushed);
     }
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         spari_assembly_commit_state(a);
@@ -277,7 +277,7 @@ static void commit_all(spar_session *s) {
 static void discard_static(spar_session *s, const double *saved_state) {
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
-        copy_loads(m, m->load_before, m->load_pushed);
+        copy_loads(m, m->load.before, m->load.pushed);
     }
     put_back(s, NULL, saved_state);
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
@@ -292,14 +292,14 @@ static void discard_static(spar_session *s, const double *saved_state) {
 static int solve_all(spar_session *s, int load_steps, int onward) {
     int status = SPAR_OK;
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
-        status = m->assembly ? SPAR_OK : solve_member_static(m, m->load_used, load_steps, onward);
+        status = m->assembly ? SPAR_OK : solve_member_static(m, m->load.used, load_steps, onward);
     }
     for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
         status = solve_assembly_static(a, used, load_steps, onward, s);
     }
     SPARI_TRY(spari_session_share_motion(s, status));
     for (spar_member *m = s->members; m; m = m->next) {
-        spari_member_solved(m, m->load_used);
+        spari_member_solved(m, m->load.used);
     }
     return SPAR_OK;
 }
@@ -312,7 +312,7 @@ static const spar_member *most_changed(const spar_session *s) {
     for (const spar_member *m = s->members; m; m = m->next, k++) {
         double sum = 0;
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
-            double r = (m->load_pushed[i] - m->load_used[i]) / (i % 6 < 3 ? 1 : s->own->coupling->length[k]);
+            double r = (m->load.pushed[i] - m->load.used[i]) / (i % 6 < 3 ? 1 : s->own->coupling->length[k]);
             sum += r * r;
         }
         if (!(sum <= most)) { /* or NaN */
@@ -377,7 +377,7 @@ static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve,
     }
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m; m = m->next) {
-        spari_session_take_loads(s, m, m->load_pushed);
+        spari_session_take_loads(s, m, m->load.pushed);
     }
     s->state.iteration++;
     return SPAR_OK;
@@ -402,8 +402,8 @@ static void warn_of_divergence(const spar_session *s, const char *call) {
 static int stands_under_response(spar_session *s) {
     int same = 1;
     for (spar_member *m = s->members; m; m = m->next) {
-        same &= memcmp(m->load_used, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double)) == 0;
-        copy_loads(m, m->load_pushed, m->load_used);
+        same &= memcmp(m->load.used, m->load.pushed, (size_t)(6 * m->nodes) * sizeof(double)) == 0;
+        copy_loads(m, m->load.pushed, m->load.used);
     }
     return same;
 }

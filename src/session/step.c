@@ -72,11 +72,11 @@ static void predict_nodes_loads(void *context, int64_t from, int64_t to) {
     const load_extrapolation *t = context;
     const spar_member *m = t->m;
     for (int64_t i = 6 * from; i < 6 * to; i++) {
-        double f = t->w[0] * m->load_history[0][i];
+        double f = t->w[0] * m->load.history[0][i];
         for (int k = 1; k <= t->order; k++) {
-            f += t->w[k] * m->load_history[k][i];
+            f += t->w[k] * m->load.history[k][i];
         }
-        m->load_used[i] = f;
+        m->load.used[i] = f;
     }
 }
 
@@ -100,7 +100,8 @@ typedef struct step_begun {
 
 static void begin_member(spar_member *m, const void *context) {
     const step_begun *t = context;
-    if ((m->root == SPAR_ROOT_DRIVEN || m->kind == SPARI_POINT) && !m->drive_given) { /* the root stays in place */
+    if ((m->root == SPAR_ROOT_DRIVEN || m->kind == SPARI_POINT) &&
+        !m->state.drive_given) { /* the root stays in place */
         const double rest[6] = {0};
         m->drive[1] = spari_pose_of(m->drive[0].q, rest, rest);
     }
@@ -115,8 +116,8 @@ static int begin_loads(spar_session *s) {
     SPARI_TRY(spari_session_exchange_loads(s, &pushed));
     s->state.past = pushed ? s->state.past : -1; /* zeros that nobody has pushed are nothing to extrapolate from */
     for (spar_member *m = s->members; m; m = m->next) {
-        spari_session_take_loads(s, m, m->load_history[0]);
-        memcpy(m->load_before, m->load_pushed, (size_t)(6 * m->nodes) * sizeof(double));
+        spari_session_take_loads(s, m, m->load.history[0]);
+        memcpy(m->load.before, m->load.pushed, (size_t)(6 * m->nodes) * sizeof(double));
         if (m->work) {
             spari_work_begin(m);
         }
@@ -181,13 +182,13 @@ int spar_step_begin_start(spar_session *session, double dt) {
 
 static void solved_member(spar_member *m, const void *unused) {
     (void)unused;
-    spari_member_solved(m, m->load_used);
+    spari_member_solved(m, m->load.used);
     if (m->means) {
         spari_means_find(m);
     }
     if (m->added) {
         spari_added_see(m);
-        spari_added_correct(m, -1, m->load_solved[1]);
+        spari_added_correct(m, -1, m->load.solved[1]);
     }
 }
 
@@ -251,12 +252,12 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     s->state.failed = 1; /* until everything below has succeeded */
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m; m = m->next) {
-        spari_session_take_loads(s, m, m->load_pushed);
+        spari_session_take_loads(s, m, m->load.pushed);
         if (!s->state.standing) {
             spari_learned_note(m, s->state.iteration + 1);
         }
         if (m->added && !s->state.standing) {
-            spari_added_correct(m, 1, m->load_pushed);
+            spari_added_correct(m, 1, m->load.pushed);
         }
     }
     s->state.iteration++;
@@ -290,16 +291,16 @@ static void shift_history(spar_member *m, const void *session) {
     const spar_session *s = session;
     /* a step that was never checked has the loads of its solution, and those of joints */
     if (s->state.phase != SPARI_CHECKED && has_joints_alone(m)) {
-        memset(m->load_pushed, 0, (size_t)(6 * m->nodes) * sizeof(double));
-        spari_joints_on_external(m, m->load_pushed);
+        memset(m->load.pushed, 0, (size_t)(6 * m->nodes) * sizeof(double));
+        spari_joints_on_external(m, m->load.pushed);
     } else if (s->state.phase != SPARI_CHECKED) {
-        memcpy(m->load_pushed, m->load_used, (size_t)(6 * m->nodes) * sizeof(double));
+        memcpy(m->load.pushed, m->load.used, (size_t)(6 * m->nodes) * sizeof(double));
     }
     if (m->added) {
-        spari_added_correct(m, -1, m->load_pushed);
+        spari_added_correct(m, -1, m->load.pushed);
         spari_added_accept(m);
     }
-    spari_history_shift(m->load_history, 6 * m->nodes, s->coupling.predictor, m->load_pushed);
+    spari_history_shift(m->load.history, 6 * m->nodes, s->coupling.predictor, m->load.pushed);
 }
 
 static void accept_member(spar_member *m, const void *unused) {
@@ -384,7 +385,7 @@ static void reject(spar_session *s) {
     for (spar_member *m = s->members; m; m = m->next) {
         spari_member_reject(m);
         spari_learned_begin(m);
-        memcpy(m->load_pushed, s->clock.step > 0 ? m->load_history[0] : m->load_before,
+        memcpy(m->load.pushed, s->clock.step > 0 ? m->load.history[0] : m->load.before,
                (size_t)(6 * m->nodes) * sizeof(double));
     }
     reject_joints(s);

@@ -34,7 +34,7 @@ double spari_step_control_error(const spar_member *m) {
 static double judge_member(const spar_member *m, double *error, double *speed) {
     const spar_session *s = m->session;
     *error = find_error(m, speed);
-    *speed = fmax(*speed, m->speed);
+    *speed = fmax(*speed, m->accuracy.speed);
     return *error / s->clock.dt / (s->tolerance.drift + s->tolerance.rtol * *speed);
 }
 
@@ -76,8 +76,8 @@ void spari_step_control_accept(spar_session *s) {
     spari_step_control *p = &s->own->step_control;
     double ratio = 0, speed;
     for (spar_member *m = s->members; m; m = m->next) {
-        ratio = fmax(ratio, judge_member(m, &m->step_error, &speed));
-        m->speed = speed;
+        ratio = fmax(ratio, judge_member(m, &m->accuracy.step_error, &speed));
+        m->accuracy.speed = speed;
     }
     p->next = spari_step_error_is_known(s) ? next_dt(s, ratio) : s->clock.dt;
     p->ratio = spari_step_error_is_known(s) ? fade(p, ratio) : 0;

@@ -117,7 +117,7 @@ static int exact_response(spar_member *m, const double *load, double *motion) {
 
 static void exact_take_rest(spar_member *m, const double *fluid) {
     spari_solver *s = m->solution;
-    spari_member_gather(m, m->dead, s->steps.load);
+    spari_member_gather(m, m->load.dead, s->steps.load);
     spari_member_gather(m, fluid, s->r);
     for (int i = 0; i < 6 * s->n; i++) {
         s->steps.load[i] += s->r[i];
@@ -138,7 +138,7 @@ static int64_t exact_unknowns(const spar_member *m) {
 }
 
 static int exact_problem(const spar_member *m, double *K, double *M) {
-    int64_t u = m->body->unique, n = 6 * (int64_t)m->per_element, free_unknowns = exact_unknowns(m);
+    int64_t u = m->body->unique, n = 6 * (int64_t)m->mesh.per_element, free_unknowns = exact_unknowns(m);
     double *q = spari_zalloc(19 * u + 2 * n * n, sizeof *q), *v = q + 7 * u, *a = v + 6 * u, *S = a + 6 * u,
            *mass = S + n * n;
     if (!q) {
@@ -150,8 +150,8 @@ static int exact_problem(const spar_member *m, double *K, double *M) {
     if (rotating) {
         spari_steady_rotation_rates(m, &rotation, q, v, a);
     }
-    for (int e = 0; e < m->elements; e++) {
-        int at = 6 * e * (m->per_element - 1) - spari_member_constrained(m);
+    for (int e = 0; e < m->mesh.elements; e++) {
+        int at = 6 * e * (m->mesh.per_element - 1) - spari_member_constrained(m);
         spari_steady_rotation_tangent(m->body, rotating ? &rotation : NULL, e, q, v, a, 1, S, mass);
         if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, S);
@@ -186,7 +186,7 @@ static int exact_left(const spar_member *m, const double *q, const double *v, co
 }
 
 static int exact_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
-    int64_t u = m->body->unique, n = 6 * (int64_t)m->per_element;
+    int64_t u = m->body->unique, n = 6 * (int64_t)m->mesh.per_element;
     double *q = spari_zalloc(19 * u + 3 * n * n, sizeof *q), *v = q + 7 * u, *a = v + 6 * u, *K = a + 6 * u,
            *C = K + n * n, *M = C + n * n;
     if (!q) {
@@ -200,12 +200,12 @@ static int exact_linearise(const spar_member *m, const double w[3], spari_pencil
     } else {
         v = a = NULL;
     }
-    for (int e = 0; e < m->elements; e++) {
+    for (int e = 0; e < m->mesh.elements; e++) {
         spari_steady_rotation_pencil(m->body, w, rotation.w, e, q, v, a, K, C, M);
         if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, K);
         }
-        spari_pencil_add(to, 6 * e * (m->per_element - 1) - spari_member_constrained(m), (int)n, n, K, C, M);
+        spari_pencil_add(to, 6 * e * (m->mesh.per_element - 1) - spari_member_constrained(m), (int)n, n, K, C, M);
     }
     int status = exact_left(m, q, v, a, to);
     free(q);

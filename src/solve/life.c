@@ -23,7 +23,7 @@
 /* ---- the motion at t^0 and the steps ---- */
 
 static int rigid_field(spar_member *m) {
-    const double *x0 = m->velocity[0], *v0 = m->velocity[1], *w = m->velocity[2];
+    const double *x0 = m->initial.velocity[0], *v0 = m->initial.velocity[1], *w = m->initial.velocity[2];
     for (int64_t i = 0; i < m->nodes; i++) {
         double r[3], *v = m->now.v + 6 * i, *a = m->now.a + 6 * i;
         for (int c = 0; c < 3; c++) {
@@ -70,25 +70,25 @@ static void copy_motion(const spar_member *m, const spari_motion *from, spari_mo
 static void restart_solution(spar_member *m) {
     double *found = m->now.a;
     if (m->row->restart && spari_fidelity_is_here(m)) {
-        m->now.a = m->begun ? m->begun : found;
+        m->now.a = m->initial.acceleration ? m->initial.acceleration : found;
         m->row->restart(m);
         m->now.a = found;
     }
 }
 
 static void forget_begun(spar_member *m) {
-    free(m->begun);
-    m->begun = NULL;
+    free(m->initial.acceleration);
+    m->initial.acceleration = NULL;
 }
 
 /* The motion at t^0 has changed: the latest iterate, the root and the solver start from it. */
 void spari_member_restart(spar_member *m) {
     forget_begun(m);
-    m->balanced[0] = m->balanced[1] = 0;
-    m->jerk = m->acceleration_scale = 0;
+    m->state.balanced[0] = m->state.balanced[1] = 0;
+    m->accuracy.jerk = m->accuracy.acceleration = 0;
     spari_means_forget(m);
     copy_motion(m, &m->now, &m->after);
-    for (int k = 0; k < (m->drive_given ? 1 : 2); k++) { /* where it is to be driven to stays */
+    for (int k = 0; k < (m->state.drive_given ? 1 : 2); k++) { /* where it is to be driven to stays */
         m->drive[k] = spari_pose_of(m->now.q, m->now.v, m->now.a);
     }
     restart_solution(m);
@@ -113,7 +113,7 @@ static void copy_load_span(void *context, int64_t from, int64_t to) {
 
 /* a's loads become b's */
 static void copy_solved(spar_member *m, int a, int b) {
-    spari_member_spread(m, m->nodes, copy_load_span, &(two_loads){.a = m->load_solved[a], .to = m->load_solved[b]});
+    spari_member_spread(m, m->nodes, copy_load_span, &(two_loads){.a = m->load.solved[a], .to = m->load.solved[b]});
 }
 
 static void add_load_span(void *context, int64_t from, int64_t to) {
@@ -124,12 +124,12 @@ static void add_load_span(void *context, int64_t from, int64_t to) {
 }
 
 void spari_member_solved(spar_member *m, const double *fluid) {
-    m->balanced[1] = 1;
-    spari_member_spread(m, m->nodes, add_load_span, &(two_loads){m->dead, fluid, m->load_solved[1]});
+    m->state.balanced[1] = 1;
+    spari_member_spread(m, m->nodes, add_load_span, &(two_loads){m->load.dead, fluid, m->load.solved[1]});
 }
 
 int spari_member_check_rotations(const spar_member *m) {
-    SPARI_REQUIRE(m->session, m->seen != SPARI_SEEN_LINEAR || !m->overturned, SPAR_ERR_NUMERIC,
+    SPARI_REQUIRE(m->session, m->seen != SPARI_SEEN_LINEAR || !m->state.overturned, SPAR_ERR_NUMERIC,
                   "member '%s' is linear and turns by half a turn against %s, where rotation vectors end; take "
                   "SPAR_FIDELITY_EXACT, or drive its root",
                   m->name, spari_member_root_is_prescribed(m) || m->floats ? "its root" : "its reference");
@@ -141,7 +141,7 @@ void spari_member_commit_state(spar_member *m) {
     copy_solved(m, 1, 0);
     spari_applied_accept(m);
     spari_member_restart(m);
-    m->balanced[0] = m->balanced[1] = 1;
+    m->state.balanced[0] = m->state.balanced[1] = 1;
 }
 
 void spari_member_begin(spar_member *m) {
@@ -160,12 +160,12 @@ void spari_member_accept(spar_member *m) {
     spari_newton_stop_accept(m);
     copy_motion(m, &m->after, &m->now);
     copy_solved(m, 1, 0);
-    m->balanced[0] = m->balanced[1];
+    m->state.balanced[0] = m->state.balanced[1];
     m->drive[0] = m->drive[1];
-    m->drive_given = m->motion_given = 0;
+    m->state.drive_given = m->state.motion_given = 0;
     spari_applied_accept(m);
-    m->dissipated += m->dissipated_step;
-    m->dissipated_step = 0;
+    m->state.dissipated += m->state.dissipated_step;
+    m->state.dissipated_step = 0;
     forget_begun(m);
     if (m->row->accept && spari_fidelity_is_here(m)) {
         m->row->accept(m);
@@ -190,9 +190,9 @@ void spari_member_put_learned(spar_member *m) {
 void spari_member_reject(spar_member *m) {
     copy_motion(m, &m->now, &m->after);
     copy_solved(m, 0, 1);
-    m->balanced[1] = m->balanced[0];
-    m->motion_given = 0;
-    m->dissipated_step = 0;
+    m->state.balanced[1] = m->state.balanced[0];
+    m->state.motion_given = 0;
+    m->state.dissipated_step = 0;
     spari_applied_at(m, 0);
     if (spari_gravity_changes(m->session)) { /* that of its end, whatever stage has failed */
         spari_member_gravity(m);
@@ -209,9 +209,9 @@ void spari_member_reject(spar_member *m) {
 }
 
 int spari_member_begin_start(spar_member *m) {
-    if (!m->begun) {
-        m->begun = spari_copy(m->now.a, 6 * m->nodes);
-        SPARI_REQUIRE(m->session, m->begun, SPAR_ERR_MEMORY, "no memory for the start of '%s'", m->name);
+    if (!m->initial.acceleration) {
+        m->initial.acceleration = spari_copy(m->now.a, 6 * m->nodes);
+        SPARI_REQUIRE(m->session, m->initial.acceleration, SPAR_ERR_MEMORY, "no memory for the start of '%s'", m->name);
     }
     return SPAR_OK;
 }
@@ -219,13 +219,13 @@ int spari_member_begin_start(spar_member *m) {
 void spari_member_again(spar_member *m) {
     if (m->row->moves) {
         spari_member_reject(m);
-    } else if (m->motion_given) {
+    } else if (m->state.motion_given) {
         memcpy(m->now.a, m->after.a, (size_t)(6 * m->nodes) * sizeof(double));
     }
 }
 
 void spari_member_end_start(spar_member *m, int found) {
-    const double *a = found ? m->after.a : m->row->moves ? m->now.a : m->begun;
+    const double *a = found ? m->after.a : m->row->moves ? m->now.a : m->initial.acceleration;
     memmove(m->now.a, a, (size_t)(6 * m->nodes) * sizeof(double));
     if (found) {
         copy_solved(m, 1, 0);
@@ -253,20 +253,20 @@ int spar_member_set_initial_velocity(spar_member *member, const double x0[3], co
         SPARI_TRY(spari_need_finite(member->session, __func__, member->name, what[k], 3, in[k]));
     }
     double old[3][3];
-    memcpy(old, member->velocity, sizeof old);
+    memcpy(old, member->initial.velocity, sizeof old);
     for (int k = 0; k < 3; k++) {
-        memcpy(member->velocity[k], in[k], 3 * sizeof(double));
+        memcpy(member->initial.velocity[k], in[k], 3 * sizeof(double));
     }
     if (member->committed) {
         int status = rigid_field(member);
         if (status != SPAR_OK) {
-            memcpy(member->velocity, old, sizeof old);
+            memcpy(member->initial.velocity, old, sizeof old);
             copy_motion(member, &member->after, &member->now);
             return status;
         }
         spari_member_restart(member);
     }
-    member->velocity_given = 1;
+    member->initial.velocity_given = 1;
     return SPAR_OK;
 }
 
@@ -327,22 +327,22 @@ void spari_member_release(spar_member *m) {
         *spari_nodal_array(m, k) = NULL;
     }
     forget_begun(m);
-    free(m->begun_next);
-    m->begun_next = NULL;
+    free(m->initial.acceleration_next);
+    m->initial.acceleration_next = NULL;
     spari_work_free(m->work);
     m->work = NULL;
     spari_added_free(m->added);
     m->added = NULL;
     spari_means_free(m->means);
     m->means = NULL;
-    spari_applied_free(m->applied);
-    spari_applied_free(m->applied_next);
-    spari_ramp_free(m->ramp);
-    spari_ramp_free(m->ramp_next);
-    m->applied = m->applied_next = NULL;
-    m->ramp = m->ramp_next = NULL;
-    spari_foundation_free(m->foundation);
-    m->foundation = NULL;
+    spari_applied_free(m->load.applied);
+    spari_applied_free(m->load.applied_next);
+    spari_ramp_free(m->load.ramp);
+    spari_ramp_free(m->load.ramp_next);
+    m->load.applied = m->load.applied_next = NULL;
+    m->load.ramp = m->load.ramp_next = NULL;
+    spari_foundation_free(m->load.foundation);
+    m->load.foundation = NULL;
     if (m->solution) {
         m->row->free(m->solution);
     }
@@ -376,13 +376,13 @@ void spari_member_detach(spar_member *m, spar_member *detached) {
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
         *spari_nodal_array(m, k) = NULL;
     }
-    m->begun = m->begun_next = NULL;
+    m->initial.acceleration = m->initial.acceleration_next = NULL;
     m->work = NULL;
     m->added = NULL;
     m->means = NULL;
-    m->applied = m->applied_next = NULL;
-    m->ramp = m->ramp_next = NULL;
-    m->foundation = NULL;
+    m->load.applied = m->load.applied_next = NULL;
+    m->load.ramp = m->load.ramp_next = NULL;
+    m->load.foundation = NULL;
     m->solution = NULL;
     m->body = NULL;
     m->assembly = NULL;
@@ -414,13 +414,13 @@ int spari_member_build(spar_member *m) {
     if (m->kind == SPARI_BEAM) {
         SPARI_TRY(spari_beam_place_nodes(m));
     } else {
-        memcpy(m->xr, m->placed_x, sizeof m->placed_x);
-        memcpy(m->qr, m->placed_q, sizeof m->placed_q);
+        memcpy(m->xr, m->placement.x, sizeof m->placement.x);
+        memcpy(m->qr, m->placement.q, sizeof m->placement.q);
     }
     for (int64_t i = 0; i < m->nodes; i++) {
         m->now.q[7 * i + 3] = 1;
     }
-    if (m->velocity_given) {
+    if (m->initial.velocity_given) {
         SPARI_TRY(rigid_field(m));
     }
     if (m->row->solved) {
@@ -549,7 +549,7 @@ int spar_member_set_motion(spar_member *member, const double *q, const double *v
     if (s->state.phase == SPARI_IDLE) {
         spari_member_restart(member);
     } else {
-        member->motion_given = 1;
+        member->state.motion_given = 1;
     }
     return SPAR_OK;
 }
@@ -573,6 +573,6 @@ int spar_member_drive_root(spar_member *member, const double q[7], const double 
     SPARI_TRY(spari_need_finite(s, __func__, member->name, "a", 6, in[1]));
     member->drive[1] = spari_pose_of(q, in[0], in[1]);
     spari_quat_normalise(member->drive[1].q + 3);
-    member->drive_given = 1;
+    member->state.drive_given = 1;
     return SPAR_OK;
 }

@@ -55,7 +55,7 @@ void spari_reaction_at_root(const spar_member *m, double *workspace, double load
     double joint_load[6] = {0};
     spari_joints_on(m, 0, joint_load);
     for (int i = 0; i < constrained; i++) { /* the root is node 0, which no element shares */
-        load[i] = r[i] - m->load_solved[1][i] - joint_load[i];
+        load[i] = r[i] - m->load.solved[1][i] - joint_load[i];
     }
 }
 
@@ -92,7 +92,7 @@ void spari_reaction_of_whole(const spar_member *m, double *workspace, double loa
         loose.pre = NULL;
         spari_body_residual(&loose, q, still ? NULL : v, still ? NULL : a, 1, r, NULL);
         spari_member_from_unique(m, 6, r, sum);
-        for (int64_t i = m->per_element; i < m->nodes; i += m->per_element) {
+        for (int64_t i = m->mesh.per_element; i < m->nodes; i += m->mesh.per_element) {
             memset(sum + 6 * i, 0, 6 * sizeof *sum); /* a joint counts once */
         }
     }
@@ -108,7 +108,7 @@ void spari_reaction_of_whole(const spar_member *m, double *workspace, double loa
             spari_joints_on(m, i, joint_load);
         }
         for (int k = 0; k < 6; k++) {
-            f[k] = sum[6 * i + k] - m->load_solved[1][6 * i + k] - joint_load[k];
+            f[k] = sum[6 * i + k] - m->load.solved[1][6 * i + k] - joint_load[k];
         }
         for (int k = 0; k < 3; k++) {
             r_i[k] = m->xr[3 * i + k] - m->xr[k] + (undeformed ? 0 : m->after.q[7 * i + k] - m->after.q[k]);
@@ -151,8 +151,8 @@ int spar_member_get_energy(const spar_member *member, int64_t capacity, double *
     double found[SPAR_ENERGY_COUNT] = {0};
     int status = member->row->energy ? member->row->energy(member, found) : SPAR_OK;
     SPARI_REQUIRE(member->session, status == SPAR_OK, status, "%s: no memory for '%s'", __func__, member->name);
-    found[SPAR_ENERGY_DISSIPATED] = member->dissipated;
-    if (member->foundation) {
+    found[SPAR_ENERGY_DISSIPATED] = member->state.dissipated;
+    if (member->load.foundation) {
         found[SPAR_ENERGY_FOUNDATION] = spari_foundation_energy(member, member->after.q);
     }
     spari_fill(capacity, energy, SPAR_ENERGY_COUNT, found);

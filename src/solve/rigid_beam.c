@@ -134,9 +134,9 @@ static void loads_on_root(const spar_member *m, const double *fluid, double left
     double dead[6] = {0}, dead_moments[9] = {0}, *workspace = m->body->scratch; /* the beam's own body is not in use */
     memset(load, 0, 6 * sizeof *load);
     memset(moments, 0, 9 * sizeof *moments);
-    sum_on_root(m, left > 0 ? spari_dead_before(m) : m->dead, dead, dead_moments);
+    sum_on_root(m, left > 0 ? spari_dead_before(m) : m->load.dead, dead, dead_moments);
     sum_on_root(m, fluid, load, moments);
-    if (m->applied) {
+    if (m->load.applied) {
         memset(workspace, 0, (size_t)(6 * m->nodes) * sizeof *workspace);
         spari_applied_at(m, left);
         spari_applied_nodal(m, q, workspace);
@@ -159,18 +159,18 @@ static int rigid_advance(spar_member *m, double dt) {
     spari_solver *s = b->solver;
     double before[7], *q = s->begin.q, change = 1;
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    loads_on_root(m, m->load_history[0], 1, m->now.q, s->steps.load0, b->offset_loads.begin);
+    loads_on_root(m, m->load.history[0], 1, m->now.q, s->steps.load0, b->offset_loads.begin);
     for (int pass = 0; pass < PASSES && change >= 1e-13; pass++) {
         memcpy(before, q, sizeof before);
-        if (m->applied) {
+        if (m->load.applied) {
             const spari_pose last = spari_pose_of(q, s->to.v, s->to.a);
             spari_rigid_nodes_move(m, &last, &m->after);
         }
-        loads_on_root(m, m->load_used, 0, m->after.q, s->steps.load1, b->offset_loads.end);
+        loads_on_root(m, m->load.used, 0, m->after.q, s->steps.load1, b->offset_loads.end);
         SPARI_TRY(spari_solver_advance(s, m, dt));
         q = s->to.q;
         change = 0;
-        for (int k = 0; k < 7 && m->applied; k++) {
+        for (int k = 0; k < 7 && m->load.applied; k++) {
             change = fmax(change, fabs(q[k] - before[k]));
         }
     }
@@ -262,8 +262,8 @@ static spari_solver *solver_of(const spar_member *m) {
 static void rigid_take_loads(spar_member *m) {
     spari_rigid_beam *b = m->solution;
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    loads_on_root(m, m->load_history[0], 1, m->now.q, b->solver->steps.load0, b->offset_loads.begin);
-    loads_on_root(m, m->load_used, 0, m->after.q, b->solver->steps.load1, b->offset_loads.end);
+    loads_on_root(m, m->load.history[0], 1, m->now.q, b->solver->steps.load0, b->offset_loads.begin);
+    loads_on_root(m, m->load.used, 0, m->after.q, b->solver->steps.load1, b->offset_loads.end);
 }
 
 static void rigid_take_rest(spar_member *m, const double *fluid) {

@@ -77,9 +77,9 @@ void spari_work_step(spar_member *m) {
             spari_joints_on(m, i, joint_load);
         }
         for (int c = 0; c < 6; c++) {
-            double now = m->load_solved[1][6 * i + c] - m->dead[6 * i + c] - joint_load[c];
+            double now = m->load.solved[1][6 * i + c] - m->load.dead[6 * i + c] - joint_load[c];
             fluid[c] = 0.5 * (w->fluid[6 * i + c] + now);
-            kept[c] = 0.5 * (dead[6 * i + c] + m->dead[6 * i + c] + w->load[6 * i + c]);
+            kept[c] = 0.5 * (dead[6 * i + c] + m->load.dead[6 * i + c] + w->load[6 * i + c]);
             w->fluid[6 * i + c] = now;
         }
         increment(m, i, rotates_linearly(m), d);
@@ -216,15 +216,15 @@ void spari_work_restart(spar_member *m) {
     }
     memset(w->sum, 0, sizeof w->sum);
     w->reaction_lacks = 0;
-    memcpy(w->fluid, m->load_history[0], (size_t)(6 * m->nodes) * sizeof *w->fluid);
+    memcpy(w->fluid, m->load.history[0], (size_t)(6 * m->nodes) * sizeof *w->fluid);
     spari_member_reaction_in(m, w->workspace, w->reaction);
 }
 
 void spari_work_begin(spar_member *m) {
     spari_work *w = m->work;
     for (int64_t i = 0; i < 6 * m->nodes; i++) {
-        w->reaction_lacks = w->reaction_lacks || w->fluid[i] != m->load_history[0][i];
-        w->fluid[i] = m->load_history[0][i];
+        w->reaction_lacks = w->reaction_lacks || w->fluid[i] != m->load.history[0][i];
+        w->fluid[i] = m->load.history[0][i];
     }
 }
 

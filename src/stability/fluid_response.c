@@ -148,7 +148,7 @@ static void see_loads(const spar_session *s, const spari_response_query *ask, do
         for (const spar_member *m = s->members; m; m = m->next) {
             for (int64_t i = 0; i < 2 * m->nodes; i++, shape += 3) {
                 double f[3];
-                spari_rotate_back(frame, m->load_pushed + 3 * i, f);
+                spari_rotate_back(frame, m->load.pushed + 3 * i, f);
                 sum += spari_dot(shape, f);
                 size += spari_norm(shape) * spari_norm(f);
             }

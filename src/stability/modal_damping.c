@@ -38,7 +38,7 @@ static void modal_damping(const spari_body *b, const double *q, const double *x,
 /* share[k][g][h]: the ratio of mode k is sum sqrt(mu_g mu_h) share */
 static int find_shares(spar_member *m, const double omega[2], const double *q, const double *x, double *work,
                        double share[2][GROUPS][GROUPS]) {
-    int64_t size = 36 * (int64_t)m->per_element * m->per_element;
+    int64_t size = 36 * (int64_t)m->mesh.per_element * m->mesh.per_element;
     for (int g = 0; g < GROUPS; g++) {
         for (int h = g; h >= 0; h--) { /* the diagonal first */
             spari_body *b;
@@ -125,7 +125,7 @@ static int rigid_modes(const spar_member *m) {
 static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2], double mu[6]) {
     spar_session *s = m->session;
     int64_t most = 1 + (mode[0] > mode[1] ? mode[0] : mode[1]), u = m->body->unique,
-            size = 36 * (int64_t)m->per_element * m->per_element;
+            size = 36 * (int64_t)m->mesh.per_element * m->mesh.per_element;
     double *all = spari_zalloc(most * (1 + 6 * m->nodes) + 7 * u + 12 * u + 2 * size, sizeof *all);
     SPARI_REQUIRE(s, all, SPAR_ERR_MEMORY, "no memory for '%s'", m->name);
     double *shapes = all + most, *q = shapes + 6 * m->nodes * most, *x = q + 7 * u, *work = x + 12 * u;

@@ -575,7 +575,7 @@ int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
     s->steps.solved = s->steps.begin;
     spari_solver_poison(s);
     spari_stage_start(s, member, &t.stage);
-    return spari_scheme_run(&how, &t, &c, &member->cuts, &s->steps.solved, member->session, dt);
+    return spari_scheme_run(&how, &t, &c, &member->state.cuts, &s->steps.solved, member->session, dt);
 }
 
 int spari_solver_balance(spari_solver *s, spar_member *member, double dt) {

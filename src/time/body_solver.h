@@ -102,7 +102,7 @@ void spari_solver_load(spari_solver *solver, const double *state);
 void spari_solver_poison(spari_solver *solver);
 /* Loads that follow the body's own nodes or stand along its line are there. */
 static inline int spari_solver_has_applied(const spari_solver *solver, const spar_member *member) {
-    return (member->applied || member->foundation) && !solver->offset_loads;
+    return (member->load.applied || member->load.foundation) && !solver->offset_loads;
 }
 /* The solver's nodes in spans, by whoever there is to work on them: span number from / SPARI_SPAN writes to its own
    nodes and most[number]. */

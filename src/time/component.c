@@ -144,7 +144,7 @@ int spari_component_advance(spari_component *p, double dt) {
     SPARI_TRY(spari_component_balance(p, dt));
     const spari_scheme alpha = p->scheme;
     steps->solved = steps->begin;
-    return spari_scheme_run(&how, p, &alpha, &p->member->cuts, &steps->solved, p->member->session, dt);
+    return spari_scheme_run(&how, p, &alpha, &p->member->state.cuts, &steps->solved, p->member->session, dt);
 }
 
 int spari_component_response(spari_component *p, const double *load, double *motion) {

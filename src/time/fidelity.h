@@ -37,10 +37,10 @@ typedef struct spari_fidelity {
 
     /* the motion at t^n has been set */
     void (*restart)(spar_member *m);
-    /* advances from t^n to t^n + dt in the session's substeps, under dead loads, load_history[0] and load_used;
+    /* advances from t^n to t^n + dt in the session's substeps, under dead loads, load.history[0] and load.used;
        reads t^n, writes m->after and m->dissipated_step */
     int (*advance)(spar_member *m, double dt);
-    /* finds accelerations at t^0 under dead loads and load_history[0], for steps dt; writes m->after, which is t^0
+    /* finds accelerations at t^0 under dead loads and load.history[0], for steps dt; writes m->after, which is t^0
        with them. NULL: the host gives them */
     int (*balance)(spar_member *m, double dt);
     /* after a step: the motion [nodes][6] that a small additional load [nodes][6] causes, displacements and small

@@ -22,14 +22,14 @@ static int is_iterated(const spar_member *m) {
 void spari_newton_stop_accept(spar_member *m) {
     const spar_session *s = m->session;
     if (s->newton.strict || !is_iterated(m) || !spari_step_error_applies(m) || !spari_step_error_is_known(s)) {
-        m->jerk = m->acceleration_scale = 0;
+        m->accuracy.jerk = m->accuracy.acceleration = 0;
         return;
     }
     const spari_step_change of = spari_step_change_of(m, m->row->whole && m->nodes > 1 ? m->nodes - 1 : 1);
     double length = spari_member_length(m), jerk = of.change / (s->clock.dt * length),
            acceleration_scale = of.acceleration / length;
-    m->jerk = fmax(jerk, keeps * m->jerk);
-    m->acceleration_scale = fmax(acceleration_scale, keeps * m->acceleration_scale);
+    m->accuracy.jerk = fmax(jerk, keeps * m->accuracy.jerk);
+    m->accuracy.acceleration = fmax(acceleration_scale, keeps * m->accuracy.acceleration);
 }
 
 /* The Newton error acts as a force, and forces change velocities lastingly. For a motion at omega, the position
@@ -37,16 +37,16 @@ void spari_newton_stop_accept(spar_member *m) {
    acceleration over the step to the acceleration. */
 double spari_newton_tolerance(const spar_member *m, const spari_scheme *c, double way) {
     const spar_session *s = m->session;
-    double strict = s->newton.atol + s->newton.rtol * way, change = c->h * m->jerk;
+    double strict = s->newton.atol + s->newton.rtol * way, change = c->h * m->accuracy.jerk;
     if (c->rule != SPARI_ALPHA) {
         return spari_newton_tolerance_stage(s, c, way);
     }
     if (s->newton.strict || c->still || !(change > 0)) {
         return strict;
     }
-    change = fmin(change, 2 * m->acceleration_scale);
-    double left = spari_step_error(c, change) * fmin(change / m->acceleration_scale, 1);
+    change = fmin(change, 2 * m->accuracy.acceleration);
+    double left = spari_step_error(c, change) * fmin(change / m->accuracy.acceleration, 1);
     left *= spari_member_root_is_prescribed(m) ? part : part_if_free;
-    left = fmin(left, s->newton.share * m->acceleration_scale / c->cm);
+    left = fmin(left, s->newton.share * m->accuracy.acceleration / c->cm);
     return fmax(strict, fmin(left, most * way));
 }

@@ -90,7 +90,7 @@ void spari_stage_start(spari_solver *s, spar_member *m, spari_stage *g) {
     spari_solver_spread(s, begin_span, s);
     g->before = m->drive[0];
     g->power = s->power_begin;
-    m->dissipated_step = 0;
+    m->state.dissipated_step = 0;
 }
 
 void spari_stage_enter(spari_solver *s) {

@@ -43,10 +43,10 @@ static void add_dead(void *context, int64_t from, int64_t to) {
 void spari_scheme_loads(const spar_member *member, spari_steps *steps) {
     const int64_t n = 6 * (int64_t)member->body->unique;
     const double *before = spari_dead_before(member);
-    spari_member_gather(member, member->load_history[0], steps->load0);
-    spari_member_gather(member, member->load_used, steps->load1);
-    spari_member_gather(member, member->dead, steps->load);
-    if (before == member->dead) {
+    spari_member_gather(member, member->load.history[0], steps->load0);
+    spari_member_gather(member, member->load.used, steps->load1);
+    spari_member_gather(member, member->load.dead, steps->load);
+    if (before == member->load.dead) {
         spari_thread_pool_spread(member->session->pool, n, SPAN, add_dead, steps);
         return;
     }
@@ -93,7 +93,7 @@ void spari_scheme_mix_loads(const spar_member *m, const spari_steps *t, int load
 }
 
 void spari_scheme_dissipate(spar_member *m, const spari_scheme *c, double *before, double power) {
-    m->dissipated_step += 0.5 * c->h * (*before + power);
+    m->state.dissipated_step += 0.5 * c->h * (*before + power);
     *before = power;
 }
 

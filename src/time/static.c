@@ -141,7 +141,7 @@ static int has_path(const spari_solver *s, const spar_member *m) {
     for (int i = 0; i < s->n; i++) {
         moments |= spari_norm(s->steps.load + 6 * i + 3) > 0;
     }
-    return !moments && m->root != SPAR_ROOT_PINNED && (!m->applied || spari_applied_potential(m));
+    return !moments && m->root != SPAR_ROOT_PINNED && (!m->load.applied || spari_applied_potential(m));
 }
 
 /* Whether the state without loads is in equilibrium: the path begins there. */
@@ -263,7 +263,7 @@ int spari_solver_static(spari_solver *s, const spar_member *member, int load_ste
         member->root == SPAR_ROOT_DRIVEN && spari_steady_rotation_of(member, member->now.v, member->now.a, &l.rotation);
     l.v = s->to.v, l.a = s->to.a;
     if (l.rotating) {
-        l.mass = spari_zalloc(36 * (int64_t)member->per_element * member->per_element, sizeof *l.mass);
+        l.mass = spari_zalloc(36 * (int64_t)member->mesh.per_element * member->mesh.per_element, sizeof *l.mass);
         if (!l.mass) {
             return no_memory_to_balance(member);
         }

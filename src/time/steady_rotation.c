@@ -27,9 +27,9 @@ spari_steady_rotation spari_steady_rotation_part(const spari_steady_rotation *ro
 
 void spari_steady_rotation_rates(const spar_member *m, const spari_steady_rotation *rotation, const double *q,
                                  double *v, double *a) {
-    int P = m->per_element;
+    int P = m->mesh.per_element;
     for (int64_t i = 0; i < m->nodes; i++) {
-        int64_t u = m->elements == 1 ? i : i - i / P;
+        int64_t u = m->mesh.elements == 1 ? i : i - i / P;
         double r[3];
         for (int c = 0; c < 3; c++) {
             r[c] = m->xr[3 * i + c] - m->xr[c] + q[7 * u + c] - q[c];

@@ -83,7 +83,7 @@ spari_step_change spari_step_change_of(const spar_member *m, int64_t stride) {
 }
 
 int spari_step_error_is_known(const spar_session *s) {
-    return s->clock.step > 0 || (s->members && s->members->begun);
+    return s->clock.step > 0 || (s->members && s->members->initial.acceleration);
 }
 
 double spari_step_error(const spari_scheme *c, double change) {

@@ -86,7 +86,7 @@ static double map_cost(const spar_session *s) {
     double sum = 0;
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         const spar_member *m = spari_fluid_member(f);
-        double P = m->per_element;
+        double P = m->mesh.per_element;
         sum += (double)m->nodes * (p->map + p->map_pair * P) + count_nodes(f) * (p->map_node + p->map_shape * P);
     }
     return sum;

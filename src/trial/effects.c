@@ -107,7 +107,7 @@ static double pretension_squares(const spar_member *m, const double *q, double *
    with a foundation twice that. */
 static void load_squares(const spar_member *m, double *loads, double length, double sum[TERMS]) {
     for (int64_t i = 0; i < 6 * m->nodes; i++) {
-        loads[i] = m->dead[i] + m->load_pushed[i];
+        loads[i] = m->load.dead[i] + m->load.pushed[i];
     }
     if (spari_carries_loads(m)) {
         spari_applied_nodal(m, m->now.q, loads);
@@ -115,7 +115,7 @@ static void load_squares(const spar_member *m, double *loads, double length, dou
     for (int64_t i = 0; i < m->nodes && m->session->joints && !m->external; i++) {
         spari_joints_on(m, i, loads + 6 * i);
     }
-    if (m->foundation) {
+    if (m->load.foundation) {
         double *springs = loads + 6 * m->nodes;
         spari_foundation_nodal(m, m->now.q, 1, springs);
         sum[FOUNDATION] += squares(springs, m->nodes, length);
@@ -128,8 +128,8 @@ static void load_squares(const spar_member *m, double *loads, double length, dou
 static int member_terms(const spar_member *m, double sum[TERMS]) {
     spari_body plain = *m->body, *b = &plain;
     int64_t n = b->unique;
-    double *q = spari_zalloc(37 * n + (m->foundation ? 12 : 6) * m->nodes, sizeof *q), *v = q + 7 * n, *a = v + 6 * n,
-           *none = a + 6 * n, *rest = none + 6 * n, *r = rest + 6 * n, *loads = r + 6 * n,
+    double *q = spari_zalloc(37 * n + (m->load.foundation ? 12 : 6) * m->nodes, sizeof *q), *v = q + 7 * n,
+           *a = v + 6 * n, *none = a + 6 * n, *rest = none + 6 * n, *r = rest + 6 * n, *loads = r + 6 * n,
            length = spari_member_length(m);
     SPARI_REQUIRE(m->session, q, SPAR_ERR_MEMORY, "no memory for the effects of '%s'", m->name);
     spari_member_to_unique(m, 7, m->now.q, q);

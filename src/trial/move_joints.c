@@ -21,19 +21,19 @@ int spari_joints_save_snapshot(spar_session *s, spari_joint_snapshot *t) {
 }
 
 int64_t spari_joints_end_node(const spar_member *m, int64_t node, spari_mesh mesh) {
-    int64_t k = node % m->per_element;
-    return k > 0 && k < m->per_element - 1 ? -1
-                                           : spari_resample_end(m->elements, (int)(node / m->per_element), k > 0, mesh);
+    int64_t k = node % m->mesh.per_element;
+    return k > 0 && k < m->mesh.per_element - 1
+               ? -1
+               : spari_resample_end(m->mesh.elements, (int)(node / m->mesh.per_element), k > 0, mesh);
 }
 
 int spari_joints_follow_rebuild(const spar_member *m, const spar_member *old) {
-    for (spar_joint *j = m->session->joints; j && !spari_mesh_is_equal(spari_member_mesh(m), spari_member_mesh(old));
-         j = j->next) {
+    for (spar_joint *j = m->session->joints; j && !spari_mesh_is_equal(m->mesh, old->mesh); j = j->next) {
         for (int side = 0; side < 2; side++) {
             if (j->member[side] != m) {
                 continue;
             }
-            int64_t node = spari_joints_end_node(old, j->node[side], spari_member_mesh(m));
+            int64_t node = spari_joints_end_node(old, j->node[side], m->mesh);
             SPARI_REQUIRE(m->session, node >= 0, SPAR_ERR_STATE,
                           "joint '%s' holds node %lld of '%s', which lies within an element, of those there are or "
                           "of those to come: the member cannot have other nodes; tie ends of elements",
@@ -69,7 +69,7 @@ void spari_joints_drop_snapshot(spar_session *s, spari_joint_snapshot *t) {
 }
 
 int spari_joints_hold_within(const spar_member *m, int elements) {
-    const spari_mesh mesh = {elements, m->per_element};
+    const spari_mesh mesh = {elements, m->mesh.per_element};
     int within = 0;
     for (const spar_joint *j = m->session->joints; j; j = j->next) {
         for (int side = 0; side < 2; side++) {

@@ -16,7 +16,7 @@
 
 spari_rebuild spari_rebuild_of(const spar_member *m) {
     return (spari_rebuild){
-        .per_element = m->per_element, .fidelity = m->fidelity, .modes = m->modes, .elements = m->elements};
+        .per_element = m->mesh.per_element, .fidelity = m->fidelity, .modes = m->modes, .elements = m->mesh.elements};
 }
 
 /* ---- description and state ---- */
@@ -38,22 +38,22 @@ static int describe_again(spar_member *m, const spari_rebuild *settings, const s
         int least = settings->per_element + (b->rule == SPAR_QUADRATURE_LOBATTO);
         b->points = b->points < least ? least : b->points;
     }
-    m->per_element = settings->per_element;
-    m->elements = settings->elements > 0 ? settings->elements : m->elements;
-    SPARI_REQUIRE(m->session, m->elements == old->elements || !old->beam->node_x, SPAR_ERR_STATE,
+    m->mesh.per_element = settings->per_element;
+    m->mesh.elements = settings->elements > 0 ? settings->elements : m->mesh.elements;
+    SPARI_REQUIRE(m->session, m->mesh.elements == old->mesh.elements || !old->beam->node_x, SPAR_ERR_STATE,
                   "'%s' has the nodes that it was given: it cannot have %d elements in place of %d; describe its axis, "
                   "or keep the elements",
-                  m->name, m->elements, old->elements);
-    m->nodes = (int64_t)m->elements * m->per_element;
+                  m->name, m->mesh.elements, old->mesh.elements);
+    m->nodes = (int64_t)m->mesh.elements * m->mesh.per_element;
     if (old->beam->node_x) { /* given nodes are replaced by the line through them */
         const spari_beam *given = old->beam;
         b->node_x = spari_zalloc(3 * m->nodes, sizeof *b->node_x);
         b->node_q = given->node_q ? spari_zalloc(4 * m->nodes, sizeof *b->node_q) : NULL;
         SPARI_REQUIRE(m->session, b->node_x && (b->node_q || !given->node_q), SPAR_ERR_MEMORY,
                       "no memory for a trial of '%s'", m->name);
-        spari_resample_values(spari_member_mesh(old), spari_member_mesh(m), 3, -1, given->node_x, b->node_x);
+        spari_resample_values(old->mesh, m->mesh, 3, -1, given->node_x, b->node_x);
         if (b->node_q) {
-            spari_resample_values(spari_member_mesh(old), spari_member_mesh(m), 4, 0, given->node_q, b->node_q);
+            spari_resample_values(old->mesh, m->mesh, 4, 0, given->node_q, b->node_q);
         }
     }
     return SPAR_OK;
@@ -61,7 +61,7 @@ static int describe_again(spar_member *m, const spari_rebuild *settings, const s
 
 /* Past loads are kept as far as both predictors need. */
 static void carry_state(spar_member *old, spar_member *m) {
-    const spari_mesh was = spari_member_mesh(old), is = spari_member_mesh(m);
+    const spari_mesh was = old->mesh, is = m->mesh;
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
         const spari_nodal *row = spari_nodal_table + k;
         const double *from = *spari_nodal_array(old, k);
@@ -72,8 +72,8 @@ static void carry_state(spar_member *old, spar_member *m) {
             spari_resample_loads(was, is, from, to);
         }
     }
-    if (old->begun) {
-        spari_resample_values(was, is, 6, -1, old->begun, m->now.a);
+    if (old->initial.acceleration) {
+        spari_resample_values(was, is, 6, -1, old->initial.acceleration, m->now.a);
     }
     spari_member_restart(m);
     spari_added_carry(old, m);

@@ -32,7 +32,7 @@ static int stations_of(const spar_member *m) {
 
 /* Element of a position on a beam, and its coordinate there, -1 .. 1. */
 static int place_of_station(const spar_member *m, int k, double *xi) {
-    double eta = (k + 1.0) / STATIONS * m->elements;
+    double eta = (k + 1.0) / STATIONS * m->mesh.elements;
     int e = (int)ceil(eta) - 1;
     *xi = 2 * (eta - e) - 1;
     return e;
@@ -45,7 +45,7 @@ static void find_bases(const spar_session *s, double *basis) {
             double xi = 0;
             (void)place_of_station(m, k, &xi);
             if (m->nodes > 1) {
-                spari_resample_basis(m->per_element, xi, basis);
+                spari_resample_basis(m->mesh.per_element, xi, basis);
             }
         }
     }
@@ -57,8 +57,8 @@ static void beam_station(const spar_member *m, int k, const double *phi, double 
     int e = place_of_station(m, k, &xi);
     for (int c = 0; c < 3; c++) {
         X[c] = u[c] = 0;
-        for (int l = 0; l < m->per_element; l++) {
-            int64_t i = (int64_t)e * m->per_element + l;
+        for (int l = 0; l < m->mesh.per_element; l++) {
+            int64_t i = (int64_t)e * m->mesh.per_element + l;
             X[c] += phi[l] * m->xr[3 * i + c];
             u[c] += phi[l] * m->after.q[7 * i + c];
         }
@@ -113,7 +113,7 @@ void spari_record_loads(const spar_session *s, double *load) {
     for (const spar_member *m = s->members; m; m = m->next, load += 6) {
         memset(load, 0, 6 * sizeof *load);
         for (int64_t i = 0; i < m->nodes; i++) {
-            const double *f = m->load_pushed + 6 * i, *x = m->xr + 3 * i;
+            const double *f = m->load.pushed + 6 * i, *x = m->xr + 3 * i;
             double arm[3] = {x[0] - m->xr[0], x[1] - m->xr[1], x[2] - m->xr[2]}, t[3];
             spari_cross(arm, f, t);
             for (int c = 0; c < 3; c++) {

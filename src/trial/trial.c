@@ -158,11 +158,11 @@ static int carry_loads(spar_session *s, const snapshot *t) {
     int64_t count = 0;
     int any = 0, k = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
-        any = any || !spari_mesh_is_equal(spari_member_mesh(m), spari_member_mesh(member_before(s, t, m)));
+        any = any || !spari_mesh_is_equal(m->mesh, member_before(s, t, m)->mesh);
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), k++) {
         const spar_member *before = member_before(s, t, spari_fluid_member(f));
-        if (!spari_mesh_is_equal(spari_member_mesh(before), spari_member_mesh(spari_fluid_member(f)))) {
+        if (!spari_mesh_is_equal(before->mesh, spari_fluid_member(f)->mesh)) {
             t->carried[count++] = (spari_moved_loads){f, t->fluids[k], before};
         }
     }

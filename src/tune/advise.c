@@ -143,8 +143,8 @@ static int try_elements(spari_advisor *d, spari_plan *p, int g, const shaping *w
 static void tell_kept(const spari_advisor *d, const spar_member *m, const char *why) {
     char text[SPARI_MESSAGE_SIZE];
     if (d->session->callbacks.log) {
-        (void)snprintf(text, sizeof text, "%s: '%.100s' keeps its %d elements: %s", SPARI_ADVISE, m->name, m->elements,
-                       why);
+        (void)snprintf(text, sizeof text, "%s: '%.100s' keeps its %d elements: %s", SPARI_ADVISE, m->name,
+                       m->mesh.elements, why);
         spari_log(d->session, SPAR_LOG_INFO, text);
     }
 }
@@ -275,7 +275,7 @@ static int is_elastic(const spari_plan *p, int g) {
 /* For members that do not bend: the fewest nodes with which the loads find the same line. */
 static int choose_stiff_nodes(spari_advisor *d, spari_plan *p, int g, const shaping *w, double *cost) {
     double part = INFINITY, took = *cost;
-    int now = p->group[g].nodes, own = spari_plan_member(d, g)->per_element;
+    int now = p->group[g].nodes, own = spari_plan_member(d, g)->mesh.per_element;
     spari_plan q = *p;
     q.group[g].nodes = spari_rule.least_nodes;
     if (!d->session->advice.keep_nodes && q.group[g].nodes < own &&

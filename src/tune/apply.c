@@ -65,7 +65,7 @@ static void put_settings(spar_session *s, const double *values, int past) {
 static int is_as_advised(const spar_member *m) {
     const spari_rebuild *to = m->advice;
     return !to ||
-           (to->per_element == m->per_element && (to->elements == 0 || to->elements == m->elements) &&
+           (to->per_element == m->mesh.per_element && (to->elements == 0 || to->elements == m->mesh.elements) &&
             to->fidelity == m->fidelity && to->modes == m->modes && (to->points == 0 || to->points == m->beam->points));
 }
 
@@ -79,7 +79,7 @@ static int rebuild_members(spar_session *s, change *c) {
     }
     for (spar_member *m = s->members; m; m = m->next) {
         if (is_as_advised(m) && !(joints_moved && spari_member_has_joints(m))) {
-            SPARI_REQUIRE(s, spari_history_keep(m->load_history, 6 * m->nodes, s->coupling.predictor) == SPAR_OK,
+            SPARI_REQUIRE(s, spari_history_keep(m->load.history, 6 * m->nodes, s->coupling.predictor) == SPAR_OK,
                           SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
             SPARI_TRY(spari_means_keep(m));
             continue;
@@ -116,7 +116,7 @@ static int rebuild_fluids(spar_session *s, change *c) {
 }
 
 static int has_other_nodes(const anew *a) {
-    return !spari_mesh_is_equal(spari_member_mesh(a->member), spari_member_mesh(&a->was));
+    return !spari_mesh_is_equal(a->member->mesh, a->was.mesh);
 }
 
 /* Collective. */

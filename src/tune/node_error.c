@@ -121,9 +121,9 @@ static int find_loads(const spar_member *m, double **load) {
         spari_body_residual(body, x, x + 7 * n, x + 13 * n, 1, r, NULL);
         memset(r, 0, (size_t)spari_member_constrained(m) * sizeof *r);
         spari_member_from_unique(m, 6, r, *load);
-        for (int64_t e = 1; e < m->elements;
+        for (int64_t e = 1; e < m->mesh.elements;
              e++) { /* of the two nodes at an element boundary, one has the whole load */
-            memset(*load + 6 * e * m->per_element, 0, 6 * sizeof **load);
+            memset(*load + 6 * e * m->mesh.per_element, 0, 6 * sizeof **load);
         }
         spari_member_even_loads(m, *load);
     }
@@ -135,13 +135,13 @@ static int find_loads(const spar_member *m, double **load) {
 /* During the call the member is replaced by the finer one, which this rank solves. */
 static int find_nodes_error(spar_member *m, double *error) {
     spari_rebuild settings = spari_rebuild_of(m);
-    int P = m->per_element, n = P + MORE < SPARI_MAX_NODES ? P + MORE : SPARI_MAX_NODES;
-    double *load = NULL, *onto = spari_zalloc(6 * (int64_t)m->elements * n, sizeof *onto);
+    int P = m->mesh.per_element, n = P + MORE < SPARI_MAX_NODES ? P + MORE : SPARI_MAX_NODES;
+    double *load = NULL, *onto = spari_zalloc(6 * (int64_t)m->mesh.elements * n, sizeof *onto);
     spar_member old;
     finer f = {NULL, NULL, NULL, NULL, NULL};
     int status = onto ? find_loads(m, &load) : spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for '%s'", m->name);
     if (status == SPAR_OK) {
-        spari_resample_loads(spari_member_mesh(m), (spari_mesh){m->elements, n}, load, onto);
+        spari_resample_loads(m->mesh, (spari_mesh){m->mesh.elements, n}, load, onto);
         settings.per_element = n;
         settings.left_out = SPAR_EFFECT_WORK; /* a new work account would reset those of the joints */
         int owner = m->owner;
@@ -180,11 +180,11 @@ int spar_member_get_error(spar_member *member, double *step, double *nodes) {
     SPARI_REQUIRE(s, !nodes || s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is under way; the error of the nodes is found between steps", __func__);
     if (step) {
-        found[0] = s->state.phase >= SPARI_SOLVED ? spari_step_control_error(m) : m->step_error;
+        found[0] = s->state.phase >= SPARI_SOLVED ? spari_step_control_error(m) : m->accuracy.step_error;
     }
     if (nodes && has_nodes(m)) {
         found[1] = -1;
-        const int finds = m->fidelity == SPAR_FIDELITY_EXACT && m->per_element < SPARI_MAX_NODES;
+        const int finds = m->fidelity == SPAR_FIDELITY_EXACT && m->mesh.per_element < SPARI_MAX_NODES;
         SPARI_TRY(finds ? spari_named(s, __func__, find_nodes_error(m, found + 1)) : SPAR_OK);
     }
     if (step) {

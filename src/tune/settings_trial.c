@@ -19,7 +19,7 @@
 /* ---- plans ---- */
 
 static int is_varied(const spar_member *m) {
-    return m->kind == SPARI_BEAM && !m->external && !spari_joints_hold_within(m, m->elements);
+    return m->kind == SPARI_BEAM && !m->external && !spari_joints_hold_within(m, m->mesh.elements);
 }
 
 const spar_member *spari_plan_member(const spari_advisor *d, int group) {
@@ -55,9 +55,9 @@ static int is_loaded_within(const spar_member *m, int elements) {
     for (int64_t node = 0; node < m->nodes; node++) {
         int any = 0;
         for (int c = 0; c < 6; c++) {
-            any = any || m->dead[6 * node + c] != 0 || (follower && follower[6 * node + c] != 0);
+            any = any || m->load.dead[6 * node + c] != 0 || (follower && follower[6 * node + c] != 0);
         }
-        if (any && spari_joints_end_node(m, node, (spari_mesh){elements, m->per_element}) < 0) {
+        if (any && spari_joints_end_node(m, node, (spari_mesh){elements, m->mesh.per_element}) < 0) {
             return 1;
         }
     }
@@ -68,7 +68,7 @@ const char *spari_plan_holds(const spari_advisor *d, int group, int elements) {
     const char *why = NULL;
     int k = 0;
     for (const spar_member *m = d->session->members; m && !why; m = m->next, k++) {
-        if (d->group[k] == group && elements != m->elements) {
+        if (d->group[k] == group && elements != m->mesh.elements) {
             why = m->beam->node_x                         ? "its nodes are given"
                   : spari_joints_hold_within(m, elements) ? "a joint holds a node that would lie within an element"
                   : is_loaded_within(m, elements)         ? "a load is kept at a node that lies within an element"
@@ -87,8 +87,8 @@ spari_plan spari_plan_present(const spari_advisor *d) {
     p.rtol = s->coupling.rtol, p.newton = s->newton.rtol, p.strict = s->newton.strict;
     for (int g = 0; g < d->groups; g++) {
         const spar_member *m = spari_plan_member(d, g);
-        p.group[g].elements = m->elements;
-        p.group[g].nodes = m->per_element;
+        p.group[g].elements = m->mesh.elements;
+        p.group[g].nodes = m->mesh.per_element;
         p.group[g].fidelity = m->fidelity;
         p.group[g].modes = m->modes;
     }

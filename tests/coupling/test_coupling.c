@@ -575,7 +575,7 @@ static void order_may_change(void **state) {
     for (int i = 0; i < 14; i++) {
         OK(p.session, spar_session_set_predictor(p.session, set[i]));
         for (int k = 0; k < 3; k++) {
-            assert_true((p.body[0]->load_history[k] != NULL) == (k <= set[i]));
+            assert_true((p.body[0]->load.history[k] != NULL) == (k <= set[i]));
         }
         step_of_order(&p, i, dt, used[i]);
     }

@@ -314,7 +314,7 @@ static void keep_places(const spar_session *s, double *q) {
 static void add_loads(const spar_session *s, const double *x, double by) {
     for (const spar_member *m = s->members; m; x += 6 * m->nodes, m = m->next) {
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
-            m->load_used[i] += by * x[i];
+            m->load.used[i] += by * x[i];
         }
     }
 }

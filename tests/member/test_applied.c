@@ -146,7 +146,7 @@ static void test_resultants(void **state) {
     for (int i = 0; i < 60; i++) {
         assert_true(load[i] == 0);
     }
-    assert_null(b->applied);
+    assert_null(b->load.applied);
     spar_session_destroy(&s);
 }
 
@@ -362,7 +362,7 @@ static void test_refusals(void **state) {
     assert_int_equal(spar_member_set_load(b, 0, SPAR_LOAD_FOLLOWER, bad), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_member_set_load(b, 0, SPAR_LOAD_FOLLOWER, NULL), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_member_set_load(NULL, 0, SPAR_LOAD_FOLLOWER, load), SPAR_ERR_ARGUMENT);
-    assert_null(b->applied);
+    assert_null(b->load.applied);
     spar_session_destroy(&s);
 }
 

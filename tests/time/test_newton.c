@@ -295,17 +295,17 @@ static void test_rejected(void **state) {
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, (const double[]){0, 10, 25, 0, 0, 0}));
     scene_run(s, 0.01, 10);
-    jerk[0] = b->jerk, swing[0] = b->acceleration_scale;
+    jerk[0] = b->accuracy.jerk, swing[0] = b->accuracy.acceleration;
     assert_true(jerk[0] > 0 && swing[0] > 0);
     OK(s, spar_step_begin(s, 0.05));
     OK(s, spar_step_solve(s));
     OK(s, spar_step_reject(s));
-    jerk[1] = b->jerk, swing[1] = b->acceleration_scale;
+    jerk[1] = b->accuracy.jerk, swing[1] = b->accuracy.acceleration;
     assert_memory_equal(jerk, jerk + 1, sizeof *jerk);
     assert_memory_equal(swing, swing + 1, sizeof *swing);
     scene_strict(s);
     scene_run(s, 0.01, 1);
-    assert_true(b->jerk == 0 && b->acceleration_scale == 0); /* strict: nothing is kept */
+    assert_true(b->accuracy.jerk == 0 && b->accuracy.acceleration == 0); /* strict: nothing is kept */
     spar_session_destroy(&s);
 }
 

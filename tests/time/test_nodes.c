@@ -505,7 +505,7 @@ static void check_lose(const spar_member *m, int n) {
 
 /* One element of n nodes, and elements of 3, whose joints the reference has twice. */
 static void check_show(int n, int elements) {
-    spar_member m = {.elements = elements, .per_element = (n - 1) / elements + 1};
+    spar_member m = {.mesh = {elements, (n - 1) / elements + 1}};
     double place[3 * 2 * MOST], room[2][25 * MOST], exact[19 * MOST], first[2][19 * MOST], R[9];
     double omega[3], alpha[3];
     spari_pose root;

@@ -93,7 +93,7 @@ static void momentum(const spar_member *m, double p[6]) {
         q[7 * i + 3] = 1;
     }
     (void)spari_body_residual(m->body, q, none, v, 0, r, NULL);
-    int P = m->per_element;
+    int P = m->mesh.per_element;
     for (int i = 0; i < m->body->unique; i++) {
         int e = i == 0 ? 0 : (i - 1) / (P - 1);
         const double *x = m->xr + 3 * (e * P + i - e * (P - 1));
@@ -152,7 +152,7 @@ static void test_comes_back(void **state) {
         spari_rebuild wish = {
             .per_element = 4 + k, .elements = 1 + 2 * k, .fidelity = fidelity[k], .modes = 4 * (k == 1)};
         OK(s, spari_member_rebuild(b, &wish, &old));
-        assert_int_equal(b->elements, 1 + 2 * k);
+        assert_int_equal(b->mesh.elements, 1 + 2 * k);
         spari_member_restore(b, &old);
         assert_memory_equal(b, &before, sizeof before);
     }

@@ -43,7 +43,7 @@ static void resultant(const spar_member *m, const double *load, double sum[6]) {
 
 /* Whether its elements have all polynomials of those there were. */
 static int holds_all(const spar_member *m) {
-    return m->elements % ELEMENTS == 0 && m->per_element >= NODES;
+    return m->mesh.elements % ELEMENTS == 0 && m->mesh.per_element >= NODES;
 }
 
 /* Dead, follower and line loads keep force and moment, whatever the nodes: the transpose of an interpolation that has
@@ -55,14 +55,14 @@ static void test_loads_keep_their_sums(void **state) {
         spar_session *s = scene_session();
         spar_member *b = bent_beam(s), old;
         double before[6], after[6], all[2][6], load[6 * 48];
-        resultant(b, b->dead, before);
+        resultant(b, b->load.dead, before);
         OK(s, spar_member_get_loads(b, load));
         resultant(b, load, all[0]);
         spari_rebuild wish = spari_rebuild_of(b);
         wish.per_element = nodes[k];
         wish.elements = elements[k];
         OK(s, spari_member_rebuild(b, &wish, &old));
-        resultant(b, b->dead, after);
+        resultant(b, b->load.dead, after);
         memcpy(b->after.q, b->now.q, (size_t)(7 * b->nodes) * sizeof(double));
         OK(s, spar_member_get_loads(b, load));
         resultant(b, load, all[1]);
