@@ -597,7 +597,7 @@ static void test_refusals(void **state) {
     REFUSED(c.s, SPAR_ERR_STATE, "2 states a node of the host's own", spar_aero_set_effects(c.aero, SPAR_AERO_STALL));
     OK(c.s, spar_fluid_set_states(c.fluid, 0));
     OK(c.s, spar_step_begin(c.s, 0.01));
-    REFUSED(c.s, SPAR_ERR_STATE, "a step is under way", spar_aero_set_effects(c.aero, SPAR_AERO_STALL));
+    REFUSED(c.s, SPAR_ERR_STATE, "a step is in progress", spar_aero_set_effects(c.aero, SPAR_AERO_STALL));
     OK(c.s, spar_step_reject(c.s));
     OK(c.s, spar_aero_set_effects(c.aero, SPAR_AERO_STALL));
     OK(c.s, spar_aero_solve(c.aero, rho, c.wind[0], 0.5)); /* before the first step */

@@ -193,7 +193,7 @@ static void test_drive_in_step(void **state) {
     OK(y.s, spar_joint_set_driven(y.hinge, SPAR_FREE_RY));
     OK(y.s, spar_step_begin(y.s, 0.1));
     REFUSED(y.s, SPAR_ERR_STATE, "given before spar_step_begin", spar_joint_drive(y.hinge, motion, NULL, NULL));
-    REFUSED(y.s, SPAR_ERR_STATE, "a step is under way", spar_joint_drive(y.hinge, (double[6]){NAN}, NULL, NULL));
+    REFUSED(y.s, SPAR_ERR_STATE, "a step is in progress", spar_joint_drive(y.hinge, (double[6]){NAN}, NULL, NULL));
     OK(y.s, spar_step_reject(y.s));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "motion", spar_joint_drive(y.hinge, (double[6]){NAN}, NULL, NULL));
     spar_session_destroy(&y.s);

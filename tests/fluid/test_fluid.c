@@ -779,7 +779,7 @@ static void totals_are_of_one_fluid(void **state) {
     memcpy(got, before, sizeof got);
     got[1] += 1e-9 * spari_norm(force[0][0]);
     assert_int_equal(spar_fluid_check_total(f[0], point, got, NULL, 1e-13), SPAR_ERR_ARGUMENT);
-    assert_true(says(&r, "forces pushed on all ranks") && says(&r, "pushed by one of them alone"));
+    assert_true(says(&r, "forces pushed on all ranks") && says(&r, "from exactly one rank"));
     got[1] = before[1];
     got[4] *= 1 + 1e-9;
     assert_int_equal(spar_fluid_check_total(f[0], point, got, got + 3, 1e-13), SPAR_ERR_ARGUMENT);

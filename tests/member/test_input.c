@@ -62,7 +62,7 @@ static void test_session_settings(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "atol is nan", spar_session_set_coupling(s, 1, NAN, 0, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "omega", spar_session_set_relaxation(s, 0));
     REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_session_set_option(s, "colour", "red"));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "cannot be", spar_session_set_option(s, "fluid.theta", "red"));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "does not accept", spar_session_set_option(s, "fluid.theta", "red"));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_session_set_option(s, NULL, "red"));
     still_works(s, "after");
     spar_session_destroy(&s);
@@ -205,7 +205,7 @@ static void test_steps(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_step_begin(s, INFINITY));
     REFUSED(s, SPAR_ERR_STATE, "begin", spar_step_solve(s));
     REFUSED(s, SPAR_ERR_STATE, "begin", spar_step_accept(s));
-    REFUSED(s, SPAR_ERR_STATE, "nothing to reject", spar_step_reject(s));
+    REFUSED(s, SPAR_ERR_STATE, "no step is in progress to reject", spar_step_reject(s));
     REFUSED(s, SPAR_ERR_STATE, "solve", spar_step_check(s, &done));
     OK(s, spar_step_begin(s, 0.1));
     REFUSED(s, SPAR_ERR_STATE, "accept or reject", spar_step_begin(s, 0.1));
@@ -295,7 +295,8 @@ static void test_read_back(void **state) {
         OK(s, spar_session_get_option(s, option[i][0], (int64_t)strlen(option[i][2]) + 1, word));
         assert_string_equal(word, option[i][2]);
     }
-    REFUSED(s, SPAR_ERR_ARGUMENT, "takes 7 characters, not 6", spar_session_get_option(s, "fluid.far", 6, word));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "needs 7 characters; the buffer has 6",
+            spar_session_get_option(s, "fluid.far", 6, word));
     REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_session_get_option(s, "far", 32, word));
     REFUSED(s, SPAR_ERR_ARGUMENT, "give average or group", spar_session_set_option(s, "fluid.theta", "red"));
     assert_int_equal(spar_session_get_newton(NULL, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);

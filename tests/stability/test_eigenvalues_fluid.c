@@ -524,7 +524,7 @@ static void test_progress(void **state) {
 
 static int solve_within(spar_session *s, double t, double dt, int iteration, void *context) {
     double value[2];
-    REFUSED(s, SPAR_ERR_STATE, "under way",
+    REFUSED(s, SPAR_ERR_STATE, "in progress",
             spar_session_solve_eigenvalues(s, 0.1, 0, 0, NULL, blow, context, 6, 1, NULL, value, 0, NULL, NULL));
     return blow(s, t, dt, iteration, context);
 }
@@ -564,7 +564,7 @@ static void test_refusals(void **state) {
             spar_session_solve_eigenvalues(empty, 1, 0, 0, NULL, blow, &c, 1, 1, NULL, value, 0, NULL, NULL));
     OK(s, spar_step(s, 0.1, solve_within, &c, NULL));
     OK(s, spar_step_begin(s, 0.1));
-    REFUSED(s, SPAR_ERR_STATE, "a step is under way", ASK(0.1, 0, 0, blow, 6, 1, NULL, value, 0, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "a step is in progress", ASK(0.1, 0, 0, blow, 6, 1, NULL, value, 0, NULL));
 #undef ASK
     spar_session_destroy(&s);
     spar_session_destroy(&empty);
