@@ -99,7 +99,7 @@ static void test_members(void **state) {
     REFUSED(s, SPAR_ERR_STATE, "no line", spar_member_commit(b));
     REFUSED(s, SPAR_ERR_ARGUMENT, "root", spar_member_set_root(b, 7));
     REFUSED(s, SPAR_ERR_ARGUMENT, "effect", spar_member_set_effects(b, 1 << 20));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "choose SPAR_FIDELITY_LINEAR", spar_member_set_effects(b, SPAR_EFFECT_INERTIA | 16));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "use SPAR_FIDELITY_LINEAR", spar_member_set_effects(b, SPAR_EFFECT_INERTIA | 16));
     REFUSED(s, SPAR_ERR_ARGUMENT, "rank", spar_member_set_owner(b, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "rank", spar_member_set_owner(b, -1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "unit", spar_member_set_placement(b, x, q));
@@ -125,7 +125,7 @@ static void test_beam_description(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "at least 2", spar_beam_set_axis(b, -3, eta, xyz, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_beam_set_axis(b, 3, NULL, xyz, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_beam_set_axis(b, 3, eta, NULL, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "increase", spar_beam_set_axis(b, 3, back, xyz, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "not above the previous one", spar_beam_set_axis(b, 3, back, xyz, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "eta 0", spar_beam_set_axis(b, 2, late, xyz, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "twist", spar_beam_set_axis(b, 3, eta, xyz, twist));
     REFUSED(s, SPAR_ERR_ARGUMENT, "give 4", spar_beam_set_nodes(b, 3, x, NULL));
@@ -211,8 +211,8 @@ static void test_steps(void **state) {
     REFUSED(s, SPAR_ERR_STATE, "accept or reject", spar_step_begin(s, 0.1));
     REFUSED(s, SPAR_ERR_STATE, "solve", spar_step_check(s, &done));
     REFUSED(s, SPAR_ERR_STATE, "solve", spar_step_accept(s));
-    REFUSED(s, SPAR_ERR_STATE, "step is under way", spar_session_set_integrator(s, 1, 1));
-    REFUSED(s, SPAR_ERR_STATE, "step is under way", spar_member_solve_static(b, 1));
+    REFUSED(s, SPAR_ERR_STATE, "step is in progress", spar_session_set_integrator(s, 1, 1));
+    REFUSED(s, SPAR_ERR_STATE, "step is in progress", spar_member_solve_static(b, 1));
     OK(s, spar_step_solve(s));
     REFUSED(s, SPAR_ERR_ARGUMENT, "done", spar_step_check(s, NULL));
     OK(s, spar_step_check(s, &done));
@@ -373,7 +373,7 @@ static void test_layers_above(void **state) {
     assert_string_equal(spar_fluid_get_name(f), "air");
     assert_true(spar_member_get_name(NULL)[0] == '\0' && spar_fluid_get_name(NULL)[0] == '\0');
     REFUSED(s, SPAR_ERR_ARGUMENT, "place for the member", spar_fluid_get_member(f, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "place for the session", spar_member_get_session(b, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "pointer to the session", spar_member_get_session(b, NULL));
 
     OK(s, spar_session_sum(s, SPAR_OK, 2, x)); /* of one rank */
     OK(s, spar_session_sum(s, SPAR_OK, 0, NULL));
