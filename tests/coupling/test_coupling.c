@@ -899,7 +899,7 @@ static void room_for_residuals(void **state) {
     NEAR(residual[1], 5 * 0.9, 1e-12); /* 5 r^k: the first ones */
     assert_true(residual[2] == -1 && size[2] == -1);
     assert_int_equal(spar_session_get_iterations(p.session, &iterations, -1, residual, size), SPAR_ERR_ARGUMENT);
-    assert_true(residual[0] > 0 && strstr(spar_session_message(p.session), "capacity of -1"));
+    assert_true(residual[0] > 0 && strstr(spar_session_message(p.session), "capacity is -1"));
     pistons_destroy(&p);
 }
 

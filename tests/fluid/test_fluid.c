@@ -296,7 +296,7 @@ static void poses_and_matrices(void **state) {
     OK(spar_fluid_pull_matrices(f, 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]));
     memcpy(m[1], m[4], sizeof m[1]);
     assert_int_equal(spar_fluid_check_matrices(f, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]), SPAR_ERR_ARGUMENT);
-    assert_true(says(&r, "node 1") && says(&r, "not this section's"));
+    assert_true(says(&r, "node 1") && says(&r, "not the rotation of this section"));
     m[1][4] = NAN;
     assert_int_equal(spar_fluid_check_matrices(f, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]), SPAR_ERR_ARGUMENT);
     assert_true(says(&r, "is not a number"));

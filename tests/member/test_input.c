@@ -372,7 +372,7 @@ static void test_layers_above(void **state) {
     assert_ptr_equal(member, b);
     assert_string_equal(spar_fluid_get_name(f), "air");
     assert_true(spar_member_get_name(NULL)[0] == '\0' && spar_fluid_get_name(NULL)[0] == '\0');
-    REFUSED(s, SPAR_ERR_ARGUMENT, "place for the member", spar_fluid_get_member(f, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "pointer to the member", spar_fluid_get_member(f, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "pointer to the session", spar_member_get_session(b, NULL));
 
     OK(s, spar_session_sum(s, SPAR_OK, 2, x)); /* of one rank */
@@ -386,7 +386,7 @@ static void test_layers_above(void **state) {
     OK(s, spar_fluid_set_force_nodes(f, 1, tip));
     OK(s, spar_fluid_map(f));
     REFUSED(s, SPAR_ERR_ARGUMENT, "give a SPAR_ERR_", spar_fluid_fail(f, SPAR_OK, "all is well"));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "say what failed", spar_fluid_fail(f, SPAR_ERR_USER, ""));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "describes the failure", spar_fluid_fail(f, SPAR_ERR_USER, ""));
     OK(s, spar_session_get_phase(s, &phase));
     assert_int_equal(phase, SPAR_PHASE_START);
     OK(s, spar_fluid_fail(f, SPAR_ERR_USER, "no mesh"));
