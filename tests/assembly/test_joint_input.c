@@ -166,7 +166,7 @@ static void test_two_nodes_of_one(void **state) {
         OK(s, spar_member_commit(b));
         OK(s, spar_line_create(s, "string", b, 0, zero, b, 3, (double[]){1, 0, 0}, &j));
         assert_int_equal(spar_step(s, 0.01, NULL, NULL, NULL), bends ? SPAR_OK : SPAR_ERR_ARGUMENT);
-        assert_true(bends || strstr(spar_session_message(s), "two nodes of 'beam', which moves as one body"));
+        assert_true(bends || strstr(spar_session_message(s), "two nodes of 'beam', which moves as one rigid body"));
         spar_session_destroy(&s);
     }
 }
