@@ -244,10 +244,10 @@ static void test_refusals(void **state) {
     assert_int_equal(spar_beam_get_foundation(NULL, NULL, 0, NULL, NULL), SPAR_ERR_ARGUMENT);
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_LINEAR, 0));
     OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
-    REFUSED(s, SPAR_ERR_UNSUPPORTED, "root that is driven", spar_member_commit(b));
+    REFUSED(s, SPAR_ERR_UNSUPPORTED, "frame of a driven root", spar_member_commit(b));
     OK(s, spar_member_set_root(b, SPAR_ROOT_FIXED));
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_RIGID, 0));
-    REFUSED(s, SPAR_ERR_UNSUPPORTED, "springs along it", spar_member_commit(b));
+    REFUSED(s, SPAR_ERR_UNSUPPORTED, "has a foundation", spar_member_commit(b));
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_EXACT, 0));
     int64_t n;
     double got[3];
