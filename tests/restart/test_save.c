@@ -258,16 +258,16 @@ static void bad_files(void **state) {
     for (int i = 0; i < 300; i++) { /* cut off anywhere */
         size_t n = i < 40 ? (size_t)i : (size_t)rand() % length;
         write_bytes(bad, n);
-        refused(&r, bad, SPAR_ERR_IO, n < 8 ? "no saved session" : "cut off");
+        refused(&r, bad, SPAR_ERR_IO, n < 8 ? "not a saved session" : "bytes");
     }
     for (int i = 0; i < 300; i++) { /* any bit turned */
         size_t bit = i < 200 ? (size_t)i : (size_t)rand() % (8 * length);
         bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
         write_bytes(bad, length);
         refused(&r, bad, SPAR_ERR_IO,
-                bit < 64    ? "no saved session"
+                bit < 64    ? "not a saved session"
                 : bit < 128 ? "version"
-                : bit < 192 ? "cut off"
+                : bit < 192 ? "bytes"
                             : "damaged");
         bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
     }
