@@ -263,7 +263,7 @@ static void test_refusals(void **state) {
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_LINEAR, 0));
     OK(s, spar_member_commit(b));
     OK(s, spar_joint_create(s, "root", b, 0, NULL, 0, SPAR_FREE_RZ, &j));
-    REFUSED(s, SPAR_ERR_UNSUPPORTED, "that joints move", spar_step_begin(s, 0.1));
+    REFUSED(s, SPAR_ERR_UNSUPPORTED, "moved by joints", spar_step_begin(s, 0.1));
     spar_session_destroy(&s);
 }
 
