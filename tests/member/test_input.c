@@ -96,7 +96,7 @@ static void test_members(void **state) {
     assert_null(m);
     OK(s, spar_beam_create(s, "b", 1, 4, &b));
     REFUSED(s, SPAR_ERR_ARGUMENT, "'b'", spar_beam_create(s, "b", 1, 4, &m));
-    REFUSED(s, SPAR_ERR_STATE, "no line", spar_member_commit(b));
+    REFUSED(s, SPAR_ERR_STATE, "no axis", spar_member_commit(b));
     REFUSED(s, SPAR_ERR_ARGUMENT, "root", spar_member_set_root(b, 7));
     REFUSED(s, SPAR_ERR_ARGUMENT, "effect", spar_member_set_effects(b, 1 << 20));
     REFUSED(s, SPAR_ERR_ARGUMENT, "use SPAR_FIDELITY_LINEAR", spar_member_set_effects(b, SPAR_EFFECT_INERTIA | 16));

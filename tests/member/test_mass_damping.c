@@ -329,7 +329,7 @@ static void test_bad_input(void **state) {
     for (int k = 0; k < 2; k++) {
         OK(s, spar_member_set_root(b, roots[k]));
         OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_RIGID, 0));
-        REFUSED(s, SPAR_ERR_UNSUPPORTED, "would brake it", spar_member_commit(b));
+        REFUSED(s, SPAR_ERR_UNSUPPORTED, "would slow its rigid motion", spar_member_commit(b));
     }
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_EXACT, 0));
     OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
