@@ -262,7 +262,7 @@ static void test_drivetrain(void **state) {
     NEAR(J[0] * shape[0][1][3] + J[1] * shape[1][1][3], 0, 1e-9);
     NEAR(J[0] * pow(shape[0][1][3], 2) + J[1] * pow(shape[1][1][3], 2), 1, 1e-12);
     assert_int_equal(spar_member_solve_modes(b[0], 3, f, NULL), SPAR_ERR_ARGUMENT);
-    assert_non_null(strstr(spar_session_message(s), "they have 2"));
+    assert_non_null(strstr(spar_session_message(s), "the assembly has 2"));
     OK(s, spar_member_solve_modes(b[0], 0, NULL, NULL));
     spar_session_destroy(&s);
 }
