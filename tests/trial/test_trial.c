@@ -1043,7 +1043,7 @@ static int meddle_between(spar_session *s, double done, double expected, void *c
     (void)done, (void)expected;
     OK(s, spar_session_get_time(s, &t, NULL, NULL));
     NEAR(t, 0.02, 1e-12);
-    REFUSED(s, SPAR_ERR_STATE, "trial run is under way",
+    REFUSED(s, SPAR_ERR_STATE, "trial run is in progress",
             spar_session_try(s, 0.01, 8, keep, press, h->c, 0, SPAR_TRY_COUNT, report));
     assert_int_equal(spar_session_save(s, "trial_apply.spar"), SPAR_ERR_STATE);
     OK(s, spar_session_set_progress(s, NULL, NULL));
