@@ -68,7 +68,7 @@ static int check_packed(spar_session *session, const spar_fluid *fluid, int stat
         int64_t node = 3, component = 1;
         SPARI_TRY(spar_fluid_get_layout(fluid, which, &node, &component));
         SPARI_REQUIRE(session, node == 3 && component == 1, status,
-                      "%s: fluid '%s' has a layout of its own; take it away with spar_fluid_set_layout (3, 1)", call,
+                      "%s: fluid '%s' has a non-default array layout; reset it with spar_fluid_set_layout (3, 1)", call,
                       spar_fluid_get_name(fluid));
     }
     return SPAR_OK;
@@ -84,7 +84,7 @@ static int check_blade_fluids(int blades, spar_fluid *const *fluid, const char *
         SPARI_TRY(find_session(fluid[b], &session));
         *first = b == 0 ? session : *first;
         SPARI_REQUIRE(*first, session == *first, SPAR_ERR_ARGUMENT,
-                      "%s: fluid '%s' of blade %d is of another session than blade 0", call,
+                      "%s: fluid '%s' of blade %d belongs to another session than blade 0", call,
                       spar_fluid_get_name(fluid[b]), b);
         SPARI_TRY(spar_fluid_get_count(fluid[b], SPAR_NODES_MOTION, &nodes));
         SPARI_TRY(spar_fluid_get_count(fluid[b], SPAR_NODES_FORCE, &forces));
@@ -113,7 +113,7 @@ static int find_centres(spar_aero *aero, const char *call) {
             const double *a = x + 3 * i, *c = a + 3;
             double d[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]}, length = spari_norm(d);
             SPARI_REQUIRE(aero->session, length > 0.0, SPAR_ERR_ARGUMENT,
-                          "%s: fluid '%s': sections %lld and %lld are at the same place", call,
+                          "%s: fluid '%s': sections %lld and %lld are at the same position", call,
                           spar_fluid_get_name(aero->fluid[b]), (long long)i, (long long)(i + 1));
             aero->length[b * aero->n + i] = length;
         }
@@ -122,7 +122,7 @@ static int find_centres(spar_aero *aero, const char *call) {
 }
 
 int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) {
-    SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the place for the handle is NULL", __func__);
+    SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the pointer to the handle is NULL", __func__);
     SPARI_REQUIRE(NULL, blades >= 0 && (blades == 0 || sections), SPAR_ERR_ARGUMENT,
                   "%s: %d blades%s; give one fluid per blade", __func__, blades, sections ? "" : " without fluids");
     int64_t n = 0;
@@ -202,8 +202,8 @@ static int keep_states(const spar_aero *aero, const char *caller) {
         int64_t width;
         SPARI_TRY(spar_fluid_get_states(aero->fluid[b], &width, NULL));
         SPARI_REQUIRE(aero->session, width == 0 || width == SPARI_MEMORY_NUMBERS, SPAR_ERR_STATE,
-                      "%s: fluid '%s' has %lld states a node of the host's own (spar_fluid_set_states); these effects "
-                      "need them",
+                      "%s: fluid '%s' has %lld states per node set by the host (spar_fluid_set_states), but these "
+                      "effects store their own states; set 0",
                       caller, spar_fluid_get_name(aero->fluid[b]), (long long)width);
         SPARI_TRY(spar_fluid_set_states(aero->fluid[b], SPARI_MEMORY_NUMBERS));
     }
@@ -261,7 +261,8 @@ int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist
     SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, i >= 0 && (aero->blades == 0 || i < aero->n), SPAR_ERR_ARGUMENT,
-                  "%s: no section %lld; there are %lld, counted from 0", __func__, (long long)i, (long long)aero->n);
+                  "%s: there is no section %lld; the blade has %lld, counted from 0", __func__, (long long)i,
+                  (long long)aero->n);
     SPARI_REQUIRE(aero->session, isfinite(chord) && chord >= 0.0, SPAR_ERR_ARGUMENT,
                   "%s: section %lld: chord %g; give a length >= 0", __func__, (long long)i, chord);
     SPARI_REQUIRE(aero->session, isfinite(twist), SPAR_ERR_ARGUMENT, "%s: section %lld: the twist is not finite",
@@ -339,7 +340,7 @@ static int adopt_wind(spar_aero *aero, const spari_wind *old, const char *caller
 /* Checks the arguments of a shear law; the messages name the allowed range. */
 static int check_shear(const spar_aero *aero, int law, double height, double parameter, const char *call) {
     SPARI_REQUIRE(aero->session, law >= SPAR_SHEAR_POWER && law <= SPAR_SHEAR_LINEAR, SPAR_ERR_ARGUMENT,
-                  "%s: no law %d; give SPAR_SHEAR_POWER, _LOG or _LINEAR", call, law);
+                  "%s: shear law %d is not known; give SPAR_SHEAR_POWER, _LOG or _LINEAR", call, law);
     SPARI_REQUIRE(aero->session, isfinite(height) && height > 0.0, SPAR_ERR_ARGUMENT,
                   "%s: the reference height is %g; give one > 0 above the ground", call, height);
     SPARI_REQUIRE(aero->session, isfinite(parameter), SPAR_ERR_ARGUMENT, "%s: the parameter is not finite", call);
@@ -372,7 +373,7 @@ int spar_aero_set_shear(spar_aero *aero, int law, const double ground[3], const 
                   "%s: the point on the ground has an entry that is not finite", __func__);
     spari_shear made = {.law = law, .height = height, .parameter = parameter};
     double length;
-    SPARI_TRY(find_direction(aero, up, made.up, &length, "the direction up", __func__));
+    SPARI_TRY(find_direction(aero, up, made.up, &length, "the upward direction", __func__));
     SPARI_TRY(check_shear(aero, law, height, parameter, __func__));
     memcpy(made.ground, ground, sizeof made.ground);
     SPARI_TRY(have_wind(aero, __func__));
@@ -391,7 +392,7 @@ int spar_aero_set_tower(spar_aero *aero, const double base[3], const double top[
                   SPAR_ERR_ARGUMENT, "%s: base or top has an entry that is not finite", __func__);
     double axis[3] = {top[0] - base[0], top[1] - base[1], top[2] - base[2]};
     spari_tower made = {.base_radius = base_radius, .top_radius = top_radius};
-    SPARI_TRY(find_direction(aero, axis, made.up, &made.length, "the way from base to top", __func__));
+    SPARI_TRY(find_direction(aero, axis, made.up, &made.length, "the vector from base to top", __func__));
     SPARI_REQUIRE(aero->session, isfinite(base_radius) && base_radius > 0.0 && isfinite(top_radius) && top_radius > 0.0,
                   SPAR_ERR_ARGUMENT, "%s: radii %g at the base, %g at the top; give lengths > 0", __func__, base_radius,
                   top_radius);
@@ -405,9 +406,10 @@ int spar_aero_set_tower(spar_aero *aero, const double base[3], const double top[
 
 int spar_aero_set_turn(spar_aero *aero, int turn) {
     REQUIRE_HANDLE(aero);
-    SPARI_REQUIRE(aero->session, turn == 1 || turn == -1, SPAR_ERR_ARGUMENT,
-                  "%s: the sense of turning is %d; give 1 for right-handed about the downwind axis, -1 for left-handed",
-                  __func__, turn);
+    SPARI_REQUIRE(
+        aero->session, turn == 1 || turn == -1, SPAR_ERR_ARGUMENT,
+        "%s: the direction of rotation is %d; give 1 for right-handed about the downwind axis, -1 for left-handed",
+        __func__, turn);
     aero->rotor.turn = turn;
     return SPAR_OK;
 }
@@ -415,7 +417,7 @@ int spar_aero_set_turn(spar_aero *aero, int turn) {
 int spar_aero_set_blades(spar_aero *aero, int total) {
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, total >= aero->blades, SPAR_ERR_ARGUMENT,
-                  "%s: %d blades in all, but %d of them are on this rank", __func__, total, aero->blades);
+                  "%s: %d blades in total, but %d of them are on this rank", __func__, total, aero->blades);
     aero->rotor.blades = total;
     return SPAR_OK;
 }
@@ -424,7 +426,7 @@ int spar_aero_set_effects(spar_aero *aero, int effects) {
     SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     SPARI_REQUIRE(aero->session, (effects & ~SPARI_AERO_ALL) == 0, SPAR_ERR_ARGUMENT,
-                  "%s: effects are %d, with bits that are not SPAR_AERO_ effects", __func__, effects);
+                  "%s: effects is %d; give a combination of SPAR_AERO_ effects", __func__, effects);
     SPARI_TRY(adopt(aero, effects, __func__));
     aero->effects_given = 1;
     return SPAR_OK;
@@ -443,17 +445,18 @@ static int check_blades(const spar_aero *aero, const char *call) {
         SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_MOTION, &motion));
         SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_FORCE, &force));
         SPARI_REQUIRE(aero->session, motion == aero->n && force == aero->n, SPAR_ERR_STATE,
-                      "%s: fluid '%s' had %lld sections when the aero object was made and has %lld motion and %lld "
+                      "%s: fluid '%s' had %lld sections when the aero object was created and has %lld motion and %lld "
                       "force nodes now; make a new one",
                       call, spar_fluid_get_name(fluid), (long long)aero->n, (long long)motion, (long long)force);
         SPARI_TRY(check_packed(aero->session, fluid, SPAR_ERR_STATE, call));
         SPARI_TRY(spar_fluid_get_map(fluid, SPAR_NODES_MOTION, NULL, NULL, NULL));
         SPARI_TRY(spar_fluid_get_map(fluid, SPAR_NODES_FORCE, NULL, NULL, NULL));
     }
-    SPARI_REQUIRE(aero->session, phase != SPAR_PHASE_BETWEEN, SPAR_ERR_STATE,
-                  "%s: no step is under way; call it between spar_step_begin and spar_step_accept, or before the first "
-                  "step",
-                  call);
+    SPARI_REQUIRE(
+        aero->session, phase != SPAR_PHASE_BETWEEN, SPAR_ERR_STATE,
+        "%s: no step is in progress; call it between spar_step_begin and spar_step_accept, or before the first "
+        "step",
+        call);
     return SPAR_OK;
 }
 
@@ -472,12 +475,13 @@ static int check_remembered(const spar_aero *aero, double theta, const char *cal
         int64_t numbers;
         SPARI_TRY(spar_fluid_get_states(aero->fluid[b], &numbers, &dt));
         SPARI_REQUIRE(aero->session, numbers == SPARI_MEMORY_NUMBERS, SPAR_ERR_STATE,
-                      "%s: fluid '%s' keeps %lld numbers a node, no more the %d of effects that remember (inflow, "
-                      "stall, unsteady); call spar_aero_set_effects without these and with them again",
+                      "%s: fluid '%s' has %lld states per node instead of the %d that the effects with memory (inflow, "
+                      "stall, unsteady) need; call spar_aero_set_effects without these effects, then with them",
                       call, spar_fluid_get_name(aero->fluid[b]), (long long)numbers, SPARI_MEMORY_NUMBERS);
-        SPARI_REQUIRE(aero->session, theta >= 1.0 || dt <= 0.0, SPAR_ERR_ARGUMENT,
-                      "%s: theta is %g; effects that remember (inflow, stall, unsteady) go from t^n to t^{n+1}: give 1",
-                      call, theta);
+        SPARI_REQUIRE(
+            aero->session, theta >= 1.0 || dt <= 0.0, SPAR_ERR_ARGUMENT,
+            "%s: theta is %g; effects with memory (inflow, stall, unsteady) advance from t^n to t^{n+1}; give 1", call,
+            theta);
     }
     return SPAR_OK;
 }
@@ -490,11 +494,11 @@ static int check_solve(const spar_aero *aero, double density, const double *infl
                   "%s: theta = %g lies outside [0,1]; 0 is t^n, 1 is t^{n+1}", call, theta);
     SPARI_REQUIRE(session, inflow || aero->blades == 0, SPAR_ERR_ARGUMENT, "%s: the inflow is NULL", call);
     SPARI_REQUIRE(session, aero->rotor_given || !(aero->rotor.effects & SPAR_AERO_INDUCTION), SPAR_ERR_STATE,
-                  "%s: induction is asked for but the rotor is not described; call spar_aero_set_rotor", call);
+                  "%s: induction is requested but the rotor is not described; call spar_aero_set_rotor", call);
     SPARI_REQUIRE(session, (aero->wind && aero->wind->has_shear) || !(aero->rotor.effects & SPAR_AERO_SHEAR),
-                  SPAR_ERR_STATE, "%s: shear is asked for but not described; call spar_aero_set_shear", call);
+                  SPAR_ERR_STATE, "%s: shear is requested but not described; call spar_aero_set_shear", call);
     SPARI_REQUIRE(session, (aero->wind && aero->wind->has_tower) || !(aero->rotor.effects & SPAR_AERO_TOWER),
-                  SPAR_ERR_STATE, "%s: a tower is asked for but not described; call spar_aero_set_tower", call);
+                  SPAR_ERR_STATE, "%s: a tower is requested but not described; call spar_aero_set_tower", call);
     SPARI_TRY(check_described(aero, call));
     int64_t bad = aero->blades > 0 ? spari_first_nonfinite(inflow, 3 * count(aero)) : -1;
     if (bad >= 0) {
@@ -539,7 +543,7 @@ static void lump(const spar_aero *aero, int blade, int from, double *node) {
 static int check_loads(const spar_aero *aero, const double *load, const char *what, const char *call) {
     for (int64_t i = 0; i < 3 * count(aero); i++) {
         SPARI_REQUIRE(aero->session, fabs(load[i]) < 1e200, SPAR_ERR_NUMERIC,
-                      "%s: fluid '%s', blade %lld, section %lld: %s of %g; look at density, inflow, chords", call,
+                      "%s: fluid '%s', blade %lld, section %lld: %s is %g; check density, inflow and chords", call,
                       spar_fluid_get_name(aero->fluid[i / (3 * aero->n)]), (long long)(i / (3 * aero->n)),
                       (long long)(i / 3 % aero->n), what, load[i]);
     }

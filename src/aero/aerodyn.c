@@ -52,8 +52,8 @@ static int check_spans(const spar_session *session, const char *call, const char
         int i;
         double t;
         SPARI_REQUIRE(session, find_stations(blade, span[k], &i, &t) == 0, SPAR_ERR_ARGUMENT,
-                      "%s: '%s': section %lld stands at span %g; the blade file goes from %g to %g", call, name,
-                      (long long)k, span[k], station(blade, 0, SPARI_BLADE_SPAN),
+                      "%s: '%s': section %lld is at span %g; the blade file covers %g to %g", call, name, (long long)k,
+                      span[k], station(blade, 0, SPARI_BLADE_SPAN),
                       station(blade, blade->stations - 1, SPARI_BLADE_SPAN));
     }
     return SPAR_OK;
@@ -142,9 +142,10 @@ int spar_fluid_read_aerodyn(spar_fluid *fluid, const char *primary_path, const c
     SPARI_REQUIRE(session, primary_path, SPAR_ERR_ARGUMENT, "%s: '%s': primary_path is NULL", __func__, name);
     SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT, "%s: '%s': %lld sections", __func__, name,
                   (long long)n);
-    SPARI_REQUIRE(session, span || n == 0, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': span is NULL for %lld sections; give their spans, or none and n = 0: the file's stations",
-                  __func__, name, (long long)n);
+    SPARI_REQUIRE(
+        session, span || n == 0, SPAR_ERR_ARGUMENT,
+        "%s: '%s': span is NULL for %lld sections; give their spans, or NULL and n = 0 for the stations of the file",
+        __func__, name, (long long)n);
     spari_blade blade = {0};
     int status = spari_blade_read(&blade, session, __func__, name, primary_path, blade_path, 0);
     status = status == SPAR_OK ? set_centres(fluid, session, __func__, &blade, q, n, span) : status;
@@ -253,8 +254,8 @@ static int find_common_twists(const spar_aero *aero, const char *call, const spa
         SPARI_TRY(find_twists(aero, call, b, blade, span, q, other, work));
         for (int64_t k = 0; k < aero->n; k++) {
             SPARI_REQUIRE(aero->session, fabs(sin(0.5 * (other[k] - twist[k]))) <= SPARI_TWIST_SLACK, SPAR_ERR_ARGUMENT,
-                          "%s: section %lld of blade %d ('%s') lacks a twist of %g rad, that of blade 0 %g; make the "
-                          "blades alike, or give each an aero object",
+                          "%s: section %lld of blade %d ('%s') has a remaining twist of %g rad, blade 0 has %g; make "
+                          "the blades identical, or create an aero object for each",
                           call, (long long)k, b, spar_fluid_get_name(aero->fluid[b]), other[k], twist[k]);
         }
     }
@@ -298,9 +299,10 @@ static int check_counts(const spar_aero *aero, const char *call) {
     for (int b = 0; b < aero->blades; b++) {
         int64_t n;
         SPARI_TRY(spar_fluid_get_count(aero->fluid[b], SPAR_NODES_MOTION, &n));
-        SPARI_REQUIRE(aero->session, n == aero->n, SPAR_ERR_STATE,
-                      "%s: fluid '%s' had %lld sections when the aero object was made and has %lld now; make a new one",
-                      call, spar_fluid_get_name(aero->fluid[b]), (long long)aero->n, (long long)n);
+        SPARI_REQUIRE(
+            aero->session, n == aero->n, SPAR_ERR_STATE,
+            "%s: fluid '%s' had %lld sections when the aero object was created and has %lld now; make a new one", call,
+            spar_fluid_get_name(aero->fluid[b]), (long long)aero->n, (long long)n);
     }
     return SPAR_OK;
 }
@@ -309,8 +311,8 @@ static int fill_sections(spar_aero *aero, const char *call, const spari_blade *b
                          const double *span) {
     int64_t n = aero->n;
     SPARI_REQUIRE(aero->session, span || n == blade->stations, SPAR_ERR_ARGUMENT,
-                  "%s: the blade file has %d stations and the blades %lld sections; give the spans of these", call,
-                  blade->stations, (long long)n);
+                  "%s: the blade file has %d stations and the blades %lld sections; give the spans of the sections",
+                  call, blade->stations, (long long)n);
     SPARI_TRY(span ? check_spans(aero->session, call, spar_fluid_get_name(aero->fluid[0]), blade, n, span) : SPAR_OK);
     double *twist = spari_zalloc(6 * n, sizeof *twist);
     spar_polar **polar = spari_zalloc(n, sizeof(spar_polar *));
@@ -336,7 +338,7 @@ int spar_aero_read_aerodyn(spar_aero *aero, const char *primary_path, const char
                   __func__);
     SPARI_REQUIRE(aero->session, primary_path, SPAR_ERR_ARGUMENT, "%s: primary_path is NULL", __func__);
     SPARI_REQUIRE(aero->session, aero->rotor.turn == 1, SPAR_ERR_UNSUPPORTED,
-                  "%s: these files are of blades that turn right-handed about the downwind axis, and "
+                  "%s: these files describe blades that rotate right-handed about the downwind axis, but "
                   "spar_aero_set_turn has mirrored the sections",
                   __func__);
     SPARI_TRY(spari_named(aero->session, __func__, check_counts(aero, __func__)));

@@ -104,8 +104,8 @@ static int check_rows(int64_t n, const double *alpha, const double *const value[
                           "%s: %s of row %lld (alpha %g rad) is not finite", call, name[c], (long long)i, alpha[i]);
         }
         SPARI_REQUIRE(NULL, i == 0 || alpha[i] > alpha[i - 1], SPAR_ERR_ARGUMENT,
-                      "%s: alpha of row %lld (%g rad) is not above that of the row before (%g rad); sort the "
-                      "rows and drop doubles",
+                      "%s: alpha of row %lld (%g rad) is not above that of the previous row (%g rad); sort the rows "
+                      "and remove duplicates",
                       call, (long long)i, alpha[i], alpha[i > 0 ? i - 1 : 0]);
     }
     return SPAR_OK;
@@ -116,16 +116,16 @@ static int check_turn(int64_t n, const double *alpha, const double *const value[
     static const char *const name[] = {"cl", "cd", "cm"};
     double width = alpha[n - 1] - alpha[0];
     SPARI_REQUIRE(NULL, width < SPARI_TURN * (1.0 + SPARI_TURN_SLACK), SPAR_ERR_ARGUMENT,
-                  "%s: alpha goes from %g (row 0) to %g (row %lld), more than a full turn; give radians, at "
-                  "most 2 pi of them",
+                  "%s: alpha goes from %g (row 0) to %g (row %lld), more than a full revolution; give radians over a "
+                  "range of at most 2 pi",
                   call, alpha[0], alpha[n - 1], (long long)(n - 1));
     if (width > SPARI_TURN * (1.0 - SPARI_TURN_SLACK)) {
         for (int c = 0; c < SPARI_COEFFICIENTS; c++) {
             double first = value[c] ? value[c][0] : 0.0, last = value[c] ? value[c][n - 1] : 0.0;
-            SPARI_REQUIRE(NULL, fabs(last - first) <= SPARI_END_SLACK * fmax(1.0, fabs(first)), SPAR_ERR_ARGUMENT,
-                          "%s: %s is %g in row 0 and %g in row %lld, which are the same angle a turn apart; "
-                          "make them equal",
-                          call, name[c], first, last, (long long)(n - 1));
+            SPARI_REQUIRE(
+                NULL, fabs(last - first) <= SPARI_END_SLACK * fmax(1.0, fabs(first)), SPAR_ERR_ARGUMENT,
+                "%s: %s is %g in row 0 and %g in row %lld, but the two rows are one revolution apart; make them equal",
+                call, name[c], first, last, (long long)(n - 1));
         }
     }
     return SPAR_OK;
@@ -135,7 +135,7 @@ int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, cons
                       spar_polar **polar) {
     SPARI_GUARD_ENVIRONMENT;
     const double *const value[] = {cl, cd, cm};
-    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the place for the polar is NULL; give the address of a handle",
+    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the pointer to the polar is NULL; give the address of a handle",
                   __func__);
     SPARI_REQUIRE(NULL, n >= 2, SPAR_ERR_ARGUMENT, "%s: %lld rows; a polar needs at least 2", __func__, (long long)n);
     SPARI_REQUIRE(NULL, n <= INT32_MAX, SPAR_ERR_ARGUMENT, "%s: %lld rows are too many", __func__, (long long)n);

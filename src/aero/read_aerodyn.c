@@ -68,8 +68,8 @@ static int read_columns(spari_reader *r, deck *d) {
         SPARI_TRY(spari_read_key(r, key[i]));
         SPARI_TRY(spari_read_whole(r, key[i], i == COLUMN_CM ? 0 : 1, 0, &d->column[i]));
         if (d->column[i] > MOST_COLUMN) {
-            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "%s is %d; tables of up to %d columns are read", key[i],
-                                   d->column[i], MOST_COLUMN);
+            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "%s is %d; at most %d columns are supported", key[i], d->column[i],
+                                   MOST_COLUMN);
         }
     }
     return SPAR_OK;
@@ -124,7 +124,7 @@ static int read_station(spari_reader *r, const deck *d, spari_blade *b, int i) {
                                d->airfoils);
     }
     if (i > 0 && !(row[SPARI_BLADE_SPAN] > row[SPARI_BLADE_SPAN - SPARI_BLADE_COLUMNS])) {
-        return SPARI_READ_FAIL(r, SPAR_ERR_IO, "BlSpn is %g and does not increase on the one before (%g)",
+        return SPARI_READ_FAIL(r, SPAR_ERR_IO, "BlSpn is %g and is not above the previous one (%g)",
                                row[SPARI_BLADE_SPAN], row[SPARI_BLADE_SPAN - SPARI_BLADE_COLUMNS]);
     }
     if (row[SPARI_BLADE_CHORD] < 0) {
@@ -195,7 +195,7 @@ static int read_rows(spari_reader *r, const deck *d, spari_airfoil *a) {
         a->cd[i] = x[d->column[COLUMN_CD] - 1];
         a->cm[i] = d->use_moment && d->column[COLUMN_CM] ? x[d->column[COLUMN_CM] - 1] : 0;
         if (i > 0 && !(a->alpha[i] > a->alpha[i - 1])) {
-            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "alpha is %g deg and does not increase on the row before (%g)",
+            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "alpha is %g deg and is not above the previous row (%g)",
                                    a->alpha[i] / degree, a->alpha[i - 1] / degree);
         }
     }
@@ -223,8 +223,8 @@ static int read_airfoil(spari_reader *r, const deck *d, spari_airfoil *a) {
     SPARI_TRY(spari_read_whole(r, "NumTabs", 1, 0, &tables));
     if (tables > 1 && d->tables > 1) {
         return SPARI_READ_FAIL(r, SPAR_ERR_UNSUPPORTED,
-                               "%d tables, between which AFTabMod %d interpolates; one table can be read, or, with "
-                               "AFTabMod 1, the first",
+                               "%d tables with interpolation (AFTabMod %d) are not supported; use one table, or "
+                               "AFTabMod 1 to read the first",
                                tables, d->tables);
     }
     SPARI_TRY(find_data(r, "NumAlf", &a->kind));

@@ -121,8 +121,8 @@ static int check_arguments(spar_session *s, const spar_aero *aero, const aero_tr
                            int64_t table_columns, const char *call) {
     SPARI_REQUIRE(s, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create", call);
     SPARI_REQUIRE(s, !aero->session || aero->session == s, SPAR_ERR_ARGUMENT,
-                  "%s: the blades are of another session; give theirs", call);
-    SPARI_REQUIRE(s, t->solve, SPAR_ERR_ARGUMENT, "%s: solve is NULL; give the one that spar_step is given", call);
+                  "%s: the blades belong to another session; give the session of the blades", call);
+    SPARI_REQUIRE(s, t->solve, SPAR_ERR_ARGUMENT, "%s: solve is NULL; give the solver passed to spar_step", call);
     SPARI_TRY(spari_need_capacity(s, call, table_rows));
     return spari_need_capacity(s, call, table_columns);
 }

@@ -197,7 +197,7 @@ static const char *iterate_together(void *self, double longest, spari_iterate *i
     spari_assembly *a = t->a;
     double noise, scale = balance(a, t->s, t->dt, &noise);
     if (!isfinite(scale)) {
-        return "met numbers that are not finite";
+        return "met values that are not finite";
     }
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
@@ -337,9 +337,8 @@ static int newton_all(spari_assembly *a, double s, double dt) {
     wrong = wrong ? walk_drives(a, s, dt, wrong, &iterations) : NULL;
     SPARI_REQUIRE(
         a->session, !wrong, SPAR_ERR_NUMERIC,
-        "the members that joint '%s' ties together: Newton %s (%d iterations in several attempts, each of %d at "
-        "most) in the step from t = %g; take a smaller dt, more substeps or a smaller rho_inf, or look at the "
-        "loads",
+        "the members connected by joint '%s': Newton %s (%d iterations in several attempts, each of %d at "
+        "most) in the step from t = %g; use a smaller dt, more substeps or a smaller rho_inf, or check the loads",
         a->constraint[0].joint->name, wrong, iterations, a->session->newton.max, a->session->clock.time);
     return SPAR_OK;
 }
@@ -458,8 +457,8 @@ static int start_all(spari_assembly *a) {
     }
     a->factored = 0;
     SPARI_REQUIRE(a->session, !singular, SPAR_ERR_NUMERIC,
-                  "the members that joint '%s' ties together: their mass and stiffness are singular at the start; give "
-                  "mass or rotary inertia to every direction in which they can move freely",
+                  "the members connected by joint '%s': their mass and stiffness are singular at the start; give mass "
+                  "or rotary inertia in every direction of free motion",
                   a->constraint[0].joint->name);
     for (int i = 0; i < a->constraints; i++) {
         spari_joint_balance(a->constraint[i].joint);
@@ -488,8 +487,7 @@ static void publish_component(spari_component *p, double *rates) {
 static int fail_singular(const spari_assembly *a) {
     return spari_fail(
         a->session, SPAR_ERR_NUMERIC,
-        "the members that joint '%s' ties together: found a singular tangent in the step from t = %g; take "
-        "a smaller dt",
+        "the members connected by joint '%s': found a singular tangent in the step from t = %g; use a smaller dt",
         a->constraint[0].joint->name, a->session->clock.time);
 }
 
@@ -655,7 +653,7 @@ static int gains_of_all(void *self, const spari_part *part) {
 
 static void name_all(const void *self, char *text, int size) {
     const spari_assembly *a = self;
-    (void)snprintf(text, (size_t)size, "the members that joint '%s' ties together", a->constraint[0].joint->name);
+    (void)snprintf(text, (size_t)size, "the members connected by joint '%s'", a->constraint[0].joint->name);
 }
 
 static void enter_all(void *self, const spari_part *part) {

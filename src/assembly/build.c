@@ -165,13 +165,13 @@ static int check_members(const spar_joint *j) {
     SPARI_TRY(check_committed(j, j->member[0]));
     SPARI_TRY(j->member[1] ? check_committed(j, j->member[1]) : SPAR_OK);
     SPARI_REQUIRE(j->session, j->member[0] != j->member[1] || !j->member[0]->row->whole, SPAR_ERR_ARGUMENT,
-                  "joint '%s' ties two nodes of '%s', which moves as one body; leave the joint out", j->name,
+                  "joint '%s' connects two nodes of '%s', which moves as one rigid body; remove the joint", j->name,
                   j->member[0]->name);
-    SPARI_REQUIRE(
-        j->session, is_part(j->member[0]) || is_part(j->member[1]) || !spari_joint_constrained(j), SPAR_ERR_ARGUMENT,
-        "joint '%s' holds or drives motions of nodes that all move as they are told ('%s'); leave its motions "
-        "free, with springs for what lies between them",
-        j->name, j->member[0]->name);
+    SPARI_REQUIRE(j->session, is_part(j->member[0]) || is_part(j->member[1]) || !spari_joint_constrained(j),
+                  SPAR_ERR_ARGUMENT,
+                  "joint '%s' constrains or drives nodes whose motion is prescribed ('%s'); leave the motions of the "
+                  "joint free and use springs instead",
+                  j->name, j->member[0]->name);
     return SPAR_OK;
 }
 
@@ -252,7 +252,7 @@ static int make_all(spar_session *s) {
         status = move_members(a);
         status = status == SPAR_OK ? make_system(a) : status;
     }
-    SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory for the members that joints tie together");
+    SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory for the members that joints connect");
     return status;
 }
 

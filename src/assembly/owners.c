@@ -75,8 +75,8 @@ static int find_host_owner(spari_assembly *a) {
             continue;
         }
         SPARI_REQUIRE(a->session, !by || by->owner == m->owner, SPAR_ERR_ARGUMENT,
-                      "members '%s' and '%s' are tied by joints, and their owners are ranks %d and %d: they are solved "
-                      "on one; give them one owner, or none",
+                      "members '%s' and '%s' are connected by joints, but their owners are ranks %d and %d; give "
+                      "connected members the same owner, or none",
                       by->name, m->name, by->owner, m->owner);
         by = m;
         a->owner = m->owner;
@@ -175,7 +175,7 @@ int spari_owners_assign(spar_session *s) {
     free_member *all = spari_zalloc(n, sizeof *all);
     double *busy = spari_zalloc(ranks, sizeof *busy);
     int status =
-        all && busy ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory to spread the members over the ranks");
+        all && busy ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory to distribute the members over the ranks");
     if (status == SPAR_OK) {
         (void)find_free(s, all);
         status = move_free(s, all, n, busy);

@@ -192,7 +192,8 @@ static int take_row(loop_rows *all, int first, int end, double size) {
 }
 
 static void tell(const spari_constraint *l, int k) {
-    static const char *const motion[6] = {"x", "y", "z", "the turn about x", "the turn about y", "the turn about z"};
+    static const char *const motion[6] = {
+        "x", "y", "z", "the rotation about x", "the rotation about y", "the rotation about z"};
     char text[SPARI_MESSAGE_SIZE];
     const spar_session *s = l->joint->session;
     if (s->callbacks.log) {

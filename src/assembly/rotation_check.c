@@ -64,9 +64,9 @@ static int goes_along(const spari_assembly *a, const prescribed_motion *t) {
 
 static int refuse_rotations(const spari_assembly *a, const prescribed_motion *one, const prescribed_motion *other) {
     return spari_fail(a->session, SPAR_ERR_UNSUPPORTED,
-                      "%s '%s' turns with (%g, %g, %g) rad/s, and %s '%s', which is tied to it, with (%g, %g, %g): "
-                      "parts that turn against each other have no state that is steady; for the shape at rest turn "
-                      "none of them, else go on in steps until what is left is periodic",
+                      "%s '%s' rotates at (%g, %g, %g) rad/s and %s '%s', which is connected to it, at (%g, %g, %g): "
+                      "parts in relative rotation have no steady state; for the shape at rest set all rates to 0, "
+                      "otherwise run time steps until the motion is periodic",
                       one->kind, one->name, one->v[3], one->v[4], one->v[5], other->kind, other->name, other->v[3],
                       other->v[4], other->v[5]);
 }
@@ -127,9 +127,9 @@ static void frame_of_joint(const spar_joint *j, int side, double x[3], double q[
 static int refuse_drive(const spari_constraint *l) {
     const spar_joint *j = l->joint;
     return spari_fail(j->session, SPAR_ERR_UNSUPPORTED,
-                      "joint '%s' is driven with a rate between parts that move, or other than about one axis: parts "
-                      "that move against each other have no state that is steady; for the shape at rest drive it with "
-                      "a rate of 0 (spar_joint_drive), else go on in steps until what is left is periodic",
+                      "joint '%s' is driven between moving parts, or not about a single axis: parts in relative motion "
+                      "have no steady state; for the shape at rest drive it with a rate of 0 (spar_joint_drive), "
+                      "otherwise run time steps until the motion is periodic",
                       j->name);
 }
 
@@ -162,23 +162,25 @@ static int refuse_loads_across(const spari_assembly *a, const spar_member *m, co
     spar_session *s = a->session;
     const double *g = m->body ? m->body->gravity : NULL;
     SPARI_REQUIRE(s, !g || !m->body->mass || !spari_across(axis, g), SPAR_ERR_UNSUPPORTED,
-                  "'%s' turns about (%.4g, %.4g, %.4g), and gravity (%g, %g, %g) goes across that axis: its weight "
-                  "changes with the angle, and no state is steady; give gravity along the axis alone, its mean over a "
-                  "turn (spar_session_set_gravity), or go on in steps until what is left is periodic",
+                  "'%s' rotates about (%.4g, %.4g, %.4g), and gravity (%g, %g, %g) is not parallel to that axis, so "
+                  "there is no steady state; set only the component of gravity along the axis, its mean over a "
+                  "revolution (spar_session_set_gravity), or run time steps until the motion is periodic",
                   m->name, axis[0], axis[1], axis[2], g[0], g[1], g[2]);
     for (int64_t i = 0; i < 2 * m->nodes; i++) {
-        SPARI_REQUIRE(s, !spari_across(axis, m->load.dead + 3 * i), SPAR_ERR_UNSUPPORTED,
-                      "'%s' turns about (%.4g, %.4g, %.4g), and the dead load of node %lld goes across that axis: it "
-                      "stands while the node turns; give it as SPAR_LOAD_FOLLOWER, or the part along the axis",
-                      m->name, axis[0], axis[1], axis[2], (long long)(i / 2));
+        SPARI_REQUIRE(
+            s, !spari_across(axis, m->load.dead + 3 * i), SPAR_ERR_UNSUPPORTED,
+            "'%s' rotates about (%.4g, %.4g, %.4g), and the dead load of node %lld is not parallel to that axis: its "
+            "direction is fixed while the node rotates; use SPAR_LOAD_FOLLOWER, or only the component along the axis",
+            m->name, axis[0], axis[1], axis[2], (long long)(i / 2));
     }
-    SPARI_REQUIRE(s, !spari_applied_across(m, axis), SPAR_ERR_UNSUPPORTED,
-                  "'%s' turns about (%.4g, %.4g, %.4g), and its dead line load goes across that axis: it stands while "
-                  "the line turns; give it as SPAR_LOAD_FOLLOWER, or the part along the axis",
-                  m->name, axis[0], axis[1], axis[2]);
+    SPARI_REQUIRE(
+        s, !spari_applied_across(m, axis), SPAR_ERR_UNSUPPORTED,
+        "'%s' rotates about (%.4g, %.4g, %.4g), and its dead line load is not parallel to that axis: its direction is "
+        "fixed while the beam rotates; use SPAR_LOAD_FOLLOWER, or only the component along the axis",
+        m->name, axis[0], axis[1], axis[2]);
     SPARI_REQUIRE(s, !m->load.foundation, SPAR_ERR_UNSUPPORTED,
-                  "'%s' turns, and springs along it lead to the ground, which stands: no state is steady; take the "
-                  "foundation away, or go on in steps",
+                  "'%s' rotates, and its foundation springs connect it to the ground, so there is no steady state; "
+                  "remove the foundation, or run time steps",
                   m->name);
     return SPAR_OK;
 }
@@ -200,8 +202,7 @@ static int is_free_to_rotate(spari_assembly *a) {
     }
     a->rotating.mass = spari_zalloc(36 * most * most, sizeof *a->rotating.mass);
     SPARI_REQUIRE(a->session, a->rotating.mass, SPAR_ERR_MEMORY,
-                  "no memory for the equilibrium of the members that joint '%s' ties together",
-                  a->constraint[0].joint->name);
+                  "no memory for the equilibrium of the members connected by joint '%s'", a->constraint[0].joint->name);
     return SPAR_OK;
 }
 
@@ -353,9 +354,9 @@ static int check_constraint(const spari_assembly *a, spari_constraint *l) {
         same = is_same_view(l, &now, &then, angles[k], speed);
     }
     SPARI_REQUIRE(a->session, same, SPAR_ERR_UNSUPPORTED,
-                  "joint '%s' ties '%s', which turns, to what stands, and does not hold it alike at every angle: no "
-                  "state is steady; leave its turn about the axis free or drive it, with springs and dampers alike all "
-                  "around, or go on in steps until what is left is periodic",
+                  "joint '%s' connects '%s', which rotates, to a part at rest, and its stiffness depends on the angle, "
+                  "so there is no steady state; leave the rotation about the axis free or drive it, with isotropic "
+                  "springs and dampers, or run time steps until the motion is periodic",
                   l->joint->name, l->joint->member[1 - side]->name);
     return SPAR_OK;
 }

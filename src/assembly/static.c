@@ -280,19 +280,19 @@ static void give_up_rest(spari_assembly *a) {
 /* No equilibrium was found: restores everything. */
 static int refuse_rest(spari_assembly *a, double done, const rest_end *end) {
     const char *motion = end->motion[0] ? end->motion : "some motion";
-    char text[500] = "; take more load_steps";
+    char text[500] = "; use more load_steps";
     if (end->why == LOOSE) {
-        (void)snprintf(text, sizeof text, ": nothing holds %s; hold it by a joint or a spring", motion);
+        (void)snprintf(text, sizeof text, ": %s is not constrained; constrain it by a joint or a spring", motion);
     } else if (end->why == UNSTABLE) {
         (void)snprintf(text, sizeof text,
-                       ": it is unstable there, and %s would leave it; place the members a little off it, from where a "
-                       "stable one is found, or hold that motion by a joint or a spring",
+                       ": the equilibrium is unstable in %s; start slightly away from it to find a stable one, or "
+                       "constrain that motion by a joint or a spring",
                        motion);
     }
     give_up_rest(a);
     return spari_fail(a->session, SPAR_ERR_NUMERIC,
-                      "the members that joint '%s' ties together: no %sequilibrium found beyond %.6g of the loads%s; "
-                      "the state is as it was",
+                      "the members connected by joint '%s': no %sequilibrium found beyond %.6g of the loads%s; "
+                      "the state is unchanged",
                       a->constraint[0].joint->name, end->why == UNSTABLE ? "stable " : "", done, text);
 }
 

@@ -756,7 +756,8 @@ static int free_motion(spari_assembly *a) {
 /* Names the motion by the joints that move. If no joint moves, the whole does, and the member whose node moves
    farthest names it. */
 void spari_system_name_free(spari_assembly *a, char *text, int size) {
-    static const char *const motion[6] = {"x", "y", "z", "the turn about x", "the turn about y", "the turn about z"};
+    static const char *const motion[6] = {
+        "x", "y", "z", "the rotation about x", "the rotation about y", "the rotation about z"};
     double most = 0, farthest = 0;
     if (free_motion(a)) {
         return;

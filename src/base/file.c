@@ -12,8 +12,8 @@
 enum { LONGEST = 4096, LINKS = 40, TRIES = 20 };
 
 static int failure(char *why, size_t size, const char *path, int reason) {
-    (void)snprintf(why, size, "cannot write '%.300s': %s; check the folder, its rights and the disk's room", path,
-                   strerror(reason ? reason : EIO));
+    (void)snprintf(why, size, "cannot write '%.300s': %s; check the folder, its permissions and the free disk space",
+                   path, strerror(reason ? reason : EIO));
     return SPAR_ERR_IO;
 }
 
@@ -31,7 +31,8 @@ const char *spari_file_kind(unsigned mode) {
 }
 
 static int refuse_kind(char *why, size_t size, const char *path, unsigned mode) {
-    (void)snprintf(why, size, "cannot write '%.300s': it is %s, and stays; name a file", path, spari_file_kind(mode));
+    (void)snprintf(why, size, "cannot write '%.300s': it is %s, which is not overwritten; name a file", path,
+                   spari_file_kind(mode));
     return SPAR_ERR_IO;
 }
 
@@ -120,7 +121,8 @@ static int clear(const char *temporary, char *why, size_t size) {
     int fd = S_ISREG(there.st_mode) ? open(temporary, O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC) : -1;
     int status = SPAR_OK;
     if (fd >= 0 && !lock(fd)) {
-        (void)snprintf(why, size, "cannot write '%.300s': another process is writing it; give each its own path",
+        (void)snprintf(why, size,
+                       "cannot write '%.300s': another process is writing it; give each process its own path",
                        temporary);
         status = SPAR_ERR_IO;
     } else if ((fd < 0 || is_at(fd, temporary)) && unlink(temporary) != 0 && errno != ENOENT) {

@@ -27,7 +27,7 @@ int spari_read_open(spari_reader *r, const char *path) {
 int spari_read_line(spari_reader *r, const char *what) {
     if (!fgets(r->line, sizeof r->line, r->file)) {
         if (ferror(r->file)) {
-            return spari_fail(r->session, SPAR_ERR_IO, "%s: '%s': reading %s failed behind line %d: %s", r->call,
+            return spari_fail(r->session, SPAR_ERR_IO, "%s: '%s': reading %s failed after line %d: %s", r->call,
                               r->subject, r->path, r->number, strerror(errno));
         }
         return spari_fail(r->session, SPAR_ERR_IO, "%s: '%s': %s ends at line %d; %s is missing", r->call, r->subject,
@@ -92,7 +92,7 @@ int spari_read_whole(spari_reader *r, const char *what, int low, int column, int
     double x[MOST_COLUMNS] = {0};
     SPARI_TRY(spari_read_numbers(r, what, column + 1, x));
     if (!(x[column] >= low && x[column] <= SPARI_READ_MOST) || x[column] != floor(x[column])) {
-        return SPARI_READ_FAIL(r, SPAR_ERR_IO, "%s is %g; give a whole number from %d", what, x[column], low);
+        return SPARI_READ_FAIL(r, SPAR_ERR_IO, "%s is %g; give a whole number of at least %d", what, x[column], low);
     }
     *out = (int)x[column];
     return SPAR_OK;

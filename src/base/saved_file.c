@@ -248,17 +248,16 @@ int spari_saving_end(spari_saving *saving, int64_t count, char *why, size_t size
 static int check_head(const char *path, const unsigned char *head, size_t got, uint64_t n, char *why, size_t size) {
     uint64_t words = got == HEAD_BYTES ? get_word(head + 16) : 0;
     if (got < sizeof magic || memcmp(head, magic, sizeof magic) != 0) {
-        (void)snprintf(why, size, "'%s' is no saved session", path);
+        (void)snprintf(why, size, "'%s' is not a saved session", path);
     } else if (got < HEAD_BYTES || n < HEAD_BYTES + CHECK_BYTES) {
-        (void)snprintf(why, size, "'%s' is cut off after %llu bytes; take an older file", path, (unsigned long long)n);
+        (void)snprintf(why, size, "'%s' is truncated after %llu bytes; use an older file", path, (unsigned long long)n);
     } else if (get_word(head + 8) != VERSION) {
-        (void)snprintf(
-            why, size,
-            "'%s' has version %llu of the format, this library reads %d; load it with the spar that wrote it", path,
-            (unsigned long long)get_word(head + 8), VERSION);
-    } else if (words != (n - HEAD_BYTES - CHECK_BYTES) / 8 || n % 8 != 0) {
         (void)snprintf(why, size,
-                       "'%s' is cut off or has grown: it has %llu bytes and should have %llu; take an older file", path,
+                       "'%s' has format version %llu, but this library reads version %d; load it with the version of "
+                       "spar that wrote it",
+                       path, (unsigned long long)get_word(head + 8), VERSION);
+    } else if (words != (n - HEAD_BYTES - CHECK_BYTES) / 8 || n % 8 != 0) {
+        (void)snprintf(why, size, "'%s' has %llu bytes but should have %llu; use an older file", path,
                        (unsigned long long)n, (unsigned long long)(HEAD_BYTES + CHECK_BYTES + 8 * words));
     } else {
         return SPAR_OK;
@@ -359,6 +358,6 @@ int spari_loading_sum(spari_loading *source, int part, int parts, uint64_t *sum,
 }
 
 int spari_loading_refuse(const char *path, char *why, size_t size) {
-    (void)snprintf(why, size, "'%s' is damaged (its checksum is wrong); take an older file", path);
+    (void)snprintf(why, size, "'%s' is damaged (wrong checksum); use an older file", path);
     return SPAR_ERR_IO;
 }

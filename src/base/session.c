@@ -75,7 +75,7 @@ double spari_setting_value(const spar_session *session, const spari_setting *of)
 
 int spari_need_capacity(const spar_session *session, const char *call, int64_t capacity) {
     SPARI_REQUIRE(session, capacity >= 0 && capacity <= SPARI_MOST, SPAR_ERR_ARGUMENT,
-                  "%s: a capacity of %lld; give the length of the array, 0 to 2^40", call, (long long)capacity);
+                  "%s: capacity is %lld; give the length of the array, 0 to 2^40", call, (long long)capacity);
     return SPAR_OK;
 }
 

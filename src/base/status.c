@@ -18,7 +18,7 @@
     ROW(SPAR_ERR_IO, "a file could not be read or written")                                                            \
     ROW(SPAR_ERR_UNSUPPORTED, "not supported by this build")                                                           \
     ROW(SPAR_ERR_USER, "a callback of the host failed")                                                                \
-    ROW(SPAR_ERR_LIMIT, "a limit of work is reached")
+    ROW(SPAR_ERR_LIMIT, "a work limit is reached")
 
 static const struct {
     int code;

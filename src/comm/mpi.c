@@ -139,7 +139,7 @@ static int tell_difference(mpi_comm *c, const char *call, const spari_agreed *mu
         first++;
     }
     tell_own(must_agree + first, own, sizeof own);
-    (void)snprintf(message, size, "%s: the ranks have different %s%s; give the same on every rank", call,
+    (void)snprintf(message, size, "%s: the ranks have different %s%s; make them equal on every rank", call,
                    must_agree[first].name, own);
     return SPAR_ERR_COMM;
 }
@@ -159,7 +159,7 @@ static int meet(mpi_comm *c, const char *call, const spari_agreed *must_agree, i
     }
     if (!is_same(all + NAME)) {
         (void)snprintf(message, size,
-                       "%s: other ranks are in another call; all ranks make the collective calls in the same order",
+                       "%s: other ranks are in another call; make the collective calls in the same order on all ranks",
                        call ? call : "spar");
         return SPAR_ERR_COMM;
     }
@@ -323,7 +323,7 @@ static int duplicate_quietly(MPI_Comm theirs, MPI_Comm *ours, const char **why) 
     int inter = 0;
     if (!theirs || theirs == MPI_COMM_NULL || MPI_Comm_test_inter(theirs, &inter) != MPI_SUCCESS) {
         *why =
-            "the communicator is MPI_COMM_NULL, or no communicator at all; give the one whose ranks hold the session";
+            "the communicator is MPI_COMM_NULL or invalid; give the communicator of the ranks that share the session";
         return SPAR_ERR_ARGUMENT;
     }
     if (inter) {
@@ -331,7 +331,7 @@ static int duplicate_quietly(MPI_Comm theirs, MPI_Comm *ours, const char **why) 
         return SPAR_ERR_ARGUMENT;
     }
     if (MPI_Comm_dup(theirs, ours) != MPI_SUCCESS) {
-        *why = "MPI could not duplicate the communicator; give one that is in use on all its ranks";
+        *why = "MPI could not duplicate the communicator; give a communicator that is valid on all its ranks";
         return SPAR_ERR_COMM;
     }
     return SPAR_OK;
@@ -343,7 +343,7 @@ static int duplicate(MPI_Comm theirs, MPI_Comm *ours, const char **why) {
     MPI_Errhandler handler;
     if (MPI_Comm_get_errhandler(MPI_COMM_WORLD, &handler) != MPI_SUCCESS ||
         MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN) != MPI_SUCCESS) {
-        *why = "MPI does not answer";
+        *why = "MPI does not respond";
         return SPAR_ERR_COMM;
     }
     int status = duplicate_quietly(theirs, ours, why);

@@ -89,7 +89,7 @@ int spari_coupling_create(spar_session *s, int scheme, int standing, spari_coupl
     if (!c || !make_vectors(s, scheme, c)) {
         spari_coupling_free(&c);
         return spari_fail(s, SPAR_ERR_MEMORY,
-                          "no memory for the coupling; ask for fewer columns (option coupling.columns)");
+                          "no memory for the coupling; request fewer columns (option coupling.columns)");
     }
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
@@ -274,18 +274,17 @@ static double grown_lately(const spari_coupling *c) {
 static const char *cures_of(const spar_session *s, int diverges) {
     int newton = spari_coupling_scheme_of(s->coupling.scheme)->columns;
     if (s->state.standing) {
-        return newton ? "take a larger tolerance or more iterations, or look at the fluid's loads"
-                      : "take SPAR_COUPLING_IQN_ILS, a larger tolerance or more iterations";
+        return newton ? "use a larger tolerance or more iterations, or check the fluid's loads"
+                      : "use SPAR_COUPLING_IQN_ILS, a larger tolerance or more iterations";
     }
     if (!diverges) {
-        return newton ? "take more iterations or a smaller dt, or reject the step"
-                      : "take SPAR_COUPLING_IQN_ILS, a smaller relaxation or dt, or reject the step";
+        return newton ? "use more iterations or a smaller dt, or reject the step"
+                      : "use SPAR_COUPLING_IQN_ILS, a smaller relaxation or dt, or reject the step";
     }
-    return newton
-               ? "take a smaller dt, coupling.reuse 0 or a larger coupling.filter, let the fluid correct its pressure "
-                 "more often before it pushes, or reject the step"
-               : "take SPAR_COUPLING_IQN_ILS, a smaller relaxation or dt, let the fluid correct its pressure more "
-                 "often before it pushes, or reject the step";
+    return newton ? "use a smaller dt, coupling.reuse 0, a larger coupling.filter or more pressure corrections per "
+                    "fluid solution, or reject the step"
+                  : "use SPAR_COUPLING_IQN_ILS, a smaller relaxation or dt, or more pressure corrections per fluid "
+                    "solution, or reject the step";
 }
 
 /* The cause in a message, without the call before it and the remedy after it. */
@@ -340,8 +339,8 @@ int spari_coupling_solve_failed(spar_session *s, const char *call, int status) {
     cause_of(s->message, call, why, sizeof why);
     const spar_member *m = factor > 0 && factor < TOO_MUCH ? NULL : member_overwhelmed(s, load);
     SPARI_REQUIRE(s, !m, status,
-                  "%s: the fluid's loads on member '%s' have grown from %.3g to %.3g (N, N m) within a few steps; look "
-                  "at the fluid that pushes them: has its mesh folded, has it diverged? (%.400s)",
+                  "%s: the fluid's loads on member '%s' have grown from %.3g to %.3g (N, N m) within a few steps; "
+                  "check the fluid for a folded mesh or divergence (%.400s)",
                   call, m->name, load[0], load[1], why);
     SPARI_REQUIRE(s, factor == 0, status,
                   "%s: the coupling diverges: the change of the loads has grown by a factor of %.3g from iteration to "
@@ -380,17 +379,16 @@ static int not_converged(spar_session *s, const char *call) {
     }
     /* Before growth is looked at: what rounding leaves may grow from iteration to iteration. */
     const double rounding = s->state.standing ? 0 : rounding_of_accelerations(s);
-    SPARI_REQUIRE(
-        s, 10 * rounding < s->coupling.rtol || s->coupling.rtol == 0, SPAR_ERR_NUMERIC,
-        "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g N%s%s): in a step "
-        "as short as %g s the rounding of places is %.1g of the accelerations, and of loads that answer to "
-        "them; take a larger dt or tolerance",
-        call, s->state.iteration, c->residual[last], c->size[last], motion, mass, s->clock.dt, rounding);
+    SPARI_REQUIRE(s, 10 * rounding < s->coupling.rtol || s->coupling.rtol == 0, SPAR_ERR_NUMERIC,
+                  "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g N%s%s): in a "
+                  "step of %g s the rounding of positions makes a relative error of %.1g in accelerations and in loads "
+                  "that depend on them; use a larger dt or tolerance",
+                  call, s->state.iteration, c->residual[last], c->size[last], motion, mass, s->clock.dt, rounding);
     double factor = grown_lately(c);
     if (factor > 0) {
         return spari_fail(
             s, SPAR_ERR_NUMERIC,
-            "%s: the coupling has not converged in %d iterations, it diverges: the change of "
+            "%s: the coupling has not converged in %d iterations and diverges: the change of "
             "the loads has grown by a factor of %.3g from iteration to iteration, to %.3g N of %.3g N%s%s; %s",
             call, s->state.iteration, factor, c->residual[last], c->size[last], motion, mass, cures_of(s, 1));
     }
@@ -452,10 +450,9 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
     double residual, size;
     *agreed = 0;
     load_norms(s, NULL, &residual, &size);
-    SPARI_REQUIRE(
-        s, isfinite(residual) && isfinite(size), SPAR_ERR_NUMERIC,
-        "the loads are too large to be squared: the fluid or the iteration has diverged; look at the fluid that "
-        "pushes them, take a smaller relaxation or dt, or reject the step");
+    SPARI_REQUIRE(s, isfinite(residual) && isfinite(size), SPAR_ERR_NUMERIC,
+                  "the square of the loads overflows: the fluid or the iteration has diverged; check the fluid, use a "
+                  "smaller relaxation or dt, or reject the step");
     int motion = c->accelerator && spari_coupling_wants_motion(s);
     if (motion) {
         motion_norms(s);
@@ -505,11 +502,10 @@ static int accept_unconverged(spar_session *s, const char *call) {
     c->report[SPAR_REPORT_UNCONVERGED] += 1;
     if (s->callbacks.log) {
         char text[SPARI_MESSAGE_SIZE];
-        (void)snprintf(
-            text, sizeof text,
-            "the coupling has not converged in %d iterations in the step from t = %g (loads change by %.3g N of "
-            "%.3g N), which goes on as it is (option coupling.unconverged = accept)",
-            s->state.iteration, s->clock.time, c->residual[last], c->size[last]);
+        (void)snprintf(text, sizeof text,
+                       "the coupling has not converged in %d iterations in the step from t = %g (loads change by %.3g "
+                       "N of %.3g N); the step continues unconverged (option coupling.unconverged = accept)",
+                       s->state.iteration, s->clock.time, c->residual[last], c->size[last]);
         spari_log(s, SPAR_LOG_WARNING, text);
     }
     return SPAR_OK;
@@ -578,9 +574,9 @@ static void tell_alternation(const spar_session *s) {
         char text[SPARI_MESSAGE_SIZE];
         (void)snprintf(
             text, sizeof text,
-            "the coupling is becoming unstable at t = %g: in the last %d steps the fluid's loads have missed the "
-            "predicted ones in turn on either side, each time by %.3g (+- %.2g) times as much: added mass of "
-            "about %.2g (+- %.1g) of the mass; an explicit scheme with a predictor of order %d is stable up to %.2g; "
+            "the coupling is becoming unstable at t = %g: in the last %d steps the error of the predicted loads has "
+            "alternated in sign and grown by a factor of %.3g (+- %.2g) per step: the added mass is about %.2g (+- "
+            "%.1g) of the mass; an explicit scheme with a predictor of order %d is stable up to %.2g; "
             "iterate "
             "(spar_session_set_coupling) or lower the order of the predictor",
             s->clock.time + s->clock.dt, c->alternations + 1, z, z * spread, ratio,

@@ -188,7 +188,7 @@ int spari_motion_norm_felt(spar_session *s, const spari_norm_loads *c, double *o
         }
     }
     if (status != SPAR_OK) {
-        (void)spari_fail(s, status, "no memory for the loads that modes feel");
+        (void)spari_fail(s, status, "no memory for the modal loads");
     }
     SPARI_TRY(asked ? spari_comm_sum(s->ranks.comm, off, c->n, status, s->message, sizeof s->message) : status);
     for (int64_t i = 0; i < c->n; i++) {

@@ -116,7 +116,7 @@ int spari_session_seal(spar_session *s, int status) {
         if (!ok) {
             free(s->own->pack);
             s->own->pack = NULL;
-            status = spari_fail(s, SPAR_ERR_MEMORY, "no memory for what the ranks exchange");
+            status = spari_fail(s, SPAR_ERR_MEMORY, "no memory for the exchange between ranks");
         }
     }
     if (status == SPAR_OK && s->ranks.reproducible) {
@@ -139,7 +139,7 @@ int spari_session_pushes(spar_session *s, const char *call) {
     const char *why;
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         int status = spari_fluid_refused(f, &why);
-        SPARI_REQUIRE(s, status == SPAR_OK, status, "%s: a push was refused, push again (%.800s)", call, why);
+        SPARI_REQUIRE(s, status == SPAR_OK, status, "%s: a push failed; push again (%.800s)", call, why);
     }
     return SPAR_OK;
 }

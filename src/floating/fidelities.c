@@ -145,17 +145,16 @@ static int frame_create(spar_member *m) {
     m->floats = spari_member_has_joints(m) && !spari_member_root_is_prescribed(m);
     SPARI_REQUIRE(m->session, m->floats || spari_member_root_is_prescribed(m) || (m->effects & SPAR_EFFECT_INERTIA),
                   SPAR_ERR_STATE,
-                  "member '%s' is linear without inertia and nothing holds it: fix or drive its root, or leave INERTIA "
-                  "on",
+                  "member '%s' is linear without inertia and free to move as a rigid body: fix or drive its root, or "
+                  "keep SPAR_EFFECT_INERTIA",
                   m->name);
-    SPARI_REQUIRE(
-        m->session, !m->floats || !m->load.foundation, SPAR_ERR_UNSUPPORTED,
-        "member '%s' is linear in the frame of a root that joints move, and has springs to the ground along it "
-        "(spar_beam_set_foundation), which that frame moves against; keep SPAR_FIDELITY_EXACT, or fix the root",
-        m->name);
+    SPARI_REQUIRE(m->session, !m->floats || !m->load.foundation, SPAR_ERR_UNSUPPORTED,
+                  "member '%s' is linear in the frame of a root moved by joints, which moves relative to its "
+                  "foundation (spar_beam_set_foundation); use SPAR_FIDELITY_EXACT, or fix the root",
+                  m->name);
     SPARI_REQUIRE(m->session, !m->floats || m->body->drag == 0, SPAR_ERR_UNSUPPORTED,
-                  "member '%s' is linear in the frame of a root that joints move, and has damping by mass, which is of "
-                  "velocities as they are; keep SPAR_FIDELITY_EXACT, fix the root, or damp with spar_beam_set_damping",
+                  "member '%s' is linear in the frame of a root moved by joints, but mass-proportional damping acts on "
+                  "absolute velocities; use SPAR_FIDELITY_EXACT, fix the root, or damp with spar_beam_set_damping",
                   m->name);
     spari_frame *f = m->solution = spari_zalloc(1, sizeof *f);
     if (!f) {
@@ -170,8 +169,8 @@ static int frame_create(spar_member *m) {
     status = status == SPAR_OK ? fill_frame(f, m) : status;
     f->factors = 0; /* those of the set-up do not count */
     SPARI_REQUIRE(m->session, status == SPAR_OK || status == SPAR_ERR_MEMORY, status,
-                  "member '%s': its stiffness is not positive definite, or it has fewer modes with mass than asked "
-                  "for; give every section mass and rotary inertia, or ask for fewer modes",
+                  "member '%s': its stiffness is not positive definite, or it has fewer modes with mass than "
+                  "requested; give every section mass and rotary inertia, or request fewer modes",
                   m->name);
     return status;
 }
@@ -185,10 +184,10 @@ static int modal_check(const spar_member *m) {
     SPARI_REQUIRE(m->session, m->beam->mass, SPAR_ERR_STATE,
                   "member '%s' has no mass, which a modal member needs; give its sections mass", m->name);
     SPARI_REQUIRE(m->session, m->modes <= most, SPAR_ERR_ARGUMENT,
-                  "member '%s': %lld modes are asked for; its nodes have %lld", m->name, (long long)m->modes,
+                  "member '%s': %lld modes are requested; its nodes have %lld", m->name, (long long)m->modes,
                   (long long)most);
     SPARI_REQUIRE(m->session, m->modes >= least, SPAR_ERR_ARGUMENT,
-                  "member '%s': %lld modes; its first %lld move it as a rigid body, give as many at least", m->name,
+                  "member '%s': %lld modes; its first %lld are rigid-body modes; request at least these", m->name,
                   (long long)m->modes, (long long)least);
     return SPAR_OK;
 }
@@ -220,13 +219,13 @@ static int frame_rest(spar_member *m, const double *fluid, int load_steps, int o
     const spari_frame *f = m->solution;
     (void)load_steps, (void)onward; /* the equations are linear */
     SPARI_REQUIRE(m->session, f->constrained == 6, SPAR_ERR_STATE,
-                  "member '%s': nothing holds a linear member that its root leaves free to turn; fix or drive its root",
+                  "member '%s': a linear member cannot have a root that is free to rotate; fix or drive its root",
                   m->name);
     spari_component p = frame_component(m);
     int failed = spari_component_static(&p, fluid) || spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 ||
                  spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0;
     SPARI_REQUIRE(m->session, !failed, SPAR_ERR_NUMERIC,
-                  "member '%s': the linear member has no equilibrium under these loads; the state is as it was",
+                  "member '%s': the linear member has no equilibrium under these loads; the state is unchanged",
                   m->name);
     return SPAR_OK;
 }

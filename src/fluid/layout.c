@@ -22,17 +22,17 @@ int spar_fluid_set_layout(spar_fluid *fluid, int which, int64_t node, int64_t co
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     SPARI_FLUID_REQUIRE(fluid, !fluid->member->session->state.trial, SPAR_ERR_STATE,
-                        "a trial run is under way; its fluids are not to be changed");
+                        "a trial run is in progress; change fluids before or after it");
     int64_t n = spari_fluid_set(fluid, which)->n, most = INT64_C(1) << LAYOUT_BITS;
     SPARI_FLUID_REQUIRE(fluid, node >= 1 && node <= SPARI_MOST && component >= 1 && component <= SPARI_MOST,
-                        SPAR_ERR_ARGUMENT, "nodes %lld and components %lld numbers apart; give 1 to 2^40 for each",
+                        SPAR_ERR_ARGUMENT, "node stride %lld and component stride %lld; give 1 to 2^40 for each",
                         (long long)node, (long long)component);
     SPARI_FLUID_REQUIRE(fluid, n < 2 || node <= most / (n - 1), SPAR_ERR_ARGUMENT,
-                        "nodes are %lld numbers apart, which %lld of them make too long an array", (long long)node,
-                        (long long)n);
+                        "node stride %lld for %lld nodes makes the array too long; stride x count must not exceed 2^40",
+                        (long long)node, (long long)n);
     SPARI_FLUID_REQUIRE(fluid, !overlaps(n, node, component), SPAR_ERR_ARGUMENT,
-                        "nodes %lld and components %lld numbers apart: of %lld nodes two numbers would share a place; "
-                        "set the nodes first, then e.g. (1, n) for an array by component",
+                        "node stride %lld and component stride %lld: entries of the %lld nodes overlap; set the nodes "
+                        "first, then e.g. (1, n) for an array by component",
                         (long long)node, (long long)component, (long long)n);
     int packed = node == 3 && component == 1;
     fluid->layout[which] = packed ? (spari_layout){0, 0} : (spari_layout){node, component};

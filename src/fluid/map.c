@@ -203,11 +203,11 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
     free_points_found(&f);
     free(again);
     if (far[0] > 0 && m->session->exchange.far_refuse) {
-        return spari_fluid_refuse(
-            fluid, SPAR_ERR_MAPPING, caller,
-            "%lld of %lld %s nodes lie farther than %g from the line, the first is node %lld; move them, raise "
-            "max_distance, or take them with the option fluid.far = take",
-            (long long)far[0], (long long)n, set_name[which], fluid->max_distance, (long long)far[1]);
+        return spari_fluid_refuse(fluid, SPAR_ERR_MAPPING, caller,
+                                  "%lld of %lld %s nodes lie farther than %g from the line, the first is node %lld; "
+                                  "move them, increase max_distance, or accept them with the option fluid.far = take",
+                                  (long long)far[0], (long long)n, set_name[which], fluid->max_distance,
+                                  (long long)far[1]);
     }
     return SPAR_OK;
 }
@@ -301,7 +301,7 @@ int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, c
 int spari_fluid_check_which(const spar_fluid *fluid, int which, const char *caller) {
     if (which != SPAR_NODES_MOTION && which != SPAR_NODES_FORCE) {
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
-                                  "node set %d is not known; SPAR_NODES_MOTION or SPAR_NODES_FORCE", which);
+                                  "node set %d is not known; give SPAR_NODES_MOTION or SPAR_NODES_FORCE", which);
     }
     return SPAR_OK;
 }
@@ -309,7 +309,7 @@ int spari_fluid_check_which(const spar_fluid *fluid, int which, const char *call
 int spar_fluid_get_count(const spar_fluid *fluid, int which, int64_t *n) {
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
-    SPARI_FLUID_REQUIRE(fluid, n, SPAR_ERR_ARGUMENT, "the place for the count is NULL");
+    SPARI_FLUID_REQUIRE(fluid, n, SPAR_ERR_ARGUMENT, "the pointer to the count is NULL");
     *n = spari_fluid_set(fluid, which)->n;
     return SPAR_OK;
 }
@@ -317,7 +317,7 @@ int spar_fluid_get_count(const spar_fluid *fluid, int which, int64_t *n) {
 int spar_fluid_get_kind(const spar_fluid *fluid, int which, int *kind) {
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
-    SPARI_FLUID_REQUIRE(fluid, kind, SPAR_ERR_ARGUMENT, "the place for the kind is NULL");
+    SPARI_FLUID_REQUIRE(fluid, kind, SPAR_ERR_ARGUMENT, "the pointer to the kind is NULL");
     const spari_node_set *set = spari_fluid_set(fluid, which);
     int bears_forces = which == SPAR_NODES_FORCE || fluid->shared;
     *kind = (set->sections ? SPAR_KIND_SECTIONS : 0) | (fluid->shared ? SPAR_KIND_SHARED : 0) |
@@ -328,7 +328,7 @@ int spar_fluid_get_kind(const spar_fluid *fluid, int which, int *kind) {
 int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int64_t *n) {
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
-    SPARI_FLUID_REQUIRE(fluid, n, SPAR_ERR_ARGUMENT, "the place for the count is NULL");
+    SPARI_FLUID_REQUIRE(fluid, n, SPAR_ERR_ARGUMENT, "the pointer to the count is NULL");
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, which, __func__, &s));
     int64_t count = 0;

@@ -25,10 +25,10 @@ int spari_fluid_refuse(const spar_fluid *fluid, int status, const char *caller, 
 int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid) {
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *session = member->session;
-    SPARI_REQUIRE(session, fluid, SPAR_ERR_ARGUMENT, "%s: member '%s': the place for the handle is NULL", __func__,
+    SPARI_REQUIRE(session, fluid, SPAR_ERR_ARGUMENT, "%s: member '%s': the pointer to the handle is NULL", __func__,
                   member->name);
     SPARI_REQUIRE(session, !session->state.trial, SPAR_ERR_STATE,
-                  "%s: member '%s': a trial run is under way; create fluids before or after it", __func__,
+                  "%s: member '%s': a trial run is in progress; create fluids before or after it", __func__,
                   member->name);
     SPARI_REQUIRE(session, name && name[0], SPAR_ERR_ARGUMENT,
                   "%s: member '%s': the fluid needs a name; messages use it", __func__, member->name);
@@ -232,7 +232,7 @@ spar_member *spari_fluid_member(const spar_fluid *fluid) {
 
 int spar_fluid_get_member(const spar_fluid *fluid, spar_member **member) {
     SPARI_FLUID_HANDLE(fluid);
-    SPARI_FLUID_REQUIRE(fluid, member, SPAR_ERR_ARGUMENT, "the place for the member is NULL");
+    SPARI_FLUID_REQUIRE(fluid, member, SPAR_ERR_ARGUMENT, "the pointer to the member is NULL");
     *member = fluid->member;
     return SPAR_OK;
 }
@@ -247,11 +247,11 @@ int spari_fluid_check_idle(const spar_fluid *fluid, const char *caller) {
     if (fluid->member->session->state.phase != SPARI_IDLE) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_STATE, caller,
-            "a step is under way; change nodes and maps after spar_step_accept or spar_step_reject");
+            "a step is in progress; change nodes and maps after spar_step_accept or spar_step_reject");
     }
     if (fluid->member->session->state.trial) {
         return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
-                                  "a trial run is under way; its fluids cannot be changed");
+                                  "a trial run is in progress; change fluids before or after it");
     }
     return SPAR_OK;
 }
@@ -283,8 +283,9 @@ static void empty_set(spar_fluid *fluid, int which) {
 static int set_places(spar_fluid *fluid, int which, int64_t n, const double *x, const char *caller) {
     SPARI_TRY(spari_fluid_check_idle(fluid, caller));
     if (n < 0 || n > SPARI_MOST || (n > 0 && !x)) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "%lld nodes%s; give 0 to 2^40, and n x 3 places",
-                                  (long long)n, x ? "" : " without places");
+        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
+                                  "%lld nodes%s; give 0 to 2^40, and n x 3 coordinates", (long long)n,
+                                  x ? "" : " without positions");
     }
     SPARI_TRY(
         spari_fluid_check_values(fluid, caller, which == SPAR_NODES_MOTION ? "motion node" : "force node", x, n, 3));
@@ -367,7 +368,7 @@ int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, method == SPAR_PROJECT_BOUNDED || method == SPAR_PROJECT_RPOLY, SPAR_ERR_ARGUMENT,
-                        "projection method %d is not known; SPAR_PROJECT_BOUNDED or SPAR_PROJECT_RPOLY", method);
+                        "projection method %d is not known; give SPAR_PROJECT_BOUNDED or SPAR_PROJECT_RPOLY", method);
     SPARI_FLUID_REQUIRE(fluid, !isnan(max_distance), SPAR_ERR_ARGUMENT,
                         "max_distance is not a number; <= 0 means no limit");
     fluid->method = method;
@@ -380,7 +381,8 @@ int spar_fluid_set_interpolation(spar_fluid *fluid, int kind) {
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, kind == SPAR_INTERPOLATE_NODAL || kind == SPAR_INTERPOLATE_CONSISTENT, SPAR_ERR_ARGUMENT,
-                        "interpolation %d is not known; SPAR_INTERPOLATE_NODAL or SPAR_INTERPOLATE_CONSISTENT", kind);
+                        "interpolation %d is not known; give SPAR_INTERPOLATE_NODAL or SPAR_INTERPOLATE_CONSISTENT",
+                        kind);
     fluid->consistent = kind == SPAR_INTERPOLATE_CONSISTENT;
     return SPAR_OK;
 }

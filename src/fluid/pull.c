@@ -111,10 +111,9 @@ static int need_states(spar_fluid *fluid, double theta, const char *caller) {
 
 int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller) {
     if (least < 1e-12) {
-        return spari_fluid_refuse(
-            fluid, SPAR_ERR_NUMERIC, caller,
-            "rotations within an element cancel each other, so that there is none to interpolate; use more "
-            "nodes or elements");
+        return spari_fluid_refuse(fluid, SPAR_ERR_NUMERIC, caller,
+                                  "rotations within an element cancel, so the interpolated rotation is undefined; use "
+                                  "more nodes or elements");
     }
     return SPAR_OK;
 }
@@ -303,8 +302,8 @@ static int check_rotations(const spar_fluid *fluid, int which, const wanted *w, 
     int turns = is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) || is_wanted(w->alpha);
     if (turns && spari_fluid_set(fluid, which)->weight) {
         return spari_fluid_refuse(fluid, SPAR_ERR_UNSUPPORTED, caller,
-                                  "motion nodes with weights have places, velocities and accelerations, but take no "
-                                  "section's rotation; pull it from a fluid without weights");
+                                  "motion nodes with weights have positions, velocities and accelerations, but no "
+                                  "rotation; pull rotations from a fluid without weights");
     }
     return SPAR_OK;
 }
@@ -512,7 +511,7 @@ int spar_fluid_pull_force_places(spar_fluid *fluid, double theta, double *x, dou
 static int check_convention(const spar_fluid *fluid, int convention, const char *caller) {
     if (convention != SPAR_MATRIX_LOCAL_TO_GLOBAL && convention != SPAR_MATRIX_GLOBAL_TO_LOCAL) {
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
-                                  "matrix convention %d is not known; SPAR_MATRIX_LOCAL_TO_GLOBAL or "
+                                  "matrix convention %d is not known; give SPAR_MATRIX_LOCAL_TO_GLOBAL or "
                                   "SPAR_MATRIX_GLOBAL_TO_LOCAL",
                                   convention);
     }
@@ -524,7 +523,7 @@ int spar_fluid_pull_matrices(spar_fluid *fluid, double theta, int convention, do
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_convention(fluid, convention, __func__));
     SPARI_FLUID_REQUIRE(fluid, matrix || spari_fluid_set(fluid, SPAR_NODES_MOTION)->n == 0, SPAR_ERR_ARGUMENT,
-                        "the place for the matrices is NULL");
+                        "the pointer to the matrices is NULL");
     wanted w = {.matrix.d = matrix, .convention = convention};
     return pull_motion(fluid, theta, &w, __func__);
 }
@@ -558,8 +557,7 @@ static const char *wrong_with(const double m[9], const double right[9]) {
         return NULL;
     }
     if (apart(m, right, 1) <= tolerance) {
-        return "is transposed: the other convention, or rows and columns swapped on the way from one language to "
-               "another";
+        return "is transposed: use the other convention, or check the order of rows and columns between languages";
     }
     if (determinant(m) < 0) {
         return apart(mirrored, right, 0) <= tolerance || apart(mirrored, right, 1) <= tolerance
@@ -567,7 +565,7 @@ static const char *wrong_with(const double m[9], const double right[9]) {
                    : "has determinant -1: an axis is reversed, or two are swapped";
     }
     return fabs(determinant(m) - 1) > tolerance ? "is not a rotation: its determinant is not 1"
-                                                : "is a rotation, but not this section's";
+                                                : "is a rotation, but not the rotation of this section";
 }
 
 int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *matrix) {

@@ -16,11 +16,11 @@ static int check_forces(const spar_fluid *fluid, int has_place, int64_t *n, cons
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
     *n = s ? s->n : 0;
     if (*n > 0 && !has_place) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "the place for the forces is NULL");
+        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "the pointer to the forces is NULL");
     }
     if (!fluid->history && s) {
         return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
-                                  "node forces are not kept; ask for SPAR_EFFECT_FLUID_HISTORY with "
+                                  "node forces are not stored; request SPAR_EFFECT_FLUID_HISTORY with "
                                   "spar_member_set_effects before the member is committed");
     }
     return SPAR_OK;
@@ -222,13 +222,14 @@ int spar_fluid_fail(spar_fluid *fluid, int status, const char *message) {
     SPARI_FLUID_HANDLE(fluid);
     SPARI_FLUID_REQUIRE(fluid, status > SPAR_OK && status <= SPAR_ERR_USER, SPAR_ERR_ARGUMENT,
                         "the status is %d; give a SPAR_ERR_*", status);
-    SPARI_FLUID_REQUIRE(fluid, message && message[0], SPAR_ERR_ARGUMENT, "the message is missing; say what failed");
+    SPARI_FLUID_REQUIRE(fluid, message && message[0], SPAR_ERR_ARGUMENT,
+                        "the message is missing; give a text that describes the failure");
     note_refusal(fluid, status, message);
     return SPAR_OK;
 }
 
 int spari_fluid_refused(const spar_fluid *fluid, const char **why) {
-    *why = fluid->why ? fluid->why : "no memory to say why";
+    *why = fluid->why ? fluid->why : "no memory for the message";
     return fluid->refused;
 }
 
@@ -238,7 +239,7 @@ static int push_loads(spar_fluid *fluid, spari_source force, spari_source moment
     if (session->state.phase == SPARI_IDLE && session->clock.started) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_STATE, caller,
-            "no step is under way; loads are pushed between spar_step_begin and spar_step_accept, or "
+            "no step is in progress; loads are pushed between spar_step_begin and spar_step_accept, or "
             "before the first step");
     }
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
@@ -341,7 +342,7 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
     SPARI_FLUID_REQUIRE(fluid, theta > 0 && theta <= 1, SPAR_ERR_ARGUMENT, "theta is %g; give a number in (0, 1]",
                         theta);
     SPARI_FLUID_REQUIRE(fluid, fluid->member->session->state.phase != SPARI_IDLE, SPAR_ERR_STATE,
-                        "no step is under way; these loads are pushed between spar_step_begin and spar_step_accept");
+                        "no step is in progress; these loads are pushed between spar_step_begin and spar_step_accept");
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, __func__, &s));
     if (!s) {
@@ -361,7 +362,7 @@ int spar_fluid_get_audit(const spar_fluid *fluid, int64_t capacity, double *audi
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_FLUID_REQUIRE(fluid, capacity >= 0 && capacity <= SPARI_MOST, SPAR_ERR_ARGUMENT,
-                        "a capacity of %lld; give the length of the array, 0 to 2^40", (long long)capacity);
+                        "capacity is %lld; give the length of the array, 0 to 2^40", (long long)capacity);
     spari_fill(capacity, audit, SPAR_AUDIT_COUNT, fluid->audit);
     return SPAR_OK;
 }

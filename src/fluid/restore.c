@@ -107,7 +107,7 @@ static int put_by_node(const spar_fluid *fluid, const char *call, const spari_by
     const spari_history *h = fluid->history;
     const spari_states *t = fluid->states;
     double *positions = spari_fluid_positions(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes);
-    SPARI_FLUID_REQUIRE_OF(fluid, call, positions, SPAR_ERR_MEMORY, "no memory to save what it keeps by node");
+    SPARI_FLUID_REQUIRE_OF(fluid, call, positions, SPAR_ERR_MEMORY, "no memory to save its states");
     const double *all[SPARI_FLUID_BLOCKS] = {positions};
     int blocks = 1;
     if (h) {
@@ -136,7 +136,8 @@ int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
     if (p && p->theta != 0 && p->theta != 1) {
         return spari_fluid_refuse(
             fluid, SPAR_ERR_STATE, call,
-            "it is between two pushes of spar_fluid_push_forces_at (theta = %g); save after theta = 1", p->theta);
+            "a push in several parts is incomplete (spar_fluid_push_forces_at, theta = %g); save after theta = 1",
+            p->theta);
     }
     state_head(fluid, state);
     double *at = state + S_HEAD;
@@ -228,7 +229,7 @@ static int alloc_nodes(spar_fluid *fluid, const char *call, spari_taking *t, con
     t->found = spari_zalloc(s->n, 1);
     SPARI_FLUID_REQUIRE_OF(fluid, call,
                            (t->history || !kept) && (t->states || width == 0) && t->positions && t->sorted && t->found,
-                           SPAR_ERR_MEMORY, "no memory for what it keeps by node");
+                           SPAR_ERR_MEMORY, "no memory for its states");
     for (int64_t i = 0; i < s->n; i++) {
         t->sorted[i] = t->positions + 3 * i;
     }
@@ -242,13 +243,13 @@ static int check_widths(const spar_fluid *fluid, const char *call, int count, co
     double width = fluid->taking->head[S_WIDTH];
     for (int k = 0; k < count; k++) {
         SPARI_FLUID_REQUIRE_OF(fluid, call, heads[k][S_NODES] == 0 || heads[k][S_WIDTH] == width, SPAR_ERR_ARGUMENT,
-                               "the ranks of the saved run kept %g and %g numbers a node (spar_fluid_set_states); "
-                               "have them keep the same",
+                               "the ranks of the saved run have %g and %g states per node (spar_fluid_set_states); set "
+                               "the same number on all ranks",
                                width, heads[k][S_WIDTH]);
     }
     double here = fluid->states && s && s->n > 0 ? (double)fluid->states->width : width;
     SPARI_FLUID_REQUIRE_OF(fluid, call, here == width, SPAR_ERR_ARGUMENT,
-                           "it keeps %g numbers a node (spar_fluid_set_states), and the saved run %g", here, width);
+                           "it has %g states per node (spar_fluid_set_states), the saved run has %g", here, width);
     return SPAR_OK;
 }
 
@@ -263,7 +264,7 @@ int spari_fluid_take(spar_fluid *fluid, const char *call, int count, const doubl
     SPARI_TRY(alloc_loads(fluid, call, t));
     SPARI_FLUID_REQUIRE_OF(
         fluid, call, !fluid->history || !s || s->n == 0 || t->head[S_KEPT] != 0, SPAR_ERR_ARGUMENT,
-        "node forces are asked for (SPAR_EFFECT_FLUID_HISTORY), and the saved run did not keep them");
+        "node forces are requested (SPAR_EFFECT_FLUID_HISTORY), but the saved run does not contain them");
     SPARI_TRY(check_widths(fluid, call, count, heads, s));
     return (t->head[S_KEPT] != 0 || t->head[S_WIDTH] != 0) && s ? alloc_nodes(fluid, call, t, s) : SPAR_OK;
 }
@@ -461,7 +462,7 @@ int64_t spari_fluid_first_missing(spar_fluid *fluid) {
 int spari_fluid_loaded_whole(spar_fluid *fluid, const char *call) {
     int64_t i = spari_fluid_first_missing(fluid);
     SPARI_FLUID_REQUIRE_OF(fluid, call, i < 0, SPAR_ERR_ARGUMENT,
-                           "force node %lld is not in the saved run; load with the nodes it had", (long long)i);
+                           "force node %lld is not in the saved run; use the nodes of the saved run", (long long)i);
     return SPAR_OK;
 }
 

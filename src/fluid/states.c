@@ -14,13 +14,13 @@ int spar_fluid_set_states(spar_fluid *fluid, int64_t width) {
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, width >= 0 && width <= SPARI_MOST_STATES, SPAR_ERR_ARGUMENT,
-                        "%lld numbers a node; give 0 to %d", (long long)width, SPARI_MOST_STATES);
+                        "%lld states per node; give 0 to %d", (long long)width, SPARI_MOST_STATES);
     if (width == (fluid->states ? fluid->states->width : 0)) {
         return SPAR_OK;
     }
     const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
     spari_states *made = width > 0 ? spari_states_create(s ? s->n : 0, width) : NULL;
-    SPARI_FLUID_REQUIRE(fluid, made || width == 0, SPAR_ERR_MEMORY, "no memory for %lld numbers a node",
+    SPARI_FLUID_REQUIRE(fluid, made || width == 0, SPAR_ERR_MEMORY, "no memory for %lld states per node",
                         (long long)width);
     spari_states_free(fluid->states);
     fluid->states = made;
@@ -47,7 +47,7 @@ static int check_states(const spar_fluid *fluid, int64_t width, int has_place, s
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
     int64_t kept = fluid->states ? fluid->states->width : 0;
     SPARI_FLUID_REQUIRE_OF(fluid, caller, width == kept, SPAR_ERR_ARGUMENT,
-                           "%lld numbers a node, but %lld are kept; see spar_fluid_set_states", (long long)width,
+                           "%lld states per node, but %lld are set; see spar_fluid_set_states", (long long)width,
                            (long long)kept);
     *states = s && kept > 0 && s->n > 0 ? fluid->states : NULL;
     SPARI_FLUID_REQUIRE_OF(fluid, caller, !*states || has_place, SPAR_ERR_ARGUMENT, "the array is NULL");
@@ -71,7 +71,7 @@ int spar_fluid_push_states(spar_fluid *fluid, int64_t width, const double *state
     const spar_session *session = fluid->member->session;
     int idle = session->state.phase == SPARI_IDLE;
     SPARI_FLUID_REQUIRE(fluid, !idle || !session->clock.started, SPAR_ERR_STATE,
-                        "no step is under way; states are pushed between spar_step_begin and spar_step_accept, or "
+                        "no step is in progress; states are pushed between spar_step_begin and spar_step_accept, or "
                         "before the first step");
     spari_states *t = NULL;
     SPARI_TRY(check_states(fluid, width, states != NULL, &t, __func__));

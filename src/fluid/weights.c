@@ -14,9 +14,9 @@ static int check_weighable(const spar_fluid *fluid, int64_t n, const char *calle
     const spari_node_set *set = &fluid->set[SPAR_NODES_MOTION];
     SPARI_TRY(spari_fluid_check_idle(fluid, caller));
     if (set->sections) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
-                                  "its motion nodes are sections, which have no weights; give places with "
-                                  "spar_fluid_set_motion_nodes");
+        return spari_fluid_refuse(
+            fluid, SPAR_ERR_STATE, caller,
+            "its motion nodes are sections, which have no weights; give positions with spar_fluid_set_motion_nodes");
     }
     if (n != set->n) {
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
@@ -67,7 +67,7 @@ int spar_fluid_set_motion_weights(spar_fluid *fluid, int64_t n, const double *w)
                         (long long)n);
     for (int64_t j = 0; j < n; j++) {
         SPARI_FLUID_REQUIRE(fluid, w[j] >= 0 && w[j] <= 1, SPAR_ERR_ARGUMENT,
-                            "the weight of motion node %lld is %g; give 0 (stays) to 1 (moves with the section)",
+                            "the weight of motion node %lld is %g; give 0 (fixed) to 1 (moves with the section)",
                             (long long)j, w[j]);
     }
     return use_weights(fluid, spari_copy(w, n), __func__);
@@ -77,7 +77,7 @@ int spar_fluid_get_motion_weights(const spar_fluid *fluid, double *w) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     const spari_node_set *set = spari_fluid_set(fluid, SPAR_NODES_MOTION);
-    SPARI_FLUID_REQUIRE(fluid, set->n == 0 || w, SPAR_ERR_ARGUMENT, "the place for the weights is NULL");
+    SPARI_FLUID_REQUIRE(fluid, set->n == 0 || w, SPAR_ERR_ARGUMENT, "the pointer to the weights is NULL");
     for (int64_t j = 0; j < set->n; j++) {
         w[j] = set->weight ? set->weight[j] : 1;
     }
@@ -91,7 +91,7 @@ static int line_distances(const spar_fluid *fluid, double **distance, const char
     *distance = NULL;
     if (!m->committed) {
         return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
-                                  "the member is not committed, so that there is no line to measure from; call "
+                                  "the member is not committed, so distances from its axis are not known; call "
                                   "spar_member_commit first, or give distances");
     }
     spari_line *line = spari_line_create(m->mesh.elements, m->mesh.per_element, m->xr);
@@ -131,7 +131,7 @@ int spar_fluid_fade_motion(spar_fluid *fluid, double within, double beyond, int6
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(check_weighable(fluid, n, __func__));
     SPARI_FLUID_REQUIRE(fluid, isfinite(within) && isfinite(beyond) && within < beyond, SPAR_ERR_ARGUMENT,
-                        "the motion fades from %g to %g; give two distances, the first the smaller", within, beyond);
+                        "the blending distances are %g and %g; give two distances in increasing order", within, beyond);
     if (distance) {
         SPARI_TRY(spari_fluid_check_values(fluid, __func__, "distance of motion node", distance, n, 1));
     }

@@ -40,11 +40,10 @@ static const char *added_mass_fault(const double M[36]) {
 static int check_guess(const spar_member *m, const char *call, int64_t n, const double *eta, const double *mass) {
     spar_session *s = m->session;
     SPARI_REQUIRE(s, m->kind != SPARI_POINT, SPAR_ERR_UNSUPPORTED,
-                  "%s: '%s' is a point, whose motion the host gives: it has no equations that a mass could stand in",
-                  call, m->name);
+                  "%s: '%s' is a point with prescribed motion; added mass does not apply to points", call, m->name);
     SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST && (n <= 1 || m->kind == SPARI_BEAM), SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld stations; give 0 to 2^40 of a beam, 1 of a rigid body, 0: no guess", call, m->name,
-                  (long long)n);
+                  "%s: '%s': %lld stations; give 0 to 2^40 for a beam, 1 for a rigid body, or 0 for no added mass",
+                  call, m->name, (long long)n);
     if (n > 0 && m->kind == SPARI_BEAM) {
         SPARI_TRY(spari_need_increasing(s, call, m->name, n, eta));
     }

@@ -61,11 +61,10 @@ static const double UNSEEN = 1e-8;
 static int check_stations(const spar_member *m, const char *call, int64_t n, const double *eta) {
     spar_session *s = m->session;
     SPARI_REQUIRE(s, m->kind != SPARI_POINT, SPAR_ERR_UNSUPPORTED,
-                  "%s: '%s' is a point, whose motion the host gives: it has no equations that a mass could stand in",
-                  call, m->name);
+                  "%s: '%s' is a point with prescribed motion; added mass does not apply to points", call, m->name);
     SPARI_REQUIRE(s, n >= 0 && n <= SPARI_LEARNED_STATIONS && (n <= 1 || m->kind == SPARI_BEAM), SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld stations; give 1 to %d of a beam, 1 of a rigid body, 0: learn nothing", call, m->name,
-                  (long long)n, SPARI_LEARNED_STATIONS);
+                  "%s: '%s': %lld stations; give 1 to %d for a beam, 1 for a rigid body, or 0 to switch estimation off",
+                  call, m->name, (long long)n, SPARI_LEARNED_STATIONS);
     return n > 0 && m->kind == SPARI_BEAM ? spari_need_increasing(s, call, m->name, n, eta) : SPAR_OK;
 }
 
@@ -104,8 +103,8 @@ int spar_member_learn_added_mass(spar_member *member, int64_t n, const double *e
     SPARI_TRY(spari_need_open(member, __func__));
     SPARI_TRY(check_stations(member, __func__, n, eta));
     spari_learned *l = n > 0 ? create_learned(n, member->kind == SPARI_BEAM ? eta : NULL) : NULL;
-    SPARI_REQUIRE(member->session, l || n == 0, SPAR_ERR_MEMORY, "%s: '%s': no memory for what is learned", __func__,
-                  member->name);
+    SPARI_REQUIRE(member->session, l || n == 0, SPAR_ERR_MEMORY, "%s: '%s': no memory for the added-mass estimate",
+                  __func__, member->name);
     spari_learned_free(member->learned);
     member->learned = l;
     return SPAR_OK;

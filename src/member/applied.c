@@ -978,8 +978,8 @@ static int check_line_load(const spar_member *m, const char *call, int kind, int
         SPARI_REQUIRE(s, eta[i] >= -1e-9 && eta[i] <= 1 + 1e-9, SPAR_ERR_ARGUMENT,
                       "%s: '%s': eta %lld is %g; eta runs from 0 to 1", call, m->name, (long long)i, eta[i]);
         SPARI_REQUIRE(s, i == 0 || eta[i] >= eta[i - 1], SPAR_ERR_ARGUMENT,
-                      "%s: '%s': eta %lld (%.17g) is below the one before; two stations at one eta are a jump", call,
-                      m->name, (long long)i, eta[i]);
+                      "%s: '%s': eta %lld (%.17g) is below the previous one; two stations at the same eta mark a jump",
+                      call, m->name, (long long)i, eta[i]);
     }
     return SPAR_OK;
 }
@@ -987,14 +987,14 @@ static int check_line_load(const spar_member *m, const char *call, int kind, int
 static int check_bed(const spar_member *m, const char *call, int64_t n, const double *eta, const double *k) {
     spar_session *s = m->session;
     SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST_POINT_MASSES, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld stations; give 0 (none any more) to %d", call, m->name, (long long)n,
+                  "%s: '%s': %lld stations; give 0 (removes all) to %d", call, m->name, (long long)n,
                   SPARI_MOST_POINT_MASSES);
     SPARI_TRY(spari_need_finite(s, call, m->name, "eta", n, eta));
     SPARI_TRY(spari_need_finite(s, call, m->name, "stiffness", 3 * n, k));
     for (int64_t i = 0; i < n; i++) {
         SPARI_REQUIRE(s, eta[i] >= 0 && eta[i] <= 1 && (i == 0 || eta[i] >= eta[i - 1]), SPAR_ERR_ARGUMENT,
-                      "%s: '%s': eta %lld is %g; eta runs from 0 to 1 and does not fall; two stations at one eta are a "
-                      "jump",
+                      "%s: '%s': eta %lld is %g; eta runs from 0 to 1 and must not decrease; two stations at the same "
+                      "eta mark a jump",
                       call, m->name, (long long)i, eta[i]);
         SPARI_REQUIRE(s, k[3 * i] >= 0 && k[3 * i + 1] >= 0 && k[3 * i + 2] >= 0, SPAR_ERR_ARGUMENT,
                       "%s: '%s': a stiffness of station %lld is below 0; give numbers >= 0, N/m^2", call, m->name,

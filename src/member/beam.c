@@ -373,8 +373,8 @@ static int check_forward(const spar_member *member, const double *gll, const dou
         }
         SPARI_REQUIRE(member->session, !back && spari_norm(d) > 1e-9 * length / member->mesh.elements,
                       SPAR_ERR_ARGUMENT,
-                      "member '%s': its line goes back or stands still between nodes %lld and %lld; give distinct "
-                      "places in order, spaced like Gauss-Lobatto-Legendre points",
+                      "member '%s': its axis reverses or has zero length between nodes %lld and %lld; give distinct "
+                      "positions in order, spaced like Gauss-Lobatto-Legendre points",
                       member->name, (long long)(i - 1), (long long)i);
     }
     return SPAR_OK;
@@ -392,7 +392,7 @@ static int check_line(spar_member *member, const double *gll, const double *bary
         far = fmax(far, fmax(fabs(x[k]), fabs(member->placement.x[k])));
     }
     SPARI_REQUIRE(member->session, length >= 1e-9 * far && length >= 1e-9, SPAR_ERR_ARGUMENT,
-                  "member '%s': its points coincide: its line is %.3g m long; give at least 1e-9 m, and 1e-9 of its "
+                  "member '%s': its points coincide: its axis is %.3g m long; give at least 1e-9 m and 1e-9 of its "
                   "distance from the origin",
                   member->name, length);
     SPARI_TRY(check_forward(member, gll, bary, x, length));
@@ -400,13 +400,14 @@ static int check_line(spar_member *member, const double *gll, const double *bary
         line_point p;
         double along[3] = {1, 0, 0};
         line_at(P, gll, bary, x + 3 * (i / P) * P, gll[i % P], &p);
-        SPARI_REQUIRE(member->session, p.jacobian > 1e-9 * length / member->mesh.elements, SPAR_ERR_ARGUMENT,
-                      "member '%s': its line has no direction at node %lld (points coincide); give distinct places",
-                      member->name, (long long)i);
+        SPARI_REQUIRE(
+            member->session, p.jacobian > 1e-9 * length / member->mesh.elements, SPAR_ERR_ARGUMENT,
+            "member '%s': its axis has no direction at node %lld because points coincide; give distinct positions",
+            member->name, (long long)i);
         spari_rotate(q + 4 * i, along, along);
         SPARI_REQUIRE(member->session, spari_dot(along, p.t) > 0.7, SPAR_ERR_ARGUMENT,
-                      "member '%s': at node %lld the section's x axis is %.0f degrees off the line's tangent; the x "
-                      "axis of a section runs along the beam",
+                      "member '%s': at node %lld the section's x axis is %.0f degrees off the beam's tangent; align "
+                      "the x axis of the section with the beam",
                       member->name, (long long)i, 180 / 3.14159265358979323846 * acos(fmax(-1, spari_dot(along, p.t))));
     }
     return SPAR_OK;
@@ -644,8 +645,8 @@ static int count_points(const spar_member *member, int *points, int *most) {
     for (int e = 0; e < E; e++) {
         points[e] = element_points(member->beam, E, e, P, NULL, NULL);
         SPARI_REQUIRE(member->session, points[e] >= P - 1, SPAR_ERR_ARGUMENT,
-                      "member '%s': element %d has %d quadrature points for %d nodes, its stiffness would be singular; "
-                      "ask for at least %d",
+                      "member '%s': element %d has %d quadrature points for %d nodes, so its stiffness is singular; "
+                      "use at least %d",
                       member->name, e, points[e], P, P - 1);
         *most = points[e] > *most ? points[e] : *most;
     }

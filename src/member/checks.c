@@ -95,8 +95,7 @@ int spari_need_increasing(spar_session *session, const char *call, const char *n
         SPARI_REQUIRE(session, eta[i] >= -1e-9 && eta[i] <= 1 + 1e-9, SPAR_ERR_ARGUMENT,
                       "%s: '%s': eta %lld is %g; eta runs from 0 to 1", call, name, (long long)i, eta[i]);
         SPARI_REQUIRE(session, i == 0 || eta[i] > eta[i - 1], SPAR_ERR_ARGUMENT,
-                      "%s: '%s': eta %lld (%.17g) does not increase on the one before", call, name, (long long)i,
-                      eta[i]);
+                      "%s: '%s': eta %lld (%.17g) is not above the previous one", call, name, (long long)i, eta[i]);
     }
     return SPAR_OK;
 }

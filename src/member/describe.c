@@ -14,14 +14,14 @@
 
 static int member_create(spar_session *session, const char *call, const char *name, int kind, spar_member **out) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
-    SPARI_REQUIRE(session, out, SPAR_ERR_ARGUMENT, "%s: no place for the new member (NULL)", call);
+    SPARI_REQUIRE(session, out, SPAR_ERR_ARGUMENT, "%s: the pointer to the new member is NULL", call);
     SPARI_REQUIRE(session, name && name[0], SPAR_ERR_ARGUMENT, "%s: a member needs a name", call);
     SPARI_REQUIRE(session, !session->clock.started && !session->state.trial, SPAR_ERR_STATE,
                   "%s: '%s': the clock has started; create members before the first step", call, name);
     spar_member **end = &session->members;
     for (; *end; end = &(*end)->next) {
         SPARI_REQUIRE(session, strcmp((*end)->name, name) != 0, SPAR_ERR_ARGUMENT,
-                      "%s: there is a member '%s' already; names are unique in a session", call, name);
+                      "%s: member '%s' already exists; use a unique name in the session", call, name);
     }
     spar_member *m = spari_zalloc(1, sizeof *m);
     size_t size = strlen(name) + 1;
@@ -156,7 +156,7 @@ int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const dou
     SPARI_TRY(spari_need_beam(beam, __func__));
     spar_session *session = beam->session;
     SPARI_REQUIRE(session, n == beam->nodes, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld nodes; it has %d elements of %d nodes, give %lld", __func__, beam->name, (long long)n,
+                  "%s: '%s': %lld nodes; for %d elements of %d nodes give %lld", __func__, beam->name, (long long)n,
                   beam->mesh.elements, beam->mesh.per_element, (long long)beam->nodes);
     SPARI_TRY(spari_need_finite(session, __func__, beam->name, "x", 3 * n, x));
     if (q) {
@@ -169,11 +169,11 @@ int spar_beam_set_nodes(spar_member *beam, int64_t n, const double *x, const dou
     }
     for (int64_t i = beam->mesh.per_element; i < n; i += beam->mesh.per_element) {
         for (int c = 0; c < 3; c++) {
-            SPARI_REQUIRE(
-                session, fabs(x[3 * i + c] - x[3 * i - 3 + c]) <= 1e-9 * size, SPAR_ERR_ARGUMENT,
-                "%s: '%s': elements %lld and %lld share a node, and it is given at two places (nodes %lld and %lld)",
-                __func__, beam->name, (long long)(i / beam->mesh.per_element - 1),
-                (long long)(i / beam->mesh.per_element), (long long)i - 1, (long long)i);
+            SPARI_REQUIRE(session, fabs(x[3 * i + c] - x[3 * i - 3 + c]) <= 1e-9 * size, SPAR_ERR_ARGUMENT,
+                          "%s: '%s': elements %lld and %lld share a node, but its two positions differ (nodes %lld and "
+                          "%lld); give the same position twice",
+                          __func__, beam->name, (long long)(i / beam->mesh.per_element - 1),
+                          (long long)(i / beam->mesh.per_element), (long long)i - 1, (long long)i);
         }
     }
     double *copies[2] = {spari_copy(x, 3 * n), q ? spari_copy(q, 4 * n) : NULL};
@@ -266,8 +266,8 @@ int spar_beam_set_damping(spar_member *beam, const double mu[6]) {
     SPARI_TRY(spari_need_finite(beam->session, __func__, beam->name, "mu", 6, mu));
     int any = 0;
     for (int i = 0; i < 6; i++) {
-        SPARI_REQUIRE(beam->session, mu[i] >= 0, SPAR_ERR_ARGUMENT,
-                      "%s: '%s': mu[%d] is negative; damping takes energy out", __func__, beam->name, i);
+        SPARI_REQUIRE(beam->session, mu[i] >= 0, SPAR_ERR_ARGUMENT, "%s: '%s': mu[%d] is negative; give a number >= 0",
+                      __func__, beam->name, i);
         any |= mu[i] > 0;
     }
     memcpy(beam->beam->mu, mu, sizeof beam->beam->mu);
@@ -314,8 +314,8 @@ int spar_member_set_effects(spar_member *member, int effects) {
               large_rotation = 16; /* this bit stays free */
     SPARI_TRY(spari_need_open(member, __func__));
     SPARI_REQUIRE(member->session, !(effects & large_rotation), SPAR_ERR_ARGUMENT,
-                  "%s: '%s': large rotation (16) is not an effect: rotations are always large at SPAR_FIDELITY_EXACT; "
-                  "leave it out, and choose SPAR_FIDELITY_LINEAR (spar_member_set_fidelity) for a beam to be linear",
+                  "%s: '%s': large rotation (16) is not an effect: SPAR_FIDELITY_EXACT always includes large "
+                  "rotations; remove this bit; for a linear beam use SPAR_FIDELITY_LINEAR (spar_member_set_fidelity)",
                   __func__, member->name);
     SPARI_REQUIRE(member->session, (effects & ~all) == 0, SPAR_ERR_ARGUMENT,
                   "%s: '%s': unknown effect bits 0x%x; see SPAR_EFFECT_*", __func__, member->name,
@@ -386,7 +386,7 @@ int spar_member_get_placement(const spar_member *member, double x[3], double q[4
 
 int spar_member_get_session(const spar_member *member, spar_session **session) {
     SPARI_TRY(spari_need_member(member, __func__));
-    SPARI_REQUIRE(member->session, session, SPAR_ERR_ARGUMENT, "%s: '%s': the place for the session is NULL", __func__,
+    SPARI_REQUIRE(member->session, session, SPAR_ERR_ARGUMENT, "%s: '%s': the pointer to the session is NULL", __func__,
                   member->name);
     *session = member->session;
     return SPAR_OK;

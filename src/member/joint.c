@@ -11,7 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const motion_name[6] = {"x", "y", "z", "the turn about x", "the turn about y", "the turn about z"};
+static const char *const motion_name[6] = {
+    "x", "y", "z", "the rotation about x", "the rotation about y", "the rotation about z"};
 enum { ALL_FREE = 63 };
 
 /* ---- create ---- */
@@ -19,8 +20,8 @@ enum { ALL_FREE = 63 };
 static int check_node(const spar_session *s, const char *call, const char *name, const char *which,
                       const spar_member *m, int64_t node) {
     SPARI_REQUIRE(s, m->session == s, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': member %s, '%s', is of another session; a joint ties members of one", call, name, which,
-                  m->name);
+                  "%s: '%s': member %s, '%s', belongs to another session; connect members of the same session", call,
+                  name, which, m->name);
     SPARI_REQUIRE(s, node >= 0 && node < m->nodes, SPAR_ERR_ARGUMENT,
                   "%s: '%s': '%s' has nodes 0 to %lld; there is no node %lld", call, name, m->name,
                   (long long)m->nodes - 1, (long long)node);
@@ -38,22 +39,23 @@ static void let_float(spar_member *m) {
 static int joint_create(spar_session *s, const char *call, const char *name, spar_member *a, int64_t node_a,
                         spar_member *b, int64_t node_b, spar_joint **out) {
     SPARI_REQUIRE(NULL, s, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
-    SPARI_REQUIRE(s, out, SPAR_ERR_ARGUMENT, "%s: no place for the new joint (NULL)", call);
+    SPARI_REQUIRE(s, out, SPAR_ERR_ARGUMENT, "%s: the pointer to the new joint is NULL", call);
     SPARI_REQUIRE(s, name && name[0], SPAR_ERR_ARGUMENT, "%s: a joint needs a name", call);
     SPARI_REQUIRE(s, !s->clock.started && !s->state.trial, SPAR_ERR_STATE,
                   "%s: '%s': the clock has started; create joints before the first step", call, name);
-    SPARI_REQUIRE(s, a, SPAR_ERR_ARGUMENT, "%s: '%s': member a is NULL; the ground can be b alone", call, name);
+    SPARI_REQUIRE(s, a, SPAR_ERR_ARGUMENT, "%s: '%s': member a is NULL; only b can be the ground", call, name);
     SPARI_TRY(check_node(s, call, name, "a", a, node_a));
     if (b) {
         SPARI_TRY(check_node(s, call, name, "b", b, node_b));
-        SPARI_REQUIRE(s, a != b || spari_member_unique(a, node_a) != spari_member_unique(b, node_b), SPAR_ERR_ARGUMENT,
-                      "%s: '%s' would tie node %lld of '%s' to itself; give two nodes, or b NULL for the ground", call,
-                      name, (long long)node_a, a->name);
+        SPARI_REQUIRE(
+            s, a != b || spari_member_unique(a, node_a) != spari_member_unique(b, node_b), SPAR_ERR_ARGUMENT,
+            "%s: '%s' connects node %lld of '%s' to itself; give two different nodes, or b = NULL for the ground", call,
+            name, (long long)node_a, a->name);
     }
     spar_joint **end = &s->joints;
     for (; *end; end = &(*end)->next) {
         SPARI_REQUIRE(s, strcmp((*end)->name, name) != 0, SPAR_ERR_ARGUMENT,
-                      "%s: there is a joint '%s' already; names are unique in a session", call, name);
+                      "%s: joint '%s' already exists; use a unique name in the session", call, name);
     }
     spar_joint *j = spari_zalloc(1, sizeof *j);
     size_t size = strlen(name) + 1;
@@ -79,7 +81,8 @@ int spar_joint_create(spar_session *session, const char *name, spar_member *a, i
                       int64_t node_b, int free_motions, spar_joint **joint) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(session, free_motions >= 0 && free_motions <= ALL_FREE, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': free is %d; or SPAR_FREE_* together", __func__, name ? name : "", free_motions);
+                  "%s: '%s': free is %d; give a combination of SPAR_FREE_* bits", __func__, name ? name : "",
+                  free_motions);
     SPARI_TRY(joint_create(session, __func__, name, a, node_a, b, node_b, joint));
     spar_joint *j = *joint;
     j->kinematics.free = free_motions;
@@ -97,9 +100,10 @@ int spar_line_create(spar_session *session, const char *name, spar_member *a, in
     for (int k = 0; k < 3; k++) {
         way[k] = point_a[k] - point_b[k];
     }
-    SPARI_REQUIRE(session, spari_norm(way) > 0, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': its two points are one, (%g, %g, %g); a line needs a direction in the reference", __func__,
-                  label, point_a[0], point_a[1], point_a[2]);
+    SPARI_REQUIRE(
+        session, spari_norm(way) > 0, SPAR_ERR_ARGUMENT,
+        "%s: '%s': its two points coincide at (%g, %g, %g); give two distinct points in the reference position",
+        __func__, label, point_a[0], point_a[1], point_a[2]);
     SPARI_TRY(joint_create(session, __func__, name, a, node_a, b, node_b, joint));
     spar_joint *j = *joint;
     memcpy(j->point[0], point_a, sizeof j->point[0]);
@@ -137,8 +141,8 @@ int spar_joint_set_frame(spar_joint *joint, const double x[3], const double q[4]
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(need_before_start(joint, __func__));
     spar_session *s = joint->session;
-    SPARI_REQUIRE(s, !joint->kinematics.line, SPAR_ERR_STATE, "%s: '%s' is a line, whose points are its places",
-                  __func__, joint->name);
+    SPARI_REQUIRE(s, !joint->kinematics.line, SPAR_ERR_STATE,
+                  "%s: '%s' is a line, which has no frame; set its points when it is created", __func__, joint->name);
     SPARI_TRY(spari_need_finite(s, __func__, joint->name, "x", 3, x));
     if (q) {
         SPARI_TRY(spari_need_finite(s, __func__, joint->name, "q", 4, q));
@@ -170,8 +174,8 @@ static int check_spring(const spar_joint *j, const char *call, const char *what,
                           "%s: '%s': %s is not symmetric: entries (%d,%d) and (%d,%d) are %g and %g", call, j->name,
                           what, i, k, k, i, K[6 * i + k], K[6 * k + i]);
             SPARI_REQUIRE(j->session, K[6 * i + k] == 0 || (j->kinematics.free >> i & 1), SPAR_ERR_ARGUMENT,
-                          "%s: '%s': %s has %g on %s, which the joint holds; springs act on free motions", call,
-                          j->name, what, K[6 * i + k], motion_name[i]);
+                          "%s: '%s': %s has %g on %s, which the joint constrains; springs act on free motions only",
+                          call, j->name, what, K[6 * i + k], motion_name[i]);
         }
     }
     return SPAR_OK;
@@ -187,7 +191,7 @@ static int check_springs(const spar_joint *j, const char *call, const double *st
     }
     for (int i = 0; i < 6 && preload; i++) {
         SPARI_REQUIRE(j->session, preload[i] == 0 || (j->kinematics.free >> i & 1), SPAR_ERR_ARGUMENT,
-                      "%s: '%s': preload has %g on %s, which the joint holds", call, j->name, preload[i],
+                      "%s: '%s': preload has %g on %s, which the joint constrains", call, j->name, preload[i],
                       motion_name[i]);
     }
     return SPAR_OK;
@@ -221,7 +225,7 @@ int spar_member_set_spring(spar_member *member, int64_t node, int free_motions, 
     spar_joint *j = NULL;
     (void)snprintf(name, sizeof name, "%.1000s.%lld", member->name, (long long)node);
     SPARI_REQUIRE(s, free_motions >= 0 && free_motions <= ALL_FREE, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': free is %d; or SPAR_FREE_* together", __func__, name, free_motions);
+                  "%s: '%s': free is %d; give a combination of SPAR_FREE_* bits", __func__, name, free_motions);
     const spar_joint probe = {.session = s, .name = name, .kinematics.free = free_motions};
     SPARI_TRY(check_springs(&probe, __func__, stiffness, damping, preload));
     SPARI_TRY(joint_create(s, __func__, name, member, node, NULL, 0, &j));
@@ -259,8 +263,8 @@ int spar_joint_set_driven(spar_joint *joint, int mask) {
     SPARI_TRY(need_before_start(joint, __func__));
     SPARI_REQUIRE(joint->session, mask >= 0 && mask <= ALL_FREE && (mask & ~joint->kinematics.free) == 0,
                   SPAR_ERR_ARGUMENT,
-                  "%s: '%s': mask is %d, free is %d: what is driven must be among what the joint leaves free", __func__,
-                  joint->name, mask, joint->kinematics.free);
+                  "%s: '%s': mask is %d, free is %d: only free motions can be driven; add the driven bits to free",
+                  __func__, joint->name, mask, joint->kinematics.free);
     joint->session->joints_stale = 1;
     joint->driven = mask;
     return SPAR_OK;
@@ -272,12 +276,12 @@ static int need_below_half_a_turn(const spar_joint *j, const double motion[6], c
     for (int k = 0; k < 3; k++) {
         turn[k] = j->driven >> (3 + k) & 1 ? motion[3 + k] : 0;
     }
-    SPARI_REQUIRE(
-        j->session, j->kinematics.line || spari_kinematics_angles(j->kinematics.free) || spari_norm(turn) < M_PI,
-        SPAR_ERR_ARGUMENT,
-        "%s: '%s': a turn of %.4g rad; where three rotations are free they are a rotation vector, below half a "
-        "turn. Drive a hinge or a universal joint, whose angles count their turns, or the root of the member",
-        call, j->name, spari_norm(turn));
+    SPARI_REQUIRE(j->session,
+                  j->kinematics.line || spari_kinematics_angles(j->kinematics.free) || spari_norm(turn) < M_PI,
+                  SPAR_ERR_ARGUMENT,
+                  "%s: '%s': a rotation of %.4g rad; with three free rotations the rotation vector must stay below pi. "
+                  "Drive a hinge or a universal joint, whose angles are unlimited, or the root of the member",
+                  call, j->name, spari_norm(turn));
     return SPAR_OK;
 }
 
@@ -289,7 +293,7 @@ int spar_joint_drive(spar_joint *joint, const double motion[6], const double rat
     SPARI_REQUIRE(s, joint->driven, SPAR_ERR_STATE,
                   "%s: '%s' is not driven; call spar_joint_set_driven before the first step", __func__, joint->name);
     SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: '%s': a step is under way; the motion at its end is given before spar_step_begin", __func__,
+                  "%s: '%s': a step is in progress; give the motion at its end before spar_step_begin", __func__,
                   joint->name);
     const double *in[3] = {motion, rate ? rate : rest, acceleration ? acceleration : rest};
     static const char *const name[3] = {"motion", "rate", "acceleration"};
@@ -310,7 +314,7 @@ int spar_joint_set_load(spar_joint *joint, const double load[6]) {
     SPARI_TRY(spari_need_finite(joint->session, __func__, joint->name, "load", 6, load));
     for (int i = 0; i < 6; i++) {
         SPARI_REQUIRE(joint->session, load[i] == 0 || (joint->kinematics.free >> i & 1), SPAR_ERR_ARGUMENT,
-                      "%s: '%s': load has %g on %s, which the joint holds", __func__, joint->name, load[i],
+                      "%s: '%s': load has %g on %s, which the joint constrains", __func__, joint->name, load[i],
                       motion_name[i]);
     }
     memcpy(joint->given, load, sizeof joint->given);
@@ -460,10 +464,11 @@ int spari_joint_check_place(const spar_joint *j) {
         apart = hypot(apart, b->xr[3 * j->node[1] + k] - x);
         size = fmax(size, fabs(x));
     }
-    SPARI_REQUIRE(j->session, apart <= 1e-6 * fmax(spari_member_length(a), size), SPAR_ERR_ARGUMENT,
-                  "joint '%s': node %lld of '%s' and node %lld of '%s' are %g m apart in the reference; place them "
-                  "together, or say by spar_joint_set_frame where the joint is, to which rigid arms then lead",
-                  j->name, (long long)j->node[0], a->name, (long long)j->node[1], b ? b->name : "", apart);
+    SPARI_REQUIRE(
+        j->session, apart <= 1e-6 * fmax(spari_member_length(a), size), SPAR_ERR_ARGUMENT,
+        "joint '%s': node %lld of '%s' and node %lld of '%s' are %g m apart in the reference; move them together, or "
+        "set the joint's position with spar_joint_set_frame; rigid offsets then connect the nodes to it",
+        j->name, (long long)j->node[0], a->name, (long long)j->node[1], b ? b->name : "", apart);
     return SPAR_OK;
 }
 

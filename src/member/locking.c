@@ -77,14 +77,14 @@ void spari_beam_tell_locking(const spar_member *m) {
     if (ratio > most) {
         (void)snprintf(text, sizeof text,
                        "member '%s': element %d has %d nodes and locks: axial or shear stiffness is %.2g times its "
-                       "bending stiffness by length squared, and it bends too little; take %d nodes an element, or "
+                       "bending stiffness / length^2, so its deflection is too small; use %d nodes per element, or "
                        "%.3g times as many elements",
                        m->name, element, m->mesh.per_element, ratio, ENOUGH, ceil(sqrt(ratio / most)));
         spari_log(m->session, SPAR_LOG_WARNING, text);
     } else if (whole > rounding && m->beam->pre_count == 0) {
         (void)snprintf(text, sizeof text,
-                       "member '%s': axial or shear stiffness is %.2g times its bending stiffness by length squared: "
-                       "bending is lost in rounding with any number of nodes; bring them closer together",
+                       "member '%s': axial or shear stiffness is %.2g times its bending stiffness / length^2: rounding "
+                       "hides bending for any number of nodes; bring the stiffnesses closer together",
                        m->name, whole);
         spari_log(m->session, SPAR_LOG_WARNING, text);
     }

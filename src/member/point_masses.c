@@ -37,7 +37,7 @@ void spari_point_masses_weight(const spar_member *member, double weight) {
 int spari_point_masses_check(const spar_member *member) {
     SPARI_REQUIRE(member->session, member->beam->point_mass_count == 0 || member->external || member->beam->mass,
                   SPAR_ERR_STATE,
-                  "member '%s' has bodies on it, and sections without mass; give its sections mass, if only a little",
+                  "member '%s' has attached bodies but sections without mass; give its sections mass, however small",
                   member->name);
     return SPAR_OK;
 }
@@ -45,7 +45,7 @@ int spari_point_masses_check(const spar_member *member) {
 static int check_point_masses(const spar_member *beam, const char *call, int64_t n, const double *eta,
                               const double *mass) {
     SPARI_REQUIRE(beam->session, n >= 0 && n <= SPARI_MOST_POINT_MASSES, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld bodies; give 0 (none any more) to %d", call, beam->name, (long long)n,
+                  "%s: '%s': %lld bodies; give 0 (removes all) to %d", call, beam->name, (long long)n,
                   SPARI_MOST_POINT_MASSES);
     SPARI_TRY(spari_need_finite(beam->session, call, beam->name, "eta", n, eta));
     SPARI_TRY(spari_need_finite(beam->session, call, beam->name, "mass", 36 * n, mass));

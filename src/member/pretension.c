@@ -8,14 +8,14 @@
 static int check_pretension(const spar_member *m, const char *call, int64_t n, const double *eta, const double *force) {
     spar_session *s = m->session;
     SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST_POINT_MASSES, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld stations; give 0 (none any more) to %d", call, m->name, (long long)n,
+                  "%s: '%s': %lld stations; give 0 (removes all) to %d", call, m->name, (long long)n,
                   SPARI_MOST_POINT_MASSES);
     SPARI_TRY(spari_need_finite(s, call, m->name, "eta", n, eta));
     SPARI_TRY(spari_need_finite(s, call, m->name, "force", 6 * n, force));
     for (int64_t i = 0; i < n; i++) {
         SPARI_REQUIRE(s, eta[i] >= 0 && eta[i] <= 1 && (i == 0 || eta[i] > eta[i - 1]), SPAR_ERR_ARGUMENT,
-                      "%s: '%s': eta %lld is %g; eta runs from 0 to 1 and grows from station to station", call, m->name,
-                      (long long)i, eta[i]);
+                      "%s: '%s': eta %lld is %g; eta runs from 0 to 1 and must increase from station to station", call,
+                      m->name, (long long)i, eta[i]);
     }
     return SPAR_OK;
 }

@@ -60,8 +60,9 @@ static int read_primary(spari_reader *r, blade *b) {
         total += b->count[i] - 1;
     }
     if (total != b->points) {
-        return SPARI_READ_FAIL(r, SPAR_ERR_IO, "the members have %d key points (shared ends once), kp_total says %d",
-                               total, b->points);
+        return SPARI_READ_FAIL(r, SPAR_ERR_IO,
+                               "the members have %d key points, shared ends counted once, but kp_total is %d", total,
+                               b->points);
     }
     SPARI_TRY(spari_read_line(r, "the header of the key points"));
     SPARI_TRY(spari_read_line(r, "the units of the key points"));
@@ -70,7 +71,7 @@ static int read_primary(spari_reader *r, blade *b) {
         SPARI_TRY(spari_read_numbers(r, "kp_xr, kp_yr, kp_zr, initial_twist", 4, b->key + 4 * (int64_t)i));
         const double *now = b->key + 4 * (int64_t)i;
         if (i > 0 && !(now[2] > now[-2])) {
-            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "kp_zr is %g and does not increase on the one before (%g)", now[2],
+            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "kp_zr is %g and is not above the previous one (%g)", now[2],
                                    now[-2]);
         }
     }
@@ -87,8 +88,8 @@ static int read_damping(spari_reader *r, blade *b) {
     SPARI_TRY(spari_read_whole(r, "damp_type", 0, 0, &type));
     if (type > 1) {
         return SPARI_READ_FAIL(r, SPAR_ERR_UNSUPPORTED,
-                               "damp_type is %d; 0 (none) and 1 (stiffness-proportional) can be read; for "
-                               "modal damping ratios see spar_beam_set_modal_damping",
+                               "damp_type is %d; only 0 (none) and 1 (stiffness-proportional) are supported; for modal "
+                               "damping ratios use spar_beam_set_modal_damping",
                                type);
     }
     b->damped = type == 1;
@@ -137,11 +138,11 @@ static int read_blade(spari_reader *r, blade *b) {
         return spari_read_no_memory(r);
     }
     for (int64_t i = 0; i < n; i++) {
-        SPARI_TRY(spari_read_filled(r, "the place of a station"));
-        SPARI_TRY(spari_read_numbers(r, "the place of a station", 1, b->eta + i));
+        SPARI_TRY(spari_read_filled(r, "the position of a station"));
+        SPARI_TRY(spari_read_numbers(r, "the position of a station", 1, b->eta + i));
         b->line[i] = r->number;
         if (!(b->eta[i] >= 0 && b->eta[i] <= 1) || (i > 0 && !(b->eta[i] > b->eta[i - 1]))) {
-            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "station %lld stands at %g; stations increase from 0 to 1",
+            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "station %lld is at %g; stations must increase from 0 to 1",
                                    (long long)i + 1, b->eta[i]);
         }
         SPARI_TRY(read_matrix(r, "stiffness matrix", b->stiffness + 36 * i));

@@ -205,10 +205,10 @@ int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta,
     SPARI_REQUIRE(session, beam->committed, SPAR_ERR_STATE,
                   "%s: member '%s' is not committed; call spar_member_commit first", __func__, beam->name);
     SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST && (eta || n == 0), SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld places%s; give 0 to 2^40, and n etas", __func__, beam->name, (long long)n,
+                  "%s: '%s': %lld positions%s; give 0 to 2^40, and n values of eta", __func__, beam->name, (long long)n,
                   eta ? "" : " without eta");
     SPARI_REQUIRE(session, !force || beam->beam->stiffness, SPAR_ERR_UNSUPPORTED,
-                  "%s: '%s' has no sections, its forces are not known", __func__, beam->name);
+                  "%s: '%s' has no sections, so it has no section forces", __func__, beam->name);
     for (int64_t i = 0; i < n; i++) {
         SPARI_REQUIRE(session, eta[i] >= -1e-9 && eta[i] <= 1 + 1e-9, SPAR_ERR_ARGUMENT,
                       "%s: '%s': eta %lld is %g; eta runs from 0 to 1", __func__, beam->name, (long long)i, eta[i]);

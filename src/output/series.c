@@ -87,7 +87,7 @@ int spar_vtk_series_add(const char *path, double time, int part, const char *fil
     (void)(old && fclose(old));
     if (!ok) {
         spari_file_drop(&index);
-        return spari_fail(NULL, SPAR_ERR_IO, "%s: '%s' is not an index of a series; remove it or name another",
+        return spari_fail(NULL, SPAR_ERR_IO, "%s: '%s' is not an index of a series; remove it or name another file",
                           __func__, path);
     }
     status = spari_file_end(&index, 0, why, sizeof why);

@@ -507,8 +507,8 @@ static int find_takers(spar_session *s, reading *l) {
         }
         if (*taker == ranks) {
             status = spari_fail(s, SPAR_ERR_ARGUMENT,
-                                "fluid %lld of the file has none of its name and member here; create the fluids "
-                                "of the saved run first",
+                                "fluid %lld of the file matches no fluid of this session by name and member; create "
+                                "the fluids of the saved run first",
                                 (long long)i);
         }
     }
@@ -719,7 +719,7 @@ int spar_session_load(spar_session *session, const char *path) {
     reading l = {.call = __func__};
     int status = spari_saved_check_call(s, __func__, path);
     if (status == SPAR_OK && s->state.phase != SPARI_IDLE) {
-        status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first", __func__);
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is in progress; accept or reject it first", __func__);
     }
     SPARI_TRY(spari_enter_agreed(s, __func__, NULL, 0, status));
     status = open_file(s, &l, path); /* without a file, nothing of the joints is created */

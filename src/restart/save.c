@@ -252,10 +252,10 @@ static int end_file(spar_session *s, save_plan *p, int status) {
     if (spari_comm_rank(s->ranks.comm) == 0 && p->file.file.stream) {
         if (status != SPAR_OK || !spari_file_hold(&p->file.file)) {
             spari_file_drop(&p->file.file);
-            status = status != SPAR_OK ? status
-                                       : spari_fail(s, SPAR_ERR_IO,
-                                                    "another process is writing the same file; give "
-                                                    "each its own path");
+            status = status != SPAR_OK
+                         ? status
+                         : spari_fail(s, SPAR_ERR_IO,
+                                      "another process is writing the same file; give each process its own path");
         } else if ((status = spari_saving_end(&p->file, p->count, p->why, sizeof p->why)) != SPAR_OK) {
             (void)spari_fail(s, status, "%s", p->why);
         }

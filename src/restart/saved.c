@@ -18,7 +18,7 @@
 #include <string.h>
 
 int spari_saved_broken(const spar_session *s) {
-    return spari_fail(s, SPAR_ERR_IO, "the file does not hold what it should; take an older file");
+    return spari_fail(s, SPAR_ERR_IO, "the content of the file is invalid; use an older file");
 }
 
 int spari_saved_no_memory(const spar_session *s) {
@@ -26,11 +26,9 @@ int spari_saved_no_memory(const spar_session *s) {
 }
 
 int spari_saved_check_call(const spar_session *s, const char *call, const char *path) {
-    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress", call);
     SPARI_REQUIRE(s, !s->state.standing, SPAR_ERR_STATE,
-                  "%s: a static solution or a start is under way; save or load "
-                  "after it",
-                  call);
+                  "%s: a static solution or the initial accelerations are in progress; save or load after them", call);
     SPARI_REQUIRE(s, path && path[0], SPAR_ERR_ARGUMENT, "%s: the path is empty; give the name of a file", call);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
@@ -391,26 +389,27 @@ static int compare_session(spar_session *s, spari_saved *l) {
     l->ranks = (int)spari_image_get_int(&l->image);
     int64_t members = spari_image_get_int(&l->image);
     SPARI_REQUIRE(s, members == s->member_count, SPAR_ERR_ARGUMENT,
-                  "the file is of another session: it has %lld members, this one %d", (long long)members,
+                  "the file does not match this session: it has %lld members, this session has %d", (long long)members,
                   s->member_count);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, spari_image_is_text(&l->image, m->name), SPAR_ERR_ARGUMENT,
-                      "the file is of another session: member '%s' is not where it should be; create the same "
+                      "the file does not match this session: member '%s' is out of order; create the same "
                       "members in the same order",
                       m->name);
         SPARI_REQUIRE(s, (uint64_t)spari_image_get_int(&l->image) == spari_member_hash(m), SPAR_ERR_ARGUMENT,
-                      "the file is of another session: member '%s' is described otherwise there", m->name);
+                      "the file does not match this session: it has a different description of member '%s'", m->name);
     }
     int64_t joints = spari_image_get_int(&l->image);
     SPARI_REQUIRE(s, joints == s->joint_count || l->image.failed, SPAR_ERR_ARGUMENT,
-                  "the file is of another session: it has %lld joints, this one %d", (long long)joints, s->joint_count);
+                  "the file does not match this session: it has %lld joints, this session has %d", (long long)joints,
+                  s->joint_count);
     for (const spar_joint *j = s->joints; j; j = j->next) {
         SPARI_REQUIRE(s, spari_image_is_text(&l->image, j->name), SPAR_ERR_ARGUMENT,
-                      "the file is of another session: joint '%s' is not where it should be; create the same joints in "
+                      "the file does not match this session: joint '%s' is out of order; create the same joints in "
                       "the same order",
                       j->name);
         SPARI_REQUIRE(s, (uint64_t)spari_image_get_int(&l->image) == spari_joint_hash(j), SPAR_ERR_ARGUMENT,
-                      "the file is of another session: joint '%s' is described otherwise there", j->name);
+                      "the file does not match this session: it has a different description of joint '%s'", j->name);
     }
     return l->image.failed || l->ranks < 1 ? spari_saved_broken(s) : SPAR_OK;
 }
@@ -475,8 +474,8 @@ static int check_coupling(spar_session *s, spari_saved *l) {
         return l->image.failed || l->image.at != end ? spari_saved_broken(s) : SPAR_OK;
     }
     SPARI_REQUIRE(s, l->phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "the file is from the middle of a step and the coupling is set otherwise here; make "
-                  "the same settings first (they may be changed when the step is accepted)");
+                  "the file was saved during a step with other coupling settings; use the same settings first (change "
+                  "them after the step is accepted)");
     l->image.at = end;
     return SPAR_OK;
 }

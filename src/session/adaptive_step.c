@@ -14,9 +14,9 @@ static int check_within(spar_session *s, const char *call, const double *dt, dou
     SPARI_TRY(spari_need_dt(s, call, first));
     SPARI_REQUIRE(s, spari_step_control_is_set(s), SPAR_ERR_STATE,
                   "%s: no tolerance is set; call spar_session_set_tolerance first", call);
-    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
-    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
-                  call);
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress", call);
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "%s: a step is in progress; accept or reject it first", call);
     return SPAR_OK;
 }
 
@@ -41,17 +41,17 @@ static void count_try(tries *t, double dt, double ratio) {
 static const double clock_resolves = 1e-12;
 
 static int fail_within(const spar_session *s, const char *call, const tries *t) {
-    const char *why = "the motion needs smaller steps than these; begin with a smaller dt, or give a larger drift";
+    const char *why = "the motion needs smaller steps; start with a smaller dt or set a larger drift";
     int at_clock = 0.2 * t->dt <= clock_resolves * fabs(s->clock.time); /* next_dt reduces to a fifth at most */
     if (t->stuck && t->power < -0.5) {
-        why = "the error grows as dt falls, from the rounding of positions; give a larger drift or rtol";
+        why = "rounding of positions makes the error grow as dt decreases; set a larger drift or rtol";
     } else if (t->stuck || at_clock) {
-        why = "the error does not fall with dt: a velocity jumps there (an impact, a drive whose rate jumps); smooth "
-              "the jump, give a larger drift, or take this step by spar_step";
+        why = "the error does not decrease with dt: a velocity is discontinuous (an impact, a jump in a prescribed "
+              "rate); smooth the jump, set a larger drift, or take this step with spar_step";
     }
     return spari_fail(s, SPAR_ERR_NUMERIC,
-                      "%s: from t = %g no dt down to %g keeps the tolerance, the error of the last is %.2g times as "
-                      "large: %s",
+                      "%s: from t = %g no dt down to %g meets the tolerance; the error at the last dt is %.2g times "
+                      "the tolerance: %s",
                       call, s->clock.time, t->dt, t->ratio, why);
 }
 

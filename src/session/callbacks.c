@@ -6,8 +6,8 @@
 
 int spari_callback_refuse(spar_session *s, const char *call) {
     SPARI_REQUIRE(s, !s->callbacks.in_progress, SPAR_ERR_STATE,
-                  "%s: %s is under way and has called this fluid solver; pull, push and return from it, or make the "
-                  "step by spar_step_begin, spar_step_solve, spar_step_check, spar_step_accept",
+                  "%s: %s is in progress and has called this fluid solver; only pull and push in the solver, or make "
+                  "the step with spar_step_begin, spar_step_solve, spar_step_check, spar_step_accept",
                   call, s->callbacks.in_progress);
     return SPAR_OK;
 }
@@ -49,7 +49,7 @@ int spari_callback_before_step(spar_session *s, spar_before_step before, double 
         return SPAR_ERR_COMM;
     }
     if (result != 0 && s->failures == failures) {
-        status = spari_fail(s, SPAR_ERR_USER, "the host's call before a step returned %d", result);
+        status = spari_fail(s, SPAR_ERR_USER, "the host's callback before the step returned %d", result);
     } else if (result != 0) {
         status = SPAR_ERR_USER;
     }
@@ -74,11 +74,11 @@ static int ask_host(spar_session *s, const spari_progress *p, double done, doubl
     if (s->ranks.calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;
     }
-    int status = result == 0 ? SPAR_OK
-                             : spari_fail(s, SPAR_ERR_USER,
-                                          "%s: the host has stopped it: its progress call returned %d, after %.3g of "
-                                          "%.3g trials expected",
-                                          p->call, result, done, expected);
+    int status = result == 0
+                     ? SPAR_OK
+                     : spari_fail(s, SPAR_ERR_USER,
+                                  "%s: cancelled by the progress callback (%d) after %.3g of %.3g expected trials",
+                                  p->call, result, done, expected);
     return spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
 }
 

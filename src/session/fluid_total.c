@@ -102,9 +102,9 @@ static int compare(const spar_fluid *fluid, const char *call, const char *what, 
         off[k] = pushed[k] - claim[k];
     }
     SPARI_REQUIRE(m->session, spari_norm(off) <= rtol * size, SPAR_ERR_ARGUMENT,
-                  "%s: fluid '%s' of member '%s': the %s pushed on all ranks come to (%.9g, %.9g, %.9g), the host's "
-                  "total is (%.9g, %.9g, %.9g); they differ by %.3g of their parts (rtol %.3g): a force node on a "
-                  "border of ranks is pushed by one of them alone, and none is left out",
+                  "%s: fluid '%s' of member '%s': the %s pushed on all ranks sum to (%.9g, %.9g, %.9g), the host's "
+                  "total is (%.9g, %.9g, %.9g); relative difference %.3g (rtol %.3g); push each force node on a rank "
+                  "boundary from exactly one rank",
                   call, spar_fluid_get_name(fluid), m->name, what, pushed[0], pushed[1], pushed[2], claim[0], claim[1],
                   claim[2], spari_norm(off) / size, rtol);
     return SPAR_OK;

@@ -17,10 +17,11 @@
 #include <string.h>
 
 static int check_start(spar_session *s, const char *call, double dt) {
-    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
-                  call);
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "%s: a step is in progress; accept or reject it first", call);
     SPARI_REQUIRE(s, s->clock.step == 0, SPAR_ERR_STATE,
-                  "%s: the clock has run to t = %g; a start is balanced before the first step", call, s->clock.time);
+                  "%s: the clock is at t = %g; compute initial accelerations before the first step", call,
+                  s->clock.time);
     SPARI_TRY(spari_need_dt(s, call, dt));
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
@@ -86,12 +87,12 @@ int spari_start_solve(spar_session *s, const char *call) {
     int status = balance_members(s);
     for (const spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
         int finite = spari_first_nonfinite(m->after.a, 6 * m->nodes) < 0;
-        status = finite
-                     ? SPAR_OK
-                     : spari_fail(s, SPAR_ERR_NUMERIC,
-                                  "member '%s': its accelerations are beyond the range of numbers at the start; look "
-                                  "at its loads, or at their units",
-                                  m->name);
+        status =
+            finite
+                ? SPAR_OK
+                : spari_fail(s, SPAR_ERR_NUMERIC,
+                             "member '%s': its initial accelerations are not finite; check its loads and their units",
+                             m->name);
     }
     status = spari_session_share_motion(s, status);
     for (spar_member *m = s->members; m; m = m->next) {

@@ -30,7 +30,7 @@ static spar_session *session_new(void) {
 }
 
 int spar_session_create(spar_session **session) {
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: no place for the new session (NULL)", __func__);
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the pointer to the new session is NULL", __func__);
     spar_session *s = session_new();
     int status = s ? spari_comm_create_self(&s->ranks.comm) : SPAR_ERR_MEMORY;
     if (!s || status != SPAR_OK) {
@@ -49,7 +49,7 @@ int spar_session_create_fcomm(int comm, spar_session **session) {
     int status = s ? SPAR_OK : SPAR_ERR_MEMORY;
     if (!session) {
         status = SPAR_ERR_ARGUMENT;
-        (void)snprintf(why, sizeof why, "no place for the new session (NULL)");
+        (void)snprintf(why, sizeof why, "the pointer to the new session is NULL");
     }
     status = spari_comm_create_fortran(comm, &ranks, status, why, sizeof why);
     if (status != SPAR_OK || !s) {

@@ -78,7 +78,7 @@ static const spari_setting settings[] = {
     WHOLE(REPRODUCIBLE, "reproducible", "on", ranks.reproducible, 0, 1, "0 or 1", 0, SPARI_AGREED),
     REAL(TOLERANCE, "tolerance", "drift", tolerance.drift, 0, DBL_MAX, not_negative, 0, SPARI_AGREED),
     REAL(TOLERANCE, "tolerance", "rtol", tolerance.rtol, 0, 1, "a number from 0 to 1", 0, SPARI_AGREED),
-    WHOLE(GOAL, "goal", "goals", advice.goals, 1, 31, "SPAR_GOAL_* or-ed, one of them at least", SPAR_GOAL_MOTION,
+    WHOLE(GOAL, "goal", "goals", advice.goals, 1, 31, "at least one SPAR_GOAL_*, combined with or", SPAR_GOAL_MOTION,
           SPARI_AGREED),
     OPTION_WORD("newton.stop", newton.strict, "tied", "strict", SPARI_AGREED | SPARI_VARIED),
     OPTION_WORD("coupling.unconverged", coupling.accept_unconverged, "error", "accept", SPARI_AGREED),
@@ -181,7 +181,7 @@ void spari_settings_vary(spar_session *s, const double *values) {
 static int settable(spar_session *session, const char *call) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     SPARI_REQUIRE(session, session->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: a step is under way; change settings between steps", call);
+                  "%s: a step is in progress; change settings between steps", call);
     return SPAR_OK;
 }
 
@@ -236,7 +236,7 @@ static int get(const spar_session *session, const char *call, int by, int n, voi
 int spar_session_set_gravity(spar_session *session, const double g[3]) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(settable(session, __func__));
-    SPARI_REQUIRE(session, g, SPAR_ERR_ARGUMENT, "%s: the vector of gravity is NULL", __func__);
+    SPARI_REQUIRE(session, g, SPAR_ERR_ARGUMENT, "%s: the gravity vector is NULL", __func__);
     SPARI_TRY(set(session, __func__, GRAVITY, g));
     for (spar_member *m = session->members; m; m = m->next) {
         if (m->committed) {
@@ -336,11 +336,10 @@ int spar_session_set_tolerance(spar_session *session, double drift, double rtol)
     SPARI_GUARD_ENVIRONMENT;
     const double given[] = {drift, rtol};
     SPARI_TRY(check_given(session, __func__, TOLERANCE, given));
-    SPARI_REQUIRE(
-        session, drift > 0 || rtol == 0, SPAR_ERR_ARGUMENT,
-        "%s: drift is 0 and rtol %g: what begins at rest has no speed to be relative to; give a drift too, in "
-        "m/s, as small as does not matter",
-        __func__, rtol);
+    SPARI_REQUIRE(session, drift > 0 || rtol == 0, SPAR_ERR_ARGUMENT,
+                  "%s: drift is 0 and rtol is %g: at rest there is no speed for a relative tolerance; also set a "
+                  "drift, in m/s, small enough to be negligible",
+                  __func__, rtol);
     store_given(session, TOLERANCE, given);
     return SPAR_OK;
 }
@@ -378,8 +377,8 @@ int spar_session_set_option(spar_session *session, const char *key, const char *
     const spari_setting *of = find_option(key);
     SPARI_REQUIRE(session, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
     double x;
-    SPARI_REQUIRE(session, read_value(of, value, &x), SPAR_ERR_ARGUMENT, "%s: option '%s' cannot be '%s'; give %s",
-                  __func__, key, value, of->range);
+    SPARI_REQUIRE(session, read_value(of, value, &x), SPAR_ERR_ARGUMENT,
+                  "%s: option '%s' does not accept '%s'; give %s", __func__, key, value, of->range);
     store(session, of, x);
     return SPAR_OK;
 }
@@ -402,7 +401,7 @@ int spar_session_get_option(const spar_session *session, const char *key, int64_
     int64_t needed = (int64_t)strlen(value) + 1;
     SPARI_TRY(spari_need_capacity(session, __func__, capacity));
     SPARI_REQUIRE(session, capacity >= needed, SPAR_ERR_ARGUMENT,
-                  "%s: the value of '%s' takes %lld characters, not %lld", __func__, key, (long long)needed,
+                  "%s: the value of '%s' needs %lld characters; the buffer has %lld", __func__, key, (long long)needed,
                   (long long)capacity);
     memcpy(text, value, (size_t)needed);
     return SPAR_OK;

@@ -28,8 +28,8 @@ static int check_held(const spar_member *m, const char *call) {
                   call, m->name);
     int loose = !spari_member_has_joints(m) &&
                 (m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C));
-    SPARI_REQUIRE(s, !loose || !m->row->rest, SPAR_ERR_STATE, "%s: nothing holds '%s'; fix, pin or drive its root",
-                  call, m->name);
+    SPARI_REQUIRE(s, !loose || !m->row->rest, SPAR_ERR_STATE,
+                  "%s: '%s' is free to move as a rigid body; fix, pin or drive its root", call, m->name);
     return SPAR_OK;
 }
 
@@ -38,11 +38,11 @@ static int check_member_static(const spar_member *m, const char *call, int load_
     SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first",
                   call, m->name);
     SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: '%s': a step is under way; accept or reject it first", call, m->name);
+                  "%s: '%s': a step is in progress; accept or reject it first", call, m->name);
     SPARI_REQUIRE(s, load_steps >= 1 && load_steps <= SPARI_STATIC_MOST, SPAR_ERR_ARGUMENT,
                   "%s: '%s': %d load steps; give 1 to %d", call, m->name, load_steps, SPARI_STATIC_MOST);
-    SPARI_REQUIRE(s, m->row->rest, SPAR_ERR_UNSUPPORTED, "%s: spar does not solve for '%s' (a point, or external)",
-                  call, m->name);
+    SPARI_REQUIRE(s, m->row->rest, SPAR_ERR_UNSUPPORTED,
+                  "%s: spar does not solve '%s', which is a point or an external member", call, m->name);
     SPARI_TRY(check_held(m, call));
     return s->clock.started ? SPAR_OK : spari_session_pushes(s, call);
 }
@@ -219,8 +219,8 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
 /* ---- all members, with the fluid ---- */
 
 static int check_session_static(spar_session *s, const char *call, int load_steps) {
-    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
-                  call);
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "%s: a step is in progress; accept or reject it first", call);
     SPARI_REQUIRE(s, load_steps >= 1 && load_steps <= SPARI_STATIC_MOST, SPAR_ERR_ARGUMENT,
                   "%s: %d load steps; give 1 to %d", call, load_steps, SPARI_STATIC_MOST);
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -325,10 +325,10 @@ static const spar_member *most_changed(const spar_session *s) {
 
 static const char *cure_for(const spar_session *s) {
     return spari_coupling_scheme_of(s->coupling.scheme)->columns
-               ? "where loads grow faster with the shape than the stiffness (static divergence) there is no stable "
-                 "equilibrium: lower the loads or stiffen the member"
-               : "take another scheme (spar_session_set_coupling, IQN-ILS) or a smaller relaxation; where loads grow "
-                 "faster with the shape than the stiffness (static divergence) there is no stable equilibrium";
+               ? "if the fluid stiffness exceeds the structural stiffness (static divergence), there is no stable "
+                 "equilibrium: reduce the loads or stiffen the member"
+               : "use another scheme (spar_session_set_coupling, IQN-ILS) or a smaller relaxation; if the fluid "
+                 "stiffness exceeds the structural stiffness (static divergence), there is no stable equilibrium";
 }
 
 /* why: message of the cause, of this rank or a peer; NULL: the iteration limit. */
@@ -344,10 +344,10 @@ static int not_committed(spar_session *s, const char *call, int status, const ch
     const char *member = most_changed(s)->name;
     if (factor > 1) {
         return spari_fail(s, status,
-                          "%s: the loads grow from iteration to iteration, %.4g times in each: they changed by %.3g N "
-                          "of %.3g N in the last of %d, most on member '%s' (%.400s); %s",
+                          "%s: the loads grow from iteration to iteration by a factor of %.4g: they changed by %.3g N "
+                          "of %.3g N in the last of %d iterations, most on member '%s' (%.400s); %s",
                           call, factor, c->residual[n - 1], c->size[n - 1], n, member,
-                          why ? why : "the limit of iterations", cure_for(s));
+                          why ? why : "iteration limit reached", cure_for(s));
     }
     return spari_fail(s, status,
                       "%s: no equilibrium with the fluid in %d iterations: the loads still change by %.3g N of %.3g N, "
@@ -392,8 +392,8 @@ static void warn_of_divergence(const spar_session *s, const char *call) {
         return;
     }
     (void)snprintf(text, sizeof text,
-                   "%s: a change of the fluid's loads comes back %.3g times as large from the shape that it makes: the "
-                   "equilibrium found lies beyond static divergence, and a run leaves it",
+                   "%s: the fluid amplifies a change of its loads by a factor of %.3g: the equilibrium is unstable "
+                   "(static divergence), and a run departs from it",
                    call, -ratio);
     spari_log(s, SPAR_LOG_WARNING, text);
 }
@@ -418,7 +418,7 @@ static int find_equilibrium(spar_session *s, const char *call, int load_steps, s
         SPARI_TRY(ask_fluid(s, call, solve, context));
         status = spari_coupling_compare(s, &agreed);
         if (status != SPAR_OK) {
-            return not_committed(s, call, status, "they are beyond the range of numbers");
+            return not_committed(s, call, status, "the accelerations are not finite");
         }
         if (!spari_coupling_scheme_of(s->coupling.scheme)->iterates) {
             break;

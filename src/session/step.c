@@ -28,8 +28,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const phase_name[] = {"no step is under way", "the step has begun and is not solved",
-                                         "the step is solved and not checked", "the step is checked"};
+static const char *const phase_name[] = {"no step is in progress", "the step has begun but is not solved",
+                                         "the step is solved but not checked", "the step is checked"};
 
 static int wrong_phase(spar_session *s, const char *call, const char *cure) {
     return spari_fail(s, SPAR_ERR_STATE, "%s: %s; %s", call, phase_name[s->state.phase], cure);
@@ -49,7 +49,7 @@ static int check_begin(spar_session *s, const char *call, double dt, int uneven)
     }
     SPARI_TRY(spari_need_dt(s, call, dt));
     SPARI_REQUIRE(s, isfinite(s->clock.time + dt), SPAR_ERR_ARGUMENT,
-                  "%s: the clock stands at %g s and cannot go on by %g s; give a smaller dt", call, s->clock.time, dt);
+                  "%s: the clock is at %g s and cannot advance by %g s; give a smaller dt", call, s->clock.time, dt);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
                       "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
@@ -332,11 +332,10 @@ int spar_step_accept(spar_session *session) {
     if (s->state.phase != SPARI_CHECKED && s->state.phase != SPARI_SOLVED) {
         status = wrong_phase(s, __func__, "begin and solve a step first");
     } else if (s->state.failed) {
-        status =
-            spari_fail(s, SPAR_ERR_STATE,
-                       "%s: the last spar_step_check failed, its loads and motion do not belong together; push and "
-                       "check again where a push was refused, else solve again or reject the step",
-                       __func__);
+        status = spari_fail(s, SPAR_ERR_STATE,
+                            "%s: the last spar_step_check failed, so loads and motion do not match; if a push was "
+                            "refused, push and check again, otherwise solve again or reject the step",
+                            __func__);
     } else if (s->state.phase == SPARI_SOLVED) {
         status = spari_session_pushes(s, __func__);
     }
@@ -402,7 +401,7 @@ int spar_step_reject(spar_session *session) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_TRY(spari_callback_refuse(s, __func__));
-    int status = s->state.phase == SPARI_IDLE ? wrong_phase(s, __func__, "there is nothing to reject") : SPAR_OK;
+    int status = s->state.phase == SPARI_IDLE ? wrong_phase(s, __func__, "no step is in progress to reject") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
     reject(s);
     return SPAR_OK;

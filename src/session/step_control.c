@@ -105,7 +105,8 @@ int spar_session_get_pace(const spar_session *session, int64_t capacity, double 
     const spar_session *s = session;
     const spari_step_control *p = &s->own->step_control;
     SPARI_REQUIRE(s, spari_step_control_is_set(s), SPAR_ERR_STATE,
-                  "%s: no tolerance is set, and steps are not judged; call spar_session_set_tolerance first", __func__);
+                  "%s: no tolerance is set, so step errors are not estimated; call spar_session_set_tolerance first",
+                  __func__);
     SPARI_TRY(spari_need_capacity(s, __func__, capacity));
     int judged = s->state.phase >= SPARI_SOLVED && !s->state.standing && !s->state.trial;
     SPARI_REQUIRE(s, judged || p->next > 0, SPAR_ERR_STATE,

@@ -31,11 +31,10 @@ static int check_motion(const spar_member *m) {
     } all[] = {{x->q, 7}, {x->v, 6}, {x->a, 6}};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         int64_t bad = spari_first_nonfinite(all[k].value, all[k].width * m->nodes);
-        SPARI_REQUIRE(
-            m->session, bad < 0, SPAR_ERR_NUMERIC,
-            "member '%s': the motion of node %lld is beyond the range of numbers in the step from t = %g; look "
-            "at its loads, gravity and the motion of its root, or at their units",
-            m->name, (long long)(bad / all[k].width), m->session->clock.time);
+        SPARI_REQUIRE(m->session, bad < 0, SPAR_ERR_NUMERIC,
+                      "member '%s': the motion of node %lld is not finite in the step from t = %g; check its loads, "
+                      "gravity, the motion of its root, and their units",
+                      m->name, (long long)(bad / all[k].width), m->session->clock.time);
     }
     return spari_member_check_rotations(m);
 }
@@ -137,7 +136,7 @@ static int make_units(spar_session *s, int64_t most) {
     if (!unit || !member) {
         free(unit);
         free(member);
-        return spari_fail(s, SPAR_ERR_MEMORY, "no memory for what the threads solve");
+        return spari_fail(s, SPAR_ERR_MEMORY, "no memory for the worker threads");
     }
     free(s->own->unit);
     free(s->own->member);
@@ -214,7 +213,7 @@ int spar_session_set_threads(spar_session *session, int threads) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     spar_session *s = session;
     SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: a step is under way; change the number of threads between steps", __func__);
+                  "%s: a step is in progress; change the number of threads between steps", __func__);
     SPARI_REQUIRE(s, threads >= 1 && threads <= SPARI_MOST_THREADS, SPAR_ERR_ARGUMENT, "%s: %d threads; give 1 to %d",
                   __func__, threads, SPARI_MOST_THREADS);
     if (threads == spari_thread_pool_threads(s->pool)) {
@@ -223,8 +222,8 @@ int spar_session_set_threads(spar_session *session, int threads) {
     spari_thread_pool *pool = threads > 1 ? spari_thread_pool_create(threads) : NULL;
     if (threads > 1 && (!pool || reserve_workspace(s, pool))) {
         spari_thread_pool_free(pool);
-        return spari_fail(s, SPAR_ERR_MEMORY, "%s: the system has no memory or no room for %d threads; ask for fewer",
-                          __func__, threads);
+        return spari_fail(s, SPAR_ERR_MEMORY, "%s: the system cannot create %d threads; request fewer", __func__,
+                          threads);
     }
     spari_threads_free(s);
     s->pool = pool;

@@ -46,8 +46,7 @@ static int rigid_field(spar_member *m) {
     int finite = spari_first_nonfinite(m->now.v, 6 * m->nodes) < 0 && spari_first_nonfinite(m->now.a, 6 * m->nodes) < 0;
     SPARI_REQUIRE(
         m->session, finite, SPAR_ERR_ARGUMENT,
-        "member '%s': its initial velocities are beyond the range of numbers; look at spar_member_set_initial_velocity "
-        "and its units",
+        "member '%s': its initial velocities are not finite; check spar_member_set_initial_velocity and the units",
         m->name);
     return SPAR_OK;
 }
@@ -130,7 +129,7 @@ void spari_member_solved(spar_member *m, const double *fluid) {
 
 int spari_member_check_rotations(const spar_member *m) {
     SPARI_REQUIRE(m->session, m->seen != SPARI_SEEN_LINEAR || !m->state.overturned, SPAR_ERR_NUMERIC,
-                  "member '%s' is linear and turns by half a turn against %s, where rotation vectors end; take "
+                  "member '%s' is linear and rotates by pi relative to %s, the limit of rotation vectors; use "
                   "SPAR_FIDELITY_EXACT, or drive its root",
                   m->name, spari_member_root_is_prescribed(m) || m->floats ? "its root" : "its reference");
     return SPAR_OK;
@@ -211,7 +210,8 @@ void spari_member_reject(spar_member *m) {
 int spari_member_begin_start(spar_member *m) {
     if (!m->initial.acceleration) {
         m->initial.acceleration = spari_copy(m->now.a, 6 * m->nodes);
-        SPARI_REQUIRE(m->session, m->initial.acceleration, SPAR_ERR_MEMORY, "no memory for the start of '%s'", m->name);
+        SPARI_REQUIRE(m->session, m->initial.acceleration, SPAR_ERR_MEMORY,
+                      "no memory for the initial accelerations of '%s'", m->name);
     }
     return SPAR_OK;
 }
@@ -275,15 +275,15 @@ int spar_member_set_initial_velocity(spar_member *member, const double x0[3], co
 static int check_complete(spar_member *m) {
     if (m->kind == SPARI_BEAM) {
         SPARI_REQUIRE(m->session, m->beam->eta || m->beam->node_x, SPAR_ERR_STATE,
-                      "member '%s' has no line; call spar_beam_set_axis or spar_beam_set_nodes", m->name);
+                      "member '%s' has no axis; call spar_beam_set_axis or spar_beam_set_nodes", m->name);
         SPARI_REQUIRE(m->session, m->external || m->beam->stiffness, SPAR_ERR_STATE,
                       "member '%s' has no sections; call spar_beam_set_sections", m->name);
         SPARI_TRY(spari_point_masses_check(m));
         SPARI_REQUIRE(m->session,
                       m->beam->drag == 0 || m->fidelity != SPAR_FIDELITY_RIGID || spari_member_root_is_prescribed(m),
                       SPAR_ERR_UNSUPPORTED,
-                      "member '%s' is rigid, and has damping by mass, which would brake it, its root being free or "
-                      "pinned; leave that out, choose another fidelity, or fix or drive the root",
+                      "member '%s' is rigid with a free or pinned root, and mass-proportional damping would slow its "
+                      "rigid motion; remove this damping, choose another fidelity, or fix or drive the root",
                       m->name);
     }
     SPARI_REQUIRE(m->session, !m->session->clock.started, SPAR_ERR_STATE,
@@ -400,7 +400,7 @@ static int build_body(spar_member *m) {
                                     : spari_rigid_build(m, &m->body));
     SPARI_TRY(damped ? spari_beam_drag(m, m->body) : SPAR_OK);
     SPARI_REQUIRE(m->session, !spari_thread_pool_reserve(m->session->pool, spari_body_workspace_size(m->body)),
-                  SPAR_ERR_MEMORY, "no memory for what the threads do of '%s'", m->name);
+                  SPAR_ERR_MEMORY, "no memory for the worker threads of '%s'", m->name);
     m->body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;
     spari_member_gravity(m);
     return SPAR_OK;
@@ -477,9 +477,9 @@ int spar_member_commit(spar_member *member) {
             }
         }
     }
-    const spari_agreed must_agree[] = {spari_whole("places of it in the order of creation", place_of(member)),
+    const spari_agreed must_agree[] = {spari_whole("positions of it in the order of creation", place_of(member)),
                                        spari_whole("owners of it", member->owner),
-                                       spari_given("owners of it, given or not", member->owner_given),
+                                       spari_given("owners of it (set or not)", member->owner_given),
                                        spari_hash("descriptions of it", spari_member_hash(member))};
     int agreed = spari_member_enter(member, __func__, must_agree, 4, status);
     if (agreed != SPAR_OK) {
@@ -520,10 +520,10 @@ int spar_member_set_motion(spar_member *member, const double *q, const double *v
     int64_t n = member->nodes;
     SPARI_REQUIRE(
         s, member->external || member->kind == SPARI_POINT, SPAR_ERR_STATE,
-        "%s: spar solves for '%s' itself; set_motion is for points and external members (spar_member_set_external)",
+        "%s: spar solves '%s' itself; set the motion only of points and external members (spar_member_set_external)",
         __func__, member->name);
     SPARI_REQUIRE(s, s->state.phase != SPARI_IDLE || !s->clock.started, SPAR_ERR_STATE,
-                  "%s: '%s': no step is under way; give the motion at t^{n+1} after spar_step_begin", __func__,
+                  "%s: '%s': no step is in progress; give the motion at t^{n+1} after spar_step_begin", __func__,
                   member->name);
     if (q) {
         SPARI_TRY(spari_need_finite(s, __func__, member->name, "q", 7 * n, q));
@@ -564,8 +564,8 @@ int spar_member_drive_root(spar_member *member, const double q[7], const double 
                   "%s: the root of '%s' is not driven; call spar_member_set_root with SPAR_ROOT_DRIVEN before commit",
                   __func__, member->name);
     SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: '%s': a step is under way; the root's motion at its end is given before spar_step_begin",
-                  __func__, member->name);
+                  "%s: '%s': a step is in progress; give the root's motion at its end before spar_step_begin", __func__,
+                  member->name);
     SPARI_TRY(spari_need_finite(s, __func__, member->name, "q", 7, q));
     SPARI_TRY(spari_need_unit(s, __func__, member->name, "q", 1, q + 3, 7));
     const double *in[2] = {v ? v : rest, a ? a : rest};

@@ -6,8 +6,8 @@
 
 static int prescribed_check(const spar_member *m) {
     SPARI_REQUIRE(m->session, spari_member_root_is_prescribed(m), SPAR_ERR_STATE,
-                  "member '%s' is prescribed and its root is free or pinned: nothing says where it goes; fix or drive "
-                  "its root, or make it rigid",
+                  "member '%s' is prescribed and its root is free or pinned, so its motion is not defined; fix or "
+                  "drive its root, or make it rigid",
                   m->name);
     return SPAR_OK;
 }

@@ -196,8 +196,8 @@ int spar_joint_get_energy(const spar_joint *joint, int64_t capacity, double *ene
     SPARI_REQUIRE(NULL, joint, SPAR_ERR_ARGUMENT, "%s: the joint is NULL; create it first", __func__);
     SPARI_TRY(spari_need_capacity(joint->session, __func__, capacity));
     SPARI_REQUIRE(joint->session, keeps_account(joint), SPAR_ERR_STATE,
-                  "%s: no account is kept of '%s'; ask for SPAR_EFFECT_WORK of a member that it ties, with "
-                  "spar_member_set_effects before that is committed",
+                  "%s: work of '%s' is not recorded; request SPAR_EFFECT_WORK of a member that it connects, with "
+                  "spar_member_set_effects before the commit",
                   __func__, joint->name);
     const double *a = joint->account,
                  all[SPAR_JOINT_ENERGY_COUNT] = {joint->after.found != 0 ? spring_energy(joint) : 0, a[0], a[1], a[2]};
@@ -248,8 +248,8 @@ int spar_member_get_work(const spar_member *member, int64_t capacity, double *wo
     SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
     SPARI_REQUIRE(member->session, member->work, SPAR_ERR_STATE,
-                  "%s: no account is kept of '%s'; ask for SPAR_EFFECT_WORK with spar_member_set_effects before it is "
-                  "committed",
+                  "%s: work of '%s' is not recorded; request SPAR_EFFECT_WORK with spar_member_set_effects before the "
+                  "member is committed",
                   __func__, member->name);
     spari_fill(capacity, work, SPAR_WORK_COUNT, member->work->sum);
     return SPAR_OK;

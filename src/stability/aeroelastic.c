@@ -61,7 +61,7 @@ static int find_structure(spar_session *s, const coupled_ask *ask, coupled *c) {
     int64_t modes = ask->fluid.modes, n = ask->n;
     SPARI_TRY(spari_joints_place(s));
     SPARI_TRY(spari_small_motions_create(&c->motions, s, NULL));
-    SPARI_REQUIRE(s, c->motions.parts > 0, SPAR_ERR_UNSUPPORTED, "there is no member that spar solves for");
+    SPARI_REQUIRE(s, c->motions.parts > 0, SPAR_ERR_UNSUPPORTED, "the session has no member that spar solves");
     SPARI_REQUIRE(s, modes <= c->motions.size, SPAR_ERR_ARGUMENT, "%lld modes; there are %d unknowns", (long long)modes,
                   c->motions.size);
     c->reduced = (spari_reduced){.n = (int)modes, .dt = ask->fluid.run.dt, .memory = ask->fluid.memory};
@@ -83,11 +83,11 @@ static int find_structure(spar_session *s, const coupled_ask *ask, coupled *c) {
 }
 
 static int check_fluid(spar_session *s, const spari_reduced *r) {
-    SPARI_REQUIRE(s, r->misfit <= most_misfit, SPAR_ERR_NUMERIC,
-                  "once the motion has ended, the fluid's loads do not come to rest as those of a linear system do, by "
-                  "%.1e of them: give more steps of memory, a fluid that is solved more tightly or at rest before, or "
-                  "a larger amplitude",
-                  r->misfit);
+    SPARI_REQUIRE(
+        s, r->misfit <= most_misfit, SPAR_ERR_NUMERIC,
+        "after the motion the fluid's loads do not decay like those of a linear system, relative error %.1e: give more "
+        "steps of memory, a fluid with tighter tolerance or initially at rest, or a larger amplitude",
+        r->misfit);
     return SPAR_OK;
 }
 
@@ -98,11 +98,10 @@ static int find_eigenvalues(spar_session *s, const coupled_ask *ask, coupled *c)
         status = spari_reduced_solve(&c->reduced, (int)ask->n, ask->shift, &found, c->value, c->x);
     }
     SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory for %lld eigenvalues", (long long)ask->n);
-    SPARI_REQUIRE(s, status == SPAR_OK, status,
-                  "the fluid's loads have no numbers, or what it accelerates takes all of the mass");
+    SPARI_REQUIRE(s, status == SPAR_OK, status, "the fluid's loads are not finite, or its added mass cancels all mass");
     SPARI_REQUIRE(s, found >= ask->n, SPAR_ERR_NUMERIC,
-                  "%d of %lld eigenvalues; the others are the fluid's own, or faster than dt = %g s shows: give more "
-                  "modes, or a smaller dt",
+                  "only %d of %lld eigenvalues found; the others belong to the fluid, or are too fast for dt = %g s: "
+                  "give more modes, or a smaller dt",
                   found, (long long)ask->n, ask->fluid.run.dt);
     return SPAR_OK;
 }
@@ -155,8 +154,7 @@ static int check_memory(spar_session *s, const char *call) {
         SPARI_TRY(spar_fluid_get_states(f, &width, NULL));
         SPARI_REQUIRE(
             s, width == 0, SPAR_ERR_ARGUMENT,
-            "%s: fluid '%s' keeps states from step to step, which a memory of 0 steps does not see; give some "
-            "more",
+            "%s: fluid '%s' has states that last from step to step; a memory of 0 steps ignores them; give more steps",
             call, spar_fluid_get_name(f));
     }
     return SPAR_OK;
@@ -167,10 +165,10 @@ static int check_coupled(spar_session *s, const char *call, const coupled_ask *a
     const spari_response_query *f = &ask->fluid;
     SPARI_TRY(spari_trial_check(s, call, &f->run));
     SPARI_TRY(s->clock.started ? SPAR_OK : spari_session_pushes(s, call));
-    SPARI_REQUIRE(s, f->run.solve, SPAR_ERR_UNSUPPORTED,
-                  "%s: without a fluid solver there is no answer; give the one that spar_step is given, or see "
-                  "spar_member_solve_eigenvalues",
-                  call);
+    SPARI_REQUIRE(
+        s, f->run.solve, SPAR_ERR_UNSUPPORTED,
+        "%s: the fluid solver is NULL; give the solver passed to spar_step, or use spar_member_solve_eigenvalues",
+        call);
     SPARI_REQUIRE(s, f->memory >= 0 && f->memory <= most_memory, SPAR_ERR_ARGUMENT,
                   "%s: a memory of %lld steps; give 0 to %lld", call, (long long)f->memory, (long long)most_memory);
     SPARI_TRY(f->memory == 0 ? check_memory(s, call) : SPAR_OK);
@@ -179,7 +177,7 @@ static int check_coupled(spar_session *s, const char *call, const coupled_ask *a
                   common_amplitude);
     SPARI_REQUIRE(s, f->modes >= 1, SPAR_ERR_ARGUMENT, "%s: no modes; give 1 to %d", call, SPARI_SHAPES_MOST);
     SPARI_REQUIRE(s, ask->n >= 0 && ask->n <= 2 * f->modes, SPAR_ERR_ARGUMENT,
-                  "%s: %lld eigenvalues of %d modes; give 0 to twice as many", call, (long long)ask->n, f->modes);
+                  "%s: %lld eigenvalues of %d modes; give at most two per mode", call, (long long)ask->n, f->modes);
     SPARI_REQUIRE(s, eigenvalue || ask->n == 0, SPAR_ERR_ARGUMENT, "%s: eigenvalue is NULL", call);
     SPARI_REQUIRE(s, !ask->shapes || nodes == f->nodes, SPAR_ERR_ARGUMENT,
                   "%s: shapes of %lld nodes; all members together have %lld", call, (long long)nodes,

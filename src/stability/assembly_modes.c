@@ -288,10 +288,10 @@ static int solve_joined_modes(joined_modes *t, spar_member *m, int64_t n, double
     spar_session *s = m->session;
     int status = alloc_joined_modes(t) ? fill_joined_modes(t, s) : SPAR_ERR_MEMORY;
     status = status == SPAR_OK ? factor_holds(t) : status;
-    SPARI_REQUIRE(s, status == SPAR_OK, status, "no memory for the modes of what joints tie to '%s'", m->name);
+    SPARI_REQUIRE(s, status == SPAR_OK, status, "no memory for the modes of the assembly of '%s'", m->name);
     int64_t left = t->size - t->rank;
-    SPARI_REQUIRE(s, n <= left, SPAR_ERR_ARGUMENT, "'%s' and what joints tie to it: %lld modes; they have %lld",
-                  m->name, (long long)n, (long long)left);
+    SPARI_REQUIRE(s, n <= left, SPAR_ERR_ARGUMENT, "the assembly of '%s': %lld modes; the assembly has %lld", m->name,
+                  (long long)n, (long long)left);
     if (n == 0) {
         return SPAR_OK;
     }
@@ -301,12 +301,12 @@ static int solve_joined_modes(joined_modes *t, spar_member *m, int64_t n, double
     if (status == SPAR_OK) {
         onto_allowed(t, t->K, workspace, p.K);
         onto_allowed(t, t->M, workspace, p.M);
-        status = spari_modal_solve(&p, m, "what joints tie to", n, frequency);
+        status = spari_modal_solve(&p, m, "the assembly of", n, frequency);
         if (status == SPAR_OK && shapes) {
             give_shapes(t, &p, m, n, workspace, shapes);
         }
     } else {
-        status = spari_fail(s, status, "no memory for the modes of what joints tie to '%s'", m->name);
+        status = spari_fail(s, status, "no memory for the modes of the assembly of '%s'", m->name);
     }
     free(workspace);
     spari_modal_free(&p);

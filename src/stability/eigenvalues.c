@@ -136,9 +136,8 @@ static int check_same(const spari_small_motions *w, const spari_motion_part *p, 
     free(x);
     SPARI_REQUIRE(
         w->session, same, SPAR_ERR_UNSUPPORTED,
-        "'%s' turns otherwise than what it is tied to, and is not alike all around its axis: the equations "
-        "of small motions change with time, and have no eigenvalues; of a periodic state there are multipliers "
-        "(spar_session_solve_floquet)",
+        "'%s' rotates relative to the parts it is connected to, and is not isotropic about its axis: the small-motion "
+        "equations depend on time and have no eigenvalues; for a periodic state use spar_session_solve_floquet",
         p->member->name);
     return SPAR_OK;
 }
@@ -154,7 +153,8 @@ static int fill_motions(spari_small_motions *w) {
         w->pencil.base = p->at;
         int status = p->member->row->linearise(p->member, w->loose ? p->own : w->w, &w->pencil);
         SPARI_REQUIRE(s, status != SPAR_ERR_UNSUPPORTED, status,
-                      "'%s' is linear in the frame of its root, which turns otherwise than what it is tied to",
+                      "'%s' is linear in the frame of its root, which rotates relative to the parts it is connected "
+                      "to; use SPAR_FIDELITY_EXACT",
                       p->member->name);
         SPARI_REQUIRE(s, status == SPAR_OK, status, "'%s': no memory for eigenvalues", p->member->name);
         SPARI_TRY(w->loose ? SPAR_OK : check_same(w, p, first));
@@ -200,12 +200,11 @@ static int check_motions(const spari_small_motions *w) {
         size += fabs(p->entry[i].k) + fabs(p->entry[i].c) + fabs(p->entry[i].m);
     }
     SPARI_REQUIRE(w->session, isfinite(size) && isfinite(most), SPAR_ERR_NUMERIC,
-                  "'%s': stiffness in the present state is beyond the range of numbers; look at loads and sections, or "
-                  "at their units",
+                  "'%s': stiffness in the present state is not finite; check loads, sections and their units",
                   w->part[0].member->name);
     SPARI_REQUIRE(w->session, most <= equilibrium * p->scale + equilibrium_noise * p->noise, SPAR_ERR_STATE,
-                  "'%s' is in no equilibrium, at rest or turning steadily: forces of %.3g are left over beside forces "
-                  "of %.3g; solve statically first",
+                  "'%s' is not in equilibrium, at rest or in steady rotation: forces of %.3g are unbalanced, compared "
+                  "with forces of %.3g; compute the static solution first",
                   w->part[0].member->name, most, p->scale);
     return SPAR_OK;
 }
@@ -234,12 +233,12 @@ int spari_small_motions_solve(spari_small_motions *w, int n, double complex shif
     const char *name = w->part[0].member->name;
     SPARI_REQUIRE(w->session, status != SPAR_ERR_MEMORY, status, "'%s': no memory for %d eigenvalues", name, n);
     SPARI_REQUIRE(w->session, status == SPAR_OK, status,
-                  "'%s': stiffness, damping and mass are singular together: something can move where there is none of "
-                  "them",
+                  "'%s': stiffness, damping and mass are singular together: a free motion has none of the three; "
+                  "constrain it or give it mass",
                   name);
     SPARI_REQUIRE(w->session, found >= n, SPAR_ERR_NUMERIC,
-                  "'%s': %d of %d eigenvalues; the others have no mass, or have not converged: ask for fewer, or give "
-                  "a shift nearer to them",
+                  "'%s': only %d of %d eigenvalues found; the others have no mass, or have not converged: request "
+                  "fewer, or give a shift closer to them",
                   name, found, n);
     return SPAR_OK;
 }

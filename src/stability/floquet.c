@@ -179,8 +179,8 @@ static int find_columns_of_map(spar_session *s, floquet *f, const spari_trial_se
     f->mode = -1;
     SPARI_TRY(try_period(s, f, trial_settings, done++));
     SPARI_REQUIRE(s, f->drift <= periodic, SPAR_ERR_STATE,
-                  "the state is not periodic with %lld steps of %g s: after them it is %.2g of a member's length, or "
-                  "rad, from where it was; let the run go on until it repeats, or give the whole of its period",
+                  "the state is not periodic with %lld steps of %g s: it differs by %.2g of a member's length, or rad, "
+                  "after one period; run until it repeats, or give the whole period",
                   (long long)f->steps, f->run.dt, f->drift);
     for (int column = 0; column < 2 * n; column++) {
         f->mode = column % n;
@@ -227,7 +227,7 @@ static int find_shapes_of_period(spar_session *s, floquet *f) {
     int n = f->modes;
     SPARI_TRY(spari_joints_place(s));
     SPARI_TRY(spari_small_motions_create_loose(&f->motions, s));
-    SPARI_REQUIRE(s, f->motions.parts > 0, SPAR_ERR_UNSUPPORTED, "there is no member that spar solves for");
+    SPARI_REQUIRE(s, f->motions.parts > 0, SPAR_ERR_UNSUPPORTED, "the session has no member that spar solves");
     SPARI_REQUIRE(s, n <= f->motions.size, SPAR_ERR_ARGUMENT, "%d modes; there are %d unknowns", n, f->motions.size);
     int64_t square = (int64_t)n * n;
     f->shape =
@@ -261,7 +261,7 @@ static int weigh_shapes(spar_session *s, floquet *f) {
         f->unit[i] = most > 0 ? 1 / most : 1;
     }
     SPARI_REQUIRE(s, spari_cholesky(f->modes, f->gram) == 0, SPAR_ERR_NUMERIC,
-                  "the shapes cannot be told from each other; ask for fewer modes");
+                  "the mode shapes are linearly dependent; request fewer modes");
     return SPAR_OK;
 }
 
@@ -276,8 +276,8 @@ static int find_multipliers(spar_session *s, floquet *f, int64_t n, double *eige
     free(z);
     SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory for %d modes", f->modes);
     SPARI_REQUIRE(s, count >= n, SPAR_ERR_NUMERIC,
-                  "%d of %lld multipliers; of conjugate pairs one counts: ask for fewer, or give more modes", count,
-                  (long long)n);
+                  "only %d of %lld multipliers found; a conjugate pair counts once: request fewer, or give more modes",
+                  count, (long long)n);
     return SPAR_OK;
 }
 
@@ -303,14 +303,15 @@ static int check_floquet(spar_session *s, const floquet *f, int64_t modes, int64
     SPARI_TRY(spari_trial_check(s, call, &f->run));
     SPARI_TRY(s->clock.started ? SPAR_OK : spari_session_pushes(s, call));
     SPARI_REQUIRE(s, f->steps >= 1 && isfinite(f->run.dt * (double)f->steps), SPAR_ERR_ARGUMENT,
-                  "%s: %lld steps; give as many as a period has", call, (long long)f->steps);
+                  "%s: %lld steps; give the number of steps in a period", call, (long long)f->steps);
     SPARI_REQUIRE(s, f->amplitude > 0 && f->amplitude <= largest_amplitude, SPAR_ERR_ARGUMENT,
                   "%s: an amplitude of %g; give up to %g, or 0 for %g", call, f->amplitude, largest_amplitude,
                   usual_amplitude);
     SPARI_REQUIRE(s, modes >= 1 && modes <= SPARI_SHAPES_MOST, SPAR_ERR_ARGUMENT, "%s: %lld modes; give 1 to %d", call,
                   (long long)modes, SPARI_SHAPES_MOST);
     SPARI_REQUIRE(s, n >= 0 && n <= 2 * modes, SPAR_ERR_ARGUMENT,
-                  "%s: %lld multipliers of %lld modes; give 0 to twice as many", call, (long long)n, (long long)modes);
+                  "%s: %lld multipliers of %lld modes; give at most two per mode", call, (long long)n,
+                  (long long)modes);
     SPARI_REQUIRE(s, eigenvalue || n == 0, SPAR_ERR_ARGUMENT, "%s: eigenvalue is NULL", call);
     return SPAR_OK;
 }

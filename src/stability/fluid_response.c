@@ -272,11 +272,11 @@ static int run_trials(spar_session *s, const char *call, const spari_response_qu
     for (int i = 0; i < n; i++) {
         worst = fmax(worst, left[i] > 0 ? left[i] / scale[i] : 0);
     }
-    SPARI_REQUIRE(s, worst <= same_loads, SPAR_ERR_STATE,
-                  "the fluid's loads in the present state are not those in use, by %.1e of them, or they change while "
-                  "nothing moves: no equilibrium; solve with the fluid first (spar_session_solve_static), or let the "
-                  "run come to rest",
-                  worst);
+    SPARI_REQUIRE(
+        s, worst <= same_loads, SPAR_ERR_STATE,
+        "the fluid's loads in the present state differ from those in use by %.1e, or they change without motion: no "
+        "equilibrium; solve with the fluid first (spar_session_solve_static), or run until the motion ends",
+        worst);
     return SPAR_OK;
 }
 
@@ -291,7 +291,7 @@ int spari_fluid_response_find(spar_session *s, const char *call, const spari_res
     response->load = spari_zalloc(response->count * n * n, sizeof *response->load);
     double *workspace = spari_zalloc(13 * ask->nodes + 3 * n + 2 * response->count * n, sizeof *workspace);
     int status =
-        response->load && workspace ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the fluid's answer");
+        response->load && workspace ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the fluid's response");
     status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     spari_trial_settings trial_settings = {.member = NULL};
     status = status == SPAR_OK ? spari_trial_settings_create(s, &trial_settings) : status;

@@ -133,10 +133,10 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
     int own[2] = {0, 0}, status = spari_modes_of_member(m, most, all, shapes);
     for (int k = 0; k < 2 && status == SPAR_OK; k++) {
         if (mode[k] < rigid_modes(m)) {
-            status = spari_fail(s, SPAR_ERR_NUMERIC,
-                                "member '%s': mode %lld moves it as a rigid body and cannot be damped; the first that "
-                                "can is %d",
-                                m->name, (long long)mode[k], rigid_modes(m));
+            status =
+                spari_fail(s, SPAR_ERR_NUMERIC,
+                           "member '%s': mode %lld is a rigid-body mode and cannot be damped; give mode %d or higher",
+                           m->name, (long long)mode[k], rigid_modes(m));
             break;
         }
         omega[k] = 6.283185307179586 * all[mode[k]];
@@ -157,14 +157,13 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
         }
     }
     SPARI_REQUIRE(s, own[0] != own[1], SPAR_ERR_ARGUMENT,
-                  "member '%s': modes %lld and %lld are both mostly %s, where damping grows with the frequency; choose "
-                  "modes of two kinds, such as the first flapwise and the first edgewise",
+                  "member '%s': modes %lld and %lld are both mostly %s, whose damping ratios grow together with the "
+                  "frequency; choose two different kinds of modes, such as the first flapwise and the first edgewise",
                   m->name, (long long)mode[0], (long long)mode[1], GROUP_NAME[own[0]]);
-    SPARI_REQUIRE(
-        s, solve_ratios((const double(*)[GROUPS][GROUPS])share, own, ratio, groups) == 0, SPAR_ERR_NUMERIC,
-        "member '%s': no damping gives modes %lld and %lld the ratios %g and %g: they share too much of their "
-        "strains; bring the ratios nearer to each other",
-        m->name, (long long)mode[0], (long long)mode[1], ratio[0], ratio[1]);
+    SPARI_REQUIRE(s, solve_ratios((const double(*)[GROUPS][GROUPS])share, own, ratio, groups) == 0, SPAR_ERR_NUMERIC,
+                  "member '%s': no damping gives modes %lld and %lld the ratios %g and %g: their strains are too "
+                  "similar; bring the ratios closer together",
+                  m->name, (long long)mode[0], (long long)mode[1], ratio[0], ratio[1]);
     for (int i = 0; i < 6; i++) {
         mu[i] = groups[GROUP[i]];
     }
@@ -175,8 +174,8 @@ static int check_pair(const spar_member *m, const int64_t mode[2], const double 
     spar_session *s = m->session;
     SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "member '%s' is not a beam", m->name);
     SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
-                  "member '%s' is not committed, its modes are not known; call it "
-                  "between spar_member_commit and the first step",
+                  "member '%s' is not committed, so its modes are not known; call this between spar_member_commit and "
+                  "the first step",
                   m->name);
     SPARI_REQUIRE(s, !s->clock.started && s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "member '%s': the clock has started; choose the damping before the first step", m->name);
@@ -186,8 +185,8 @@ static int check_pair(const spar_member *m, const int64_t mode[2], const double 
         "any value before commit, or set no effects",
         m->name);
     SPARI_REQUIRE(s, m->row->renew, SPAR_ERR_UNSUPPORTED,
-                  "member '%s' is of a lower fidelity, made up at commit; find mu with an exact member and hand it to "
-                  "spar_beam_set_damping",
+                  "member '%s' is linear or modal, and its damping is fixed at commit; compute mu with an exact member "
+                  "and pass it to spar_beam_set_damping",
                   m->name);
     SPARI_REQUIRE(s, mode && ratio, SPAR_ERR_ARGUMENT, "member '%s': %s is NULL", m->name, mode ? "ratio" : "mode");
     for (int k = 0; k < 2; k++) {

@@ -104,19 +104,18 @@ int spari_modal_solve(spari_modal *p, const spar_member *m, const char *who, int
     spar_session *s = m->session;
     int64_t size = (int64_t)p->size * p->size; /* M follows K */
     SPARI_REQUIRE(s, spari_first_nonfinite(p->K, 2 * size) < 0, SPAR_ERR_NUMERIC,
-                  "%s '%s': stiffness in the present state is beyond the range of numbers; look at loads and sections, "
-                  "or at their units",
-                  who, m->name);
+                  "%s '%s': stiffness in the present state is not finite; check loads, sections and their units", who,
+                  m->name);
     double sigma = find_shift(p);
     SPARI_REQUIRE(s, sigma >= 0, SPAR_ERR_NUMERIC,
-                  "%s '%s': no shift makes the stiffness positive definite in the present state: something can move "
-                  "where there is neither mass nor stiffness",
+                  "%s '%s': no shift makes the stiffness positive definite in the present state: a free motion has "
+                  "neither mass nor stiffness; constrain it or give it mass",
                   who, m->name);
     memcpy(p->A, p->M, (size_t)size * sizeof *p->A);
     int status = spari_eigen(p->size, p->A, p->B, p->lambda, p->x);
     SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory for the modes of '%s'", m->name);
     SPARI_REQUIRE(s, status == SPAR_OK, status,
-                  "%s '%s': stiffness and mass lie too far apart for the range of numbers; look at the sections", who,
+                  "%s '%s': the ratio of stiffness to mass is outside the range of a double; check the sections", who,
                   m->name);
     for (int64_t k = 0; k < n; k++) {
         double mu = p->lambda[k], square = mu > 0 ? 1 / mu - sigma : INFINITY;
@@ -129,7 +128,7 @@ int spari_modal_solve(spari_modal *p, const spar_member *m, const char *who, int
 
 int spari_modes_need_mass(const spar_member *m) {
     SPARI_REQUIRE(m->session, m->body && m->body->mass && (m->effects & SPAR_EFFECT_INERTIA), SPAR_ERR_UNSUPPORTED,
-                  "'%s' has no mass that spar knows of", m->name);
+                  "'%s' has no mass in spar", m->name);
     return SPAR_OK;
 }
 

@@ -136,7 +136,8 @@ int spari_shapes_find(spari_small_motions *w, int modes, double *shape, double *
     free(workspace);
     SPARI_REQUIRE(w->session, status != SPAR_ERR_MEMORY, status, "no memory for %d modes", modes);
     SPARI_REQUIRE(w->session, status == SPAR_OK && count == modes, SPAR_ERR_NUMERIC,
-                  "%d of %d modes; the others have no mass, or have not converged: ask for fewer", count, modes);
+                  "only %d of %d modes found; the others have no mass, or have not converged: request fewer", count,
+                  modes);
     return SPAR_OK;
 }
 

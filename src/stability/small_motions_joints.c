@@ -196,9 +196,8 @@ SPARI_APART static int check_around(const spari_small_motions *w, const spar_joi
     int round = of_K <= tolerance * rotation * size[0] && of_C <= tolerance * rotation * size[1] &&
                 of_P <= tolerance * rotation * size[2];
     SPARI_REQUIRE(w->session, round, SPAR_ERR_UNSUPPORTED,
-                  "joint '%s' is not alike all around the axis about which its sides turn: the equations of small "
-                  "motions change with time, and have no eigenvalues; of a periodic state there are multipliers "
-                  "(spar_session_solve_floquet)",
+                  "joint '%s' is not isotropic about the axis of relative rotation: the small-motion equations depend "
+                  "on time and have no eigenvalues; for a periodic state use spar_session_solve_floquet",
                   j->name);
     return SPAR_OK;
 }

@@ -416,7 +416,7 @@ static const char *iterate_alone(void *self, double longest, spari_iterate *it) 
     double scale = spari_alpha_balance(s, t->member, t->c, &t->e->seen, s->r);
     double noise = spari_alpha_rotate_back(s, q, s->r, s->dx);
     if (!isfinite(scale) || !isfinite(noise)) {
-        return "met numbers that are not finite";
+        return "met values that are not finite";
     }
     if (!s->factored) {
         spari_alpha_operators(s, t->c, t->e, t->x);
@@ -463,7 +463,7 @@ static int newton(const alpha_step *t) {
                                            spari_newton_stop_begin(session, &t->s->trace), &iterations);
     SPARI_REQUIRE(t->member->session, !wrong, SPAR_ERR_NUMERIC,
                   "member '%s': Newton %s (%d iterations in several attempts, each of %d at most) in the step from t = "
-                  "%g; take a smaller dt, more substeps or a smaller rho_inf, or look at the loads",
+                  "%g; use a smaller dt, more substeps or a smaller rho_inf, or check the loads",
                   t->member->name, wrong, iterations, session->newton.max, session->clock.time);
     return SPAR_OK;
 }
@@ -495,11 +495,10 @@ static int start(spari_solver *s, const spar_member *member, const spari_scheme 
     int singular = spari_solver_factor(s, member, b->q, NULL, NULL, 0, c->cm, 0, NULL) ||
                    spari_scheme_start(c, s->linear, end, 6 * n, spari_alpha_unbalance, s, member, s->r, b->a);
     s->factored = 0;
-    SPARI_REQUIRE(
-        member->session, !singular, SPAR_ERR_NUMERIC,
-        "member '%s': its mass and stiffness together are singular at the start; give mass or rotary inertia to every "
-        "direction in which it can move freely",
-        member->name);
+    SPARI_REQUIRE(member->session, !singular, SPAR_ERR_NUMERIC,
+                  "member '%s': its mass and stiffness together are singular at the start; give mass or rotary inertia "
+                  "in every direction of free motion",
+                  member->name);
     spari_stage_remember(s, member, c);
     s->steps.started = 1;
     return SPAR_OK;

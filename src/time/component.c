@@ -43,7 +43,7 @@ static const char *iterate_component(void *self, double longest, spari_iterate *
     const spari_component_row *row = p->row;
     double scale = row->balance(p);
     if (!isfinite(scale)) {
-        return "met numbers that are not finite";
+        return "met values that are not finite";
     }
     if (!t->formed && row->tangent(p)) {
         return "found a singular tangent";
@@ -86,11 +86,10 @@ static int solve_stage(void *self, const spari_scheme *c, const spari_part *part
     SPARI_TRY(p->row->stage(p, part));
     const char *wrong = spari_newton_solve(&how, &stage, p->row->serves(p), session->newton.max,
                                            spari_newton_stop_begin(session, &p->solver->trace), &iterations);
-    SPARI_REQUIRE(
-        session, !wrong, SPAR_ERR_NUMERIC,
-        "member '%s': its equations have no solution in the step from t = %g (Newton %s); look at the turning "
-        "speed of its root, or at loads that follow it",
-        p->member->name, session->clock.time, wrong);
+    SPARI_REQUIRE(session, !wrong, SPAR_ERR_NUMERIC,
+                  "member '%s': its equations have no solution in the step from t = %g (Newton %s); check the angular "
+                  "velocity of its root and its follower loads",
+                  p->member->name, session->clock.time, wrong);
     return SPAR_OK;
 }
 
@@ -123,7 +122,7 @@ static int start_component(spari_component *p) {
     }
     SPARI_REQUIRE(p->member->session, !singular, SPAR_ERR_NUMERIC,
                   "member '%s': its mass and stiffness together are singular at the start; give mass or rotary inertia "
-                  "to every direction in which it can move freely",
+                  "in every direction of free motion",
                   p->member->name);
     p->row->end_start(p);
     return SPAR_OK;

@@ -26,24 +26,24 @@ const spari_fidelity *spari_fidelity_of(const spar_member *m) {
 int spari_fidelity_check(const spar_member *m) {
     const spari_fidelity *row = table[m->fidelity];
     SPARI_REQUIRE(m->session, m->fidelity == SPAR_FIDELITY_EXACT || (m->kind == SPARI_BEAM && !m->external),
-                  SPAR_ERR_STATE, "member '%s': a fidelity below exact is for beams that spar solves for", m->name);
-    SPARI_REQUIRE(
-        m->session, (m->guess_count == 0 && !m->learned) || spari_fidelity_of(m)->solved, SPAR_ERR_UNSUPPORTED,
-        "member '%s' moves as it is told (external, or prescribed): it has no equations that an added mass could "
-        "stand in; leave spar_member_set_added_mass and spar_member_learn_added_mass out",
-        m->name);
-    SPARI_REQUIRE(
-        m->session, !m->beam || m->beam->spring_count == 0 || (row->solved && !row->whole), SPAR_ERR_UNSUPPORTED,
-        "member '%s' has springs along it (spar_beam_set_foundation), which a beam of fidelity exact, linear or modal "
-        "can have; choose one of these (spar_member_set_fidelity)",
-        m->name);
-    SPARI_REQUIRE(
-        m->session,
-        !m->beam || m->beam->spring_count == 0 || row->seen != SPARI_SEEN_LINEAR || m->root != SPAR_ROOT_DRIVEN,
-        SPAR_ERR_UNSUPPORTED,
-        "member '%s' is linear in the frame of a root that is driven, and has springs to the ground along it "
-        "(spar_beam_set_foundation), which that frame moves against; keep SPAR_FIDELITY_EXACT, or fix the root",
-        m->name);
+                  SPAR_ERR_STATE, "member '%s': only beams that spar solves can have a fidelity below exact", m->name);
+    SPARI_REQUIRE(m->session, (m->guess_count == 0 && !m->learned) || spari_fidelity_of(m)->solved,
+                  SPAR_ERR_UNSUPPORTED,
+                  "member '%s' is external or prescribed: added mass does not apply to prescribed members; remove "
+                  "spar_member_set_added_mass and spar_member_learn_added_mass",
+                  m->name);
+    SPARI_REQUIRE(m->session, !m->beam || m->beam->spring_count == 0 || (row->solved && !row->whole),
+                  SPAR_ERR_UNSUPPORTED,
+                  "member '%s' has a foundation (spar_beam_set_foundation), which needs fidelity exact, linear or "
+                  "modal; choose one of these (spar_member_set_fidelity)",
+                  m->name);
+    SPARI_REQUIRE(m->session,
+                  !m->beam || m->beam->spring_count == 0 || row->seen != SPARI_SEEN_LINEAR ||
+                      m->root != SPAR_ROOT_DRIVEN,
+                  SPAR_ERR_UNSUPPORTED,
+                  "member '%s' is linear in the frame of a driven root, which moves relative to its foundation "
+                  "(spar_beam_set_foundation); use SPAR_FIDELITY_EXACT, or fix the root",
+                  m->name);
     return row->check ? row->check(m) : SPAR_OK;
 }
 

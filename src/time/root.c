@@ -325,7 +325,7 @@ int spari_stage_root(spari_solver *s, const spar_member *m, const spari_scheme *
     }
     if (rigid && c->rule == SPARI_TRAPEZOIDAL) {
         SPARI_REQUIRE(m->session, make_own_states(s) == SPAR_OK, SPAR_ERR_MEMORY,
-                      "member '%s': no memory for a step of another length", m->name);
+                      "member '%s': no memory for the new step size", m->name);
     }
     g->ends = rigid ? ends_from_rigid(s, m, c, g)
                     : spari_root_ends(s, m, c, &g->root, c->rule == SPARI_ALPHA ? part->ratio : 1, &s->from, &s->to);

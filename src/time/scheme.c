@@ -201,8 +201,8 @@ static int try_to_stay(const spari_stepper *how, void *self, const spari_scheme 
         char name[160];
         how->name(self, name, sizeof name);
         SPARI_REQUIRE(session, !last, status,
-                      "%s: the step from t = %g gains energy that no load gives, in 1024 parts too; take a smaller dt, "
-                      "or look at the loads",
+                      "%s: the step from t = %g gains energy without a load, even in 1024 parts; use a smaller dt, or "
+                      "check the loads",
                       name, session->clock.time);
     }
     return status;

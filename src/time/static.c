@@ -210,21 +210,21 @@ static const double most_bend = 2.2, suspect_bend = 1;
 
 static int refuse(const spari_solver *s, const spar_member *member, double done, outcome why) {
     double bend = largest_bend(s, s->best);
-    char text[200] = "a limit point, or a member that nothing holds";
+    char text[200] = "a limit point, or a member free to move as a rigid body";
     if (why == LOST) {
-        (void)snprintf(text, sizeof text, "a limit or branching point: the stiffness is no longer positive there");
+        (void)snprintf(text, sizeof text, "a limit or bifurcation point: the stiffness is not positive definite");
     } else if (why == LONG) {
-        (void)snprintf(text, sizeof text, "its way takes more than %d load steps beside those asked for; ask for more",
+        (void)snprintf(text, sizeof text, "it needs more than %d additional load steps; request more load steps",
                        SPARI_STATIC_MORE);
     } else if (bend > suspect_bend) {
         (void)snprintf(text, sizeof text,
-                       "neighbouring nodes are turned by %.2g rad against each other there, more than they can follow: "
-                       "give the beam more nodes or elements",
+                       "neighbouring nodes are rotated by %.2g rad relative to each other, more than the elements "
+                       "resolve; give the beam more nodes or elements",
                        bend);
     }
     return spari_fail(member->session, SPAR_ERR_NUMERIC,
-                      "member '%s': no %sequilibrium found beyond %.6g of the loads (%s); the state is as it was. Ask "
-                      "for less than that, or go on in time steps",
+                      "member '%s': no %sequilibrium found beyond %.6g of the loads (%s); the state is unchanged. "
+                      "Apply smaller loads, or run time steps",
                       member->name, why == LOST ? "stable " : "", done, text);
 }
 
@@ -236,8 +236,8 @@ static void warn_of_bend(const spari_solver *s, const spar_member *m) {
         return;
     }
     (void)snprintf(text, sizeof text,
-                   "static equilibrium of '%s': neighbouring nodes are turned by %.2g rad against each other, more "
-                   "than they can follow: what was found may not be the beam's; give it more nodes or elements",
+                   "static equilibrium of '%s': neighbouring nodes are rotated by %.2g rad relative to each other, "
+                   "more than the elements resolve; the result may be wrong; give the beam more nodes or elements",
                    m->name, bend);
     spari_log(m->session, SPAR_LOG_WARNING, text);
 }

@@ -31,9 +31,9 @@ int spar_session_try(spar_session *session, double dt, int64_t steps, spar_befor
     int status = spari_trial_check(s, __func__, &run);
     status = status == SPAR_OK ? spari_need_capacity(s, __func__, capacity) : status;
     if (status == SPAR_OK && compare && (!s->own->kept || s->own->kept->members != s->member_count)) {
-        status =
-            spari_fail(s, SPAR_ERR_STATE,
-                       "%s: there is no run of these members to compare with; try with compare = 0 first", __func__);
+        status = spari_fail(s, SPAR_ERR_STATE,
+                            "%s: there is no earlier run of these members to compare with; call with compare = 0 first",
+                            __func__);
     }
     status = spari_trial_enter(s, __func__, &run, 0, compare, status);
     status = status == SPAR_OK ? spari_trial_settings_create(s, &trial_settings) : status;

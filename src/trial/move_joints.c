@@ -35,8 +35,8 @@ int spari_joints_follow_rebuild(const spar_member *m, const spar_member *old) {
             }
             int64_t node = spari_joints_end_node(old, j->node[side], m->mesh);
             SPARI_REQUIRE(m->session, node >= 0, SPAR_ERR_STATE,
-                          "joint '%s' holds node %lld of '%s', which lies within an element, of those there are or "
-                          "of those to come: the member cannot have other nodes; tie ends of elements",
+                          "joint '%s' constrains node %lld of '%s', which lies within an element, now or after the "
+                          "change: the nodes of the member cannot change; connect joints at element boundaries",
                           j->name, (long long)j->node[side], m->name);
             j->node[side] = node;
         }

@@ -41,8 +41,8 @@ static int describe_again(spar_member *m, const spari_rebuild *settings, const s
     m->mesh.per_element = settings->per_element;
     m->mesh.elements = settings->elements > 0 ? settings->elements : m->mesh.elements;
     SPARI_REQUIRE(m->session, m->mesh.elements == old->mesh.elements || !old->beam->node_x, SPAR_ERR_STATE,
-                  "'%s' has the nodes that it was given: it cannot have %d elements in place of %d; describe its axis, "
-                  "or keep the elements",
+                  "the nodes of '%s' were set by the host, so it cannot have %d elements instead of %d; describe its "
+                  "axis, or keep the elements",
                   m->name, m->mesh.elements, old->mesh.elements);
     m->nodes = (int64_t)m->mesh.elements * m->mesh.per_element;
     if (old->beam->node_x) { /* given nodes are replaced by the line through them */

@@ -284,10 +284,11 @@ static int check_use(spar_session *s, const spari_run *run, int64_t i, spari_rec
     double so_far = found[0] + run->fluid * (double)r->solutions;
     r->dear = run->most > 0 &&
               (so_far > run->most || (part >= 0.125 && i >= SPARI_MULTIPLE && so_far > 1.5 * part * run->most));
-    SPARI_REQUIRE(s, !r->dear, SPAR_ERR_NUMERIC, "it costs more than it could save, and ends after %lld of %lld steps",
-                  (long long)i, (long long)run->steps);
+    SPARI_REQUIRE(s, !r->dear, SPAR_ERR_NUMERIC,
+                  "the trial costs more than it can save; stopped after %lld of %lld steps", (long long)i,
+                  (long long)run->steps);
     r->off = run->beside && found[1] > run->off ? found[1] / part : 0;
-    SPARI_REQUIRE(s, r->off <= 0, SPAR_ERR_NUMERIC, "its error is beyond %.3g, and it ends after %lld of %lld steps",
+    SPARI_REQUIRE(s, r->off <= 0, SPAR_ERR_NUMERIC, "the error exceeds %.3g; stopped after %lld of %lld steps",
                   run->off, (long long)i, (long long)run->steps);
     return SPAR_OK;
 }
@@ -359,7 +360,7 @@ static int share_failure(spar_session *s, int own, double *work) {
     if (there[SPAR_ERR_MEMORY] > 0 || there[SPAR_ERR_IO] > 0) {
         return own == SPAR_ERR_MEMORY || own == SPAR_ERR_IO || own == SPAR_ERR_PEER
                    ? own
-                   : spari_fail(s, SPAR_ERR_PEER, "another rank has no memory for a trial run, or no file");
+                   : spari_fail(s, SPAR_ERR_PEER, "another rank has no memory or no file for a trial run");
     }
     int shared = SPAR_OK + 1;
     while (shared < CODES && (there[shared] == 0 || shared == SPAR_ERR_PEER)) {
@@ -405,21 +406,21 @@ int spari_trial_enter(spar_session *s, const char *call, const spari_run *run, d
 }
 
 int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
-    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
-    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
-                  call);
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress", call);
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "%s: a step is in progress; accept or reject it first", call);
     for (const spar_member *m = s->members; m; m = m->next) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
                       "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
     }
     SPARI_TRY(spari_need_dt(s, call, run->dt));
     SPARI_REQUIRE(s, run->steps > 0 && run->steps % SPARI_MULTIPLE == 0, SPAR_ERR_ARGUMENT,
-                  "%s: %lld steps; give a multiple of %d, as advice tries other dt", call, (long long)run->steps,
-                  SPARI_MULTIPLE);
+                  "%s: %lld steps; give a multiple of %d, because advice tries other values of dt", call,
+                  (long long)run->steps, SPARI_MULTIPLE);
     /* advice varies dt, and runs longer than requested */
     const double longer = 1e6;
     SPARI_REQUIRE(s, isfinite(s->clock.time + longer * (double)run->steps * run->dt), SPAR_ERR_ARGUMENT,
-                  "%s: %lld steps of %g s from t = %g are beyond the range of numbers", call, (long long)run->steps,
-                  run->dt, s->clock.time);
+                  "%s: the end of %lld steps of %g s from t = %g is not finite; give fewer or shorter steps", call,
+                  (long long)run->steps, run->dt, s->clock.time);
     return SPAR_OK;
 }

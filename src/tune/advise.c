@@ -739,10 +739,10 @@ static int find_stable(spari_advisor *d, const spari_outcome *now, spari_outcome
         const spari_plan drifts = best->plan;
         SPARI_TRY(try_stabler(d, now, &drifts, best));
     }
-    return spari_fail(d->session, SPAR_ERR_NUMERIC,
-                      "%s: settings that keep the tolerance over the trials drift away after them; ask with more steps "
-                      "or a larger tolerance",
-                      SPARI_ADVISE);
+    return spari_fail(
+        d->session, SPAR_ERR_NUMERIC,
+        "%s: settings that meet the tolerance in the trials drift afterwards; use more steps or a larger tolerance",
+        SPARI_ADVISE);
 }
 
 /* The cheapest of what is known to keep the tolerance: among it are runs that were made for the structure. */
@@ -848,8 +848,8 @@ static SPARI_APART int search_plans(spari_advisor *d, const spari_plan *present,
         least = fmin(least, d->known[k].error);
     }
     return spari_fail(d->session, SPAR_ERR_NUMERIC,
-                      "%s: of %d trials none keeps the tolerance %g; the least error is %.3g; give a larger tolerance, "
-                      "or begin with a smaller dt",
+                      "%s: none of %d trials meets the tolerance %g; the smallest error is %.3g; give a larger "
+                      "tolerance, or start with a smaller dt",
                       SPARI_ADVISE, d->trials, d->tolerance, least);
 }
 
@@ -910,11 +910,10 @@ static int check_request(spar_session *s, double tolerance, const spari_run *run
     SPARI_REQUIRE(s, tolerance > 0 && tolerance < 1, SPAR_ERR_ARGUMENT, "%s: the tolerance is %g; give one in (0, 1)",
                   SPARI_ADVISE, tolerance);
     SPARI_REQUIRE(s, run->length > 0 && run->length <= most, SPAR_ERR_ARGUMENT,
-                  "%s: the length is %g; say how many seconds the run will last that the advice is for", SPARI_ADVISE,
-                  run->length);
+                  "%s: the length is %g; give the duration of the planned run in seconds", SPARI_ADVISE, run->length);
     SPARI_TRY(spari_need_capacity(s, SPARI_ADVISE, capacity));
     SPARI_REQUIRE(s, run->solve, SPAR_ERR_UNSUPPORTED,
-                  "%s: without a fluid solver there are no trials; give the one that spar_step is given", SPARI_ADVISE);
+                  "%s: the fluid solver is NULL; give the solver passed to spar_step", SPARI_ADVISE);
     return SPAR_OK;
 }
 

@@ -53,7 +53,7 @@ static int change_create(spar_session *s, change *c) {
         n++;
     }
     *c = (change){.made = spari_zalloc(n, sizeof *c->made), .carried = spari_zalloc(n, sizeof *c->carried)};
-    SPARI_REQUIRE(s, c->made && c->carried, SPAR_ERR_MEMORY, "no memory to put advice in force");
+    SPARI_REQUIRE(s, c->made && c->carried, SPAR_ERR_MEMORY, "no memory to apply the advice");
     return SPAR_OK;
 }
 
@@ -182,14 +182,13 @@ static void confirm(spar_session *s, change *c) {
 
 static int check_apply(spar_session *s, const char *call) {
     const spari_advised *a = s->own->advised;
-    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is under way", call);
-    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE, "%s: a step is under way; accept or reject it first",
-                  call);
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress", call);
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "%s: a step is in progress; accept or reject it first", call);
     SPARI_REQUIRE(s, a && a->given, SPAR_ERR_STATE, "%s: there is no advice yet; call %s first", call,
                   "spar_session_advise");
     SPARI_REQUIRE(s, a->of == spari_advised_of(s), SPAR_ERR_STATE,
-                  "%s: members have been added, or described otherwise, since the advice was given; ask for it again",
-                  call);
+                  "%s: members were added or changed after the advice; request the advice again", call);
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         SPARI_REQUIRE(s, !spari_fluid_is_pending(f), SPAR_ERR_STATE,
                       "%s: fluid '%s' has nodes that are not mapped; call spar_fluid_map first", call,
@@ -244,7 +243,7 @@ int spar_session_push_numbers(spar_session *session, int64_t n, const double *nu
                   "%s: %lld numbers%s; give 0 to %d", __func__, (long long)n, numbers ? "" : " without an array",
                   SPARI_MOST_NUMBERS);
     int64_t bad = numbers ? spari_first_nonfinite(numbers, n) : -1;
-    SPARI_REQUIRE(session, bad < 0, SPAR_ERR_ARGUMENT, "%s: number %lld is %g; give finite ones", __func__,
+    SPARI_REQUIRE(session, bad < 0, SPAR_ERR_ARGUMENT, "%s: number %lld is %g; give finite numbers", __func__,
                   (long long)bad, numbers[bad]);
     double *own = session->own->number;
     memset(own, 0, sizeof session->own->number);

@@ -173,12 +173,13 @@ int spar_member_get_error(spar_member *member, double *step, double *nodes) {
                   m->name);
     SPARI_REQUIRE(
         s, !step || spari_step_control_is_set(s), SPAR_ERR_STATE,
-        "%s: errors of steps are not kept; call spar_session_set_tolerance first, or ask for that of the nodes",
+        "%s: step errors are not recorded; call spar_session_set_tolerance first, or request the error of the nodes",
         __func__);
     SPARI_REQUIRE(s, !s->state.standing && !s->state.trial, SPAR_ERR_STATE,
-                  "%s: a static solution, a start or a trial is under way; ask between steps", __func__);
+                  "%s: a static solution, initial accelerations or a trial is in progress; call this between steps",
+                  __func__);
     SPARI_REQUIRE(s, !nodes || s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: a step is under way; the error of the nodes is found between steps", __func__);
+                  "%s: a step is in progress; request the error of the nodes between steps", __func__);
     if (step) {
         found[0] = s->state.phase >= SPARI_SOLVED ? spari_step_control_error(m) : m->accuracy.step_error;
     }

@@ -35,7 +35,7 @@ int spar_session_get_balance(const spar_session *session, int64_t capacity, int6
     int status = spari_need_capacity(s, __func__, capacity);
     if (status == SPAR_OK) {
         all = spari_zalloc(BALANCE_COLUMNS * ranks + 1, sizeof *all);
-        status = all ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for the figures of the ranks", __func__);
+        status = all ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory for the cost of the ranks", __func__);
     }
     status = spari_enter(s, __func__, status);
     if (status == SPAR_OK && all) {

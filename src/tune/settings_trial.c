@@ -69,9 +69,9 @@ const char *spari_plan_holds(const spari_advisor *d, int group, int elements) {
     int k = 0;
     for (const spar_member *m = d->session->members; m && !why; m = m->next, k++) {
         if (d->group[k] == group && elements != m->mesh.elements) {
-            why = m->beam->node_x                         ? "its nodes are given"
-                  : spari_joints_hold_within(m, elements) ? "a joint holds a node that would lie within an element"
-                  : is_loaded_within(m, elements)         ? "a load is kept at a node that lies within an element"
+            why = m->beam->node_x                         ? "its nodes are set by the host"
+                  : spari_joints_hold_within(m, elements) ? "a joint constrains a node that would lie within an element"
+                  : is_loaded_within(m, elements)         ? "a load is applied at a node within an element"
                                                           : NULL;
         }
     }
@@ -153,11 +153,10 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, double mos
     run.most = isfinite(most) ? most : 0;
     run.fluid = d->fluid;
     *record = (spari_record){0};
-    SPARI_REQUIRE(
-        s, d->now <= 0 || d->spent < d->limit * d->now, SPAR_ERR_LIMIT,
-        "%s: %d trials have cost %.3g times what one costs with the session as it is; the option advise.limit "
-        "allows %.3g: give a larger one, a larger tolerance, or no limit (0)",
-        SPARI_ADVISE, d->trials, d->spent / d->now, d->limit);
+    SPARI_REQUIRE(s, d->now <= 0 || d->spent < d->limit * d->now, SPAR_ERR_LIMIT,
+                  "%s: %d trials have cost %.3g times a trial with the present settings; the option advise.limit "
+                  "allows %.3g: give a larger limit, a larger tolerance, or no limit (0)",
+                  SPARI_ADVISE, d->trials, d->spent / d->now, d->limit);
     SPARI_TRY(tell_progress(d));
     SPARI_TRY(spari_trial_settings_create(s, &trial_settings));
     spari_plan_settings(p, trial_settings.setting);
@@ -358,14 +357,14 @@ static void weigh_fluid(spari_advisor *d, const spari_record *r) {
     d->run.timed = 0;
     if (s->callbacks.log) {
         (void)snprintf(text, sizeof text,
-                       "%s: one solution of the fluid is counted as %.4g (%.4g by its nodes), one second as %.4g",
+                       "%s: cost of one fluid solution: %.4g (%.4g from its nodes); cost of one second: %.4g",
                        SPARI_ADVISE, d->fluid, r->fluid, spari_rule.price.second);
         spari_log(s, SPAR_LOG_INFO, text);
     }
     if (s->callbacks.log && spari_cost_wavers(s, r->fluid, r->fluid_seconds, r->solutions)) {
         (void)snprintf(text, sizeof text,
-                       "%s: the fluid's time, %.3g s a solution, is between two classes: another run may get other "
-                       "advice; the option advise.fluid_cost says what it costs",
+                       "%s: the fluid's time, %.3g s per solution, is between two cost classes, so the advice may vary "
+                       "between runs; set the option advise.fluid_cost",
                        SPARI_ADVISE, r->fluid_seconds / (double)r->solutions);
         spari_log(s, SPAR_LOG_WARNING, text);
     }
@@ -456,7 +455,7 @@ static int run_coarsest(spari_advisor *d, const spari_plan *present, int *level,
         spari_record_free(run);
         tell_plan(d, &p, INFINITY, 0);
         SPARI_TRY(spari_plan_fails(status) ? SPAR_OK : status);
-        SPARI_REQUIRE(d->session, *level < last, status, "%s: no reference run comes to its end: %.400s", SPARI_ADVISE,
+        SPARI_REQUIRE(d->session, *level < last, status, "%s: no reference run completes: %.400s", SPARI_ADVISE,
                       d->session->message);
     }
     weigh_fluid(d, run);
@@ -659,12 +658,11 @@ static int refine(spari_advisor *d, const spari_plan *present, int level, int mo
 static void tell_growth(const spari_advisor *d, double T, double swells) {
     char text[SPARI_MESSAGE_SIZE];
     if (d->session->callbacks.log && d->longer > spari_rule.foreseen && swells > spari_rule.swells) {
-        (void)snprintf(
-            text, sizeof text,
-            "%s: the motion still grows in the trials of %.4g s (%.3g times from the second third to the "
-            "last): what it comes to in %.4g s they do not show, and errors of phase alone are foreseen; give "
-            "more steps where it comes to something else",
-            SPARI_ADVISE, T, swells, T * d->longer);
+        (void)snprintf(text, sizeof text,
+                       "%s: the motion still grows in the trials of %.4g s (%.3g times from the second third to the "
+                       "last): the trials do not show the motion after %.4g s, and only phase errors are extrapolated; "
+                       "give more steps if the motion changes later",
+                       SPARI_ADVISE, T, swells, T * d->longer);
         spari_log(d->session, SPAR_LOG_WARNING, text);
     }
 }
@@ -673,13 +671,12 @@ static void tell_growth(const spari_advisor *d, double T, double swells) {
 static int check_reference(spari_advisor *d) {
     const spar_session *s = d->session;
     double T = d->run.dt * (double)d->run.steps, said[4] = {0};
-    SPARI_REQUIRE(
-        s, d->reference_error <= spari_rule.reference_most * d->tolerance, SPAR_ERR_NUMERIC,
-        "%s: no reference to compare with: with dt/%.3g and finer nodes its own error is about %.3g, and must "
-        "be below %.3g to judge a tolerance of %g; give a larger one, begin with a smaller dt, or look "
-        "whether the fluid solver is repeatable",
-        SPARI_ADVISE, (double)d->level[d->levels - 1].plan.steps / (double)d->run.steps, d->reference_error,
-        spari_rule.reference_most * d->tolerance, d->tolerance);
+    SPARI_REQUIRE(s, d->reference_error <= spari_rule.reference_most * d->tolerance, SPAR_ERR_NUMERIC,
+                  "%s: no reference to compare with: with dt/%.3g and finer nodes the error of the reference is about "
+                  "%.3g, but must be below %.3g for a tolerance of %g; give a larger tolerance, start with a smaller "
+                  "dt, or check that the fluid solver is repeatable",
+                  SPARI_ADVISE, (double)d->level[d->levels - 1].plan.steps / (double)d->run.steps, d->reference_error,
+                  spari_rule.reference_most * d->tolerance, d->tolerance);
     if (spari_comm_rank(s->ranks.comm) == 0) {
         said[0] = spari_record_shortest(&d->reference, d->tolerance);
         said[1] = d->longer > spari_rule.foreseen ? spari_record_vouches(&d->reference) : 1;
@@ -688,8 +685,8 @@ static int check_reference(spari_advisor *d) {
     SPARI_TRY(spari_comm_sum(s->ranks.comm, said, 3, SPAR_OK, d->session->message, sizeof d->session->message));
     d->shortest = said[0];
     SPARI_REQUIRE(s, said[1] > 0, SPAR_ERR_NUMERIC,
-                  "%s: trials of %.4g s do not tell what a run of %.4g s does: the motion neither settles in them nor "
-                  "turns as often as a period does; give more steps, or the length %.4g",
+                  "%s: trials of %.4g s do not represent a run of %.4g s: the trials cover neither a steady state nor "
+                  "a full period; give more steps, or the length %.4g",
                   SPARI_ADVISE, T, T * d->longer, T);
     tell_growth(d, T, said[2]);
     return SPAR_OK;
@@ -703,8 +700,8 @@ int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan
     }
     SPARI_TRY(reference_nodes(d, present, &level, &more, &nodes));
     SPARI_TRY(refine(d, present, level, more, nodes));
-    SPARI_REQUIRE(d->session, d->levels > 0, SPAR_ERR_NUMERIC, "%s: no reference run comes to its end: %.400s",
-                  SPARI_ADVISE, d->session->message);
+    SPARI_REQUIRE(d->session, d->levels > 0, SPAR_ERR_NUMERIC, "%s: no reference run completes: %.400s", SPARI_ADVISE,
+                  d->session->message);
     SPARI_TRY(copy_reference(d));
     SPARI_TRY(check_reference(d));
     *finest = d->level[d->levels - 1].plan;

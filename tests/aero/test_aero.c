@@ -393,7 +393,7 @@ static void test_refused(void **state) {
     REFUSED(s.session, SPAR_ERR_ARGUMENT, "hub radius", spar_aero_set_rotor(s.aero, hub, axis, NAN, 63.0));
     REFUSED(s.session, SPAR_ERR_ARGUMENT, "2048", spar_aero_set_effects(s.aero, 2048));
     REFUSED(s.session, SPAR_ERR_ARGUMENT, "right-handed", spar_aero_set_turn(s.aero, 0));
-    REFUSED(s.session, SPAR_ERR_ARGUMENT, "2 blades in all", spar_aero_set_blades(s.aero, 2));
+    REFUSED(s.session, SPAR_ERR_ARGUMENT, "2 blades in total", spar_aero_set_blades(s.aero, 2));
     REFUSED(s.session, SPAR_ERR_ARGUMENT, "blade 1 is NULL",
             spar_aero_create(2, (spar_fluid *[]){s.fluid[0], NULL}, &aero));
     assert_int_equal(spar_aero_create(-1, NULL, &aero), SPAR_ERR_ARGUMENT);
@@ -408,7 +408,7 @@ static void test_refused(void **state) {
     OK(s.session, spar_fluid_set_sections(fluid, 2, (double[]){0.0, 0.0}, NULL));
     REFUSED(s.session, SPAR_ERR_STATE, "spar_fluid_map", spar_aero_create(1, &fluid, &aero));
     OK(s.session, spar_fluid_map(fluid));
-    REFUSED(s.session, SPAR_ERR_ARGUMENT, "the same place", spar_aero_create(1, &fluid, &aero));
+    REFUSED(s.session, SPAR_ERR_ARGUMENT, "the same position", spar_aero_create(1, &fluid, &aero));
     REFUSED(s.session, SPAR_ERR_ARGUMENT, "blade 0 has 19",
             spar_aero_create(2, (spar_fluid *[]){s.fluid[0], fluid}, &aero));
     assert_null(aero);
@@ -444,7 +444,7 @@ static void test_all_or_none(void **state) {
     spar_aero *mixed = NULL;
     begin(&other, 8.0, 9.16);
     build(&other, 0, 1);
-    REFUSED(s.session, SPAR_ERR_ARGUMENT, "of another session",
+    REFUSED(s.session, SPAR_ERR_ARGUMENT, "to another session",
             spar_aero_create(2, (spar_fluid *[]){s.fluid[0], other.fluid[0]}, &mixed));
     end(&other);
     s.wind[0][0] += 1;            /* other loads on blade 0, */
@@ -459,7 +459,7 @@ static void test_all_or_none(void **state) {
     OK(s.session, spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0));
     OK(s.session, spar_step(s.session, 0.05, NULL, NULL, NULL));
     OK(s.session, spar_fluid_get_audit(s.fluid[0], 8, before[0]));
-    REFUSED(s.session, SPAR_ERR_STATE, "spar_aero_solve: no step is under way",
+    REFUSED(s.session, SPAR_ERR_STATE, "spar_aero_solve: no step is in progress",
             spar_aero_solve(s.aero, 2, s.wind[0], 1.0));
     OK(s.session, spar_fluid_get_audit(s.fluid[0], 8, after[0]));
     assert_memory_equal(before[0], after[0], sizeof before[0]);

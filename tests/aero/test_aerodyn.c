@@ -368,7 +368,7 @@ static void test_mistakes(void **state) {
         {"blade.dat", "3 NumBlNds", "1 NumBlNds", SPAR_ERR_IO, "blade.dat, line 3: NumBlNds is 1"},
         {"blade.dat", "3 NumBlNds", "4 NumBlNds", SPAR_ERR_IO, "blade.dat ends at line 8; a station of the blade"},
         {"blade.dat", "1 0.1 0.2 3 20 3 1", "1 0.1 0.2 3 20 3", SPAR_ERR_IO, "line 7: BlSpn, BlCrvAC"},
-        {"blade.dat", "1 0.1 0.2 3 20 3 1", "0 0.1 0.2 3 20 3 1", SPAR_ERR_IO, "line 7: BlSpn is 0 and does not"},
+        {"blade.dat", "1 0.1 0.2 3 20 3 1", "0 0.1 0.2 3 20 3 1", SPAR_ERR_IO, "line 7: BlSpn is 0 and is not above"},
         {"blade.dat", "1 0.1 0.2 3 20 3 1", "1 0.1 0.2 3 20 -3 1", SPAR_ERR_IO, "line 7: BlChord is -3"},
         {"blade.dat", "1 0.1 0.2 3 20 3 1", "1 0.1 0.2 3 20 3 3", SPAR_ERR_IO, "line 7: BlAFID is 3; the primary"},
         {"blade.dat", "1 0.1 0.2 3 20 3 1", "1 0.1 0.2 3 20 3 1.5", SPAR_ERR_IO, "line 7: BlAFID is 1.5"},
@@ -379,7 +379,7 @@ static void test_mistakes(void **state) {
         {"a.dat", "90 1 0.5 0.3", "90 1 0.5", SPAR_ERR_IO, "a.dat, line 11: a row of the table"},
         {"a.dat", "90 1 0.5 0.3", "0 1 0.5 0.3", SPAR_ERR_IO, "a.dat, line 11: alpha is 0 deg"},
         {"a.dat", "90 1 0.5 0.3", "300 1 0.5 0.3", SPAR_ERR_ARGUMENT, "a.dat, line 11: the table that ends here"},
-        {"a.dat", "90 1 0.5 0.3", "270 1 0.5 0.3", SPAR_ERR_ARGUMENT, "the same angle a turn apart"},
+        {"a.dat", "90 1 0.5 0.3", "270 1 0.5 0.3", SPAR_ERR_ARGUMENT, "one revolution apart"},
     };
     double before[9], after[9];
     wing w = make_wing();
@@ -422,7 +422,7 @@ static void test_refusals(void **state) {
     OK(w.s, spar_aero_set_turn(w.aero, 1));
     REFUSED(w.s, SPAR_ERR_ARGUMENT, "a unit quaternion", spar_aero_read_aerodyn(w.aero, path, NULL, long_q, NULL));
     REFUSED(w.s, SPAR_ERR_ARGUMENT, "primary_path is NULL", spar_aero_read_aerodyn(w.aero, NULL, NULL, NULL, NULL));
-    REFUSED(w.s, SPAR_ERR_ARGUMENT, "span 3.1; the blade file goes",
+    REFUSED(w.s, SPAR_ERR_ARGUMENT, "span 3.1; the blade file covers",
             spar_fluid_read_aerodyn(w.f, path, NULL, NULL, 2, off));
     REFUSED(w.s, SPAR_ERR_ARGUMENT, "section 1", spar_fluid_read_aerodyn(w.f, path, NULL, NULL, 2, none));
     REFUSED(w.s, SPAR_ERR_ARGUMENT, "span is NULL", spar_fluid_read_aerodyn(w.f, path, NULL, NULL, 2, NULL));
@@ -452,7 +452,8 @@ static void test_refusals(void **state) {
     OK(w.s, spar_aero_create(2, both, &pair));
     REFUSED(w.s, SPAR_ERR_ARGUMENT, "blade 1 ('sections')", spar_aero_read_aerodyn(pair, path, NULL, NULL, NULL));
     spar_aero_destroy(&pair);
-    REFUSED(w.s, SPAR_ERR_ARGUMENT, "the spans of these", spar_aero_read_aerodyn(w.aero, PRIMARY, NULL, NULL, NULL));
+    REFUSED(w.s, SPAR_ERR_ARGUMENT, "the spans of the sections",
+            spar_aero_read_aerodyn(w.aero, PRIMARY, NULL, NULL, NULL));
     OK(w.s, spar_fluid_set_motion_nodes(w.f, 4, (double[12]){0}));
     OK(w.s, spar_fluid_map(w.f));
     REFUSED(w.s, SPAR_ERR_STATE, "had 3 sections", spar_aero_read_aerodyn(w.aero, path, NULL, NULL, NULL));

@@ -594,10 +594,10 @@ static void test_refusals(void **state) {
     build_flexible(&c, polar, SPAR_AERO_DRAG);
     REFUSED(c.s, SPAR_ERR_ARGUMENT, "SPAR_AERO_ effects", spar_aero_set_effects(c.aero, 2 * SPAR_AERO_UNSTEADY));
     OK(c.s, spar_fluid_set_states(c.fluid, 2));
-    REFUSED(c.s, SPAR_ERR_STATE, "2 states a node of the host's own", spar_aero_set_effects(c.aero, SPAR_AERO_STALL));
+    REFUSED(c.s, SPAR_ERR_STATE, "2 states per node set by the host", spar_aero_set_effects(c.aero, SPAR_AERO_STALL));
     OK(c.s, spar_fluid_set_states(c.fluid, 0));
     OK(c.s, spar_step_begin(c.s, 0.01));
-    REFUSED(c.s, SPAR_ERR_STATE, "a step is under way", spar_aero_set_effects(c.aero, SPAR_AERO_STALL));
+    REFUSED(c.s, SPAR_ERR_STATE, "a step is in progress", spar_aero_set_effects(c.aero, SPAR_AERO_STALL));
     OK(c.s, spar_step_reject(c.s));
     OK(c.s, spar_aero_set_effects(c.aero, SPAR_AERO_STALL));
     OK(c.s, spar_aero_solve(c.aero, rho, c.wind[0], 0.5)); /* before the first step */
@@ -607,7 +607,7 @@ static void test_refusals(void **state) {
     REFUSED(c.s, SPAR_ERR_ARGUMENT, "theta is 0.5", spar_aero_solve(c.aero, rho, c.wind[0], 0.5));
     OK(c.s, spar_step_reject(c.s));
     OK(c.s, spar_fluid_set_states(c.fluid, 0));
-    REFUSED(c.s, SPAR_ERR_STATE, "keeps 0 numbers a node, no more the 15", spar_aero_solve(c.aero, rho, c.wind[0], 1));
+    REFUSED(c.s, SPAR_ERR_STATE, "has 0 states per node instead of the 15", spar_aero_solve(c.aero, rho, c.wind[0], 1));
     OK(c.s, spar_aero_get_loads(c.aero, NULL, is[0], NULL)); /* the results are still there */
     assert_memory_equal(was, is, sizeof was);
     release(&c);

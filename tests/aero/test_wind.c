@@ -293,12 +293,13 @@ static void test_bad_input(void **state) {
     build(&c);
     OK(c.s, spar_aero_solve(c.aero, rho, c.wind[0], 1));
     OK(c.s, spar_aero_get_loads(c.aero, before[0], NULL, NULL));
-    REFUSED(c.s, SPAR_ERR_ARGUMENT, "no law 3", spar_aero_set_shear(c.aero, 3, zero, up, 10, 0.2));
-    REFUSED(c.s, SPAR_ERR_ARGUMENT, "no law -1", spar_aero_set_shear(c.aero, -1, zero, up, 10, 0.2));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "law 3 is not known", spar_aero_set_shear(c.aero, 3, zero, up, 10, 0.2));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "law -1 is not known", spar_aero_set_shear(c.aero, -1, zero, up, 10, 0.2));
     REFUSED(c.s, SPAR_ERR_ARGUMENT, "NULL", spar_aero_set_shear(c.aero, 0, NULL, up, 10, 0.2));
     REFUSED(c.s, SPAR_ERR_ARGUMENT, "not finite", spar_aero_set_shear(c.aero, 0, bad, up, 10, 0.2));
-    REFUSED(c.s, SPAR_ERR_ARGUMENT, "direction up has length 0", spar_aero_set_shear(c.aero, 0, zero, zero, 10, 0.2));
-    REFUSED(c.s, SPAR_ERR_ARGUMENT, "direction up", spar_aero_set_shear(c.aero, 0, zero, bad, 10, 0.2));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "the upward direction has length 0",
+            spar_aero_set_shear(c.aero, 0, zero, zero, 10, 0.2));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "upward direction", spar_aero_set_shear(c.aero, 0, zero, bad, 10, 0.2));
     REFUSED(c.s, SPAR_ERR_ARGUMENT, "reference height is 0", spar_aero_set_shear(c.aero, 0, zero, up, 0, 0.2));
     REFUSED(c.s, SPAR_ERR_ARGUMENT, "reference height", spar_aero_set_shear(c.aero, 0, zero, up, INFINITY, 0.2));
     REFUSED(c.s, SPAR_ERR_ARGUMENT, "exponent -0.2", spar_aero_set_shear(c.aero, 0, zero, up, 10, -0.2));

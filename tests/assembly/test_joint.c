@@ -1219,7 +1219,7 @@ static void test_nothing_holds(void **state) {
     (void)add_joint(s, "hinge", b, 0, NULL, 0, SPAR_FREE_RX, origin);
     OK(s, spar_member_set_load(b, 0, SPAR_LOAD_DEAD, load));
     assert_int_equal(spar_member_solve_static(b, 1), SPAR_ERR_NUMERIC);
-    assert_non_null(strstr(spar_session_message(s), "the turn about x"));
+    assert_non_null(strstr(spar_session_message(s), "the rotation about x"));
     spar_session_destroy(&s);
 }
 

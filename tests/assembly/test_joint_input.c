@@ -46,25 +46,26 @@ static void test_create(void **state) {
     yard y = open_yard(), other = open_yard();
     spar_joint *j = NULL;
     REFUSED(y.s, SPAR_ERR_ARGUMENT,
-            "'j' would tie node 0 of 'near' to itself; give two nodes, or b NULL for the ground",
+            "'j' connects node 0 of 'near' to itself; give two different nodes, or b = NULL for the ground",
             spar_joint_create(y.s, "j", y.body[0], 0, y.body[0], 0, 0, &j));
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "would tie node 2 of 'beam' to itself",
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "connects node 2 of 'beam' to itself",
             spar_joint_create(y.s, "j", y.beam, 2, y.beam, 3, 0, &j)); /* where two elements meet a node stands twice */
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "member b, 'far', is of another session",
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "member b, 'far', belongs to another session",
             spar_joint_create(y.s, "j", y.body[0], 0, other.body[1], 0, 0, &j));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "'beam' has nodes 0 to 5; there is no node 6",
             spar_joint_create(y.s, "j", y.beam, 6, NULL, 0, 0, &j));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "there is no node -1",
             spar_joint_create(y.s, "j", y.body[0], 0, y.beam, -1, 0, &j));
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "free is 64; or SPAR_FREE_* together",
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "free is 64; give a combination of SPAR_FREE_* bits",
             spar_joint_create(y.s, "j", y.body[0], 0, NULL, 0, 64, &j));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "free is -1", spar_joint_create(y.s, "j", y.body[0], 0, NULL, 0, -1, &j));
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "there is a joint 'hinge' already",
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "joint 'hinge' already exists",
             spar_joint_create(y.s, "hinge", y.body[0], 0, NULL, 0, 0, &j));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "needs a name", spar_joint_create(y.s, "", y.body[0], 0, NULL, 0, 0, &j));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "member a is NULL", spar_joint_create(y.s, "j", NULL, 0, NULL, 0, 0, &j));
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "no place for", spar_joint_create(y.s, "j", y.body[0], 0, NULL, 0, 0, NULL));
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "its two points are one, (0, 0, 0)",
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "the pointer to the new joint",
+            spar_joint_create(y.s, "j", y.body[0], 0, NULL, 0, 0, NULL));
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "its two points coincide at (0, 0, 0)",
             spar_line_create(y.s, "j", y.body[0], 0, zero, y.body[1], 0, zero, &j));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "point_b",
             spar_line_create(y.s, "j", y.body[0], 0, zero, NULL, 0, (double[]){0, NAN, 0}, &j));
@@ -84,9 +85,10 @@ static void test_describe(void **state) {
     OK(y.s, spar_line_set_spring(line, 0, 0, 5, 0));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "q", spar_joint_set_frame(y.hinge, zero, long_q));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "x", spar_joint_set_frame(y.hinge, (double[]){0, INFINITY, 0}, NULL));
-    REFUSED(y.s, SPAR_ERR_STATE, "is a line, whose points are its places", spar_joint_set_frame(line, zero, NULL));
+    REFUSED(y.s, SPAR_ERR_STATE, "is a line, which has no frame; set its points when it is created",
+            spar_joint_set_frame(line, zero, NULL));
     K[0] = 10;
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "stiffness has 10 on x, which the joint holds; springs act on free motions",
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "stiffness has 10 on x, which the joint constrains; springs act on free motions",
             spar_joint_set_spring(y.hinge, K, NULL, NULL));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "damping has 10 on x", spar_joint_set_spring(y.hinge, NULL, K, NULL));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "preload has 1 on x", spar_joint_set_spring(y.hinge, NULL, NULL, load));
@@ -97,7 +99,7 @@ static void test_describe(void **state) {
     REFUSED(y.s, SPAR_ERR_STATE, "call spar_line_set_spring", spar_joint_set_spring(line, NULL, NULL, NULL));
     REFUSED(y.s, SPAR_ERR_STATE, "is not a line", spar_line_set_spring(y.hinge, 1, 0, 1, 0));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "stiffness is -1; give 0 or more", spar_line_set_spring(line, -1, 0, 1, 0));
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "mask is 8, free is 16: what is driven must be among what the joint leaves free",
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "mask is 8, free is 16: only free motions can be driven",
             spar_joint_set_driven(y.hinge, SPAR_FREE_RX));
     REFUSED(y.s, SPAR_ERR_STATE, "is not driven; call spar_joint_set_driven",
             spar_joint_drive(y.hinge, none, NULL, NULL));
@@ -118,13 +120,13 @@ static void test_short_form(void **state) {
         OK(y.s, spar_member_commit(y.body[k]));
     }
     K[7] = 50, C[7] = 1;
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "'a.0': stiffness has 50 on y, which the joint holds",
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "'a.0': stiffness has 50 on y, which the joint constrains",
             spar_member_set_spring(y.body[0], 0, SPAR_FREE_X, K, C, preload, &j[0]));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "free is 64", spar_member_set_spring(y.body[0], 0, 64, K, C, preload, &j[0]));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "there is no node 1",
             spar_member_set_spring(y.body[0], 1, 2, K, C, preload, &j[0]));
     OK(y.s, spar_member_set_spring(y.body[0], 0, SPAR_FREE_Y, K, C, preload, &j[0]));
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "there is a joint 'a.0' already",
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "joint 'a.0' already exists",
             spar_member_set_spring(y.body[0], 0, SPAR_FREE_Y, K, C, NULL, NULL));
     OK(y.s, spar_joint_create(y.s, "b.0", y.body[1], 0, NULL, 0, SPAR_FREE_Y, &j[1]));
     OK(y.s, spar_joint_set_spring(j[1], K, C, preload));
@@ -164,7 +166,7 @@ static void test_two_nodes_of_one(void **state) {
         OK(s, spar_member_commit(b));
         OK(s, spar_line_create(s, "string", b, 0, zero, b, 3, (double[]){1, 0, 0}, &j));
         assert_int_equal(spar_step(s, 0.01, NULL, NULL, NULL), bends ? SPAR_OK : SPAR_ERR_ARGUMENT);
-        assert_true(bends || strstr(spar_session_message(s), "two nodes of 'beam', which moves as one body"));
+        assert_true(bends || strstr(spar_session_message(s), "two nodes of 'beam', which moves as one rigid body"));
         spar_session_destroy(&s);
     }
 }
@@ -192,8 +194,8 @@ static void test_drive_in_step(void **state) {
     const double motion[6] = {0, 0, 0, 0, 0.1, 0};
     OK(y.s, spar_joint_set_driven(y.hinge, SPAR_FREE_RY));
     OK(y.s, spar_step_begin(y.s, 0.1));
-    REFUSED(y.s, SPAR_ERR_STATE, "given before spar_step_begin", spar_joint_drive(y.hinge, motion, NULL, NULL));
-    REFUSED(y.s, SPAR_ERR_STATE, "a step is under way", spar_joint_drive(y.hinge, (double[6]){NAN}, NULL, NULL));
+    REFUSED(y.s, SPAR_ERR_STATE, "at its end before spar_step_begin", spar_joint_drive(y.hinge, motion, NULL, NULL));
+    REFUSED(y.s, SPAR_ERR_STATE, "a step is in progress", spar_joint_drive(y.hinge, (double[6]){NAN}, NULL, NULL));
     OK(y.s, spar_step_reject(y.s));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "motion", spar_joint_drive(y.hinge, (double[6]){NAN}, NULL, NULL));
     spar_session_destroy(&y.s);
@@ -218,7 +220,7 @@ static void test_half_a_turn(void **state) {
     OK(y.s, spar_member_get_motion(y.body[1], q[0], NULL, NULL));
     NEAR(fabs(q[0][6]), sin(1.55), 1e-9);
     turn[3] = 0.6, turn[5] = 3.1; /* 3.158 */
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "'ball': a turn of 3.158 rad; where three rotations are free",
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "'ball': a rotation of 3.158 rad; with three free rotations",
             spar_joint_drive(ball, turn, NULL, NULL));
     OK(y.s,
        spar_joint_drive(ball, (double[6]){0, 0, 0, 0, 9, 3.1}, NULL, NULL)); /* what is not driven does not count */

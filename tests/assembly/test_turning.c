@@ -187,7 +187,7 @@ static void test_unbalance(void **state) {
             double after[7];
             (unlike ? damper : spring)[14] *= 1.01;
             OK(s, spar_joint_set_spring(j, spring, damper, NULL));
-            REFUSED(s, SPAR_ERR_UNSUPPORTED, "joint 'bearing' ties 'disc', which turns, to what stands",
+            REFUSED(s, SPAR_ERR_UNSUPPORTED, "joint 'bearing' connects 'disc', which rotates, to a part at rest",
                     spar_session_solve_static(s, 1, NULL, NULL, NULL));
             scene_tip(b, after);
             assert_memory_equal(after, q, sizeof q);
@@ -404,7 +404,7 @@ static void test_refused(void **state) {
     welded(s, b, "weld", hub, 0.5, 0, NULL);
     OK(s, spar_member_commit(b));
     OK(s, spar_session_set_gravity(s, g));
-    refuse(s, b, "gravity (0, 3, -9.81) goes across");
+    refuse(s, b, "gravity (0, 3, -9.81) is not parallel");
     OK(s, spar_session_set_gravity(s, along));
     OK(s, spar_session_solve_static(s, 1, NULL, NULL, NULL));
     OK(s, spar_member_set_load(b, 3, SPAR_LOAD_DEAD, side));
@@ -438,15 +438,16 @@ static void test_refused_ties(void **state) {
             OK(s, spar_member_set_root(mast, SPAR_ROOT_FIXED));
             OK(s, spar_member_commit(mast));
             OK(s, spar_joint_create(s, "hinge", mast, 0, b, N - 1, SPAR_FREE_RZ, &j));
-            refuse(s, b, "the root of 'hub' turns with (0, 0, 4) rad/s, and the root of 'mast', which is tied to it");
+            refuse(s, b,
+                   "the root of 'hub' rotates at (0, 0, 4) rad/s and the root of 'mast', which is connected to it");
         } else if (kind == 1) {
             OK(s, spar_joint_create(s, "stay", b, N - 1, NULL, 0, SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ, &j));
-            refuse(s, b, "joint 'stay' ties 'blade', which turns, to what stands");
+            refuse(s, b, "joint 'stay' connects 'blade', which rotates, to a part at rest");
         } else if (kind == 2) { /* alike all around, but not about the axis */
             scene_diagonal(spring, 7, 7, 0, 0, 0, 0);
             OK(s, spar_joint_create(s, "springs", b, 0, NULL, 0, 63, &j));
             OK(s, spar_joint_set_spring(j, spring, NULL, NULL));
-            refuse(s, b, "joint 'springs' ties 'blade'");
+            refuse(s, b, "joint 'springs' connects 'blade'");
         } else {
             spar_member *flap = crooked(s, "flap", N);
             OK(s, spar_member_set_placement(flap, tip, upright));
@@ -456,7 +457,7 @@ static void test_refused_ties(void **state) {
             OK(s, spar_joint_set_driven(j, SPAR_FREE_RZ));
             OK(s, spar_joint_set_frame(j, tip, upright));
             OK(s, spar_joint_drive(j, angle, rate, NULL));
-            refuse(s, b, "joint 'hinge' is driven with a rate between parts that move");
+            refuse(s, b, "joint 'hinge' is driven between moving parts");
             OK(s, spar_joint_drive(j, angle, NULL, NULL));
             OK(s, spar_session_solve_static(s, 2, NULL, NULL, NULL));
         }

@@ -182,7 +182,7 @@ static void no_place(void **state) {
         spar_session *s = NULL;
         int status = spar_session_create_mpi(MPI_COMM_WORLD, rank == bad ? NULL : &s);
         assert_int_equal(status, rank == bad ? SPAR_ERR_ARGUMENT : SPAR_ERR_PEER);
-        assert_non_null(strstr(spar_session_message(NULL), "no place for the new session"));
+        assert_non_null(strstr(spar_session_message(NULL), "the pointer to the new session is NULL"));
         assert_null(s);
     }
 }

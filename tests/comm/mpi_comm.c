@@ -206,7 +206,7 @@ static void arguments(void **state) {
             spari_given("solve", here && bad == 2 ? 0 : 1),
             spari_hash("settings", here && bad <= 3 ? UINT64_MAX : 1),
         };
-        static const char *const name[] = {"dt (here 0.1", "steps (here ", "solve (here ", "settings; give"};
+        static const char *const name[] = {"dt (here 0.1", "steps (here ", "solve (here ", "settings; make"};
         char text[SPARI_MESSAGE_SIZE] = "";
         int status = spari_comm_enter(ranks, "call", must_agree, 4, SPAR_OK, text, sizeof text);
         assert_int_equal(status, size == 1 ? SPAR_OK : SPAR_ERR_COMM);

@@ -296,7 +296,7 @@ static void poses_and_matrices(void **state) {
     OK(spar_fluid_pull_matrices(f, 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]));
     memcpy(m[1], m[4], sizeof m[1]);
     assert_int_equal(spar_fluid_check_matrices(f, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]), SPAR_ERR_ARGUMENT);
-    assert_true(says(&r, "node 1") && says(&r, "not this section's"));
+    assert_true(says(&r, "node 1") && says(&r, "not the rotation of this section"));
     m[1][4] = NAN;
     assert_int_equal(spar_fluid_check_matrices(f, SPAR_MATRIX_LOCAL_TO_GLOBAL, m[0]), SPAR_ERR_ARGUMENT);
     assert_true(says(&r, "is not a number"));
@@ -779,7 +779,7 @@ static void totals_are_of_one_fluid(void **state) {
     memcpy(got, before, sizeof got);
     got[1] += 1e-9 * spari_norm(force[0][0]);
     assert_int_equal(spar_fluid_check_total(f[0], point, got, NULL, 1e-13), SPAR_ERR_ARGUMENT);
-    assert_true(says(&r, "forces pushed on all ranks") && says(&r, "pushed by one of them alone"));
+    assert_true(says(&r, "forces pushed on all ranks") && says(&r, "from exactly one rank"));
     got[1] = before[1];
     got[4] *= 1 + 1e-9;
     assert_int_equal(spar_fluid_check_total(f[0], point, got, got + 3, 1e-13), SPAR_ERR_ARGUMENT);

@@ -317,7 +317,7 @@ static void bad_layouts_are_refused(void **state) {
                               {6, 3},         {3, 3}, {INT64_MAX, 1},   {1, INT64_MAX},
                               {INT64_MIN, 1}, {2, N}, {5, 5 * (N - 1)}, {INT64_C(1) << 41, 1}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
-        REFUSED(s, SPAR_ERR_ARGUMENT, "numbers apart",
+        REFUSED(s, SPAR_ERR_ARGUMENT, "node stride",
                 spar_fluid_set_layout(p.other, SPAR_NODES_MOTION, bad[k][0], bad[k][1]));
     }
     assert_int_equal(spar_fluid_set_layout(NULL, 0, 3, 1), SPAR_ERR_ARGUMENT);

@@ -416,7 +416,7 @@ static void bad_sections_are_refused(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_get_kind(f, 0, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_get_forces(f, NULL));
     OK(s, spar_step_begin(s, 0.1));
-    REFUSED(s, SPAR_ERR_STATE, "under way", spar_fluid_set_motion_sections(f, 2, xi, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_fluid_set_motion_sections(f, 2, xi, NULL));
     OK(s, spar_step_reject(s));
     OK(s, spar_fluid_pull_motion(f, 1, x[0], NULL));
     assert_memory_equal(x, before, M * sizeof x[0]);

@@ -187,7 +187,7 @@ static void files(void **state) {
     OK(c.s, spar_step_accept(c.s));
     fill(z, 3);
     expect(&c, z);
-    REFUSED(other.s, SPAR_ERR_ARGUMENT, "3 numbers a node", spar_session_load(other.s, file));
+    REFUSED(other.s, SPAR_ERR_ARGUMENT, "3 states per node", spar_session_load(other.s, file));
     OK(none.s, spar_session_load(none.s, file));
     OK(none.s, spar_step_accept(none.s));
     expect(&none, z);
@@ -195,7 +195,7 @@ static void files(void **state) {
     OK(other.s, spar_session_save(other.s, file));
     states_scene kept = create(WIDTH);
     push(&kept, 3);
-    REFUSED(kept.s, SPAR_ERR_ARGUMENT, "the saved run 0", spar_session_load(kept.s, file));
+    REFUSED(kept.s, SPAR_ERR_ARGUMENT, "the saved run has 0", spar_session_load(kept.s, file));
     expect(&kept, z);
     remove(file);
     spar_session_destroy(&c.s);
@@ -210,10 +210,10 @@ static void refusals(void **state) {
     double z[ALL] = {0}, bad[ALL] = {0};
     bad[3] = NAN;
     push(&c, 3);
-    REFUSED(c.s, SPAR_ERR_ARGUMENT, "-1 numbers", spar_fluid_set_states(c.fluid, -1));
-    REFUSED(c.s, SPAR_ERR_ARGUMENT, "1001 numbers", spar_fluid_set_states(c.fluid, 1001));
-    REFUSED(c.s, SPAR_ERR_ARGUMENT, "3 numbers a node, but 2", spar_fluid_pull_states(c.fluid, 3, z));
-    REFUSED(c.s, SPAR_ERR_ARGUMENT, "3 numbers a node, but 2", spar_fluid_push_states(c.fluid, 3, z));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "-1 states", spar_fluid_set_states(c.fluid, -1));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "1001 states", spar_fluid_set_states(c.fluid, 1001));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "3 states per node, but 2", spar_fluid_pull_states(c.fluid, 3, z));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "3 states per node, but 2", spar_fluid_push_states(c.fluid, 3, z));
     REFUSED(c.s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_pull_states(c.fluid, WIDTH, NULL));
     REFUSED(c.s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_push_states(c.fluid, WIDTH, NULL));
     REFUSED(c.s, SPAR_ERR_ARGUMENT, "state of node 1, component 1", spar_fluid_push_states(c.fluid, WIDTH, bad));
@@ -222,10 +222,10 @@ static void refusals(void **state) {
     assert_int_equal(spar_fluid_pull_states(NULL, 1, z), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_fluid_push_states(NULL, 1, z), SPAR_ERR_ARGUMENT);
     OK(c.s, spar_step_begin(c.s, 0.1));
-    REFUSED(c.s, SPAR_ERR_STATE, "step is under way", spar_fluid_set_states(c.fluid, 4));
+    REFUSED(c.s, SPAR_ERR_STATE, "step is in progress", spar_fluid_set_states(c.fluid, 4));
     OK(c.s, spar_step_reject(c.s));
     scene_run(c.s, 0.1, 1);
-    REFUSED(c.s, SPAR_ERR_STATE, "no step is under way", spar_fluid_push_states(c.fluid, WIDTH, z));
+    REFUSED(c.s, SPAR_ERR_STATE, "no step is in progress", spar_fluid_push_states(c.fluid, WIDTH, z));
     fill(z, 3);
     expect(&c, z);
     spar_session_destroy(&c.s);

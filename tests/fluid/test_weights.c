@@ -496,9 +496,9 @@ static void bad_weights_are_refused(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "weights for", spar_fluid_set_motion_weights(m.weighted, -1, m.w));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_set_motion_weights(m.weighted, N, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_get_motion_weights(m.weighted, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "fades", spar_fluid_fade_motion(m.weighted, 1, 1, N, NULL, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "fades", spar_fluid_fade_motion(m.weighted, NAN, 1, N, NULL, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "fades", spar_fluid_fade_motion(m.weighted, 0, INFINITY, N, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "blending", spar_fluid_fade_motion(m.weighted, 1, 1, N, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "blending", spar_fluid_fade_motion(m.weighted, NAN, 1, N, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "blending", spar_fluid_fade_motion(m.weighted, 0, INFINITY, N, NULL, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "weights for", spar_fluid_fade_motion(m.weighted, 0, 1, 0, NULL, NULL));
     mesh_map(&m);
     REFUSED(s, SPAR_ERR_UNSUPPORTED, "weights", spar_fluid_pull_sections(m.weighted, 1, q[0], NULL, NULL));
@@ -509,9 +509,9 @@ static void bad_weights_are_refused(void **state) {
     REFUSED(s, SPAR_ERR_UNSUPPORTED, "weights", spar_fluid_check_matrices(m.weighted, 0, matrix[0]));
     OK(s, spar_fluid_pull_poses(m.weighted, 1, a.x[0], NULL, a.v[0], NULL, a.a[0], NULL));
     OK(s, spar_step_begin(s, 0.1));
-    REFUSED(s, SPAR_ERR_STATE, "under way", spar_fluid_set_motion_weights(m.weighted, N, m.w));
-    REFUSED(s, SPAR_ERR_STATE, "under way", spar_fluid_set_motion_weights(m.weighted, 0, NULL));
-    REFUSED(s, SPAR_ERR_STATE, "under way", spar_fluid_fade_motion(m.weighted, 0, 1, N, NULL, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_fluid_set_motion_weights(m.weighted, N, m.w));
+    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_fluid_set_motion_weights(m.weighted, 0, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_fluid_fade_motion(m.weighted, 0, 1, N, NULL, NULL));
     OK(s, spar_step_reject(s));
     OK(s, spar_fluid_get_motion_weights(m.weighted, got));
     assert_memory_equal(got, m.w, sizeof got);

@@ -217,7 +217,7 @@ contains
     heard = hearing(stops_at=2)
     call session%advise(1e-2_c_double, dt, 16, 16 * dt, advice, count_step, solve, context, stat)
     call check(stat == SPAR_ERR_USER .and. heard%calls == 2, 'stopped')
-    call check(index(session%message(), 'returned 9') > 0, 'what has stopped it')
+    call check(index(session%message(), 'cancelled by the progress callback (9)') > 0, 'what has stopped it')
     call session%set_progress(hear_nothing)
     call session%report_effects(dt, 16, table, count_step, solve, context)
     call session%set_progress()

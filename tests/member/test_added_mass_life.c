@@ -537,7 +537,7 @@ static void refusals(void **state) {
     assert_true(n == 3 && memcmp(got, A, sizeof A) == 0);
     OK(s, spar_member_set_external(beam, 1));
     assert_int_equal(spar_member_commit(beam), SPAR_ERR_UNSUPPORTED);
-    assert_non_null(strstr(spar_session_message(s), "as it is told"));
+    assert_non_null(strstr(spar_session_message(s), "does not apply to prescribed members"));
     OK(s, spar_member_set_external(beam, 0));
     OK(s, spar_member_set_fidelity(beam, SPAR_FIDELITY_PRESCRIBED, 0));
     assert_int_equal(spar_member_commit(beam), SPAR_ERR_UNSUPPORTED);

@@ -216,7 +216,7 @@ static void test_kink(void **state) {
     spar_member *open;
     OK(s, spar_beam_create(s, "open", 2, 6, &open));
     assert_int_equal(spar_beam_set_nodes(open, 12, x, q), SPAR_ERR_ARGUMENT);
-    assert_non_null(strstr(spar_session_message(s), "two places"));
+    assert_non_null(strstr(spar_session_message(s), "two positions differ"));
     spar_session_destroy(&s);
 }
 
@@ -299,7 +299,7 @@ static void test_coinciding_nodes(void **state) {
         OK(s, spar_beam_create(s, "b", 1, 4, &b));
         OK(s, spar_beam_set_nodes(b, 4, x, NULL));
         OK(s, spar_beam_set_sections(b, 1, ends, K, M));
-        REFUSED(s, SPAR_ERR_ARGUMENT, k < 3 ? "goes back or stands still between nodes" : "points coincide",
+        REFUSED(s, SPAR_ERR_ARGUMENT, k < 3 ? "reverses or has zero length between nodes" : "points coincide",
                 spar_member_commit(b));
         spar_session_destroy(&s);
     }
@@ -361,7 +361,7 @@ static void test_locking_is_told(void **state) {
                 assert_true(h.warnings == (fabs(part - 1) > 0.16) || (h.warnings == 1 && nodes < 5));
                 assert_true(nodes < 5 || fabs(part - 1) < 0.013);
                 assert_true(h.warnings == 0 || strstr(h.text, "locks") != NULL);
-                assert_true(h.warnings == 0 || strstr(h.text, "take 5 nodes an element, or ") != NULL);
+                assert_true(h.warnings == 0 || strstr(h.text, "use 5 nodes per element, or ") != NULL);
             }
         }
     }

@@ -62,7 +62,7 @@ static void test_session_settings(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "atol is nan", spar_session_set_coupling(s, 1, NAN, 0, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "omega", spar_session_set_relaxation(s, 0));
     REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_session_set_option(s, "colour", "red"));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "cannot be", spar_session_set_option(s, "fluid.theta", "red"));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "does not accept", spar_session_set_option(s, "fluid.theta", "red"));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_session_set_option(s, NULL, "red"));
     still_works(s, "after");
     spar_session_destroy(&s);
@@ -96,10 +96,10 @@ static void test_members(void **state) {
     assert_null(m);
     OK(s, spar_beam_create(s, "b", 1, 4, &b));
     REFUSED(s, SPAR_ERR_ARGUMENT, "'b'", spar_beam_create(s, "b", 1, 4, &m));
-    REFUSED(s, SPAR_ERR_STATE, "no line", spar_member_commit(b));
+    REFUSED(s, SPAR_ERR_STATE, "no axis", spar_member_commit(b));
     REFUSED(s, SPAR_ERR_ARGUMENT, "root", spar_member_set_root(b, 7));
     REFUSED(s, SPAR_ERR_ARGUMENT, "effect", spar_member_set_effects(b, 1 << 20));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "choose SPAR_FIDELITY_LINEAR", spar_member_set_effects(b, SPAR_EFFECT_INERTIA | 16));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "use SPAR_FIDELITY_LINEAR", spar_member_set_effects(b, SPAR_EFFECT_INERTIA | 16));
     REFUSED(s, SPAR_ERR_ARGUMENT, "rank", spar_member_set_owner(b, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "rank", spar_member_set_owner(b, -1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "unit", spar_member_set_placement(b, x, q));
@@ -125,7 +125,7 @@ static void test_beam_description(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "at least 2", spar_beam_set_axis(b, -3, eta, xyz, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_beam_set_axis(b, 3, NULL, xyz, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_beam_set_axis(b, 3, eta, NULL, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "increase", spar_beam_set_axis(b, 3, back, xyz, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "not above the previous one", spar_beam_set_axis(b, 3, back, xyz, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "eta 0", spar_beam_set_axis(b, 2, late, xyz, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "twist", spar_beam_set_axis(b, 3, eta, xyz, twist));
     REFUSED(s, SPAR_ERR_ARGUMENT, "give 4", spar_beam_set_nodes(b, 3, x, NULL));
@@ -205,14 +205,14 @@ static void test_steps(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_step_begin(s, INFINITY));
     REFUSED(s, SPAR_ERR_STATE, "begin", spar_step_solve(s));
     REFUSED(s, SPAR_ERR_STATE, "begin", spar_step_accept(s));
-    REFUSED(s, SPAR_ERR_STATE, "nothing to reject", spar_step_reject(s));
+    REFUSED(s, SPAR_ERR_STATE, "no step is in progress to reject", spar_step_reject(s));
     REFUSED(s, SPAR_ERR_STATE, "solve", spar_step_check(s, &done));
     OK(s, spar_step_begin(s, 0.1));
     REFUSED(s, SPAR_ERR_STATE, "accept or reject", spar_step_begin(s, 0.1));
     REFUSED(s, SPAR_ERR_STATE, "solve", spar_step_check(s, &done));
     REFUSED(s, SPAR_ERR_STATE, "solve", spar_step_accept(s));
-    REFUSED(s, SPAR_ERR_STATE, "step is under way", spar_session_set_integrator(s, 1, 1));
-    REFUSED(s, SPAR_ERR_STATE, "step is under way", spar_member_solve_static(b, 1));
+    REFUSED(s, SPAR_ERR_STATE, "step is in progress", spar_session_set_integrator(s, 1, 1));
+    REFUSED(s, SPAR_ERR_STATE, "step is in progress", spar_member_solve_static(b, 1));
     OK(s, spar_step_solve(s));
     REFUSED(s, SPAR_ERR_ARGUMENT, "done", spar_step_check(s, NULL));
     OK(s, spar_step_check(s, &done));
@@ -295,7 +295,8 @@ static void test_read_back(void **state) {
         OK(s, spar_session_get_option(s, option[i][0], (int64_t)strlen(option[i][2]) + 1, word));
         assert_string_equal(word, option[i][2]);
     }
-    REFUSED(s, SPAR_ERR_ARGUMENT, "takes 7 characters, not 6", spar_session_get_option(s, "fluid.far", 6, word));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "needs 7 characters; the buffer has 6",
+            spar_session_get_option(s, "fluid.far", 6, word));
     REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_session_get_option(s, "far", 32, word));
     REFUSED(s, SPAR_ERR_ARGUMENT, "give average or group", spar_session_set_option(s, "fluid.theta", "red"));
     assert_int_equal(spar_session_get_newton(NULL, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
@@ -371,8 +372,8 @@ static void test_layers_above(void **state) {
     assert_ptr_equal(member, b);
     assert_string_equal(spar_fluid_get_name(f), "air");
     assert_true(spar_member_get_name(NULL)[0] == '\0' && spar_fluid_get_name(NULL)[0] == '\0');
-    REFUSED(s, SPAR_ERR_ARGUMENT, "place for the member", spar_fluid_get_member(f, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "place for the session", spar_member_get_session(b, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "pointer to the member", spar_fluid_get_member(f, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "pointer to the session", spar_member_get_session(b, NULL));
 
     OK(s, spar_session_sum(s, SPAR_OK, 2, x)); /* of one rank */
     OK(s, spar_session_sum(s, SPAR_OK, 0, NULL));
@@ -385,7 +386,7 @@ static void test_layers_above(void **state) {
     OK(s, spar_fluid_set_force_nodes(f, 1, tip));
     OK(s, spar_fluid_map(f));
     REFUSED(s, SPAR_ERR_ARGUMENT, "give a SPAR_ERR_", spar_fluid_fail(f, SPAR_OK, "all is well"));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "say what failed", spar_fluid_fail(f, SPAR_ERR_USER, ""));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "describes the failure", spar_fluid_fail(f, SPAR_ERR_USER, ""));
     OK(s, spar_session_get_phase(s, &phase));
     assert_int_equal(phase, SPAR_PHASE_START);
     OK(s, spar_fluid_fail(f, SPAR_ERR_USER, "no mesh"));

@@ -329,7 +329,7 @@ static void test_bad_input(void **state) {
     for (int k = 0; k < 2; k++) {
         OK(s, spar_member_set_root(b, roots[k]));
         OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_RIGID, 0));
-        REFUSED(s, SPAR_ERR_UNSUPPORTED, "would brake it", spar_member_commit(b));
+        REFUSED(s, SPAR_ERR_UNSUPPORTED, "would slow its rigid motion", spar_member_commit(b));
     }
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_EXACT, 0));
     OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
@@ -342,7 +342,7 @@ static void test_bad_input(void **state) {
     OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
     OK(s, spar_member_commit(b));
     OK(s, spar_joint_create(s, "root", b, 0, NULL, 0, SPAR_FREE_RZ, &j));
-    REFUSED(s, SPAR_ERR_UNSUPPORTED, "velocities as they are", spar_step_begin(s, 0.1));
+    REFUSED(s, SPAR_ERR_UNSUPPORTED, "absolute velocities", spar_step_begin(s, 0.1));
     spar_session_destroy(&s);
 }
 

@@ -269,7 +269,7 @@ class Edges(unittest.TestCase):
             with self.assertRaises(spar.Error) as refused:
                 s.report_effects(0.1, 8)
             self.assertEqual(refused.exception.status, spar.ERR_USER)
-            self.assertIn('returned 4', str(refused.exception))
+            self.assertIn('cancelled by the progress callback (4)', str(refused.exception))
 
             def broken(*_):
                 s.set_progress(None)

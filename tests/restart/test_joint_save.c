@@ -245,13 +245,13 @@ static void test_a_joint_more(void **state) {
 
 static void test_of_another_session(void **state) {
     (void)state;
-    static const char *const said[WAYS] = {[OTHER_NAME] = "joint 'flap' is not where",
-                                           [OTHER_MASK] = "joint 'hinge' is described otherwise",
-                                           [OTHER_PLACE] = "joint 'hinge' is described otherwise",
-                                           [OTHER_NODE] = "joint 'hinge' is described otherwise",
-                                           [OTHER_DRIVE] = "joint 'shaft' is described otherwise",
-                                           [OTHER_ROPE] = "joint 'rope' is described otherwise",
-                                           [ONE_LESS] = "has 5 joints, this one 4"};
+    static const char *const said[WAYS] = {[OTHER_NAME] = "joint 'flap' is out of order",
+                                           [OTHER_MASK] = "different description of joint 'hinge'",
+                                           [OTHER_PLACE] = "different description of joint 'hinge'",
+                                           [OTHER_NODE] = "different description of joint 'hinge'",
+                                           [OTHER_DRIVE] = "different description of joint 'shaft'",
+                                           [OTHER_ROPE] = "different description of joint 'rope'",
+                                           [ONE_LESS] = "has 5 joints, this session has 4"};
     scene c;
     create(&c, AS_IT_IS);
     springs(&c, 30);

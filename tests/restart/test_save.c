@@ -258,22 +258,22 @@ static void bad_files(void **state) {
     for (int i = 0; i < 300; i++) { /* cut off anywhere */
         size_t n = i < 40 ? (size_t)i : (size_t)rand() % length;
         write_bytes(bad, n);
-        refused(&r, bad, SPAR_ERR_IO, n < 8 ? "no saved session" : "cut off");
+        refused(&r, bad, SPAR_ERR_IO, n < 8 ? "not a saved session" : "bytes");
     }
     for (int i = 0; i < 300; i++) { /* any bit turned */
         size_t bit = i < 200 ? (size_t)i : (size_t)rand() % (8 * length);
         bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
         write_bytes(bad, length);
         refused(&r, bad, SPAR_ERR_IO,
-                bit < 64    ? "no saved session"
+                bit < 64    ? "not a saved session"
                 : bit < 128 ? "version"
-                : bit < 192 ? "cut off"
+                : bit < 192 ? "bytes"
                             : "damaged");
         bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
     }
     write_bytes(bad, length);
     create(&other, SPAR_COUPLING_IQN_ILS, 4); /* another mass */
-    refused(&other, bad, SPAR_ERR_ARGUMENT, "'piston' is described otherwise");
+    refused(&other, bad, SPAR_ERR_ARGUMENT, "different description of member 'piston'");
     spar_session_destroy(&other.session);
     create(&other, SPAR_COUPLING_IQN_ILS, 3);
     spar_fluid_destroy(&other.line);
@@ -281,7 +281,7 @@ static void bad_files(void **state) {
     spar_session_destroy(&other.session);
     other.session = scene_session();
     assert_int_equal(spar_session_load(other.session, bad), SPAR_ERR_ARGUMENT);
-    assert_non_null(strstr(spar_session_message(other.session), "another session"));
+    assert_non_null(strstr(spar_session_message(other.session), "does not match this session"));
     spar_session_destroy(&other.session);
     /* where nothing can be written */
     assert_int_equal(spar_session_save(r.session, "no/such/folder/file"), SPAR_ERR_IO);
@@ -295,7 +295,7 @@ static void bad_files(void **state) {
     create(&r, SPAR_COUPLING_IQN_ILS, 3);
     p = (place){0, 0};
     advance(&r, &p);
-    refused(&r, bad, SPAR_ERR_STATE, "a step is under way");
+    refused(&r, bad, SPAR_ERR_STATE, "a step is in progress");
     OK(r.session, spar_step_reject(r.session));
     OK(r.session, spar_session_load(r.session, bad));
     spar_session_destroy(&r.session);

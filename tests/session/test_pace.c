@@ -288,7 +288,7 @@ static void test_velocity_that_jumps(void **state) {
         status = spar_step_within(s, &dt, drive_to, NULL, slider, NULL);
     }
     assert_int_equal(status, SPAR_ERR_NUMERIC);
-    assert_non_null(strstr(spar_session_message(s), "a velocity jumps there"));
+    assert_non_null(strstr(spar_session_message(s), "a velocity is discontinuous"));
     OK(s, spar_session_get_time(s, &t, NULL, NULL));
     assert_true(t < 0.1);
     spar_session_destroy(&s);
@@ -324,8 +324,8 @@ static void what_is_refused(void **state) {
     OK(s, spar_session_get_time(s, &x, NULL, NULL));
     assert_true(x == 0 && dt == 0.1);
     OK(s, spar_step_begin(s, 0.1));
-    REFUSED(s, SPAR_ERR_STATE, "under way", spar_step_within(s, &dt, NULL, NULL, NULL, NULL));
-    REFUSED(s, SPAR_ERR_STATE, "under way", spar_member_get_error(w.body, NULL, &x));
+    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_step_within(s, &dt, NULL, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_member_get_error(w.body, NULL, &x));
     OK(s, spar_step_reject(s));
     spar_session_destroy(&w.session);
 }

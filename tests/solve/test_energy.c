@@ -191,7 +191,7 @@ static void test_refusals(void **state) {
     OK(s, spar_step_begin(s, 0.1));
     OK(s, spar_member_get_work(b, 3, work));
     assert_int_equal(spar_member_get_work(bare, 3, work), SPAR_ERR_STATE);
-    assert_non_null(strstr(spar_session_message(s), "ask for SPAR_EFFECT_WORK"));
+    assert_non_null(strstr(spar_session_message(s), "request SPAR_EFFECT_WORK"));
     spar_session_destroy(&s);
 }
 

@@ -163,7 +163,7 @@ static found run(int kind, int fluid, double rho, int pattern, double h, double 
         int iterations;
         int status = spar_step(b.w.s, dt, answer, &b, &iterations);
         if (status == SPAR_ERR_NUMERIC && dt < rounding) {
-            assert_non_null(strstr(spar_session_message(b.w.s), "the rounding of places"));
+            assert_non_null(strstr(spar_session_message(b.w.s), "the rounding of positions"));
             f.refused++;
             continue;
         }

@@ -452,7 +452,7 @@ static void test_back(void **state) {
             REFUSED(s, SPAR_ERR_ARGUMENT, "push again", solve_there(s, &c, value));
             unchanged(s, n);
             c.fails = 3;
-            REFUSED(s, SPAR_ERR_STATE, "not those in use", solve_there(s, &c, value));
+            REFUSED(s, SPAR_ERR_STATE, "differ from those in use", solve_there(s, &c, value));
             unchanged(s, n);
             c.fails = 0;
         }
@@ -506,8 +506,7 @@ static void test_progress(void **state) {
                    spar_session_solve_eigenvalues(s, 0.1, memory, 0, NULL, blow, &c, 6, 2, NULL, out, 0, NULL, NULL));
                 break;
             }
-            REFUSED(s, SPAR_ERR_USER,
-                    "spar_session_solve_eigenvalues: the host has stopped it: its progress call returned 5",
+            REFUSED(s, SPAR_ERR_USER, "spar_session_solve_eigenvalues: cancelled by the progress callback (5)",
                     spar_session_solve_eigenvalues(s, 0.1, memory, 0, NULL, blow, &c, 6, 2, NULL, out, 0, NULL, NULL));
             assert_true(h.calls == stop && h.expected == trials && out[0] == 77);
             assert_true(h.solved == c.calls && (stop > 1 || c.calls == before));
@@ -524,7 +523,7 @@ static void test_progress(void **state) {
 
 static int solve_within(spar_session *s, double t, double dt, int iteration, void *context) {
     double value[2];
-    REFUSED(s, SPAR_ERR_STATE, "under way",
+    REFUSED(s, SPAR_ERR_STATE, "in progress",
             spar_session_solve_eigenvalues(s, 0.1, 0, 0, NULL, blow, context, 6, 1, NULL, value, 0, NULL, NULL));
     return blow(s, t, dt, iteration, context);
 }
@@ -558,13 +557,13 @@ static void test_refusals(void **state) {
     REFUSED(s, SPAR_ERR_NUMERIC, "of 6 eigenvalues", ASK(2000, 2, 0, blow, 6, 6, NULL, value, 0, NULL));
     OK(s, ASK(0.1, 0, 0, blow, 6, 0, NULL, NULL, 0, NULL));
     OK(s, spar_fluid_set_states(c.air, 1));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "'air' keeps states", ASK(0.1, 0, 0, blow, 6, 1, NULL, value, 0, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "'air' has states", ASK(0.1, 0, 0, blow, 6, 1, NULL, value, 0, NULL));
     OK(s, spar_fluid_set_states(c.air, 0));
     REFUSED(empty, SPAR_ERR_UNSUPPORTED, "no member",
             spar_session_solve_eigenvalues(empty, 1, 0, 0, NULL, blow, &c, 1, 1, NULL, value, 0, NULL, NULL));
     OK(s, spar_step(s, 0.1, solve_within, &c, NULL));
     OK(s, spar_step_begin(s, 0.1));
-    REFUSED(s, SPAR_ERR_STATE, "a step is under way", ASK(0.1, 0, 0, blow, 6, 1, NULL, value, 0, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "a step is in progress", ASK(0.1, 0, 0, blow, 6, 1, NULL, value, 0, NULL));
 #undef ASK
     spar_session_destroy(&s);
     spar_session_destroy(&empty);
@@ -587,7 +586,7 @@ static void test_noise(void **state) {
     const double shift[2] = {0, 1};
     section c;
     spar_session *s = section_scene(&c, 1, 0);
-    REFUSED(s, SPAR_ERR_STATE, "not those in use",
+    REFUSED(s, SPAR_ERR_STATE, "differ from those in use",
             spar_session_solve_eigenvalues(s, 0.1, 40, 0, NULL, murmur, &c, 6, 1, shift, value, 0, NULL, NULL));
     OK(s, spar_session_solve_eigenvalues(s, 0.1, 40, 1e-2, NULL, murmur, &c, 6, 1, shift, value, 0, NULL, NULL));
     NEAR(value[1], 1 / sqrt(1 - (e - a) * (e - a) / r2), 1e-3);

@@ -149,7 +149,7 @@ static void test_spinning_disc(void **state) {
         } else {
             assert_int_equal(spar_member_solve_eigenvalues(disc, 3, NULL, &value[0][0], NULL, frame),
                              SPAR_ERR_UNSUPPORTED);
-            assert_non_null(strstr(spar_session_message(s), "'disc' turns otherwise"));
+            assert_non_null(strstr(spar_session_message(s), "'disc' rotates relative"));
         }
         spar_session_destroy(&s);
     }

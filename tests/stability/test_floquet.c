@@ -240,7 +240,7 @@ static void test_unlike_shaft(void **state) {
             OK(s, spar_member_commit(b));
             OK(s, spar_session_set_integrator(s, 1, 1));
             run(s, &h, period / (double)steps, steps, 0);
-            REFUSED(s, SPAR_ERR_UNSUPPORTED, "is not alike all around",
+            REFUSED(s, SPAR_ERR_UNSUPPORTED, "is not isotropic",
                     spar_member_solve_eigenvalues(b, 1, NULL, value[0], NULL, NULL));
             scene_tip(b, before);
             OK(s, spar_session_solve_floquet(s, period / (double)steps, steps, 0, drive, NULL, &h, 2, 2, value[0]));
@@ -529,7 +529,7 @@ static void coleman_scene(spar_session *s, coleman *p) {
     }
 }
 
-/* Ground resonance of two blades on a support that is not alike all around, of 8.5 and 12 rad/s: turning below these
+/* Ground resonance of two blades on a support that is not isotropic, of 8.5 and 12 rad/s: turning below these
    frequencies, between them, where it grows, and above, where the springs are less than what the turn takes off, and
    where it grows again. All multipliers, against the periodic equations of the linear motion. */
 static void test_coleman(void **state) {

@@ -340,14 +340,14 @@ static void stopped_on_one_rank(void **state) {
         hearing h = {.stop = rank == bad ? stop : 0};
         OK(c.session, spar_session_set_progress(c.session, hear, &h));
         told(spar_session_advise(c.session, 0.3, dt, STEPS, STEPS * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice),
-             SPAR_ERR_USER, bad, c.session, "the host has stopped it");
+             SPAR_ERR_USER, bad, c.session, "cancelled by the progress callback");
         assert_int_equal(h.calls, stop);
         same_on_all(h.heard, 2);
         same_bits(held, &c);
         h.calls = 0;
         told(spar_session_report_effects(c.session, dt, 8, before, solve, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
                                          table[0]),
-             SPAR_ERR_USER, bad, c.session, "the host has stopped it");
+             SPAR_ERR_USER, bad, c.session, "cancelled by the progress callback");
         assert_int_equal(h.calls, stop);
         same_on_all(h.heard, 2);
         same_bits(held, &c);

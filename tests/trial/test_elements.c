@@ -172,7 +172,7 @@ static void test_comes_back(void **state) {
     before = *given;
     spari_rebuild wish = spari_rebuild_of(given);
     wish.elements = 3;
-    REFUSED(s, SPAR_ERR_STATE, "has the nodes that it was given", spari_member_rebuild(given, &wish, &old));
+    REFUSED(s, SPAR_ERR_STATE, "were set by the host", spari_member_rebuild(given, &wish, &old));
     spari_member_restore(given, &old);
     assert_memory_equal(given, &before, sizeof before);
     spar_session_destroy(&s);

@@ -533,7 +533,7 @@ static void test_apply_refuses(void **state) {
     OK(c.s, spar_step_reject(c.s));
     c.s->own->advised->of ^= 1; /* as if other members had been advised on */
     assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
-    assert_non_null(strstr(spar_session_message(c.s), "ask for it again"));
+    assert_non_null(strstr(spar_session_message(c.s), "request the advice again"));
     assert_true(dt == 7);
     step(&c, 0.01, 2);
     free(before);
@@ -670,12 +670,12 @@ static void keep_text(const spar_session *s, int level, const char *text, void *
 
 /* A wing of six elements of 5 nodes needs no more than its shape: fewer elements are advised, at less than half the
    cost, and come into force; the run with them keeps the tolerance against the same wing in 2 of 12 nodes. It keeps its
-   own where the host keeps nodes, and, with the reason in the log, where a load is kept at a node within an element, or
-   its nodes are given. */
+   own where the host keeps nodes, and, with the reason in the log, where a load is applied at a node within an element,
+   or its nodes are given. */
 static void test_elements_advised(void **state) {
     (void)state;
     enum { PLAIN, KEPT, LOADED, GIVEN, KINDS, T = 32 };
-    static const char *const reason[KINDS] = {"", "", "a load is kept at a node", "its nodes are given"};
+    static const char *const reason[KINDS] = {"", "", "a load is applied at a node", "its nodes are set by the host"};
     const double load[6] = {0, 0, 0.1, 0, 0, 0}, dt = 0.01;
     for (int kind = 0; kind < KINDS; kind++) {
         scene c = {.load = 0.05, .drag = 0.01}, fine = c;
@@ -929,9 +929,9 @@ static void test_fluid_that_does_not_repeat(void **state) {
     OK(s, spar_fluid_map(f));
     assert_int_equal(spar_session_advise(s, tolerance, 0.01, 8, 8 * 0.01, NULL, whim, f, SPAR_ADVICE_COUNT, advice),
                      SPAR_ERR_NUMERIC);
-    const char *says = strstr(spar_session_message(s), "its own error is about ");
+    const char *says = strstr(spar_session_message(s), "the error of the reference is about ");
     assert_non_null(says);
-    assert_int_equal(sscanf(says, "its own error is about %lf, and must be below %lf", &error, &limit), 2);
+    assert_int_equal(sscanf(says, "the error of the reference is about %lf, but must be below %lf", &error, &limit), 2);
     assert_true(error > limit && limit < tolerance && limit > 0.1 * tolerance);
     spar_session_destroy(&s);
 }
@@ -1021,8 +1021,8 @@ static void test_stopped_at_each_call(void **state) {
             h = (hearing){.c = &c, .stop = stop};
             answer[0] = 77;
             REFUSED(c.s, SPAR_ERR_USER,
-                    table ? "spar_session_report_effects: the host has stopped it: its progress call returned 5"
-                          : "spar_session_advise: the host has stopped it: its progress call returned 5",
+                    table ? "spar_session_report_effects: cancelled by the progress callback (5)"
+                          : "spar_session_advise: cancelled by the progress callback (5)",
                     ask_for(&c, table, answer));
             assert_int_equal(h.calls, stop);
             assert_true(answer[0] == 77);
@@ -1045,7 +1045,7 @@ static int meddle_between(spar_session *s, double done, double expected, void *c
     (void)done, (void)expected;
     OK(s, spar_session_get_time(s, &t, NULL, NULL));
     NEAR(t, 0.02, 1e-12);
-    REFUSED(s, SPAR_ERR_STATE, "trial run is under way",
+    REFUSED(s, SPAR_ERR_STATE, "trial run is in progress",
             spar_session_try(s, 0.01, 8, keep, press, h->c, 0, SPAR_TRY_COUNT, report));
     assert_int_equal(spar_session_save(s, "trial_apply.spar"), SPAR_ERR_STATE);
     OK(s, spar_session_set_progress(s, NULL, NULL));

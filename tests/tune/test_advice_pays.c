@@ -33,7 +33,7 @@ static int blow(spar_session *s, double t, double dt, int iteration, void *conte
 static void count_far_off(const spar_session *s, int level, const char *text, void *context) {
     air *w = context;
     (void)s, (void)level;
-    w->far_off += strstr(text, "its error is beyond") != NULL;
+    w->far_off += strstr(text, "the error exceeds") != NULL;
 }
 
 /* Between two points; of stiffness EI in bending, damped as mu. */
