@@ -550,6 +550,19 @@ static int check_loads(const spar_aero *aero, const double *load, const char *wh
     return SPAR_OK;
 }
 
+/* Checks the unsteady states before anything is pushed: a refused call changes nothing. */
+static int check_unsteady(const spar_aero *aero, const char *call) {
+    for (int64_t k = 0; k < count(aero); k++) {
+        int64_t bad = spari_first_nonfinite((const double *)(const void *)(aero->is + k), SPARI_MEMORY_NUMBERS);
+        SPARI_REQUIRE(
+            aero->session, bad < 0, SPAR_ERR_NUMERIC,
+            "%s: fluid '%s', blade %lld, section %lld: an unsteady state is %g; check the chord and the inflow", call,
+            spar_fluid_get_name(aero->fluid[k / aero->n]), (long long)(k / aero->n), (long long)(k % aero->n),
+            ((const double *)(const void *)(aero->is + k))[bad]);
+    }
+    return SPAR_OK;
+}
+
 /* Wind at the sections with shear and tower. */
 static const double *meet_wind(spar_aero *aero, const double *inflow) {
     for (int64_t k = 0; k < count(aero); k++) {
@@ -637,6 +650,7 @@ static int solve_elements(spar_aero *aero, double density, const double *inflow,
     }
     SPARI_TRY(check_loads(aero, aero->force, "a force", call));
     SPARI_TRY(moments ? check_loads(aero, aero->moment, "a moment", call) : SPAR_OK);
+    SPARI_TRY(remembers ? check_unsteady(aero, call) : SPAR_OK);
     for (int b = 0; b < aero->blades; b++) {
         int64_t at = 3 * b * aero->n;
         SPARI_TRY(spar_fluid_push_forces(aero->fluid[b], aero->force + at, moments ? aero->moment + at : NULL));

@@ -614,6 +614,24 @@ static void test_refusals(void **state) {
     spar_polar_destroy(&polar);
 }
 
+/* A chord of the smallest number there is makes a state infinite: refused, and nothing has been pushed. */
+static void test_state_beyond_numbers(void **state) {
+    (void)state;
+    wing_scene c;
+    double was[SPAR_AUDIT_COUNT], is[SPAR_AUDIT_COUNT];
+    spar_polar *polar = stall_polar();
+    build_flexible(&c, polar, SPAR_AERO_STALL | SPAR_AERO_UNSTEADY);
+    OK(c.s, spar_aero_solve(c.aero, rho, c.wind[0], 1));
+    OK(c.s, spar_fluid_get_audit(c.fluid, SPAR_AUDIT_COUNT, was));
+    OK(c.s, spar_aero_set_section(c.aero, 1, 5e-324, 0.3, polar));
+    c.wind[0][2] = 0.5 * U;
+    REFUSED(c.s, SPAR_ERR_NUMERIC, "an unsteady state is", spar_aero_solve(c.aero, rho, c.wind[0], 1));
+    OK(c.s, spar_fluid_get_audit(c.fluid, SPAR_AUDIT_COUNT, is));
+    assert_memory_equal(was, is, sizeof was);
+    release(&c);
+    spar_polar_destroy(&polar);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_lag),         cmocka_unit_test(test_theodorsen),
@@ -622,7 +640,7 @@ int main(void) {
         cmocka_unit_test(test_no_attached), cmocka_unit_test(test_pitch_step),
         cmocka_unit_test(test_order),       cmocka_unit_test(test_goes_with_the_run),
         cmocka_unit_test(test_off),         cmocka_unit_test(test_report),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_refusals),    cmocka_unit_test(test_state_beyond_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
