@@ -222,7 +222,8 @@ int spar_session_set_threads(spar_session *session, int threads) {
     spari_thread_pool *pool = threads > 1 ? spari_thread_pool_create(threads) : NULL;
     if (threads > 1 && (!pool || reserve_workspace(s, pool))) {
         spari_thread_pool_free(pool);
-        return spari_fail(s, SPAR_ERR_MEMORY, "%s: the system cannot create %d threads; request fewer", __func__,
+        return spari_fail(s, SPAR_ERR_MEMORY,
+                          "%s: the system has no memory for %d threads, or allows fewer; request fewer", __func__,
                           threads);
     }
     spari_threads_free(s);
