@@ -117,7 +117,7 @@ static inline void step(scene *s) {
     if (s->turbine) {
         double q[7], v[6], a[6];
         nrel5mw_root_motion(s->turbine, &s->rotor, 0, turning * s->dt * (s->steps + 1), turning, 0, q, v, a);
-        MUST(s->session, spar_member_drive_root(s->member, q, v, a));
+        MUST(s->session, spar_member_drive(s->member, q, v, a));
     }
     s->steps++;
     MUST(s->session, spar_step_begin(s->session, s->dt));

@@ -110,7 +110,7 @@ static int drive(const blade *b, const peer_scene *scene, int k, double t) {
                      rises[6] = {0, 0, 0, 0, faster, 0};
         return spar_joint_drive(b->root, motion, rate, rises);
     }
-    return (scene->turning > 0 && spar_member_drive_root(b->beam, q, v, a)) ||
+    return (scene->turning > 0 && spar_member_drive(b->beam, q, v, a)) ||
            (scene->smoothly && spar_member_set_load(b->beam, scene->nodes - 1, SPAR_LOAD_DEAD, load));
 }
 

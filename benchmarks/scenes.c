@@ -117,7 +117,7 @@ static int turn(spar_session *s, double t, double dt, void *context) {
     double q[7], v[6], a[6];
     (void)s;
     nrel5mw_root_motion(&turbine, &b->rotor, 0, b->speed * (t + dt), b->speed, 0, q, v, a);
-    return spar_member_drive_root(b->run->member, q, v, a);
+    return spar_member_drive(b->run->member, q, v, a);
 }
 
 static int build_blade(scene_run *r, double gust) {
@@ -184,7 +184,7 @@ static int build_wing(scene_run *r) {
         b->inflow[3 * i + 1] = 25 * cos(angle), b->inflow[3 * i + 2] = -25 * sin(angle);
     }
     TRY(spar_fluid_create(r->member, "strips", &r->fluid));
-    TRY(spar_fluid_set_sections(r->fluid, WING_STRIPS, xi, offset));
+    TRY(spar_fluid_set_stations(r->fluid, WING_STRIPS, xi, offset));
     TRY(spar_fluid_set_interpolation(r->fluid, r->knobs.consistent));
     TRY(spar_fluid_map(r->fluid));
     TRY(spar_aero_create(1, &r->fluid, &b->aero));
@@ -361,7 +361,7 @@ static int look(const scene_run *run, double *q, double displacement[3], double 
     TRY(spar_member_get_motion(run->member, q, NULL, NULL));
     memcpy(displacement, q + 7 * (n - 1), 3 * sizeof *q);
     if (run->scene->floats) {
-        return spar_fluid_get_total(run->fluid, (const double[3]){0}, load, NULL);
+        return spar_fluid_sum_loads(run->fluid, (const double[3]){0}, load, NULL);
     }
     TRY(spar_member_get_reaction(run->member, reaction));
     memcpy(load, reaction + 3, 3 * sizeof *load);

@@ -127,7 +127,7 @@ static void begin_wing(wing *w, const wing_data *of, double speed, double angle)
         offset[i][1] = (-0.25 - of->axis) * of->chord;
         w->wind[i][1] = speed;
     }
-    MUST(w->s, spar_fluid_set_sections(w->air, STRIPS, xi, offset[0]));
+    MUST(w->s, spar_fluid_set_stations(w->air, STRIPS, xi, offset[0]));
     MUST(w->s, spar_fluid_map(w->air));
     MUST(w->s, spar_polar_create(2, alpha, cl, cd, NULL, &w->polar));
     MUST(w->s, spar_aero_create(1, &w->air, &w->aero));

@@ -31,7 +31,7 @@ static int drive(turbine *t, double time) {
     for (int b = 0; b < TURBINE_BLADES && status == SPAR_OK; b++) {
         double q[7], v[6], a[6];
         nrel5mw_root_motion(&t->data, &t->rotor, b, rpm * pi / 30 * time, rpm * pi / 30, 0, q, v, a);
-        status = spar_member_drive_root(t->blade[b], q, v, a);
+        status = spar_member_drive(t->blade[b], q, v, a);
     }
     return status;
 }

@@ -29,7 +29,7 @@ int world_before(spar_session *s, double t, double dt, void *context) {
     double half = 0.5 * w->spin * (t + dt);
     const double q[7] = {0, 0, 0, cos(half), sin(half), 0, 0}, v[6] = {0, 0, 0, w->spin, 0, 0}, a[6] = {0};
     (void)s;
-    return w->spin > 0 ? spar_member_drive_root(w->m[0], q, v, a) : SPAR_OK;
+    return w->spin > 0 ? spar_member_drive(w->m[0], q, v, a) : SPAR_OK;
 }
 
 /* ---- members ---- */
@@ -186,8 +186,8 @@ static int pair(world *w) {
     TRY(add_beam(w, SPAR_ROOT_FIXED, o, two, 120, 0));
     TRY(add_beam(w, SPAR_ROOT_FIXED, a, b, 60, 0));
     TRY(spar_member_get_count(w->m[0], &n));
-    TRY(spar_line_create(w->s, "spring", w->m[0], n - 1, two, w->m[1], n - 1, b, &line));
-    return spar_line_set_spring(line, 20, 0.5, 1, 0);
+    TRY(spar_link_create(w->s, "spring", w->m[0], n - 1, two, w->m[1], n - 1, b, &line));
+    return spar_link_set_spring(line, 20, 0.5, 1, 0);
 }
 
 const world_scene worlds[WORLD_COUNT] = {

@@ -149,7 +149,7 @@ static int run(double even, history *h, FILE *file) {
     double t = 0;
     for (int k = 0; k < PLACES && status == SPAR_OK; k++) {
         const double end = (k + 1) * output;
-        status = k == 0 ? spar_session_start(w.session, 1e-3, solve_flow, &w, NULL) : status;
+        status = k == 0 ? spar_session_solve_initial(w.session, 1e-3, solve_flow, &w, NULL) : status;
         while (t < end && status == SPAR_OK) {
             double dt = even > 0 ? even : courant * cell / wind(t), now[FIGURES];
             int last = t + dt * (1 + 1e-9) >= end;

@@ -14,9 +14,9 @@ static int moor(spar_session *s, spar_member *body) {
         double a = 2 * pi / 3 * k, fairlead[3] = {5 * cos(a), 5 * sin(a), -30},
                ground[3] = {anchor * cos(a), anchor * sin(a), -depth};
         spar_joint *line = NULL;
-        status = spar_line_create(s, (const char *[]){"east", "north", "south"}[k], body, 0, fairlead, NULL, 0, ground,
+        status = spar_link_create(s, (const char *[]){"east", "north", "south"}[k], body, 0, fairlead, NULL, 0, ground,
                                   &line);
-        status = status == SPAR_OK ? spar_line_set_spring(line, line_stiffness, 0, line_length, 1) : status;
+        status = status == SPAR_OK ? spar_link_set_spring(line, line_stiffness, 0, line_length, 1) : status;
     }
     return status;
 }

@@ -144,7 +144,7 @@ static int step(spar_session *s, spar_fluid *surface, piece *p, double t) {
         iterations++;
     }
     sum_forces(p, sum);
-    check(s, spar_fluid_check_total(surface, NULL, sum, NULL, 1e-12)); /* no face is pushed twice, and none left out */
+    check(s, spar_fluid_check_loads(surface, NULL, sum, NULL, 1e-12)); /* no face is pushed twice, and none left out */
     check(s, spar_step_accept(s));
     return iterations;
 }
@@ -153,7 +153,7 @@ static void run(spar_session *s, spar_fluid *surface, spar_member *blade, piece 
     for (int i = 1; i <= STEPS; i++) {
         double q[12][7], force[3];
         int iterations = step(s, surface, p, (i - 1) * dt);
-        check(s, spar_fluid_get_total(surface, NULL, force, NULL));
+        check(s, spar_fluid_sum_loads(surface, NULL, force, NULL));
         check(s, spar_member_get_motion(blade, q[0], NULL, NULL));
         if (speaks && i % 10 == 0) {
             printf("%7.2f %24.16e %24.16e %12.5g %11d\n", i * dt, q[11][2], 2 * asin(q[11][5]), force[2], iterations);

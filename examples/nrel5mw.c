@@ -611,7 +611,7 @@ int nrel5mw_create_sections(nrel5mw *data, const nrel5mw_rotor *rotor, int blade
     }
     int status = spar_fluid_create(member, name, fluid);
     if (status == SPAR_OK) { /* once on the line itself, to learn the frames there */
-        status = spar_fluid_set_sections(*fluid, n, xi, NULL);
+        status = spar_fluid_set_stations(*fluid, n, xi, NULL);
     }
     if (status == SPAR_OK) {
         status = spar_fluid_map(*fluid);
@@ -621,7 +621,7 @@ int nrel5mw_create_sections(nrel5mw *data, const nrel5mw_rotor *rotor, int blade
     }
     if (status == SPAR_OK) {
         fit_sections(data, rotor, blade, x_map, q_map, offset, twist);
-        status = spar_fluid_set_sections(*fluid, n, xi, offset);
+        status = spar_fluid_set_stations(*fluid, n, xi, offset);
     }
     if (status == SPAR_OK) {
         status = spar_fluid_map(*fluid);

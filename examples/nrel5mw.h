@@ -60,7 +60,7 @@ void nrel5mw_rotor_default(const nrel5mw *data, nrel5mw_rotor *rotor);
 
 /* Root place and orientation of a blade when the rotor stands at angle (rad). */
 void nrel5mw_root(const nrel5mw *data, const nrel5mw_rotor *rotor, int blade, double angle, double x[3], double q[4]);
-/* Root motion for spar_member_drive_root: relative to the reference configuration, which is that at angle 0. */
+/* Root motion for spar_member_drive: relative to the reference configuration, which is that at angle 0. */
 void nrel5mw_root_motion(const nrel5mw *data, const nrel5mw_rotor *rotor, int blade, double angle, double speed,
                          double acceleration, double q[7], double v[6], double a[6]);
 

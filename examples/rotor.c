@@ -385,7 +385,7 @@ static int drive(const scene *s, double angle) {
     double q[7], v[6], a[6];
     for (int b = 0; b < s->rotor.blades; b++) {
         nrel5mw_root_motion(&s->turbine, &s->rotor, b, angle, s->report.speed, 0, q, v, a);
-        int status = spar_member_drive_root(s->blade[b], q, v, a);
+        int status = spar_member_drive(s->blade[b], q, v, a);
         if (status != SPAR_OK) {
             return status;
         }

@@ -406,7 +406,7 @@ contains
     write (name, '(a,i0)') 'sections', blade_of(k)
     xi = 2 * span(1:ns) / length - 1
     call fluid(k)%create(blade(blade_of(k)), name)
-    call fluid(k)%set_sections(xi)
+    call fluid(k)%set_stations(xi)
     call fluid(k)%map()
     call fluid(k)%get_feet(SPAR_NODES_MOTION, foot, q)
     do i = 1, ns
@@ -415,7 +415,7 @@ contains
       offset(:,i) = matmul(arm, own)
       extra_twist(i) = aero_twist(i) + atan2(dot_product(own(:,2), r(:,3)), dot_product(own(:,2), r(:,2)))
     end do
-    call fluid(k)%set_sections(xi, offset)
+    call fluid(k)%set_stations(xi, offset)
     call fluid(k)%map()
     call fluid(k)%get_feet(SPAR_NODES_MOTION, foot, con=offset)
     foot = foot + offset
@@ -481,7 +481,7 @@ contains
 
     do b = 1, blades
       call root_motion(b, speed * t_next, q, v, a)
-      call blade(b)%drive_root(q, v, a)
+      call blade(b)%drive(q, v, a)
     end do
     steps = steps + 1
     call session%step_begin(t_next - t)

@@ -222,7 +222,7 @@ contains
     write (name, '(a,i0)') 'sections', b
     xi = 2 * span(1:ns) / length - 1
     call sections(b)%create(blade(b), name)
-    call sections(b)%set_sections(xi)
+    call sections(b)%set_stations(xi)
     call sections(b)%map()
     call sections(b)%get_feet(SPAR_NODES_MOTION, foot, q)
     do i = 1, ns
@@ -231,7 +231,7 @@ contains
       offset(:,i) = matmul(arm, own)
       extra_twist(i) = aero_twist(i) + atan2(dot_product(own(:,2), r(:,3)), dot_product(own(:,2), r(:,2)))
     end do
-    call sections(b)%set_sections(xi, offset)
+    call sections(b)%set_stations(xi, offset)
     call sections(b)%map()
   end subroutine make_sections
 

@@ -12,8 +12,8 @@
 !
 ! Names. A call is the C name without its first two words: spar_fluid_push_forces is fluid%push_forces, spar_beam_set_axis is
 ! member%set_axis. The calls of the step belong to the session: session%step_begin, ..., session%step. spar_point_create,
-! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam, spar_line_create and
-! spar_line_set_spring joint%create_line and %set_line_spring; a joint to the ground is created without b. spar_status_text,
+! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam, spar_link_create and
+! spar_link_set_spring joint%create_link and %set_link_spring; a joint to the ground is created without b. spar_status_text,
 ! spar_version, spar_has, spar_effect_name, spar_aero_effect_name and spar_vtk_series_add keep their names. A session has one
 ! variable, which owns it: spar_member_get_session is left to hosts that use spar_c.
 !
@@ -87,7 +87,7 @@ module spar
   integer, parameter, public :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
   integer, parameter, public :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
   integer, parameter, public :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
-  integer, parameter, public :: SPAR_KIND_SECTIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, &
+  integer, parameter, public :: SPAR_KIND_STATIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, &
       SPAR_KIND_FORCES = 8
   integer, parameter, public :: SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, SPAR_MATRIX_GLOBAL_TO_LOCAL = 1
   integer, parameter, public :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
@@ -172,10 +172,10 @@ module spar
     generic :: set_tolerance => session_set_tolerance, session_set_tolerance_single_1
     procedure, private :: session_get_tolerance, session_get_tolerance_single_1, session_get_tolerance_single_2
     generic :: get_tolerance => session_get_tolerance, session_get_tolerance_single_1, session_get_tolerance_single_2
-    procedure, private :: session_get_pace, session_get_pace_single_1
-    generic :: get_pace => session_get_pace, session_get_pace_single_1
-    procedure, private :: session_step_begin_start, session_step_begin_start_single_1
-    generic :: step_begin_start => session_step_begin_start, session_step_begin_start_single_1
+    procedure, private :: session_get_step_control, session_get_step_control_single_1
+    generic :: get_step_control => session_get_step_control, session_get_step_control_single_1
+    procedure, private :: session_step_begin_initial, session_step_begin_initial_single_1
+    generic :: step_begin_initial => session_step_begin_initial, session_step_begin_initial_single_1
     procedure :: save => session_save
     procedure :: load => session_load
     procedure :: set_goal => session_set_goal
@@ -189,8 +189,8 @@ module spar
     procedure :: message => session_message
     procedure :: set_log => session_set_log
     procedure :: set_progress => session_set_progress
-    procedure, private :: session_get_balance, session_get_balance_single_1, session_get_balance_single_2
-    generic :: get_balance => session_get_balance, session_get_balance_single_1, session_get_balance_single_2
+    procedure, private :: session_sum_balance, session_sum_balance_single_1, session_sum_balance_single_2
+    generic :: sum_balance => session_sum_balance, session_sum_balance_single_1, session_sum_balance_single_2
     procedure, private :: session_sum, session_sum_single_1
     generic :: sum => session_sum, session_sum_single_1
     procedure, private :: session_get_iterations, session_get_iterations_single_1, session_get_iterations_single_2
@@ -201,10 +201,10 @@ module spar
     procedure, private :: session_step, session_step_single_1
     generic :: step => session_step, session_step_single_1
     procedure :: solve_static => session_solve_static
-    procedure, private :: session_start, session_start_single_1
-    generic :: start => session_start, session_start_single_1
-    procedure, private :: session_step_within, session_step_within_single_1
-    generic :: step_within => session_step_within, session_step_within_single_1
+    procedure, private :: session_solve_initial, session_solve_initial_single_1
+    generic :: solve_initial => session_solve_initial, session_solve_initial_single_1
+    procedure, private :: session_step_adaptive, session_step_adaptive_single_1
+    generic :: step_adaptive => session_step_adaptive, session_step_adaptive_single_1
     procedure, private :: session_try_64, session_try_32
     procedure, private :: session_try_64_single_1, session_try_64_single_2, session_try_64_single_3, &
         session_try_32_single_1, session_try_32_single_2, session_try_32_single_3
@@ -304,25 +304,25 @@ module spar
         member_set_motion_single_3
     generic :: set_motion => member_set_motion, member_set_motion_single_1, member_set_motion_single_2, &
         member_set_motion_single_3
-    procedure, private :: member_drive_root, member_drive_root_single_1
-    generic :: drive_root => member_drive_root, member_drive_root_single_1
+    procedure, private :: member_drive, member_drive_single_1
+    generic :: drive => member_drive, member_drive_single_1
     procedure, private :: member_set_line_load, member_set_line_load_single_1
     generic :: set_line_load => member_set_line_load, member_set_line_load_single_1
     procedure, private :: member_get_loads, member_get_loads_single_1
     generic :: get_loads => member_get_loads, member_get_loads_single_1
     procedure, private :: member_get_reaction, member_get_reaction_single_1
     generic :: get_reaction => member_get_reaction, member_get_reaction_single_1
-    procedure, private :: member_get_section, member_get_section_single_1
-    generic :: get_section => member_get_section, member_get_section_single_1
+    procedure, private :: member_evaluate, member_evaluate_single_1
+    generic :: evaluate => member_evaluate, member_evaluate_single_1
     procedure, private :: member_get_energy, member_get_energy_single_1
     generic :: get_energy => member_get_energy, member_get_energy_single_1
     procedure, private :: member_get_work, member_get_work_single_1
     generic :: get_work => member_get_work, member_get_work_single_1
     procedure :: solve_static => member_solve_static
-    procedure, private :: member_get_error, member_get_error_single_1, member_get_error_single_2
-    generic :: get_error => member_get_error, member_get_error_single_1, member_get_error_single_2
-    procedure, private :: member_get_newton, member_get_newton_single_1
-    generic :: get_newton => member_get_newton, member_get_newton_single_1
+    procedure, private :: member_estimate_error, member_estimate_error_single_1, member_estimate_error_single_2
+    generic :: estimate_error => member_estimate_error, member_estimate_error_single_1, member_estimate_error_single_2
+    procedure, private :: member_get_iterations, member_get_iterations_single_1
+    generic :: get_iterations => member_get_iterations, member_get_iterations_single_1
     procedure :: get_advice => member_get_advice
     procedure :: write_vtk => member_write_vtk
     procedure, private :: member_create_point, member_create_point_single_1
@@ -386,10 +386,10 @@ module spar
     generic :: get_energy => joint_get_energy, joint_get_energy_single_1
     procedure, private :: joint_create_64, joint_create_32
     generic :: create => joint_create_64, joint_create_32
-    procedure, private :: joint_create_line_64, joint_create_line_32
-    procedure, private :: joint_create_line_64_single_1, joint_create_line_32_single_1
-    generic :: create_line => joint_create_line_64, joint_create_line_32, joint_create_line_64_single_1, &
-        joint_create_line_32_single_1
+    procedure, private :: joint_create_link_64, joint_create_link_32
+    procedure, private :: joint_create_link_64_single_1, joint_create_link_32_single_1
+    generic :: create_link => joint_create_link_64, joint_create_link_32, joint_create_link_64_single_1, &
+        joint_create_link_32_single_1
     procedure :: exists => joint_exists
     procedure :: c_handle => joint_handle
     procedure, private :: joint_set_spring, joint_at_node_64, joint_at_node_32
@@ -399,8 +399,8 @@ module spar
     generic :: set_spring => joint_set_spring, joint_at_node_64, joint_at_node_32, joint_set_spring_single_1, &
         joint_set_spring_single_2, joint_set_spring_single_3, joint_at_node_64_single_1, joint_at_node_64_single_2, &
         joint_at_node_64_single_3, joint_at_node_32_single_1, joint_at_node_32_single_2, joint_at_node_32_single_3
-    procedure, private :: joint_set_line_spring, joint_set_line_spring_single_1
-    generic :: set_line_spring => joint_set_line_spring, joint_set_line_spring_single_1
+    procedure, private :: joint_set_link_spring, joint_set_link_spring_single_1
+    generic :: set_link_spring => joint_set_link_spring, joint_set_link_spring_single_1
   end type spar_joint
 
   type :: spar_fluid
@@ -415,10 +415,10 @@ module spar
     generic :: get_motion_weights => fluid_get_motion_weights, fluid_get_motion_weights_single_1
     procedure, private :: fluid_set_force_nodes, fluid_set_force_nodes_single_1
     generic :: set_force_nodes => fluid_set_force_nodes, fluid_set_force_nodes_single_1
-    procedure, private :: fluid_set_sections, fluid_set_sections_single_1
-    generic :: set_sections => fluid_set_sections, fluid_set_sections_single_1
-    procedure, private :: fluid_set_motion_sections, fluid_set_motion_sections_single_1
-    generic :: set_motion_sections => fluid_set_motion_sections, fluid_set_motion_sections_single_1
+    procedure, private :: fluid_set_stations, fluid_set_stations_single_1
+    generic :: set_stations => fluid_set_stations, fluid_set_stations_single_1
+    procedure, private :: fluid_set_motion_stations, fluid_set_motion_stations_single_1
+    generic :: set_motion_stations => fluid_set_motion_stations, fluid_set_motion_stations_single_1
     procedure :: set_layout => fluid_set_layout
     procedure :: get_layout => fluid_get_layout
     procedure, private :: fluid_set_projection, fluid_set_projection_single_1
@@ -458,10 +458,10 @@ module spar
     generic :: pull_force_places => fluid_pull_force_places, fluid_pull_force_places_single_1, &
         fluid_pull_force_places_single_2, fluid_pull_force_places_single_3, fluid_pull_force_places_single_4, &
         fluid_pull_force_places_single_5, fluid_pull_force_places_single_6, fluid_pull_force_places_single_7
-    procedure, private :: fluid_get_places, fluid_get_places_single_1, fluid_get_places_single_2, &
-        fluid_get_places_single_3, fluid_get_places_single_4
-    generic :: get_places => fluid_get_places, fluid_get_places_single_1, fluid_get_places_single_2, &
-        fluid_get_places_single_3, fluid_get_places_single_4
+    procedure, private :: fluid_get_positions, fluid_get_positions_single_1, fluid_get_positions_single_2, &
+        fluid_get_positions_single_3, fluid_get_positions_single_4
+    generic :: get_positions => fluid_get_positions, fluid_get_positions_single_1, fluid_get_positions_single_2, &
+        fluid_get_positions_single_3, fluid_get_positions_single_4
     procedure, private :: fluid_pull_forces, fluid_pull_forces_single_1, fluid_pull_forces_single_2, &
         fluid_pull_forces_single_3
     generic :: pull_forces => fluid_pull_forces, fluid_pull_forces_single_1, fluid_pull_forces_single_2, &
@@ -484,9 +484,9 @@ module spar
     generic :: pull_forces_f32 => fluid_pull_forces_f32, fluid_pull_forces_f32_single_1
     procedure, private :: fluid_get_audit, fluid_get_audit_single_1
     generic :: get_audit => fluid_get_audit, fluid_get_audit_single_1
-    procedure, private :: fluid_get_total, fluid_get_total_single_1, fluid_get_total_single_2, fluid_get_total_single_3
-    generic :: get_total => fluid_get_total, fluid_get_total_single_1, fluid_get_total_single_2, &
-        fluid_get_total_single_3
+    procedure, private :: fluid_sum_loads, fluid_sum_loads_single_1, fluid_sum_loads_single_2, fluid_sum_loads_single_3
+    generic :: sum_loads => fluid_sum_loads, fluid_sum_loads_single_1, fluid_sum_loads_single_2, &
+        fluid_sum_loads_single_3
     procedure :: write_vtk => fluid_write_vtk
     procedure :: create => fluid_create
     procedure :: destroy => fluid_destroy
@@ -521,10 +521,10 @@ module spar
     generic :: push_forces_at => fluid_push_forces_at, fluid_push_forces_at_single_1, fluid_push_forces_at_single_2, &
         fluid_push_forces_at_single_3
     procedure :: push_forces_f32 => fluid_push_forces_f32
-    procedure, private :: fluid_check_total, fluid_check_total_single_1, fluid_check_total_single_2, &
-        fluid_check_total_single_3
-    generic :: check_total => fluid_check_total, fluid_check_total_single_1, fluid_check_total_single_2, &
-        fluid_check_total_single_3
+    procedure, private :: fluid_check_loads, fluid_check_loads_single_1, fluid_check_loads_single_2, &
+        fluid_check_loads_single_3
+    generic :: check_loads => fluid_check_loads, fluid_check_loads_single_1, fluid_check_loads_single_2, &
+        fluid_check_loads_single_3
     procedure, private :: fluid_assign
     generic :: assignment(=) => fluid_assign
   end type spar_fluid
@@ -756,7 +756,7 @@ contains
   end function session_message
 
   ! Of arrays of different lengths as many ranks as the shortest has. One call, which is collective.
-  subroutine session_get_balance(self, members, expected, counted, stat, errmsg)
+  subroutine session_sum_balance(self, members, expected, counted, stat, errmsg)
     class(spar_session), intent(in) :: self
     integer(c_int64_t), contiguous, intent(inout), optional :: members(:)
     real(c_double), contiguous, intent(inout), optional :: expected(:), counted(:)
@@ -769,8 +769,8 @@ contains
     if (present(expected)) capacity = min(capacity, ubound(expected, 1, c_int64_t))
     if (present(counted)) capacity = min(capacity, ubound(counted, 1, c_int64_t))
     if (capacity == huge(capacity)) capacity = 0
-    call finish(spar_session_get_balance(self%handle, capacity, members, expected, counted), self%handle, stat, errmsg)
-  end subroutine session_get_balance
+    call finish(spar_session_sum_balance(self%handle, capacity, members, expected, counted), self%handle, stat, errmsg)
+  end subroutine session_sum_balance
 
   ! status: what this rank has failed with, left out: nothing.
   subroutine session_sum(self, x, status, stat, errmsg)
@@ -964,7 +964,7 @@ contains
 
   ! A step that keeps the tolerance of set_tolerance: tried with dt, and with less while its error is too large; dt: then that to
   ! go on with, taken: that of the step. before is called ahead of each try, solve as in step.
-  subroutine session_step_within(self, dt, before, solve, context, taken, stat, errmsg)
+  subroutine session_step_adaptive(self, dt, before, solve, context, taken, stat, errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(inout) :: dt
     procedure(spar_before_step), optional :: before
@@ -977,11 +977,11 @@ contains
     type(c_funptr) :: to_solver, to_before
 
     call fill_record(self, record, to_solver, to_before, solve, before, context)
-    call finish(spar_step_within(self%handle, dt, to_before, to_solver, c_loc(record), taken), self%handle, stat, errmsg)
-  end subroutine session_step_within
+    call finish(spar_step_adaptive(self%handle, dt, to_before, to_solver, c_loc(record), taken), self%handle, stat, errmsg)
+  end subroutine session_step_adaptive
 
   ! The balanced start before the first step, of dt: solve as in step, with dt = 0, called until the loads agree.
-  subroutine session_start(self, dt, solve, context, iterations, stat, errmsg)
+  subroutine session_solve_initial(self, dt, solve, context, iterations, stat, errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(in) :: dt
     procedure(spar_fluid_solver), optional :: solve
@@ -996,10 +996,10 @@ contains
     n = 0
     if (present(iterations)) n = to_c(iterations)
     call fill_record(self, record, to_solver, to_before, solve, context=context)
-    status = spar_session_start(self%handle, dt, to_solver, c_loc(record), n)
+    status = spar_session_solve_initial(self%handle, dt, to_solver, c_loc(record), n)
     if (present(iterations)) iterations = n
     call finish(status, self%handle, stat, errmsg)
-  end subroutine session_start
+  end subroutine session_solve_initial
 
   ! Equilibrium of all members with the fluid's answer: solve as in step, with dt = 0, called until the loads agree. load_steps:
   ! default 1.
@@ -1724,7 +1724,7 @@ contains
     call joint_create_64(self, session, name, a, int(node_a, c_int64_t), free_motions, b, node, stat, errmsg)
   end subroutine joint_create_32
 
-  subroutine joint_create_line_64(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
+  subroutine joint_create_link_64(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
@@ -1741,12 +1741,12 @@ contains
 
     made = c_null_ptr
     call joint_end(b, node_b, other, node)
-    status = spar_line_create(session%handle, c_text(name), a%handle, node_a - 1, point_a, other, node, point_b, made)
+    status = spar_link_create(session%handle, c_text(name), a%handle, node_a - 1, point_a, other, node, point_b, made)
     call joint_take(self, made, session%handle, status)
     call finish(status, session%handle, stat, errmsg)
-  end subroutine joint_create_line_64
+  end subroutine joint_create_link_64
 
-  subroutine joint_create_line_32(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
+  subroutine joint_create_link_32(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
@@ -1761,8 +1761,8 @@ contains
 
     node = 1
     if (present(node_b)) node = node_b
-    call joint_create_line_64(self, session, name, a, int(node_a, c_int64_t), point_a, point_b, b, node, stat, errmsg)
-  end subroutine joint_create_line_32
+    call joint_create_link_64(self, session, name, a, int(node_a, c_int64_t), point_a, point_b, b, node, stat, errmsg)
+  end subroutine joint_create_link_32
 
   ! What C is handed for the end at b: no member is the ground.
   subroutine joint_end(b, node_b, other, node)
@@ -1829,7 +1829,7 @@ contains
     call joint_at_node_64(self, member, int(node, c_int64_t), free_motions, stiffness, damping, preload, stat, errmsg)
   end subroutine joint_at_node_32
 
-  subroutine joint_set_line_spring(self, stiffness, damping, length, tension_only, stat, errmsg)
+  subroutine joint_set_link_spring(self, stiffness, damping, length, tension_only, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     real(c_double), intent(in) :: stiffness, damping, length
     logical, intent(in), optional :: tension_only
@@ -1839,8 +1839,8 @@ contains
 
     slack = 0
     if (present(tension_only)) slack = merge(1_c_int, 0_c_int, tension_only)
-    call finish(spar_line_set_spring(self%handle, stiffness, damping, length, slack), self%session, stat, errmsg)
-  end subroutine joint_set_line_spring
+    call finish(spar_link_set_spring(self%handle, stiffness, damping, length, slack), self%session, stat, errmsg)
+  end subroutine joint_set_link_spring
 
   subroutine fluid_create(self, member, name, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
@@ -2187,15 +2187,15 @@ contains
 
   ! Collective. Whether all loads pushed add up to the host's total. Absent point: about the origin; absent moment: not
   ! compared.
-  subroutine fluid_check_total(self, point, force, moment, rtol, stat, errmsg)
+  subroutine fluid_check_loads(self, point, force, moment, rtol, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: force(3), rtol
     real(c_double), intent(in), optional :: point(3), moment(3)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_fluid_check_total(self%handle, point, force, moment, rtol), self%session, stat, errmsg)
-  end subroutine fluid_check_total
+    call finish(spar_fluid_check_loads(self%handle, point, force, moment, rtol), self%session, stat, errmsg)
+  end subroutine fluid_check_loads
 
   ! ---- polars ----
 
@@ -2722,23 +2722,23 @@ contains
     call finish(spar_session_get_tolerance(self%handle, drift, rtol), self%handle, stat, errmsg)
   end subroutine session_get_tolerance
 
-  subroutine session_get_pace(self, pace, stat, errmsg)
+  subroutine session_get_step_control(self, pace, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: pace(:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_session_get_pace(self%handle, size(pace, kind=c_int64_t), pace), self%handle, stat, errmsg)
-  end subroutine session_get_pace
+    call finish(spar_session_get_step_control(self%handle, size(pace, kind=c_int64_t), pace), self%handle, stat, errmsg)
+  end subroutine session_get_step_control
 
-  subroutine session_step_begin_start(self, dt, stat, errmsg)
+  subroutine session_step_begin_initial(self, dt, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: dt
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_step_begin_start(self%handle, dt), self%handle, stat, errmsg)
-  end subroutine session_step_begin_start
+    call finish(spar_step_begin_initial(self%handle, dt), self%handle, stat, errmsg)
+  end subroutine session_step_begin_initial
 
   subroutine session_save(self, path, stat, errmsg)
     class(spar_session), intent(in) :: self
@@ -3182,15 +3182,15 @@ contains
     call finish(spar_member_set_motion(self%handle, q, v, a), self%session, stat, errmsg)
   end subroutine member_set_motion
 
-  subroutine member_drive_root(self, q, v, a, stat, errmsg)
+  subroutine member_drive(self, q, v, a, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in) :: q(7)
     real(c_double), intent(in), optional :: v(6), a(6)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_member_drive_root(self%handle, q, v, a), self%session, stat, errmsg)
-  end subroutine member_drive_root
+    call finish(spar_member_drive(self%handle, q, v, a), self%session, stat, errmsg)
+  end subroutine member_drive
 
   subroutine member_set_line_load(self, kind, eta, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -3240,8 +3240,8 @@ contains
     call finish(spar_member_get_reaction(self%handle, load), self%session, stat, errmsg)
   end subroutine member_get_reaction
 
-  subroutine member_get_section(self, eta, strain, force, x, q, stat, errmsg)
-    class(spar_member), intent(in) :: self
+  subroutine member_evaluate(self, eta, strain, force, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:)
     real(c_double), contiguous, intent(inout), optional :: strain(:,:), force(:,:), x(:,:), q(:,:)
     integer, intent(out), optional :: stat
@@ -3255,12 +3255,12 @@ contains
     if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(eta, kind=c_int64_t)])
     if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, size(eta, kind=c_int64_t)])
     if (allocated(fault)) then
-      call refuse('member%get_section', fault, stat, errmsg, self%name)
+      call refuse('member%evaluate', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_beam_get_section(self%handle, size(eta, kind=c_int64_t), eta, strain, force, x, q), &
-        self%session, stat, errmsg)
-  end subroutine member_get_section
+    call finish(spar_beam_evaluate(self%handle, size(eta, kind=c_int64_t), eta, strain, force, x, q), self%session, &
+        stat, errmsg)
+  end subroutine member_evaluate
 
   subroutine member_get_energy(self, energy, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -3289,24 +3289,24 @@ contains
     call finish(spar_member_solve_static(self%handle, to_c(load_steps)), self%session, stat, errmsg)
   end subroutine member_solve_static
 
-  subroutine member_get_error(self, step, nodes, stat, errmsg)
-    class(spar_member), intent(in) :: self
+  subroutine member_estimate_error(self, step, nodes, stat, errmsg)
+    class(spar_member), intent(inout) :: self
     real(c_double), intent(inout), optional :: step, nodes
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_member_get_error(self%handle, step, nodes), self%session, stat, errmsg)
-  end subroutine member_get_error
+    call finish(spar_member_estimate_error(self%handle, step, nodes), self%session, stat, errmsg)
+  end subroutine member_estimate_error
 
-  subroutine member_get_newton(self, iterations, left, stat, errmsg)
+  subroutine member_get_iterations(self, iterations, left, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int64_t), intent(inout), optional :: iterations
     real(c_double), intent(inout), optional :: left
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_member_get_newton(self%handle, iterations, left), self%session, stat, errmsg)
-  end subroutine member_get_newton
+    call finish(spar_member_get_iterations(self%handle, iterations, left), self%session, stat, errmsg)
+  end subroutine member_get_iterations
 
   subroutine member_get_advice(self, fidelity, modes, nodes_per_element, points, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -3463,7 +3463,7 @@ contains
     call finish(spar_fluid_set_force_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
   end subroutine fluid_set_force_nodes
 
-  subroutine fluid_set_sections(self, xi, offset, stat, errmsg)
+  subroutine fluid_set_stations(self, xi, offset, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: xi(:)
     real(c_double), contiguous, intent(in), optional :: offset(:,:)
@@ -3474,13 +3474,13 @@ contains
     if (present(offset)) call need(fault, 'offset', shape(offset, kind=c_int64_t), [3_c_int64_t, size(xi, &
         kind=c_int64_t)])
     if (allocated(fault)) then
-      call refuse('fluid%set_sections', fault, stat, errmsg, self%name)
+      call refuse('fluid%set_stations', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_set_sections(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, stat, errmsg)
-  end subroutine fluid_set_sections
+    call finish(spar_fluid_set_stations(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, stat, errmsg)
+  end subroutine fluid_set_stations
 
-  subroutine fluid_set_motion_sections(self, xi, offset, stat, errmsg)
+  subroutine fluid_set_motion_stations(self, xi, offset, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: xi(:)
     real(c_double), contiguous, intent(in), optional :: offset(:,:)
@@ -3491,12 +3491,12 @@ contains
     if (present(offset)) call need(fault, 'offset', shape(offset, kind=c_int64_t), [3_c_int64_t, size(xi, &
         kind=c_int64_t)])
     if (allocated(fault)) then
-      call refuse('fluid%set_motion_sections', fault, stat, errmsg, self%name)
+      call refuse('fluid%set_motion_stations', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_set_motion_sections(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, &
+    call finish(spar_fluid_set_motion_stations(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, &
         stat, errmsg)
-  end subroutine fluid_set_motion_sections
+  end subroutine fluid_set_motion_stations
 
   subroutine fluid_set_layout(self, which, node, component, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
@@ -3730,7 +3730,7 @@ contains
     call finish(spar_fluid_pull_force_places(self%handle, theta, x, v, q), self%session, stat, errmsg)
   end subroutine fluid_pull_force_places
 
-  subroutine fluid_get_places(self, which, x, v, q, foot, stat, errmsg)
+  subroutine fluid_get_positions(self, which, x, v, q, foot, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:), q(:,:), foot(:,:)
@@ -3750,11 +3750,11 @@ contains
     if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
     if (present(foot)) call need(fault, 'foot', shape(foot, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse('fluid%get_places', fault, stat, errmsg, self%name)
+      call refuse('fluid%get_positions', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_get_places(self%handle, to_c(which), x, v, q, foot), self%session, stat, errmsg)
-  end subroutine fluid_get_places
+    call finish(spar_fluid_get_positions(self%handle, to_c(which), x, v, q, foot), self%session, stat, errmsg)
+  end subroutine fluid_get_positions
 
   subroutine fluid_pull_forces(self, theta, force, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -3957,15 +3957,15 @@ contains
     call finish(spar_fluid_get_audit(self%handle, size(audit, kind=c_int64_t), audit), self%session, stat, errmsg)
   end subroutine fluid_get_audit
 
-  subroutine fluid_get_total(self, point, force, moment, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
+  subroutine fluid_sum_loads(self, point, force, moment, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
     real(c_double), intent(in), optional :: point(3)
     real(c_double), intent(inout), optional :: force(3), moment(3)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_fluid_get_total(self%handle, point, force, moment), self%session, stat, errmsg)
-  end subroutine fluid_get_total
+    call finish(spar_fluid_sum_loads(self%handle, point, force, moment), self%session, stat, errmsg)
+  end subroutine fluid_sum_loads
 
   subroutine fluid_write_vtk(self, path, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -4179,7 +4179,7 @@ contains
 
   ! Written by cmake/make-bindings.sh.
 
-  subroutine session_get_balance_single_1(self, members, expected, counted, stat, errmsg)
+  subroutine session_sum_balance_single_1(self, members, expected, counted, stat, errmsg)
     class(spar_session), intent(in) :: self
     integer(c_int64_t), contiguous, intent(inout), optional :: members(:)
     real(c_float), intent(inout) :: expected(:)
@@ -4191,12 +4191,12 @@ contains
 
     allocate (c_expected(ubound(expected, 1, c_int64_t)), source=untouched)
     if (present(counted)) allocate (c_counted(ubound(counted, 1, c_int64_t)), source=untouched)
-    call session_get_balance(self, members=members, expected=c_expected, counted=c_counted, stat=stat, errmsg=errmsg)
+    call session_sum_balance(self, members=members, expected=c_expected, counted=c_counted, stat=stat, errmsg=errmsg)
     call take(c_expected, expected)
     call take(c_counted, counted)
-  end subroutine session_get_balance_single_1
+  end subroutine session_sum_balance_single_1
 
-  subroutine session_get_balance_single_2(self, members, no_expected, counted, stat, errmsg)
+  subroutine session_sum_balance_single_2(self, members, no_expected, counted, stat, errmsg)
     class(spar_session), intent(in) :: self
     integer(c_int64_t), contiguous, intent(inout), optional :: members(:)
     type(absent), intent(in), optional :: no_expected
@@ -4207,9 +4207,9 @@ contains
 
     allocate (c_counted(ubound(counted, 1, c_int64_t)), source=untouched)
     if (present(no_expected)) return
-    call session_get_balance(self, members=members, counted=c_counted, stat=stat, errmsg=errmsg)
+    call session_sum_balance(self, members=members, counted=c_counted, stat=stat, errmsg=errmsg)
     call take(c_counted, counted)
-  end subroutine session_get_balance_single_2
+  end subroutine session_sum_balance_single_2
 
   subroutine session_sum_single_1(self, x, status, stat, errmsg)
     class(spar_session), intent(in) :: self
@@ -4269,7 +4269,7 @@ contains
         errmsg=errmsg)
   end subroutine session_step_single_1
 
-  subroutine session_step_within_single_1(self, dt, before, solve, context, taken, stat, errmsg)
+  subroutine session_step_adaptive_single_1(self, dt, before, solve, context, taken, stat, errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_float), intent(inout) :: dt
     procedure(spar_before_step), optional :: before
@@ -4283,13 +4283,13 @@ contains
 
     allocate (c_dt, source=untouched)
     if (present(taken)) allocate (c_taken, source=untouched)
-    call session_step_within(self, dt=c_dt, before=before, solve=solve, context=context, taken=c_taken, stat=stat, &
+    call session_step_adaptive(self, dt=c_dt, before=before, solve=solve, context=context, taken=c_taken, stat=stat, &
         errmsg=errmsg)
     call take(c_dt, dt)
     call take(c_taken, taken)
-  end subroutine session_step_within_single_1
+  end subroutine session_step_adaptive_single_1
 
-  subroutine session_start_single_1(self, dt, solve, context, iterations, stat, errmsg)
+  subroutine session_solve_initial_single_1(self, dt, solve, context, iterations, stat, errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_float), intent(in) :: dt
     procedure(spar_fluid_solver), optional :: solve
@@ -4298,9 +4298,9 @@ contains
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call session_start(self, dt=real(dt, c_double), solve=solve, context=context, iterations=iterations, stat=stat, &
-        errmsg=errmsg)
-  end subroutine session_start_single_1
+    call session_solve_initial(self, dt=real(dt, c_double), solve=solve, context=context, iterations=iterations, &
+        stat=stat, errmsg=errmsg)
+  end subroutine session_solve_initial_single_1
 
   subroutine session_try_64_single_1(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
     class(spar_session), intent(inout), target :: self
@@ -5302,7 +5302,7 @@ contains
     call take(c_frame, frame)
   end subroutine member_solve_eigenvalues_single_1
 
-  subroutine joint_create_line_64_single_1(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
+  subroutine joint_create_link_64_single_1(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
@@ -5315,11 +5315,11 @@ contains
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call joint_create_line_64(self, session=session, name=name, a=a, node_a=node_a, point_a=real(point_a, c_double), &
+    call joint_create_link_64(self, session=session, name=name, a=a, node_a=node_a, point_a=real(point_a, c_double), &
         point_b=real(point_b, c_double), b=b, node_b=node_b, stat=stat, errmsg=errmsg)
-  end subroutine joint_create_line_64_single_1
+  end subroutine joint_create_link_64_single_1
 
-  subroutine joint_create_line_32_single_1(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
+  subroutine joint_create_link_32_single_1(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
@@ -5332,9 +5332,9 @@ contains
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call joint_create_line_32(self, session=session, name=name, a=a, node_a=node_a, point_a=real(point_a, c_double), &
+    call joint_create_link_32(self, session=session, name=name, a=a, node_a=node_a, point_a=real(point_a, c_double), &
         point_b=real(point_b, c_double), b=b, node_b=node_b, stat=stat, errmsg=errmsg)
-  end subroutine joint_create_line_32_single_1
+  end subroutine joint_create_link_32_single_1
 
   subroutine joint_at_node_64_single_1(self, member, node, free_motions, stiffness, damping, preload, stat, errmsg)
     class(spar_joint), intent(inout) :: self
@@ -5444,7 +5444,7 @@ contains
         stat=stat, errmsg=errmsg)
   end subroutine joint_at_node_32_single_3
 
-  subroutine joint_set_line_spring_single_1(self, stiffness, damping, length, tension_only, stat, errmsg)
+  subroutine joint_set_link_spring_single_1(self, stiffness, damping, length, tension_only, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     real(c_float), intent(in) :: stiffness
     real(c_float), intent(in) :: damping
@@ -5453,9 +5453,9 @@ contains
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call joint_set_line_spring(self, stiffness=real(stiffness, c_double), damping=real(damping, c_double), &
+    call joint_set_link_spring(self, stiffness=real(stiffness, c_double), damping=real(damping, c_double), &
         length=real(length, c_double), tension_only=tension_only, stat=stat, errmsg=errmsg)
-  end subroutine joint_set_line_spring_single_1
+  end subroutine joint_set_link_spring_single_1
 
   subroutine fluid_set_motion_weights_single_1(self, w, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
@@ -5683,7 +5683,7 @@ contains
         stat=stat, errmsg=errmsg)
   end subroutine fluid_push_forces_at_single_3
 
-  subroutine fluid_check_total_single_1(self, point, force, moment, rtol, stat, errmsg)
+  subroutine fluid_check_loads_single_1(self, point, force, moment, rtol, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in), optional :: point(3)
     real(c_double), intent(in) :: force(3)
@@ -5692,11 +5692,11 @@ contains
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call fluid_check_total(self, point=point, force=force, moment=moment, rtol=real(rtol, c_double), stat=stat, &
+    call fluid_check_loads(self, point=point, force=force, moment=moment, rtol=real(rtol, c_double), stat=stat, &
         errmsg=errmsg)
-  end subroutine fluid_check_total_single_1
+  end subroutine fluid_check_loads_single_1
 
-  subroutine fluid_check_total_single_2(self, point, force, moment, rtol, stat, errmsg)
+  subroutine fluid_check_loads_single_2(self, point, force, moment, rtol, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_float), intent(in), optional :: point(3)
     real(c_float), intent(in) :: force(3)
@@ -5709,11 +5709,11 @@ contains
 
     if (present(point)) allocate (c_point, source=real(point, c_double))
     if (present(moment)) allocate (c_moment, source=real(moment, c_double))
-    call fluid_check_total(self, point=c_point, force=real(force, c_double), moment=c_moment, rtol=rtol, stat=stat, &
+    call fluid_check_loads(self, point=c_point, force=real(force, c_double), moment=c_moment, rtol=rtol, stat=stat, &
         errmsg=errmsg)
-  end subroutine fluid_check_total_single_2
+  end subroutine fluid_check_loads_single_2
 
-  subroutine fluid_check_total_single_3(self, point, force, moment, rtol, stat, errmsg)
+  subroutine fluid_check_loads_single_3(self, point, force, moment, rtol, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_float), intent(in), optional :: point(3)
     real(c_float), intent(in) :: force(3)
@@ -5726,9 +5726,9 @@ contains
 
     if (present(point)) allocate (c_point, source=real(point, c_double))
     if (present(moment)) allocate (c_moment, source=real(moment, c_double))
-    call fluid_check_total(self, point=c_point, force=real(force, c_double), moment=c_moment, rtol=real(rtol, &
+    call fluid_check_loads(self, point=c_point, force=real(force, c_double), moment=c_moment, rtol=real(rtol, &
         c_double), stat=stat, errmsg=errmsg)
-  end subroutine fluid_check_total_single_3
+  end subroutine fluid_check_loads_single_3
 
   subroutine polar_create_single_1(self, alpha_rad, cl, cd, cm, stat, errmsg)
     class(spar_polar), intent(inout) :: self
@@ -6191,7 +6191,7 @@ contains
     call take(c_rtol, rtol)
   end subroutine session_get_tolerance_single_2
 
-  subroutine session_get_pace_single_1(self, pace, stat, errmsg)
+  subroutine session_get_step_control_single_1(self, pace, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_float), intent(inout) :: pace(:)
     integer, intent(out), optional :: stat
@@ -6199,18 +6199,18 @@ contains
     real(c_double), allocatable :: c_pace(:)
 
     allocate (c_pace(ubound(pace, 1, c_int64_t)), source=untouched)
-    call session_get_pace(self, pace=c_pace, stat=stat, errmsg=errmsg)
+    call session_get_step_control(self, pace=c_pace, stat=stat, errmsg=errmsg)
     call take(c_pace, pace)
-  end subroutine session_get_pace_single_1
+  end subroutine session_get_step_control_single_1
 
-  subroutine session_step_begin_start_single_1(self, dt, stat, errmsg)
+  subroutine session_step_begin_initial_single_1(self, dt, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_float), intent(in) :: dt
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call session_step_begin_start(self, dt=real(dt, c_double), stat=stat, errmsg=errmsg)
-  end subroutine session_step_begin_start_single_1
+    call session_step_begin_initial(self, dt=real(dt, c_double), stat=stat, errmsg=errmsg)
+  end subroutine session_step_begin_initial_single_1
 
   subroutine session_push_numbers_single_1(self, numbers, stat, errmsg)
     class(spar_session), intent(inout) :: self
@@ -6562,7 +6562,7 @@ contains
     call member_set_motion(self, a=real(a, c_double), stat=stat, errmsg=errmsg)
   end subroutine member_set_motion_single_3
 
-  subroutine member_drive_root_single_1(self, q, v, a, stat, errmsg)
+  subroutine member_drive_single_1(self, q, v, a, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_float), intent(in) :: q(7)
     real(c_float), intent(in), optional :: v(6)
@@ -6574,8 +6574,8 @@ contains
 
     if (present(v)) allocate (c_v, source=real(v, c_double))
     if (present(a)) allocate (c_a, source=real(a, c_double))
-    call member_drive_root(self, q=real(q, c_double), v=c_v, a=c_a, stat=stat, errmsg=errmsg)
-  end subroutine member_drive_root_single_1
+    call member_drive(self, q=real(q, c_double), v=c_v, a=c_a, stat=stat, errmsg=errmsg)
+  end subroutine member_drive_single_1
 
   subroutine member_set_line_load_single_1(self, kind, eta, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -6613,8 +6613,8 @@ contains
     call take(c_load, load)
   end subroutine member_get_reaction_single_1
 
-  subroutine member_get_section_single_1(self, eta, strain, force, x, q, stat, errmsg)
-    class(spar_member), intent(in) :: self
+  subroutine member_evaluate_single_1(self, eta, strain, force, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
     real(c_float), intent(in) :: eta(:)
     real(c_float), intent(inout), optional :: strain(:,:)
     real(c_float), intent(inout), optional :: force(:,:)
@@ -6632,13 +6632,13 @@ contains
     if (present(force)) allocate (c_force(ubound(force, 1, c_int64_t), ubound(force, 2, c_int64_t)), source=untouched)
     if (present(x)) allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
     if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    call member_get_section(self, eta=real(eta, c_double), strain=c_strain, force=c_force, x=c_x, q=c_q, stat=stat, &
+    call member_evaluate(self, eta=real(eta, c_double), strain=c_strain, force=c_force, x=c_x, q=c_q, stat=stat, &
         errmsg=errmsg)
     call take(c_strain, strain)
     call take(c_force, force)
     call take(c_x, x)
     call take(c_q, q)
-  end subroutine member_get_section_single_1
+  end subroutine member_evaluate_single_1
 
   subroutine member_get_energy_single_1(self, energy, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -6664,8 +6664,8 @@ contains
     call take(c_work, work)
   end subroutine member_get_work_single_1
 
-  subroutine member_get_error_single_1(self, step, nodes, stat, errmsg)
-    class(spar_member), intent(in) :: self
+  subroutine member_estimate_error_single_1(self, step, nodes, stat, errmsg)
+    class(spar_member), intent(inout) :: self
     real(c_float), intent(inout) :: step
     real(c_float), intent(inout), optional :: nodes
     integer, intent(out), optional :: stat
@@ -6675,13 +6675,13 @@ contains
 
     allocate (c_step, source=untouched)
     if (present(nodes)) allocate (c_nodes, source=untouched)
-    call member_get_error(self, step=c_step, nodes=c_nodes, stat=stat, errmsg=errmsg)
+    call member_estimate_error(self, step=c_step, nodes=c_nodes, stat=stat, errmsg=errmsg)
     call take(c_step, step)
     call take(c_nodes, nodes)
-  end subroutine member_get_error_single_1
+  end subroutine member_estimate_error_single_1
 
-  subroutine member_get_error_single_2(self, no_step, nodes, stat, errmsg)
-    class(spar_member), intent(in) :: self
+  subroutine member_estimate_error_single_2(self, no_step, nodes, stat, errmsg)
+    class(spar_member), intent(inout) :: self
     type(absent), intent(in), optional :: no_step
     real(c_float), intent(inout) :: nodes
     integer, intent(out), optional :: stat
@@ -6690,11 +6690,11 @@ contains
 
     allocate (c_nodes, source=untouched)
     if (present(no_step)) return
-    call member_get_error(self, nodes=c_nodes, stat=stat, errmsg=errmsg)
+    call member_estimate_error(self, nodes=c_nodes, stat=stat, errmsg=errmsg)
     call take(c_nodes, nodes)
-  end subroutine member_get_error_single_2
+  end subroutine member_estimate_error_single_2
 
-  subroutine member_get_newton_single_1(self, iterations, left, stat, errmsg)
+  subroutine member_get_iterations_single_1(self, iterations, left, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int64_t), intent(inout), optional :: iterations
     real(c_float), intent(inout) :: left
@@ -6703,9 +6703,9 @@ contains
     real(c_double), allocatable :: c_left
 
     allocate (c_left, source=untouched)
-    call member_get_newton(self, iterations=iterations, left=c_left, stat=stat, errmsg=errmsg)
+    call member_get_iterations(self, iterations=iterations, left=c_left, stat=stat, errmsg=errmsg)
     call take(c_left, left)
-  end subroutine member_get_newton_single_1
+  end subroutine member_get_iterations_single_1
 
   subroutine joint_set_frame_single_1(self, x, q, stat, errmsg)
     class(spar_joint), intent(inout) :: self
@@ -6893,7 +6893,7 @@ contains
     call fluid_set_force_nodes(self, x=real(x, c_double), stat=stat, errmsg=errmsg)
   end subroutine fluid_set_force_nodes_single_1
 
-  subroutine fluid_set_sections_single_1(self, xi, offset, stat, errmsg)
+  subroutine fluid_set_stations_single_1(self, xi, offset, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_float), intent(in) :: xi(:)
     real(c_float), intent(in), optional :: offset(:,:)
@@ -6902,10 +6902,10 @@ contains
     real(c_double), allocatable :: c_offset(:,:)
 
     if (present(offset)) allocate (c_offset, source=real(offset, c_double))
-    call fluid_set_sections(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
-  end subroutine fluid_set_sections_single_1
+    call fluid_set_stations(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_stations_single_1
 
-  subroutine fluid_set_motion_sections_single_1(self, xi, offset, stat, errmsg)
+  subroutine fluid_set_motion_stations_single_1(self, xi, offset, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_float), intent(in) :: xi(:)
     real(c_float), intent(in), optional :: offset(:,:)
@@ -6914,8 +6914,8 @@ contains
     real(c_double), allocatable :: c_offset(:,:)
 
     if (present(offset)) allocate (c_offset, source=real(offset, c_double))
-    call fluid_set_motion_sections(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
-  end subroutine fluid_set_motion_sections_single_1
+    call fluid_set_motion_stations(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_motion_stations_single_1
 
   subroutine fluid_set_projection_single_1(self, method, max_distance, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
@@ -7618,7 +7618,7 @@ contains
     call take(c_q, q)
   end subroutine fluid_pull_force_places_single_7
 
-  subroutine fluid_get_places_single_1(self, which, x, v, q, foot, stat, errmsg)
+  subroutine fluid_get_positions_single_1(self, which, x, v, q, foot, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     real(c_float), intent(inout) :: x(:,:)
@@ -7636,14 +7636,14 @@ contains
     if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
     if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
     if (present(foot)) allocate (c_foot(ubound(foot, 1, c_int64_t), ubound(foot, 2, c_int64_t)), source=untouched)
-    call fluid_get_places(self, which=which, x=c_x, v=c_v, q=c_q, foot=c_foot, stat=stat, errmsg=errmsg)
+    call fluid_get_positions(self, which=which, x=c_x, v=c_v, q=c_q, foot=c_foot, stat=stat, errmsg=errmsg)
     call take(c_x, x)
     call take(c_v, v)
     call take(c_q, q)
     call take(c_foot, foot)
-  end subroutine fluid_get_places_single_1
+  end subroutine fluid_get_positions_single_1
 
-  subroutine fluid_get_places_single_2(self, which, no_x, v, q, foot, stat, errmsg)
+  subroutine fluid_get_positions_single_2(self, which, no_x, v, q, foot, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     type(absent), intent(in), optional :: no_x
@@ -7660,13 +7660,13 @@ contains
     if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
     if (present(foot)) allocate (c_foot(ubound(foot, 1, c_int64_t), ubound(foot, 2, c_int64_t)), source=untouched)
     if (present(no_x)) return
-    call fluid_get_places(self, which=which, v=c_v, q=c_q, foot=c_foot, stat=stat, errmsg=errmsg)
+    call fluid_get_positions(self, which=which, v=c_v, q=c_q, foot=c_foot, stat=stat, errmsg=errmsg)
     call take(c_v, v)
     call take(c_q, q)
     call take(c_foot, foot)
-  end subroutine fluid_get_places_single_2
+  end subroutine fluid_get_positions_single_2
 
-  subroutine fluid_get_places_single_3(self, which, no_x, no_v, q, foot, stat, errmsg)
+  subroutine fluid_get_positions_single_3(self, which, no_x, no_v, q, foot, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     type(absent), intent(in), optional :: no_x
@@ -7681,12 +7681,12 @@ contains
     allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
     if (present(foot)) allocate (c_foot(ubound(foot, 1, c_int64_t), ubound(foot, 2, c_int64_t)), source=untouched)
     if (present(no_x) .or. present(no_v)) return
-    call fluid_get_places(self, which=which, q=c_q, foot=c_foot, stat=stat, errmsg=errmsg)
+    call fluid_get_positions(self, which=which, q=c_q, foot=c_foot, stat=stat, errmsg=errmsg)
     call take(c_q, q)
     call take(c_foot, foot)
-  end subroutine fluid_get_places_single_3
+  end subroutine fluid_get_positions_single_3
 
-  subroutine fluid_get_places_single_4(self, which, no_x, no_v, no_q, foot, stat, errmsg)
+  subroutine fluid_get_positions_single_4(self, which, no_x, no_v, no_q, foot, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     type(absent), intent(in), optional :: no_x
@@ -7699,9 +7699,9 @@ contains
 
     allocate (c_foot(ubound(foot, 1, c_int64_t), ubound(foot, 2, c_int64_t)), source=untouched)
     if (present(no_x) .or. present(no_v) .or. present(no_q)) return
-    call fluid_get_places(self, which=which, foot=c_foot, stat=stat, errmsg=errmsg)
+    call fluid_get_positions(self, which=which, foot=c_foot, stat=stat, errmsg=errmsg)
     call take(c_foot, foot)
-  end subroutine fluid_get_places_single_4
+  end subroutine fluid_get_positions_single_4
 
   subroutine fluid_pull_forces_single_1(self, theta, force, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -7827,8 +7827,8 @@ contains
     call take(c_audit, audit)
   end subroutine fluid_get_audit_single_1
 
-  subroutine fluid_get_total_single_1(self, point, force, moment, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
+  subroutine fluid_sum_loads_single_1(self, point, force, moment, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
     real(c_float), intent(in) :: point(3)
     real(c_float), intent(inout), optional :: force(3)
     real(c_float), intent(inout), optional :: moment(3)
@@ -7839,13 +7839,13 @@ contains
 
     if (present(force)) allocate (c_force(ubound(force, 1, c_int64_t)), source=untouched)
     if (present(moment)) allocate (c_moment(ubound(moment, 1, c_int64_t)), source=untouched)
-    call fluid_get_total(self, point=real(point, c_double), force=c_force, moment=c_moment, stat=stat, errmsg=errmsg)
+    call fluid_sum_loads(self, point=real(point, c_double), force=c_force, moment=c_moment, stat=stat, errmsg=errmsg)
     call take(c_force, force)
     call take(c_moment, moment)
-  end subroutine fluid_get_total_single_1
+  end subroutine fluid_sum_loads_single_1
 
-  subroutine fluid_get_total_single_2(self, no_point, force, moment, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
+  subroutine fluid_sum_loads_single_2(self, no_point, force, moment, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
     type(absent), intent(in), optional :: no_point
     real(c_float), intent(inout) :: force(3)
     real(c_float), intent(inout), optional :: moment(3)
@@ -7857,13 +7857,13 @@ contains
     allocate (c_force(ubound(force, 1, c_int64_t)), source=untouched)
     if (present(moment)) allocate (c_moment(ubound(moment, 1, c_int64_t)), source=untouched)
     if (present(no_point)) return
-    call fluid_get_total(self, force=c_force, moment=c_moment, stat=stat, errmsg=errmsg)
+    call fluid_sum_loads(self, force=c_force, moment=c_moment, stat=stat, errmsg=errmsg)
     call take(c_force, force)
     call take(c_moment, moment)
-  end subroutine fluid_get_total_single_2
+  end subroutine fluid_sum_loads_single_2
 
-  subroutine fluid_get_total_single_3(self, no_point, no_force, moment, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
+  subroutine fluid_sum_loads_single_3(self, no_point, no_force, moment, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
     type(absent), intent(in), optional :: no_point
     type(absent), intent(in), optional :: no_force
     real(c_float), intent(inout) :: moment(3)
@@ -7873,9 +7873,9 @@ contains
 
     allocate (c_moment(ubound(moment, 1, c_int64_t)), source=untouched)
     if (present(no_point) .or. present(no_force)) return
-    call fluid_get_total(self, moment=c_moment, stat=stat, errmsg=errmsg)
+    call fluid_sum_loads(self, moment=c_moment, stat=stat, errmsg=errmsg)
     call take(c_moment, moment)
-  end subroutine fluid_get_total_single_3
+  end subroutine fluid_sum_loads_single_3
 
   subroutine aero_get_chord_single_1(self, chord, twist, stat, errmsg)
     class(spar_aero), intent(in) :: self

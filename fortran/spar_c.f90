@@ -216,14 +216,14 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_get_report
 
-    function spar_session_get_balance(session, capacity, members, expected, counted) bind(c) result(status)
+    function spar_session_sum_balance(session, capacity, members, expected, counted) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session
       integer(c_int64_t), value :: capacity
       integer(c_int64_t), intent(inout), optional :: members(*)
       real(c_double), intent(inout), optional :: expected(*), counted(*)
       integer(c_int) :: status
-    end function spar_session_get_balance
+    end function spar_session_sum_balance
 
     function spar_session_get_time(session, t, step, iteration) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
@@ -592,12 +592,12 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_set_motion
 
-    function spar_member_drive_root(member, q, v, a) bind(c) result(status)
+    function spar_member_drive(member, q, v, a) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: member
       real(c_double), intent(in), optional :: q(7), v(6), a(6)
       integer(c_int) :: status
-    end function spar_member_drive_root
+    end function spar_member_drive
 
     function spar_member_set_load(member, node, kind, load) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
@@ -631,14 +631,14 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_get_reaction
 
-    function spar_beam_get_section(beam, n, eta, strain, force, x, q) bind(c) result(status)
+    function spar_beam_evaluate(beam, n, eta, strain, force, x, q) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: beam
       integer(c_int64_t), value :: n
       real(c_double), intent(in), optional :: eta(*)
       real(c_double), intent(inout), optional :: strain(*), force(*), x(*), q(*)
       integer(c_int) :: status
-    end function spar_beam_get_section
+    end function spar_beam_evaluate
 
     function spar_member_get_energy(member, capacity, energy) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
@@ -748,7 +748,7 @@ module spar_calls
       integer(c_int) :: status
     end function spar_joint_set_load
 
-    function spar_line_create(session, name, a, node_a, point_a, b, node_b, point_b, joint) bind(c) result(status)
+    function spar_link_create(session, name, a, node_a, point_a, b, node_b, point_b, joint) bind(c) result(status)
       import :: c_char, c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session
       character(kind=c_char), intent(in), optional :: name(*)
@@ -760,15 +760,15 @@ module spar_calls
       real(c_double), intent(in), optional :: point_b(3)
       type(c_ptr), intent(inout), optional :: joint
       integer(c_int) :: status
-    end function spar_line_create
+    end function spar_link_create
 
-    function spar_line_set_spring(joint, stiffness, damping, length, tension_only) bind(c) result(status)
+    function spar_link_set_spring(joint, stiffness, damping, length, tension_only) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: joint
       real(c_double), value :: stiffness, damping, length
       integer(c_int), value :: tension_only
       integer(c_int) :: status
-    end function spar_line_set_spring
+    end function spar_link_set_spring
 
     function spar_joint_get_motion(joint, motion, rate, acceleration) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -859,21 +859,21 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_set_force_nodes
 
-    function spar_fluid_set_sections(fluid, n, xi, offset) bind(c) result(status)
+    function spar_fluid_set_stations(fluid, n, xi, offset) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid
       integer(c_int64_t), value :: n
       real(c_double), intent(in), optional :: xi(*), offset(*)
       integer(c_int) :: status
-    end function spar_fluid_set_sections
+    end function spar_fluid_set_stations
 
-    function spar_fluid_set_motion_sections(fluid, n, xi, offset) bind(c) result(status)
+    function spar_fluid_set_motion_stations(fluid, n, xi, offset) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid
       integer(c_int64_t), value :: n
       real(c_double), intent(in), optional :: xi(*), offset(*)
       integer(c_int) :: status
-    end function spar_fluid_set_motion_sections
+    end function spar_fluid_set_motion_stations
 
     function spar_fluid_set_layout(fluid, which, node, component) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
@@ -1017,13 +1017,13 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_pull_force_places
 
-    function spar_fluid_get_places(fluid, which, x, v, q, foot) bind(c) result(status)
+    function spar_fluid_get_positions(fluid, which, x, v, q, foot) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
       integer(c_int), value :: which
       real(c_double), intent(inout), optional :: x(*), v(*), q(*), foot(*)
       integer(c_int) :: status
-    end function spar_fluid_get_places
+    end function spar_fluid_get_positions
 
     function spar_fluid_pull_matrices(fluid, theta, convention, matrix) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -1150,21 +1150,21 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_get_audit
 
-    function spar_fluid_get_total(fluid, point, force, moment) bind(c) result(status)
+    function spar_fluid_sum_loads(fluid, point, force, moment) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
       real(c_double), intent(in), optional :: point(3)
       real(c_double), intent(inout), optional :: force(3), moment(3)
       integer(c_int) :: status
-    end function spar_fluid_get_total
+    end function spar_fluid_sum_loads
 
-    function spar_fluid_check_total(fluid, point, force, moment, rtol) bind(c) result(status)
+    function spar_fluid_check_loads(fluid, point, force, moment, rtol) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
       real(c_double), intent(in), optional :: point(3), force(3), moment(3)
       real(c_double), value :: rtol
       integer(c_int) :: status
-    end function spar_fluid_check_total
+    end function spar_fluid_check_loads
 
     function spar_step_begin(session, dt) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -1222,15 +1222,15 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_get_tolerance
 
-    function spar_session_get_pace(session, capacity, pace) bind(c) result(status)
+    function spar_session_get_step_control(session, capacity, pace) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session
       integer(c_int64_t), value :: capacity
       real(c_double), intent(inout), optional :: pace(*)
       integer(c_int) :: status
-    end function spar_session_get_pace
+    end function spar_session_get_step_control
 
-    function spar_step_within(session, dt, before, solve, context, taken) bind(c) result(status)
+    function spar_step_adaptive(session, dt, before, solve, context, taken) bind(c) result(status)
       import :: c_double, c_funptr, c_int, c_ptr
       type(c_ptr), value :: session
       real(c_double), intent(inout), optional :: dt
@@ -1238,24 +1238,24 @@ module spar_calls
       type(c_ptr), value :: context
       real(c_double), intent(inout), optional :: taken
       integer(c_int) :: status
-    end function spar_step_within
+    end function spar_step_adaptive
 
-    function spar_member_get_error(member, step, nodes) bind(c) result(status)
+    function spar_member_estimate_error(member, step, nodes) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: member
       real(c_double), intent(inout), optional :: step, nodes
       integer(c_int) :: status
-    end function spar_member_get_error
+    end function spar_member_estimate_error
 
-    function spar_member_get_newton(member, iterations, left) bind(c) result(status)
+    function spar_member_get_iterations(member, iterations, left) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: member
       integer(c_int64_t), intent(inout), optional :: iterations
       real(c_double), intent(inout), optional :: left
       integer(c_int) :: status
-    end function spar_member_get_newton
+    end function spar_member_get_iterations
 
-    function spar_session_start(session, dt, solve, context, iterations) bind(c) result(status)
+    function spar_session_solve_initial(session, dt, solve, context, iterations) bind(c) result(status)
       import :: c_double, c_funptr, c_int, c_ptr
       type(c_ptr), value :: session
       real(c_double), value :: dt
@@ -1263,14 +1263,14 @@ module spar_calls
       type(c_ptr), value :: context
       integer(c_int), intent(inout), optional :: iterations
       integer(c_int) :: status
-    end function spar_session_start
+    end function spar_session_solve_initial
 
-    function spar_step_begin_start(session, dt) bind(c) result(status)
+    function spar_step_begin_initial(session, dt) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: session
       real(c_double), value :: dt
       integer(c_int) :: status
-    end function spar_step_begin_start
+    end function spar_step_begin_initial
 
     function spar_session_solve_static(session, load_steps, solve, context, iterations) bind(c) result(status)
       import :: c_funptr, c_int, c_ptr
@@ -1664,7 +1664,7 @@ module spar_c
   integer(c_int), parameter :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
   integer(c_int), parameter :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
   integer(c_int), parameter :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
-  integer(c_int), parameter :: SPAR_KIND_SECTIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, SPAR_KIND_FORCES = 8
+  integer(c_int), parameter :: SPAR_KIND_STATIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, SPAR_KIND_FORCES = 8
   integer(c_int), parameter :: SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, SPAR_MATRIX_GLOBAL_TO_LOCAL = 1
   integer(c_int), parameter :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
       SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &

@@ -42,7 +42,7 @@ def gust(rpm, seconds=8.0, dt=0.02):
         s.set_coupling(spar.COUPLING_IQN_ILS, 1e-3, 1e-6, 30)
         blade = blade_of(s, omega)
         fluid = blade.fluid_create('strips')
-        fluid.set_sections(numpy.linspace(-1, 1, 31))
+        fluid.set_stations(numpy.linspace(-1, 1, 31))
         fluid.map()
         strip = LENGTH / 30
 
@@ -59,7 +59,7 @@ def gust(rpm, seconds=8.0, dt=0.02):
             centre = numpy.array([numpy.cos(angle), numpy.sin(angle), 0]) * HUB
             turn = numpy.array([0, 0, omega])
             velocity = numpy.concatenate([numpy.cross(turn, centre), turn])
-            blade.drive_root(root, velocity, numpy.concatenate([-omega**2 * centre, [0, 0, 0]]))
+            blade.drive(root, velocity, numpy.concatenate([-omega**2 * centre, [0, 0, 0]]))
             s.step(dt, load)
             history.append((s.get_time()[0], blade.get_motion(v=None, a=None)[-1, 2]))
     return numpy.array(history)

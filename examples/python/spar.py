@@ -67,7 +67,7 @@ call spar_session_get_option int session|session|value| key|char|in|[] capacity|
 call spar_session_get_iterations int session|session|value| iterations|int|out| capacity|int64_t|value| residual|double|out|[capacity] size|double|out|[capacity]
 call spar_session_get_residual int session|session|value| residual|double|out| size|double|out|
 call spar_session_get_report int session|session|value| capacity|int64_t|value| report|double|out|[SPAR_REPORT_COUNT]
-call spar_session_get_balance int session|session|value| capacity|int64_t|value| members|int64_t|out|[capacity] expected|double|out|[capacity] counted|double|out|[capacity]
+call spar_session_sum_balance int session|session|value| capacity|int64_t|value| members|int64_t|out|[capacity] expected|double|out|[capacity] counted|double|out|[capacity]
 call spar_session_get_time int session|session|value| t|double|out| step|int64_t|out| iteration|int|out|
 constants SPAR_PHASE_START=0 SPAR_PHASE_BETWEEN=1 SPAR_PHASE_BEGUN=2 SPAR_PHASE_SOLVED=3 SPAR_PHASE_CHECKED=4
 call spar_session_get_phase int session|session|value| phase|int|out|
@@ -124,12 +124,12 @@ call spar_member_get_name text member|member|value|
 call spar_member_get_reference int member|member|value| x|double|out|[n][3] q|double|out|[n][4]
 call spar_member_get_motion int member|member|value| q|double|out|[n][7] v|double|out|[n][6] a|double|out|[n][6]
 call spar_member_set_motion int member|member|value| q|double|in|[n][7] v|double|in|[n][6] a|double|in|[n][6]
-call spar_member_drive_root int member|member|value| q|double|in|[7] v|double|in|[6] a|double|in|[6]
+call spar_member_drive int member|member|value| q|double|in|[7] v|double|in|[6] a|double|in|[6]
 call spar_member_set_load int member|member|value| node|int64_t|value| kind|int|value| load|double|in|[6]
 call spar_beam_set_line_load int beam|member|value| kind|int|value| n|int64_t|value| eta|double|in|[n] load|double|in|[n][6]
 call spar_member_get_loads int member|member|value| load|double|out|[n][6]
 call spar_member_get_reaction int member|member|value| load|double|out|[6]
-call spar_beam_get_section int beam|member|value| n|int64_t|value| eta|double|in|[n] strain|double|out|[n][6] force|double|out|[n][6] x|double|out|[n][3] q|double|out|[n][4]
+call spar_beam_evaluate int beam|member|value| n|int64_t|value| eta|double|in|[n] strain|double|out|[n][6] force|double|out|[n][6] x|double|out|[n][3] q|double|out|[n][4]
 constants SPAR_ENERGY_KINETIC=0 SPAR_ENERGY_STRAIN=1 SPAR_ENERGY_GRAVITY=2 SPAR_ENERGY_DISSIPATED=3 SPAR_ENERGY_FOUNDATION=4 SPAR_ENERGY_COUNT=5
 call spar_member_get_energy int member|member|value| capacity|int64_t|value| energy|double|out|[SPAR_ENERGY_COUNT]
 constants SPAR_WORK_LOADS=0 SPAR_WORK_FLUID=1 SPAR_WORK_ROOT=2 SPAR_WORK_JOINTS=3 SPAR_WORK_COUNT=4
@@ -145,8 +145,8 @@ call spar_member_set_spring int member|member|value| node|int64_t|value| free_mo
 call spar_joint_set_driven int joint|joint|value| mask|int|value|
 call spar_joint_drive int joint|joint|value| motion|double|in|[6] rate|double|in|[6] acceleration|double|in|[6]
 call spar_joint_set_load int joint|joint|value| load|double|in|[6]
-call spar_line_create int session|session|value| name|char|in|[] a|member|value| node_a|int64_t|value| point_a|double|in|[3] b|member|value| node_b|int64_t|value| point_b|double|in|[3] joint|joint|out|
-call spar_line_set_spring int joint|joint|value| stiffness|double|value| damping|double|value| length|double|value| tension_only|int|value|
+call spar_link_create int session|session|value| name|char|in|[] a|member|value| node_a|int64_t|value| point_a|double|in|[3] b|member|value| node_b|int64_t|value| point_b|double|in|[3] joint|joint|out|
+call spar_link_set_spring int joint|joint|value| stiffness|double|value| damping|double|value| length|double|value| tension_only|int|value|
 call spar_joint_get_motion int joint|joint|value| motion|double|out|[6] rate|double|out|[6] acceleration|double|out|[6]
 call spar_joint_get_load int joint|joint|value| load|double|out|[6]
 constants SPAR_JOINT_ENERGY_SPRING=0 SPAR_JOINT_ENERGY_DAMPER=1 SPAR_JOINT_ENERGY_DRIVE=2 SPAR_JOINT_ENERGY_LOAD=3 SPAR_JOINT_ENERGY_COUNT=4
@@ -164,8 +164,8 @@ call spar_fluid_set_motion_weights int fluid|fluid|value| n|int64_t|value| w|dou
 call spar_fluid_get_motion_weights int fluid|fluid|value| w|double|out|[n]
 call spar_fluid_fade_motion int fluid|fluid|value| within|double|value| beyond|double|value| n|int64_t|value| distance|double|in|[n] held|int|in|[n]
 call spar_fluid_set_force_nodes int fluid|fluid|value| n|int64_t|value| x|double|in|[n][3]
-call spar_fluid_set_sections int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
-call spar_fluid_set_motion_sections int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
+call spar_fluid_set_stations int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
+call spar_fluid_set_motion_stations int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
 call spar_fluid_set_layout int fluid|fluid|value| which|int|value| node|int64_t|value| component|int64_t|value|
 call spar_fluid_get_layout int fluid|fluid|value| which|int|value| node|int64_t|out| component|int64_t|out|
 call spar_fluid_set_projection int fluid|fluid|value| method|int|value| max_distance|double|value|
@@ -174,7 +174,7 @@ call spar_fluid_set_interpolation int fluid|fluid|value| kind|int|value|
 call spar_fluid_get_interpolation int fluid|fluid|value| kind|int|out|
 call spar_fluid_map int fluid|fluid|value|
 call spar_fluid_get_count int fluid|fluid|value| which|int|value| n|int64_t|out|
-constants SPAR_KIND_SECTIONS=1 SPAR_KIND_SHARED=2 SPAR_KIND_WEIGHTS=4 SPAR_KIND_FORCES=8
+constants SPAR_KIND_STATIONS=1 SPAR_KIND_SHARED=2 SPAR_KIND_WEIGHTS=4 SPAR_KIND_FORCES=8
 call spar_fluid_get_kind int fluid|fluid|value| which|int|value| kind|int|out|
 call spar_fluid_get_flag_count int fluid|fluid|value| which|int|value| flag|int|value| n|int64_t|out|
 call spar_fluid_get_map int fluid|fluid|value| which|int|value| xi|double|out|[n] distance|double|out|[n] flags|int|out|[n]
@@ -185,7 +185,7 @@ call spar_fluid_pull_sections int fluid|fluid|value| theta|double|value| q|doubl
 call spar_fluid_pull_poses int fluid|fluid|value| theta|double|value| x|double|out|[n][3] q|double|out|[n][4] v|double|out|[n][3] omega|double|out|[n][3] accel|double|out|[n][3] alpha|double|out|[n][3]
 call spar_fluid_get_travel int fluid|fluid|value| largest|double|out| node|int64_t|out|
 call spar_fluid_pull_force_places int fluid|fluid|value| theta|double|value| x|double|out|[n][3] v|double|out|[n][3] q|double|out|[n][4]
-call spar_fluid_get_places int fluid|fluid|value| which|int|value| x|double|out|[n][3] v|double|out|[n][3] q|double|out|[n][4] foot|double|out|[n][3]
+call spar_fluid_get_positions int fluid|fluid|value| which|int|value| x|double|out|[n][3] v|double|out|[n][3] q|double|out|[n][4] foot|double|out|[n][3]
 constants SPAR_MATRIX_LOCAL_TO_GLOBAL=0 SPAR_MATRIX_GLOBAL_TO_LOCAL=1
 call spar_fluid_pull_matrices int fluid|fluid|value| theta|double|value| convention|int|value| matrix|double|out|[n][9]
 call spar_fluid_check_matrices int fluid|fluid|value| convention|int|value| matrix|double|in|[n][9]
@@ -204,8 +204,8 @@ call spar_fluid_pull_forces_f32 int fluid|fluid|value| theta|double|value| force
 call spar_fluid_push_forces_f32 int fluid|fluid|value| force|float|in|[n][3] moment|float|in|[n][3]
 constants SPAR_AUDIT_FORCE=0 SPAR_AUDIT_MOMENT=1 SPAR_AUDIT_POWER=2 SPAR_AUDIT_FORCE_ERROR=3 SPAR_AUDIT_MOMENT_ERROR=4 SPAR_AUDIT_POWER_ERROR=5 SPAR_AUDIT_FARTHEST=6 SPAR_AUDIT_NODES=7 SPAR_AUDIT_COUNT=8
 call spar_fluid_get_audit int fluid|fluid|value| capacity|int64_t|value| audit|double|out|[SPAR_AUDIT_COUNT]
-call spar_fluid_get_total int fluid|fluid|value| point|double|in|[3] force|double|out|[3] moment|double|out|[3]
-call spar_fluid_check_total int fluid|fluid|value| point|double|in|[3] force|double|in|[3] moment|double|in|[3] rtol|double|value|
+call spar_fluid_sum_loads int fluid|fluid|value| point|double|in|[3] force|double|out|[3] moment|double|out|[3]
+call spar_fluid_check_loads int fluid|fluid|value| point|double|in|[3] force|double|in|[3] moment|double|in|[3] rtol|double|value|
 call spar_step_begin int session|session|value| dt|double|value|
 call spar_step_solve int session|session|value|
 call spar_step_check int session|session|value| done|int|out|
@@ -215,12 +215,12 @@ call spar_step int session|session|value| dt|double|value| solve|fluid_solver|ca
 call spar_session_set_tolerance int session|session|value| drift|double|value| rtol|double|value|
 call spar_session_get_tolerance int session|session|value| drift|double|out| rtol|double|out|
 constants SPAR_PACE_RATIO=0 SPAR_PACE_NEXT_DT=1 SPAR_PACE_REJECT=2 SPAR_PACE_REJECTED=3 SPAR_PACE_COUNT=4
-call spar_session_get_pace int session|session|value| capacity|int64_t|value| pace|double|out|[SPAR_PACE_COUNT]
-call spar_step_within int session|session|value| dt|double|out| before|before_step|callback| solve|fluid_solver|callback| context|context|value| taken|double|out|
-call spar_member_get_error int member|member|value| step|double|out| nodes|double|out|
-call spar_member_get_newton int member|member|value| iterations|int64_t|out| left|double|out|
-call spar_session_start int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
-call spar_step_begin_start int session|session|value| dt|double|value|
+call spar_session_get_step_control int session|session|value| capacity|int64_t|value| pace|double|out|[SPAR_PACE_COUNT]
+call spar_step_adaptive int session|session|value| dt|double|out| before|before_step|callback| solve|fluid_solver|callback| context|context|value| taken|double|out|
+call spar_member_estimate_error int member|member|value| step|double|out| nodes|double|out|
+call spar_member_get_iterations int member|member|value| iterations|int64_t|out| left|double|out|
+call spar_session_solve_initial int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
+call spar_step_begin_initial int session|session|value| dt|double|value|
 call spar_session_solve_static int session|session|value| load_steps|int|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
 call spar_session_save int session|session|value| path|char|in|[]
 call spar_session_load int session|session|value| path|char|in|[]
@@ -296,7 +296,7 @@ _CALLBACKS = {
     'before_step': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
     'progress': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
     'log': ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)}
-_IN_AND_OUT = {('spar_session_sum', 'x'), ('spar_step_within', 'dt')}  # results that are read too
+_IN_AND_OUT = {('spar_session_sum', 'x'), ('spar_step_adaptive', 'dt')}  # results that are read too
 _OF_FORCE_NODES = {'get_forces', 'pull_forces', 'push_forces', 'push_forces_at', 'pull_force_places', 'pull_forces_f32',
                    'push_forces_f32'}
 _ENOUGH = 1000  # the capacity of lists that the library cuts off at their end

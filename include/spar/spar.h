@@ -252,7 +252,7 @@ SPAR_API int spar_session_get_threads(const spar_session *session, int *threads)
                             a change of velocities that lasts, and of what the coupling is iterated to, by the
                             motion; within 1e-7 and rtol of the increments. Strict at atol and rtol: the first step, at
                             rest, without inertia. Strict: always there. spar_session_set_newton makes it strict.
-                            spar_member_get_newton tells what is left
+                            spar_member_get_iterations tells what is left
      coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations
      coupling.patience      1 to 1000000, default 3: with coupling.unconverged = accept, so many steps on end that have
                             not converged are an error all the same; each is told to the log
@@ -320,7 +320,7 @@ SPAR_API int spar_session_get_report(const spar_session *session, int64_t capaci
      counted[capacity]: out, what solving them has taken since they were made, instructions, by counted iterations
            and tangents at the prices of advice; of joints it has nothing
    Each NULL: not wanted. */
-SPAR_API int spar_session_get_balance(const spar_session *session, int64_t capacity, int64_t *members, double *expected,
+SPAR_API int spar_session_sum_balance(const spar_session *session, int64_t capacity, int64_t *members, double *expected,
                                       double *counted);
 /* The clock. Each NULL: not wanted. Local.
      t: out, t^n in s, the time of the last accepted step, from 0
@@ -362,7 +362,7 @@ enum {
     SPAR_ROOT_FREE = 0,
     SPAR_ROOT_FIXED = 1,  /* stands still */
     SPAR_ROOT_PINNED = 2, /* turns freely about a fixed place */
-    SPAR_ROOT_DRIVEN = 3  /* follows spar_member_drive_root */
+    SPAR_ROOT_DRIVEN = 3  /* follows spar_member_drive */
 };
 /* Relative motions of a joint that are free, in its own axes; or-ed. */
 enum { SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32 };
@@ -397,7 +397,7 @@ enum {
 /* The creates: name in, unique in the session, not empty, copied. Before the first step. Members go with their
    session. Local, but made on every rank alike and in the same order. member: out. */
 
-/* A massless node with 6 degrees of freedom that follows spar_member_set_motion or spar_member_drive_root.
+/* A massless node with 6 degrees of freedom that follows spar_member_set_motion or spar_member_drive.
      x[3]: in, reference place, m, NULL: the origin
      q[4]: in, reference orientation, NULL: none */
 SPAR_API int spar_point_create(spar_session *session, const char *name, const double x[3], const double q[4],
@@ -622,7 +622,7 @@ SPAR_API int spar_member_set_initial_velocity(spar_member *member, const double 
                                               const double omega[3]);
 /* rank: in, who solves the member; it needs no fluid nodes. Default: at the first step or static solution members go to
    the rank that has least to do by then, the dearest first, by what nodes, fidelity and joints lead one to expect
-   (spar_session_get_balance); those that joints tie are solved by one rank, and an owner given here is that of all of
+   (spar_session_sum_balance); those that joints tie are solved by one rank, and an owner given here is that of all of
    them. Local. */
 SPAR_API int spar_member_set_owner(spar_member *member, int rank);
 /* rank: out, who solves it; before the first step, or static solution, who would. Local. */
@@ -656,7 +656,7 @@ SPAR_API int spar_member_set_motion(spar_member *member, const double *q, const 
    Between steps only; not driven anew, the root stays where it is. Local, the same on every rank.
      q[7]: in
      v[6], a[6]: in, NULL: 0 */
-SPAR_API int spar_member_drive_root(spar_member *member, const double q[7], const double v[6], const double a[6]);
+SPAR_API int spar_member_drive(spar_member *member, const double q[7], const double v[6], const double a[6]);
 /* A load on a node, which replaces the node's earlier one of that kind and is kept; zeros take it away. A node bears
    the sum of its two kinds. An exact member has the exact tangent of followers (unsymmetric). On a linear or modal
    beam with a free or pinned root that no joint ties, a follower keeps its direction of the reference. After commit.
@@ -706,7 +706,7 @@ SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6])
    driven or joints tie the beam, else from the reference; of a rigid or prescribed one 0. Its forces have the arms and
    axes of the reference where its equations stand there: fixed, pinned or free roots, without pretension. SPAR_ERR_UNSUPPORTED: force of a beam without
    sections. */
-SPAR_API int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
+SPAR_API int spar_beam_evaluate(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                                    double *x, double *q);
 /* Energies of a member, J. */
 enum {
@@ -875,7 +875,7 @@ SPAR_API int spar_joint_set_load(spar_joint *joint, const double load[6]);
    rod), or driven (an actuator, motion[0] its length), or on a spring. Else as spar_joint_create.
      point_a[3], point_b[3]: in, m, global, in the reference; not the same
      b NULL: the ground carries point_b */
-SPAR_API int spar_line_create(spar_session *session, const char *name, spar_member *a, int64_t node_a,
+SPAR_API int spar_link_create(spar_session *session, const char *name, spar_member *a, int64_t node_a,
                               const double point_a[3], spar_member *b, int64_t node_b, const double point_b[3],
                               spar_joint **joint);
 /* The spring of a line. Before the first step.
@@ -886,7 +886,7 @@ SPAR_API int spar_line_create(spar_session *session, const char *name, spar_memb
            slack, without load. Beyond it the pull is max(0, k (d - l) + c d'). In the step in which it comes taut, d' is
            at most the rate at which the stretch can have grown within the step
    Local. */
-SPAR_API int spar_line_set_spring(spar_joint *joint, double stiffness, double damping, double length, int tension_only);
+SPAR_API int spar_link_set_spring(spar_joint *joint, double stiffness, double damping, double length, int tension_only);
 /* Relative motion of the latest iterate, t^n between steps; 0 before the first step or static solution.
      motion[6], rate[6], acceleration[6]: out, m, rad, and their rates (1/s, 1/s^2), NULL: not wanted; a line has its
            distance in the first. acceleration is that of the nodes' accelerations
@@ -932,7 +932,7 @@ enum {
     SPAR_MAP_FAR = 4        /* farther than max_distance */
 };
 
-/* All calls on fluids but spar_fluid_get_total and spar_fluid_check_total are local: a fluid is this rank's. A member
+/* All calls on fluids but spar_fluid_sum_loads and spar_fluid_check_loads are local: a fluid is this rank's. A member
    can have many, from any of its ranks. n is the number of nodes of the set in question. Nodes and maps change between
    steps only. Where ranks share a border, motion nodes may repeat on them (each is moved alike); a force node belongs
    to one rank, for loads of all ranks add up. */
@@ -982,13 +982,13 @@ SPAR_API int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const doub
      n: in
      xi[n]: in, in [-1,1] over the whole beam
      offset[n][3]: in, m, from the line to the node in the section frame (x tangent, y, z), NULL: 0 */
-SPAR_API int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
-/* Motion nodes alone as sections, beside force nodes at other places: those of spar_fluid_set_sections, which stay
+SPAR_API int spar_fluid_set_stations(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
+/* Motion nodes alone as sections, beside force nodes at other places: those of spar_fluid_set_stations, which stay
    where they are with the forces that are kept, or of spar_fluid_set_force_nodes. For actuator lines whose velocities
    are sampled at fewer or other sections than forces are spread from (AMR-Wind), or at three quarters of the chord.
    Forces are pushed to, and pulled at (spar_fluid_pull_forces, spar_fluid_pull_force_places), the force nodes; all
    other pulls are at the motion nodes. To be mapped. n, xi[n]: in, as above; offset[n][3]: in, as above, NULL: 0. */
-SPAR_API int spar_fluid_set_motion_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
+SPAR_API int spar_fluid_set_motion_stations(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
 /* Where this rank's arrays [n][3] have their numbers, for hosts that keep structures of arrays or wider records:
    component i of node j at number j * node + i * component. Holds for what is pulled at motion nodes (places,
    velocities, accelerations, angular ones) or pushed to and pulled at force nodes (forces, moments, their places), in
@@ -1022,7 +1022,7 @@ SPAR_API int spar_fluid_map(spar_fluid *fluid);
 SPAR_API int spar_fluid_get_count(const spar_fluid *fluid, int which, int64_t *n);
 /* What the nodes of a set are. */
 enum {
-    SPAR_KIND_SECTIONS = 1, /* given by coordinate along the line, not by place */
+    SPAR_KIND_STATIONS = 1, /* given by coordinate along the line, not by place */
     SPAR_KIND_SHARED = 2,   /* they are motion nodes and force nodes at once */
     SPAR_KIND_WEIGHTS = 4,  /* they take part of the motion (spar_fluid_set_motion_weights) */
     SPAR_KIND_FORCES = 8    /* their node forces are kept (SPAR_EFFECT_FLUID_HISTORY) */
@@ -1084,7 +1084,7 @@ SPAR_API int spar_fluid_pull_force_places(spar_fluid *fluid, double theta, doubl
      x[n][3], v[n][3]: out, m, m/s, of nodes with weights the part they take
      q[n][4]: out, orientation of the section at the foot, scalar part >= 0
      foot[n][3]: out, m, where the foot is */
-SPAR_API int spar_fluid_get_places(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *foot);
+SPAR_API int spar_fluid_get_positions(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *foot);
 /* Direction cosines of the sections instead of quaternions. Row by row in C; a Fortran array m(3,3,n) so filled holds
    m(column, row, n), that is the transpose. */
 enum {
@@ -1172,7 +1172,7 @@ SPAR_API int spar_fluid_get_audit(const spar_fluid *fluid, int64_t capacity, dou
      force[3]: out, N
      moment[3]: out, N m
    Each output NULL: not wanted; the same on all ranks. */
-SPAR_API int spar_fluid_get_total(const spar_fluid *fluid, const double point[3], double force[3], double moment[3]);
+SPAR_API int spar_fluid_sum_loads(const spar_fluid *fluid, const double point[3], double force[3], double moment[3]);
 /* Whether these sums are what the host knows them to be, from its own sum over its faces: finds force nodes of rank
    borders that two ranks have pushed, or none. Nothing changes. Collective, as above.
      point[3]: in, as above
@@ -1181,7 +1181,7 @@ SPAR_API int spar_fluid_get_total(const spar_fluid *fluid, const double point[3]
      rtol: in, > 0, of the difference over the sum of the sizes of the loads' parts on the structure's nodes; what the
            transfer leaves is some 1e-15 of the sum over the fluid's nodes
    All alike on every rank. SPAR_ERR_ARGUMENT: they differ, the message says by how much. */
-SPAR_API int spar_fluid_check_total(const spar_fluid *fluid, const double point[3], const double force[3],
+SPAR_API int spar_fluid_check_loads(const spar_fluid *fluid, const double point[3], const double force[3],
                                     const double moment[3], double rtol);
 
 /* ---- one coupling step ------------------------------------------------------------------------------------------- */
@@ -1222,7 +1222,7 @@ typedef int (*spar_fluid_solver)(spar_session *session, double t, double dt, int
      iterations: out, how many it took, NULL: not wanted */
 SPAR_API int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations);
 
-/* What a host does ahead of a step of dt from t, where the library makes the steps (spar_step_within, trials): drive
+/* What a host does ahead of a step of dt from t, where the library makes the steps (spar_step_adaptive, trials): drive
    roots, set loads, keep what its fluid had at t^n. Answer 0 for success; anything else ends the call with
    SPAR_ERR_USER. */
 typedef int (*spar_before_step)(spar_session *session, double t, double dt, void *context);
@@ -1240,10 +1240,10 @@ typedef int (*spar_before_step)(spar_session *session, double t, double dt, void
      rtol: in, 0 to 1, > 0 only with a drift > 0, as what begins at rest has no speed; out */
 SPAR_API int spar_session_set_tolerance(spar_session *session, double drift, double rtol);
 SPAR_API int spar_session_get_tolerance(const spar_session *session, double *drift, double *rtol);
-/* Entries of the pace of steps, spar_session_get_pace. */
+/* Entries of the pace of steps, spar_session_get_step_control. */
 enum {
     SPAR_PACE_RATIO = 0,    /* error over tolerance, the largest of all members; 0 in a first step that began without
-                               spar_session_start, whose accelerations nobody knows */
+                               spar_session_solve_initial, whose accelerations nobody knows */
     SPAR_PACE_NEXT_DT = 1,  /* s, 0.2 to 2 of this step's: to go on with; or, if it is rejected, to try again with. By a
                                PI controller; small changes, which would only cost new tangents, are not proposed */
     SPAR_PACE_REJECT = 2,   /* 1: the step under way is to be rejected */
@@ -1254,7 +1254,7 @@ enum {
    spar_step_reject, and begins the next step with the dt named here, or a smaller one), between steps of the last
    accepted one. The same on all ranks. Local. pace[capacity]: out, by SPAR_PACE_*, NULL: not wanted. SPAR_ERR_STATE: no
    tolerance, or no step since it was set. */
-SPAR_API int spar_session_get_pace(const spar_session *session, int64_t capacity, double *pace);
+SPAR_API int spar_session_get_step_control(const spar_session *session, int64_t capacity, double *pace);
 /* One step that keeps the tolerance: tried with dt, and again with a smaller one while its error is too large. For
    fluids that can go back to t^n: before and solve are called again with another dt, for the same t.
      dt: in, s, to try with; out, to go on with
@@ -1265,7 +1265,7 @@ SPAR_API int spar_session_get_pace(const spar_session *session, int64_t capacity
    no tolerance. SPAR_ERR_NUMERIC: 12 tries did not keep it, or 7 in turn whose error did not fall. The message says what
    limits it: the motion, a velocity that jumps, or rounding. After a failure the session is at t^n, dt as it was given.
  */
-SPAR_API int spar_step_within(spar_session *session, double *dt, spar_before_step before, spar_fluid_solver solve,
+SPAR_API int spar_step_adaptive(spar_session *session, double *dt, spar_before_step before, spar_fluid_solver solve,
                               void *context, double *taken);
 
 /* What the numbers of a member leave of error in its motion now: root of the mean square over its nodes, m. In the mean
@@ -1280,14 +1280,14 @@ SPAR_API int spar_step_within(spar_session *session, double *dt, spar_before_ste
            no shape; -1: not known (fidelity linear or modal, 24 nodes an element, a root that is free before the first
            step, no solution)
    SPAR_ERR_STATE too in trials, statics and starts, and of the nodes within a step. */
-SPAR_API int spar_member_get_error(spar_member *member, double *step, double *nodes);
+SPAR_API int spar_member_estimate_error(spar_member *member, double *step, double *nodes);
 
 /* What Newton's iteration of a member takes and leaves, as the rank that solves it knows (spar_member_get_owner); zeros
    on the others, and of what is not solved by iteration. Each NULL: not wanted. Local.
      iterations: out, so far, since it was committed or made anew
      left: out, estimate of what the last solution in time left of the increments: of the member's length, or rad; of
            members that joints tie the largest of all */
-SPAR_API int spar_member_get_newton(const spar_member *member, int64_t *iterations, double *left);
+SPAR_API int spar_member_get_iterations(const spar_member *member, int64_t *iterations, double *left);
 
 /* The balanced start: accelerations at t = 0 of all members, and the fluid's loads there that answer to them. Places
    and velocities stay. A fluid that has an added mass gives loads by accelerations, and these follow from the loads:
@@ -1308,12 +1308,12 @@ SPAR_API int spar_member_get_newton(const spar_member *member, int64_t *iteratio
    them). A guess of the added mass (spar_member_set_added_mass) has no part in it. Before the first step, again after
    what changes the state there (loads kept, initial velocities). After a failure all is as it was. Collective.
    SPAR_ERR_STATE: the clock has run; SPAR_ERR_NUMERIC: no convergence in max_iterations, or the mass is singular. */
-SPAR_API int spar_session_start(spar_session *session, double dt, spar_fluid_solver solve, void *context,
+SPAR_API int spar_session_solve_initial(spar_session *session, double dt, spar_fluid_solver solve, void *context,
                                 int *iterations);
 /* Its beginning, for a host whose own loop runs the fluid: in place of spar_step_begin, before the first step. Then as
    in a step: spar_step_solve finds the accelerations under the loads in use, pull, push, spar_step_check, until it is
    done; spar_step_accept ends it, with the clock at t = 0 still, or spar_step_reject. dt: in, s, > 0. */
-SPAR_API int spar_step_begin_start(spar_session *session, double dt);
+SPAR_API int spar_step_begin_initial(spar_session *session, double dt);
 
 /* Static equilibrium of all members with the fluid's answer: the shape under gravity, all kept loads and the loads that
    the fluid has on that shape (a wing's trim, a flag in steady flow). The fluid solver is called as in spar_step, and
@@ -1451,7 +1451,7 @@ SPAR_API int spar_session_solve_eigenvalues(spar_session *session, double dt, in
      amplitude: in, of what is moved: displacement of a node over its member's length, and turn, rad, to 0.1; 0: 1e-4.
            Errors are its square, and what the coupling leaves over it
      before, solve, context: in, as of spar_session_try, repeatable: what drives roots and joints moves by the time.
-           Each run begins with a balanced start, where solve is called with dt 0 (spar_session_start)
+           Each run begins with a balanced start, where solve is called with dt 0 (spar_session_solve_initial)
      modes: in, 1 to 200, at most the unknowns less what is held: more until the answer stays
      n: in, how many, at most 2 modes
      eigenvalue[n][2]: out, growth rate, 1/s, and angular frequency, rad/s, of log(mu) over the period, the least damped
@@ -1513,7 +1513,7 @@ enum {
     SPAR_GOAL_MOTION = 1,   /* motion, as SPAR_TRY_MOTION */
     SPAR_GOAL_REACTION = 2, /* what roots and joints give the members, moments by their lengths */
     SPAR_GOAL_SECTION = 4,  /* section forces at nine places, eta 0 to 1, of the beams that have sections, as
-                               spar_beam_get_section; moments by the lengths */
+                               spar_beam_evaluate; moments by the lengths */
     SPAR_GOAL_LOAD = 8,     /* the fluid's loads on each member: their sum and moment about its root */
     SPAR_GOAL_NUMBERS = 16  /* each number of spar_session_push_numbers */
 };

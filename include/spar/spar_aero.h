@@ -4,7 +4,7 @@
    velocity of momentum theory (Ning 2014, doi 10.1002/we.1636); quasi-steady, but for the effects that remember. It is
    made on the calls of spar.h alone.
 
-   A section is a place of a fluid (spar_fluid_set_sections); its aerodynamic centre is the fluid's node. Its frame is
+   A section is a place of a fluid (spar_fluid_set_stations); its aerodynamic centre is the fluid's node. Its frame is
    the one spar_fluid_pull_sections gives: x along the span from root to tip, y from leading to trailing edge, z = x
    cross y. A twist given here is measured from that frame: where the beam's own frames already carry the blade's
    twist, give the difference (or 0). All calls but the report of effects are local to the rank: an object holds the
@@ -70,7 +70,7 @@ SPAR_API void spar_polar_destroy(spar_polar **polar);
 /* A rotor or wing. The fluids stay the caller's and must outlive the object's last solve, spar_aero_read_aerodyn and a
    spar_aero_set_effects that asks for effects that remember; map them anew and the object must be made anew.
      blades: in, on this rank; 0 with NULL: a rank without blades
-     sections[blades]: in, one fluid per blade, made with spar_fluid_set_sections, mapped, all of one session and with
+     sections[blades]: in, one fluid per blade, made with spar_fluid_set_stations, mapped, all of one session and with
            the same number n >= 2 of sections, in order from root to tip at different places
      aero: out */
 SPAR_API int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero);
@@ -101,7 +101,7 @@ SPAR_API int spar_aero_get_chord(const spar_aero *aero, double *chord, double *t
    line and field. SPAR_ERR_ARGUMENT: a polar or a span is not allowed. SPAR_ERR_UNSUPPORTED: tables between which
    AFTabMod 2 or 3 interpolates (with 1 the first counts). After a failure all is as it was. */
 
-/* Sections of a fluid, as spar_fluid_set_sections makes them, at the aerodynamic centres (BlSpn, BlCrvAC, BlSwpAC),
+/* Sections of a fluid, as spar_fluid_set_stations makes them, at the aerodynamic centres (BlSpn, BlCrvAC, BlSwpAC),
    each hung on the nearest place of the line. The member must be committed. To be mapped. BlCrvAng is not used:
    sections stand across the line. n: in, sections; with span NULL 0, which gives as many as the file has stations */
 SPAR_API int spar_fluid_read_aerodyn(spar_fluid *fluid, const char *primary_path, const char *blade_path,
@@ -160,7 +160,7 @@ SPAR_API int spar_aero_set_tower(spar_aero *aero, const double base[3], const do
    whose numbers are theirs then): it goes through iterations, rejected steps, trials, save and load as these do.
    Momentum theory takes the static polar's lift. Stall: lift alone; attached flow is the steepest line from the angle
    without lift, 4 c / V the time. Unsteady: lift acts by the flow at three quarters of the chord, moments are pushed;
-   induced velocities count as steady. It asks for accelerations, so the start should be balanced (spar_session_start).
+   induced velocities count as steady. It asks for accelerations, so the start should be balanced (spar_session_solve_initial).
    SPAR_ERR_STATE: a step is under way, where one of these three is asked for first, or the fluids have states of the
    host's own. */
 SPAR_API int spar_aero_set_effects(spar_aero *aero, int effects);

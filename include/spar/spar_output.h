@@ -22,7 +22,7 @@ extern "C" {
    (a rotor's blades without the rotor's turn; in global axes); rotation (vector, from the reference, below half a
    turn), section_x, _y, _z (axes of the section), velocity, angular_velocity, acceleration, angular_acceleration; node
    (its number, -1 between nodes); at the nodes nodal_force and nodal_moment (lumped loads in use; 0 between nodes). Of
-   a beam that spar solves for section_force and section_moment (spar_beam_get_section, in section axes). For the whole:
+   a beam that spar solves for section_force and section_moment (spar_beam_evaluate, in section axes). For the whole:
    reaction_force, _moment. */
 SPAR_API int spar_member_write_vtk(const spar_member *member, const char *path);
 /* This rank's nodes of a mapped fluid where they are now, each joined to its foot on the line by a connector, so that a

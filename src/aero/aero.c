@@ -90,7 +90,7 @@ static int check_blade_fluids(int blades, spar_fluid *const *fluid, const char *
         SPARI_TRY(spar_fluid_get_count(fluid[b], SPAR_NODES_FORCE, &forces));
         SPARI_REQUIRE(session, nodes >= 2 && nodes == forces, SPAR_ERR_ARGUMENT,
                       "%s: fluid '%s' of blade %d has %lld motion and %lld force nodes; give it at least 2 sections "
-                      "with spar_fluid_set_sections",
+                      "with spar_fluid_set_stations",
                       call, spar_fluid_get_name(fluid[b]), b, (long long)nodes, (long long)forces);
         SPARI_TRY(check_packed(session, fluid[b], SPAR_ERR_ARGUMENT, call));
         *n = b == 0 ? nodes : *n;

@@ -125,7 +125,7 @@ static int set_centres(spar_fluid *fluid, const spar_session *session, const cha
     SPARI_REQUIRE(session, x, SPAR_ERR_MEMORY, "%s: '%s': no memory for %lld sections", call, name, (long long)n);
     place_centres(blade, n, span, root, axes, x);
     int status = find_feet(member, name, n, x, x + 3 * n, x + 4 * n);
-    status = status == SPAR_OK ? spar_fluid_set_sections(fluid, n, x + 3 * n, x) : status;
+    status = status == SPAR_OK ? spar_fluid_set_stations(fluid, n, x + 3 * n, x) : status;
     free(x);
     return status;
 }

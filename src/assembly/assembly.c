@@ -842,7 +842,7 @@ double spari_assembly_mass_response(const spari_assembly *a) {
 
 /* ---- what the host asks ---- */
 
-int spar_member_get_newton(const spar_member *member, int64_t *iterations, double *left) {
+int spar_member_get_iterations(const spar_member *member, int64_t *iterations, double *left) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spari_effort effort = {0};

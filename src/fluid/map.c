@@ -320,7 +320,7 @@ int spar_fluid_get_kind(const spar_fluid *fluid, int which, int *kind) {
     SPARI_FLUID_REQUIRE(fluid, kind, SPAR_ERR_ARGUMENT, "the pointer to the kind is NULL");
     const spari_node_set *set = spari_fluid_set(fluid, which);
     int bears_forces = which == SPAR_NODES_FORCE || fluid->shared;
-    *kind = (set->sections ? SPAR_KIND_SECTIONS : 0) | (fluid->shared ? SPAR_KIND_SHARED : 0) |
+    *kind = (set->sections ? SPAR_KIND_STATIONS : 0) | (fluid->shared ? SPAR_KIND_SHARED : 0) |
             (set->weight ? SPAR_KIND_WEIGHTS : 0) | (bears_forces && fluid->history ? SPAR_KIND_FORCES : 0);
     return SPAR_OK;
 }

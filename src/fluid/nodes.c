@@ -339,7 +339,7 @@ static int copy_sections(const spar_fluid *fluid, int64_t n, const double *xi, c
     return SPAR_OK;
 }
 
-int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
+int spar_fluid_set_stations(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     spari_node_set made;
@@ -353,7 +353,7 @@ int spar_fluid_set_sections(spar_fluid *fluid, int64_t n, const double *xi, cons
     return SPAR_OK;
 }
 
-int spar_fluid_set_motion_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
+int spar_fluid_set_motion_stations(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     spari_node_set made;

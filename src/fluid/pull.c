@@ -592,7 +592,7 @@ int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *m
     return status;
 }
 
-int spar_fluid_get_places(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *nearest) {
+int spar_fluid_get_positions(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *nearest) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));

@@ -89,7 +89,7 @@ int spar_joint_create(spar_session *session, const char *name, spar_member *a, i
     return SPAR_OK;
 }
 
-int spar_line_create(spar_session *session, const char *name, spar_member *a, int64_t node_a, const double point_a[3],
+int spar_link_create(spar_session *session, const char *name, spar_member *a, int64_t node_a, const double point_a[3],
                      spar_member *b, int64_t node_b, const double point_b[3], spar_joint **joint) {
     SPARI_GUARD_ENVIRONMENT;
     const char *label = name ? name : "";
@@ -210,7 +210,7 @@ int spar_joint_set_spring(spar_joint *joint, const double stiffness[36], const d
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(need_joint(joint, __func__));
     SPARI_REQUIRE(joint->session, !joint->kinematics.line, SPAR_ERR_STATE,
-                  "%s: '%s' is a line; call spar_line_set_spring", __func__, joint->name);
+                  "%s: '%s' is a line; call spar_link_set_spring", __func__, joint->name);
     SPARI_TRY(check_springs(joint, __func__, stiffness, damping, preload));
     take_springs(joint, stiffness, damping, preload);
     return SPAR_OK;
@@ -237,7 +237,7 @@ int spar_member_set_spring(spar_member *member, int64_t node, int free_motions, 
     return SPAR_OK;
 }
 
-int spar_line_set_spring(spar_joint *joint, double stiffness, double damping, double length, int tension_only) {
+int spar_link_set_spring(spar_joint *joint, double stiffness, double damping, double length, int tension_only) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(need_before_start(joint, __func__));
     spar_session *s = joint->session;

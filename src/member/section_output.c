@@ -195,7 +195,7 @@ static int section_outputs(const spar_member *m, int64_t n, const spari_station 
     return SPAR_OK;
 }
 
-int spar_beam_get_section(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
+int spar_beam_evaluate(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
                           double *x, double *q) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);

@@ -35,7 +35,7 @@ static double *at(const sketch *s, int column, int components, int64_t point) {
 /* Fills the nodes of one set, which begin at `first`. */
 static int fill_set(const spar_fluid *fluid, int which, int64_t first, const sketch *s) {
     static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    SPARI_TRY(spar_fluid_get_places(fluid, which, at(s, X, 3, first), at(s, V, 3, first), s->q + 4 * first,
+    SPARI_TRY(spar_fluid_get_positions(fluid, which, at(s, X, 3, first), at(s, V, 3, first), s->q + 4 * first,
                                     at(s, X, 3, s->n + first)));
     SPARI_TRY(spar_fluid_get_map(fluid, which, at(s, XI, 1, first), at(s, DISTANCE, 1, first), s->flags + first));
     if (s->kind[which] & SPAR_KIND_FORCES) {
@@ -66,7 +66,7 @@ static void copy_to_feet(const sketch *s) {
 static int64_t draw_lines(const sketch *s) {
     int64_t lines = 0, end = 0, node = 0;
     for (int which = 0; which < 2; which++) {
-        int row = (s->kind[which] & SPAR_KIND_SECTIONS) && s->count[which] > 1;
+        int row = (s->kind[which] & SPAR_KIND_STATIONS) && s->count[which] > 1;
         for (int64_t i = 0; i < s->count[which]; i++, node++) {
             if (row) {
                 s->line_point[end++] = node;

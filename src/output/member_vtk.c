@@ -170,7 +170,7 @@ static int no_memory(spar_session *session, const spar_member *m, const char *ca
 
 static int sample_sections(const sampled *s, const spar_member *m, spar_session *session, const char *call) {
     double *force = spari_zalloc(6 * s->n, sizeof *force);
-    int status = force ? spar_beam_get_section(m, s->n, s->eta, NULL, force, NULL, NULL) : no_memory(session, m, call);
+    int status = force ? spar_beam_evaluate(m, s->n, s->eta, NULL, force, NULL, NULL) : no_memory(session, m, call);
     for (int64_t i = 0; i < s->n && status == SPAR_OK; i++) {
         put_columns(s, INNER, 3, i, force + 6 * i);
         put_columns(s, INNER + 3, 3, i, force + 6 * i + 3);

@@ -1,4 +1,4 @@
-/* Performs a whole step with step-size control: spar_step_within. */
+/* Performs a whole step with step-size control: spar_step_adaptive. */
 #include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../exchange/session_private.h"
@@ -55,7 +55,7 @@ static int fail_within(const spar_session *s, const char *call, const tries *t) 
                       call, s->clock.time, t->dt, t->ratio, why);
 }
 
-int spar_step_within(spar_session *session, double *dt, spar_before_step before, spar_fluid_solver solve, void *context,
+int spar_step_adaptive(spar_session *session, double *dt, spar_before_step before, spar_fluid_solver solve, void *context,
                      double *dt_done) {
     SPARI_GUARD_ENVIRONMENT;
     enum { TRIES = 12, STUCK = 7 };

@@ -62,7 +62,7 @@ static int sum_over_ranks(const spar_fluid *fluid, const char *call, const doubl
     return spari_named(s, call, spari_comm_sum(s->ranks.comm, total, TOTALS, SPAR_OK, s->message, sizeof s->message));
 }
 
-int spar_fluid_get_total(const spar_fluid *fluid, const double point[3], double force[3], double moment[3]) {
+int spar_fluid_sum_loads(const spar_fluid *fluid, const double point[3], double force[3], double moment[3]) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it with spar_fluid_create", __func__);
     SPARI_TRY(spari_callback_refuse(spari_fluid_member(fluid)->session, __func__));
@@ -110,7 +110,7 @@ static int compare(const spar_fluid *fluid, const char *call, const char *what, 
     return SPAR_OK;
 }
 
-int spar_fluid_check_total(const spar_fluid *fluid, const double point[3], const double force[3],
+int spar_fluid_check_loads(const spar_fluid *fluid, const double point[3], const double force[3],
                            const double moment[3], double rtol) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it with spar_fluid_create", __func__);

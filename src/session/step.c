@@ -171,7 +171,7 @@ int spar_step_begin(spar_session *session, double dt) {
     return SPAR_OK;
 }
 
-int spar_step_begin_start(spar_session *session, double dt) {
+int spar_step_begin_initial(spar_session *session, double dt) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_callback_refuse(session, __func__));
@@ -469,7 +469,7 @@ int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *c
     return run_begun(session, __func__, solve, context, iterations);
 }
 
-int spar_session_start(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
+int spar_session_solve_initial(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_callback_refuse(session, __func__));

@@ -99,7 +99,7 @@ void spari_step_control_reject(spar_session *s) {
     }
 }
 
-int spar_session_get_pace(const spar_session *session, int64_t capacity, double *pace) {
+int spar_session_get_step_control(const spar_session *session, int64_t capacity, double *pace) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     const spar_session *s = session;

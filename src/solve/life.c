@@ -554,7 +554,7 @@ int spar_member_set_motion(spar_member *member, const double *q, const double *v
     return SPAR_OK;
 }
 
-int spar_member_drive_root(spar_member *member, const double q[7], const double v[6], const double a[6]) {
+int spar_member_drive(spar_member *member, const double q[7], const double v[6], const double a[6]) {
     SPARI_GUARD_ENVIRONMENT;
     static const double rest[6] = {0};
     SPARI_TRY(spari_need_committed(member, __func__));

@@ -148,7 +148,7 @@ static int run_period(spar_session *s, void *self) {
     }
     s->clock.step = 0;
     s->clock.started = 0;
-    SPARI_TRY(spar_session_start(s, run->dt, run->solve, run->context, &iterations));
+    SPARI_TRY(spar_session_solve_initial(s, run->dt, run->solve, run->context, &iterations));
     for (int64_t i = 0; i <= f->steps; i++) {
         SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->context));
         SPARI_TRY(spar_step(s, run->dt, run->solve, run->context, &iterations));

@@ -145,7 +145,7 @@ static int look_at_sections(const spar_session *s, double *force) {
     }
     for (const spar_member *m = s->members; m; m = m->next) {
         if (has_sections(m)) {
-            SPARI_TRY(spar_beam_get_section(m, PLACES, eta, NULL, force, NULL, NULL));
+            SPARI_TRY(spar_beam_evaluate(m, PLACES, eta, NULL, force, NULL, NULL));
             for (int i = 0; i < 6 * PLACES; i++) {
                 force[i] /= i % 6 < 3 ? 1 : spari_member_length(m);
             }

@@ -326,7 +326,7 @@ static int run_there(spar_session *s, const spari_run *run, int balanced, spari_
     status = spari_session_seal(s, status);
     if (status == SPAR_OK && balanced) { /* as the host has begun its own run */
         int iterations = 0;
-        status = spar_session_start(s, run->dt, run->solve, run->context, &iterations);
+        status = spar_session_solve_initial(s, run->dt, run->solve, run->context, &iterations);
         r->solutions += iterations;
     }
     if (status == SPAR_OK) {

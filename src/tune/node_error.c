@@ -163,7 +163,7 @@ static int has_nodes(const spar_member *m) {
     return m->kind == SPARI_BEAM && !m->external && m->row->solved && m->fidelity >= SPAR_FIDELITY_LINEAR;
 }
 
-int spar_member_get_error(spar_member *member, double *step, double *nodes) {
+int spar_member_estimate_error(spar_member *member, double *step, double *nodes) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_member *m = member;

@@ -25,7 +25,7 @@ static void find_balance(const spar_session *s, double own[BALANCE_COLUMNS]) {
     own[BALANCE_COUNTED] = spari_cost_members(s, NULL);
 }
 
-int spar_session_get_balance(const spar_session *session, int64_t capacity, int64_t *members, double *expected,
+int spar_session_sum_balance(const spar_session *session, int64_t capacity, int64_t *members, double *expected,
                              double *counted) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);

@@ -73,7 +73,7 @@ static void drive(scene *s, int step) {
     for (int b = 0; b < BLADES; b++) {
         double q[7], v[6], a[6];
         nrel5mw_root_motion(&s->data, &s->rotor, b, s->speed * dt * step, s->speed, 0.0, q, v, a);
-        OK(spar_member_drive_root(s->blade[b], q, v, a));
+        OK(spar_member_drive(s->blade[b], q, v, a));
     }
 }
 

@@ -71,7 +71,7 @@ static void step(scene *s, double angle, double dt) {
     for (int b = 0; b < BLADES; b++) {
         double q[7], v[6], a[6];
         nrel5mw_root_motion(&s->data, &s->rotor, b, angle, s->speed, 0.0, q, v, a);
-        OK(s->session, spar_member_drive_root(s->blade[b], q, v, a));
+        OK(s->session, spar_member_drive(s->blade[b], q, v, a));
     }
     OK(s->session, spar_step(s->session, dt, solve_aero, s, NULL));
 }
@@ -342,7 +342,7 @@ static void test_broken_step(void **state) {
         for (int b = 0; b < BLADES; b++) {
             double q[7], v[6], a[6];
             nrel5mw_root_motion(&s.data, &s.rotor, b, 0.05 * s.speed, s.speed, 0.0, q, v, a);
-            OK(s.session, spar_member_drive_root(s.blade[b], q, v, a));
+            OK(s.session, spar_member_drive(s.blade[b], q, v, a));
         }
         OK(s.session, spar_step_begin(s.session, 0.05));
         OK(s.session, spar_step_solve(s.session));
@@ -402,10 +402,10 @@ static void test_refused(void **state) {
     assert_int_equal(spar_aero_solve(NULL, 1.225, NULL, 1.0), SPAR_ERR_ARGUMENT);
     spar_fluid *fluid = NULL;
     OK(s.session, spar_fluid_create(s.blade[0], "other", &fluid));
-    OK(s.session, spar_fluid_set_sections(fluid, 1, (double[]){0.0}, NULL));
+    OK(s.session, spar_fluid_set_stations(fluid, 1, (double[]){0.0}, NULL));
     OK(s.session, spar_fluid_map(fluid));
     REFUSED(s.session, SPAR_ERR_ARGUMENT, "at least 2", spar_aero_create(1, &fluid, &aero));
-    OK(s.session, spar_fluid_set_sections(fluid, 2, (double[]){0.0, 0.0}, NULL));
+    OK(s.session, spar_fluid_set_stations(fluid, 2, (double[]){0.0, 0.0}, NULL));
     REFUSED(s.session, SPAR_ERR_STATE, "spar_fluid_map", spar_aero_create(1, &fluid, &aero));
     OK(s.session, spar_fluid_map(fluid));
     REFUSED(s.session, SPAR_ERR_ARGUMENT, "the same position", spar_aero_create(1, &fluid, &aero));
@@ -479,7 +479,7 @@ static void test_mapped_anew(void **state) {
         double *xi = calloc((size_t)count[k] + 1, sizeof *xi);
         begin(&s, 8.0, 9.16);
         build(&s, 0, 1);
-        OK(s.session, spar_fluid_set_sections(s.fluid[0], count[k], xi, NULL));
+        OK(s.session, spar_fluid_set_stations(s.fluid[0], count[k], xi, NULL));
         OK(s.session, spar_fluid_map(s.fluid[0]));
         OK(s.session, spar_step_begin(s.session, 0.05));
         OK(s.session, spar_step_solve(s.session));
@@ -501,7 +501,7 @@ static void test_motion_sections_not_mapped(void **state) {
     build(&s, 0, 1);
     OK(s.session, spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0));
     OK(s.session, spar_aero_get_sections(s.aero, before[0], NULL, NULL, NULL, NULL));
-    OK(s.session, spar_fluid_set_motion_sections(s.fluid[0], N, xi, NULL));
+    OK(s.session, spar_fluid_set_motion_stations(s.fluid[0], N, xi, NULL));
     s.wind[0][0] += 1;
     REFUSED(s.session, SPAR_ERR_STATE, "not mapped", spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0));
     OK(s.session, spar_aero_get_sections(s.aero, after[0], NULL, NULL, NULL, NULL));
@@ -530,7 +530,7 @@ static void test_wing(void **state) {
     OK(session, spar_point_create(session, "wing", x, q, &body));
     OK(session, spar_member_commit(body));
     OK(session, spar_fluid_create(body, "air", &fluid));
-    OK(session, spar_fluid_set_sections(fluid, 3, xi, offset[0]));
+    OK(session, spar_fluid_set_stations(fluid, 3, xi, offset[0]));
     OK(session, spar_fluid_map(fluid));
     OK(session, spar_aero_create(1, &fluid, &aero));
     OK(session, spar_polar_create(3, alpha, cl, cd, cm, &polar));

@@ -40,7 +40,7 @@ static void build(scene *c, const double *cm) {
         xi[i] = -1 + 2.0 * i / (N - 1);
         c->wind[i][1] = U;
     }
-    OK(c->s, spar_fluid_set_sections(c->fluid, N, xi, NULL));
+    OK(c->s, spar_fluid_set_stations(c->fluid, N, xi, NULL));
     OK(c->s, spar_fluid_map(c->fluid));
     OK(c->s, spar_polar_create(2, alpha, lift, drag, cm, &c->polar));
     OK(c->s, spar_aero_create(1, &c->fluid, &c->aero));

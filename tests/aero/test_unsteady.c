@@ -111,7 +111,7 @@ static void build(wing_scene *c, spar_polar *polar, int effects) {
         xi[i] = -1 + 2.0 * i / (N - 1);
         c->wind[i][1] = U;
     }
-    OK(c->s, spar_fluid_set_sections(c->fluid, N, xi, NULL));
+    OK(c->s, spar_fluid_set_stations(c->fluid, N, xi, NULL));
     OK(c->s, spar_fluid_map(c->fluid));
     OK(c->s, spar_aero_create(1, &c->fluid, &c->aero));
     for (int i = 0; i < N; i++) {
@@ -146,7 +146,7 @@ static void drive(wing_scene *c, double w, double complex h0, double complex p0,
         h[k] = creal(cpow(I * w, k) * h0 * e);
         p[k] = creal(cpow(I * w, k) * p0 * e);
     }
-    OK(c->s, spar_member_drive_root(c->wing, (double[7]){0, 0, h[0], cos(p[0] / 2), sin(p[0] / 2), 0, 0},
+    OK(c->s, spar_member_drive(c->wing, (double[7]){0, 0, h[0], cos(p[0] / 2), sin(p[0] / 2), 0, 0},
                                     (double[6]){0, 0, h[1], p[1], 0, 0}, (double[6]){0, 0, h[2], p[2], 0, 0}));
 }
 
@@ -381,7 +381,7 @@ static void build_flexible(wing_scene *c, spar_polar *polar, int effects) {
     for (int i = 0; i < N; i++) {
         xi[i] = -1 + 2.0 * i / (N - 1);
     }
-    OK(c->s, spar_fluid_set_sections(c->fluid, N, xi, NULL));
+    OK(c->s, spar_fluid_set_stations(c->fluid, N, xi, NULL));
     OK(c->s, spar_fluid_map(c->fluid));
     OK(c->s, spar_aero_create(1, &c->fluid, &c->aero));
     pitch(c, 0);
@@ -399,7 +399,7 @@ static void test_order(void **state) {
         wing_scene c;
         double dt = 0.02 / (1 << k);
         build_flexible(&c, polar, EVERY);
-        OK(c.s, spar_session_start(c.s, dt, solve_wing, &c, NULL));
+        OK(c.s, spar_session_solve_initial(c.s, dt, solve_wing, &c, NULL));
         for (int i = 0; i < 20 << k; i++) {
             OK(c.s, spar_step(c.s, dt, solve_wing, &c, NULL));
         }
@@ -546,7 +546,7 @@ static void test_report(void **state) {
     static const int row[2] = {SPAR_AERO_ROW_STALL, SPAR_AERO_ROW_UNSTEADY},
                      bit[2] = {SPAR_AERO_STALL, SPAR_AERO_UNSTEADY};
     build_flexible(&c, polar, EVERY);
-    OK(c.s, spar_session_start(c.s, 1e-2, gust, &c, NULL));
+    OK(c.s, spar_session_solve_initial(c.s, 1e-2, gust, &c, NULL));
     get_states(&c, was);
     OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-2, STEPS, NULL, gust, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
                                      table[0]));
@@ -560,7 +560,7 @@ static void test_report(void **state) {
         for (int without = 0; without < 2; without++) {
             wing_scene d;
             build_flexible(&d, polar, EVERY);
-            OK(d.s, spar_session_start(d.s, 1e-2, gust, &d, NULL));
+            OK(d.s, spar_session_solve_initial(d.s, 1e-2, gust, &d, NULL));
             OK(d.s, spar_aero_set_effects(d.aero, without ? EVERY & ~bit[k] : EVERY));
             for (int step = 0; step < STEPS; step++) {
                 OK(d.s, spar_step(d.s, 1e-2, gust, &d, NULL));

@@ -147,7 +147,7 @@ static void build(scene *c) {
         offset[i][0] = 2.0 * i / (N - 1);
         c->wind[i][1] = U;
     }
-    OK(c->s, spar_fluid_set_sections(c->fluid, N, xi, offset[0]));
+    OK(c->s, spar_fluid_set_stations(c->fluid, N, xi, offset[0]));
     OK(c->s, spar_fluid_map(c->fluid));
     OK(c->s, spar_polar_create(2, alpha, lift, drag, NULL, &c->polar));
     OK(c->s, spar_aero_create(1, &c->fluid, &c->aero));
@@ -191,7 +191,7 @@ static void test_wing_in_shear(void **state) {
     for (int i = 0; i < N; i++) {
         NEAR(lift[i], q * pow(1 + 2.0 * i / (N - 1), 2 * p), 1e-14 * q);
     }
-    OK(c.s, spar_member_drive_root(c.point, to, NULL, NULL));
+    OK(c.s, spar_member_drive(c.point, to, NULL, NULL));
     OK(c.s, spar_step(c.s, 0.1, blow, &c, NULL));
     lifts(&c, lift);
     for (int i = 0; i < N; i++) {

@@ -1,5 +1,5 @@
 /* Who solves what: members go to the rank that has least to do, the dearest first. Expected: the rule of the longest
-   processing time first, worked out here from what spar_session_get_balance says of each member by itself; no rank has
+   processing time first, worked out here from what spar_session_sum_balance says of each member by itself; no rank has
    more than 2 - 1/R of the mean, or of the dearest member where that is more (Graham 1966, any list); the same steps as
    in a session of this process alone, to the last bit; owners that the host gives stand, ranks without fluid nodes
    solve too. */
@@ -54,9 +54,9 @@ static spar_session *create(const MPI_Comm *comm, int given, int tied, spar_memb
     if (tied) {
         static const double tip[3] = {10, 0, 0}, beside[3] = {10, 1, 0};
         spar_joint *spring = NULL;
-        OK(s, spar_line_create(s, "spring", member[MEMBERS - 1], nodes_of[MEMBERS - 1] - 1, tip, member[MEMBERS - 2],
+        OK(s, spar_link_create(s, "spring", member[MEMBERS - 1], nodes_of[MEMBERS - 1] - 1, tip, member[MEMBERS - 2],
                                nodes_of[MEMBERS - 2] - 1, beside, &spring));
-        OK(s, spar_line_set_spring(spring, 5, 0.1, 1, 0));
+        OK(s, spar_link_set_spring(spring, 5, 0.1, 1, 0));
     }
     return s;
 }
@@ -66,7 +66,7 @@ static double expected_of(int i) {
     spar_session *s = scene_session();
     double expected[1] = {0};
     (void)create_member(s, i, -1);
-    OK(s, spar_session_get_balance(s, 1, NULL, expected, NULL));
+    OK(s, spar_session_sum_balance(s, 1, NULL, expected, NULL));
     spar_session_destroy(&s);
     return expected[0];
 }
@@ -127,8 +127,8 @@ static void spread_by_cost(void **state) {
         spread(cost, given, owner, busy);
         scene_run(s, 0.01, STEPS);
         scene_run(t, 0.01, STEPS);
-        OK(s, spar_session_get_balance(s, size, members, expected, counted));
-        OK(t, spar_session_get_balance(t, 1, NULL, NULL, one));
+        OK(s, spar_session_sum_balance(s, size, members, expected, counted));
+        OK(t, spar_session_sum_balance(t, 1, NULL, NULL, one));
         for (int i = 0; i < MEMBERS; i++) {
             OK(s, spar_member_get_owner(all[i], &got));
             assert_int_equal(got, owner[i]);
@@ -168,7 +168,7 @@ static void with_joints_and_statics(void **state) {
     assert_int_equal(owner[MEMBERS - 1], owner[MEMBERS - 2]);
     scene_run(s, 0.01, STEPS);
     scene_run(t, 0.01, STEPS);
-    OK(s, spar_session_get_balance(s, size + 1, members, expected, NULL));
+    OK(s, spar_session_sum_balance(s, size + 1, members, expected, NULL));
     for (int r = 0; r < size; r++) {
         sum += expected[r];
         count += members[r];
@@ -181,7 +181,7 @@ static void with_joints_and_statics(void **state) {
         assert_int_equal(later, owner[i]);
     }
     same_motion(all, alone);
-    assert_int_equal(spar_session_get_balance(s, rank == size - 1 ? -1 : 1, members, NULL, NULL),
+    assert_int_equal(spar_session_sum_balance(s, rank == size - 1 ? -1 : 1, members, NULL, NULL),
                      rank == size - 1 ? SPAR_ERR_ARGUMENT : SPAR_ERR_PEER);
     spar_session_destroy(&s);
     spar_session_destroy(&t);
@@ -195,7 +195,7 @@ static void not_committed(void **state) {
     int64_t members[1] = {7};
     double expected[1] = {7}, counted[1] = {7};
     OK(s, spar_beam_create(s, "b", 1, 3, &m));
-    OK(s, spar_session_get_balance(s, 1, members, expected, counted));
+    OK(s, spar_session_sum_balance(s, 1, members, expected, counted));
     assert_true(members[0] == 0 && expected[0] == 0 && counted[0] == 0);
     spar_session_destroy(&s);
 }

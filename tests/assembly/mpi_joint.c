@@ -65,14 +65,14 @@ static void describe(scene *c) {
     c->joint[0] = scene_joint_at(s, "flap hinge", c->member[1], 0, c->member[0], 7, SPAR_FREE_RY, tip);
     OK(s, spar_joint_set_spring(c->joint[0], spring, damper, NULL));
     OK(s, spar_joint_set_load(c->joint[0], (double[]){0, 0, 0, 0, 0.7, 0}));
-    OK(s, spar_line_create(s, "rope", c->member[2], 0, hang, c->member[1], 0, tip, &c->joint[1]));
+    OK(s, spar_link_create(s, "rope", c->member[2], 0, hang, c->member[1], 0, tip, &c->joint[1]));
     c->joint[2] = scene_joint_at(s, "shaft", c->member[3], 0, NULL, 0, SPAR_FREE_RZ, far);
     OK(s, spar_joint_set_driven(c->joint[2], SPAR_FREE_RZ));
     c->joint[3] = scene_joint_at(s, "weld", c->member[4], 0, c->member[3], 3, 0, (double[]){2, 6, 0});
     c->joint[4] = scene_joint_at(s, "tether", c->member[5], 0, NULL, 0, 63, above);
     OK(s, spar_joint_set_spring(c->joint[4], all, NULL, NULL));
-    OK(s, spar_line_create(s, "stay", c->member[2], 0, hang, NULL, 0, above, &c->joint[5]));
-    OK(s, spar_line_set_spring(c->joint[5], 5, 0.1, 4, 1));
+    OK(s, spar_link_create(s, "stay", c->member[2], 0, hang, NULL, 0, above, &c->joint[5]));
+    OK(s, spar_link_set_spring(c->joint[5], 5, 0.1, 4, 1));
     c->joint[6] =
         scene_joint_at(s, "moss", c->member[2], 0, NULL, 0, 63, hang); /* or a weight on a rope spins freely */
     OK(s, spar_joint_set_spring(c->joint[6], all, NULL, NULL));
@@ -120,7 +120,7 @@ static void drive(scene *c, int i) {
            v[6] = {0.1 * cos(t)};
     z[5] = 4 * t, rate[5] = 4;
     OK(c->session, spar_joint_drive(c->joint[2], z, rate, NULL));
-    OK(c->session, spar_member_drive_root(c->member[5], q, v, NULL));
+    OK(c->session, spar_member_drive(c->member[5], q, v, NULL));
 }
 
 enum { STATE = 25 * 16 * MEMBERS + 18 * JOINTS };
@@ -354,7 +354,7 @@ static void otherwise(void **state) {
                 OK(c.session, spar_joint_set_frame(c.joint[0], (double[]){4, 0.1, 0}, rest));
                 break;
             case 1:
-                OK(c.session, spar_line_set_spring(c.joint[5], 6, 0.1, 4, 1));
+                OK(c.session, spar_link_set_spring(c.joint[5], 6, 0.1, 4, 1));
                 break;
             case 2:
                 OK(c.session, spar_joint_set_driven(c.joint[2], 0));

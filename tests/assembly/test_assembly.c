@@ -384,8 +384,8 @@ static ledger keep_ledger(double dt) {
                         scene_joint(s, "ball", b[2], 0, b[0], 0, 56), NULL};
     OK(s, spar_joint_set_frame(j[1], tip, NULL));
     OK(s, spar_joint_set_frame(j[2], tip, NULL));
-    OK(s, spar_line_create(s, "line", b[2], 0, end, NULL, 0, peg, &j[3]));
-    OK(s, spar_line_set_spring(j[3], 20, 0.3, 0.9, 0));
+    OK(s, spar_link_create(s, "line", b[2], 0, end, NULL, 0, peg, &j[3]));
+    OK(s, spar_link_set_spring(j[3], 20, 0.3, 0.9, 0));
     K[28] = 15, C[28] = 0.5;
     OK(s, spar_joint_set_spring(j[0], K, C, wound));
     OK(s, spar_joint_set_load(j[0], motor));

@@ -479,8 +479,8 @@ static void test_rope(void **state) {
     OK(s, spar_member_set_initial_velocity(ball, hang, (double[]){0, 0, 3}, origin));
     OK(s, spar_member_commit(ball));
     spar_joint *rope = NULL;
-    OK(s, spar_line_create(s, "rope", ball, 0, hang, NULL, 0, origin, &rope));
-    OK(s, spar_line_set_spring(rope, 1e4, 10, 1, 1));
+    OK(s, spar_link_create(s, "rope", ball, 0, hang, NULL, 0, origin, &rope));
+    OK(s, spar_link_set_spring(rope, 1e4, 10, 1, 1));
     for (int i = 1; i <= 900; i++) {
         double t = dt * i;
         OK(s, spar_step(s, dt, NULL, NULL, NULL));
@@ -539,8 +539,8 @@ static void test_snap(void **state) {
         OK(s, spar_rigid_create(s, "ball", at, rest, mass, &ball));
         OK(s, spar_member_set_effects(ball, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
         OK(s, spar_member_commit(ball));
-        OK(s, spar_line_create(s, "rope", ball, 0, at, NULL, 0, origin, &rope));
-        OK(s, spar_line_set_spring(rope, r.k, r.c, r.length, 1));
+        OK(s, spar_link_create(s, "rope", ball, 0, at, NULL, 0, origin, &rope));
+        OK(s, spar_link_set_spring(rope, r.k, r.c, r.length, 1));
         for (int i = 0; i < steps; i++) {
             OK(s, spar_step(s, end / steps, NULL, NULL, NULL));
             OK(s, spar_joint_get_motion(rope, z, NULL, NULL));
@@ -575,7 +575,7 @@ static void test_rod(void **state) {
         OK(s, spar_member_commit(b[k]));
     }
     spar_joint *rod = NULL;
-    OK(s, spar_line_create(s, "rod", b[1], 0, right, b[0], 0, left, &rod));
+    OK(s, spar_link_create(s, "rod", b[1], 0, right, b[0], 0, left, &rod));
     for (int i = 0; i < 500; i++) {
         OK(s, spar_step(s, 2e-3, NULL, NULL, NULL));
         OK(s, spar_joint_get_motion(rod, z, NULL, NULL));
@@ -1052,7 +1052,7 @@ static void carry_about(int by_joint, int turns, double dt, double out[13]) {
             z[5] = 0.25 * (1 - c) * (1 - c), v[5] = 0.5 * f * d * (1 - c), a[5] = 0.5 * f * f * (c - c * c + d * d);
         }
         q[3] = cos(z[5] / 2), q[6] = sin(z[5] / 2);
-        OK(s, by_joint ? spar_joint_drive(j, z, v, a) : spar_member_drive_root(b, q, v, a));
+        OK(s, by_joint ? spar_joint_drive(j, z, v, a) : spar_member_drive(b, q, v, a));
         scene_run(s, dt, 1);
     }
     scene_tip(b, out);
@@ -1281,7 +1281,7 @@ static void test_joints_after_a_rejected_step(void **state) {
     OK(s, spar_session_set_gravity(s, (double[]){0, 0, -9.81}));
     OK(s, spar_rigid_create(s, "bob", low, q, mass, &b));
     OK(s, spar_member_commit(b));
-    OK(s, spar_line_create(s, "rod", b, 0, low, NULL, 0, origin, &rod));
+    OK(s, spar_link_create(s, "rod", b, 0, low, NULL, 0, origin, &rod));
     for (int round = 0; round < 2; round++) {
         OK(s, spar_step_begin(s, 0.01));
         OK(s, spar_step_solve(s));
@@ -1292,7 +1292,7 @@ static void test_joints_after_a_rejected_step(void **state) {
         OK(s, spar_joint_get_load(rod, load));
         assert_true(z[0] == 3 && rate[0] == 0 && load[0] == 0);
     }
-    OK(s, spar_line_create(s, "level", b, 0, low, NULL, 0, side, &level));
+    OK(s, spar_link_create(s, "level", b, 0, low, NULL, 0, side, &level));
     OK(s, spar_member_set_load(b, 0, SPAR_LOAD_DEAD, (double[]){5, 0, 0, 0, 0, 0}));
     OK(s, spar_step(s, 0.01, NULL, NULL, NULL));
     OK(s, spar_joint_get_load(level, load));
@@ -1319,8 +1319,8 @@ static void test_joints_apart_change_nothing(void **state) {
     OK(s, spar_member_set_effects(m[0], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
     OK(s, spar_member_commit(m[0]));
     OK(s, spar_member_commit(m[1]));
-    OK(s, spar_line_create(s, "line", m[0], 0, origin, NULL, 0, up, &j[0]));
-    OK(s, spar_line_set_spring(j[0], 3, 0, 2, 0));
+    OK(s, spar_link_create(s, "line", m[0], 0, origin, NULL, 0, up, &j[0]));
+    OK(s, spar_link_set_spring(j[0], 3, 0, 2, 0));
     OK(s, spar_joint_create(s, "foot", m[1], 0, NULL, 0, 0, &j[1]));
     OK(s, spar_joint_create(s, "apart", m[1], 0, m[0], 0, 63, &j[2]));
     OK(s, spar_joint_set_spring(j[2], stiff, NULL, NULL));

@@ -66,9 +66,9 @@ static void test_create(void **state) {
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "the pointer to the new joint",
             spar_joint_create(y.s, "j", y.body[0], 0, NULL, 0, 0, NULL));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "its two points coincide at (0, 0, 0)",
-            spar_line_create(y.s, "j", y.body[0], 0, zero, y.body[1], 0, zero, &j));
+            spar_link_create(y.s, "j", y.body[0], 0, zero, y.body[1], 0, zero, &j));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "point_b",
-            spar_line_create(y.s, "j", y.body[0], 0, zero, NULL, 0, (double[]){0, NAN, 0}, &j));
+            spar_link_create(y.s, "j", y.body[0], 0, zero, NULL, 0, (double[]){0, NAN, 0}, &j));
     assert_null(j);
     spar_session_destroy(&other.s);
     still_sound(&y);
@@ -81,8 +81,8 @@ static void test_describe(void **state) {
     double K[36] = {0}, load[6] = {1, 0, 0, 0, 0, 0};
     spar_joint *line = NULL, *free_joint = NULL;
     OK(y.s, spar_joint_create(y.s, "free", y.body[1], 0, NULL, 0, 63, &free_joint));
-    OK(y.s, spar_line_create(y.s, "line", y.body[1], 0, (double[]){0, 3, 4}, NULL, 0, zero, &line));
-    OK(y.s, spar_line_set_spring(line, 0, 0, 5, 0));
+    OK(y.s, spar_link_create(y.s, "line", y.body[1], 0, (double[]){0, 3, 4}, NULL, 0, zero, &line));
+    OK(y.s, spar_link_set_spring(line, 0, 0, 5, 0));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "q", spar_joint_set_frame(y.hinge, zero, long_q));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "x", spar_joint_set_frame(y.hinge, (double[]){0, INFINITY, 0}, NULL));
     REFUSED(y.s, SPAR_ERR_STATE, "is a line, which has no frame; set its points when it is created",
@@ -96,9 +96,9 @@ static void test_describe(void **state) {
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "stiffness is not symmetric: entries (0,1) and (1,0) are 3 and 0",
             spar_joint_set_spring(free_joint, K, NULL, NULL));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "x", spar_joint_set_load(y.hinge, load));
-    REFUSED(y.s, SPAR_ERR_STATE, "call spar_line_set_spring", spar_joint_set_spring(line, NULL, NULL, NULL));
-    REFUSED(y.s, SPAR_ERR_STATE, "is not a line", spar_line_set_spring(y.hinge, 1, 0, 1, 0));
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "stiffness is -1; give 0 or more", spar_line_set_spring(line, -1, 0, 1, 0));
+    REFUSED(y.s, SPAR_ERR_STATE, "call spar_link_set_spring", spar_joint_set_spring(line, NULL, NULL, NULL));
+    REFUSED(y.s, SPAR_ERR_STATE, "is not a line", spar_link_set_spring(y.hinge, 1, 0, 1, 0));
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "stiffness is -1; give 0 or more", spar_link_set_spring(line, -1, 0, 1, 0));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "mask is 8, free is 16: only free motions can be driven",
             spar_joint_set_driven(y.hinge, SPAR_FREE_RX));
     REFUSED(y.s, SPAR_ERR_STATE, "is not driven; call spar_joint_set_driven",
@@ -164,7 +164,7 @@ static void test_two_nodes_of_one(void **state) {
         spar_member *b = scene_beam(s, "beam", 1, 4, 1, K, K);
         OK(s, spar_member_set_fidelity(b, bends ? SPAR_FIDELITY_EXACT : SPAR_FIDELITY_RIGID, 0));
         OK(s, spar_member_commit(b));
-        OK(s, spar_line_create(s, "string", b, 0, zero, b, 3, (double[]){1, 0, 0}, &j));
+        OK(s, spar_link_create(s, "string", b, 0, zero, b, 3, (double[]){1, 0, 0}, &j));
         assert_int_equal(spar_step(s, 0.01, NULL, NULL, NULL), bends ? SPAR_OK : SPAR_ERR_ARGUMENT);
         assert_true(bends || strstr(spar_session_message(s), "two nodes of 'beam', which moves as one rigid body"));
         spar_session_destroy(&s);
@@ -180,7 +180,7 @@ static void test_late(void **state) {
     REFUSED(y.s, SPAR_ERR_STATE, "the clock has started; create joints before the first step",
             spar_joint_create(y.s, "j", y.body[1], 0, NULL, 0, 0, &j));
     REFUSED(y.s, SPAR_ERR_STATE, "create joints before the first step",
-            spar_line_create(y.s, "j", y.body[1], 0, zero, NULL, 0, (double[]){1, 0, 0}, &j));
+            spar_link_create(y.s, "j", y.body[1], 0, zero, NULL, 0, (double[]){1, 0, 0}, &j));
     REFUSED(y.s, SPAR_ERR_STATE, "describe joints before the first step", spar_joint_set_frame(y.hinge, zero, NULL));
     REFUSED(y.s, SPAR_ERR_STATE, "before the first step", spar_joint_set_driven(y.hinge, SPAR_FREE_RY));
     OK(y.s, spar_step(y.s, 0.1, NULL, NULL, NULL));
@@ -271,8 +271,8 @@ static void test_asked_before(void **state) {
     OK(s, spar_member_commit(b));
     spar_joint *hinge = scene_joint_at(s, "hinge", b, 0, NULL, 0, SPAR_FREE_RY, zero), *line = NULL;
     OK(s, spar_joint_set_spring(hinge, K, NULL, NULL));
-    OK(s, spar_line_create(s, "line", b, 0, x, NULL, 0, (double[]){3, 0, 0}, &line));
-    OK(s, spar_line_set_spring(line, 10, 1, 1.5, 0));
+    OK(s, spar_link_create(s, "line", b, 0, x, NULL, 0, (double[]){3, 0, 0}, &line));
+    OK(s, spar_link_set_spring(line, 10, 1, 1.5, 0));
     for (int asked = 0; asked < 3; asked++) {
         double f;
         memset(seen[asked], 0, sizeof seen[asked]);
@@ -310,8 +310,8 @@ static void test_no_step(void **state) {
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "dt is 1e-160; give a positive number of seconds, 1e-100 or more",
             spar_step_begin(y.s, short_one));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "dt is 1e-160", spar_step(y.s, short_one, NULL, NULL, NULL));
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "dt is 1e-160", spar_session_start(y.s, short_one, NULL, NULL, NULL));
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "dt is 1e-160", spar_step_within(y.s, &short_one, NULL, NULL, NULL, NULL));
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "dt is 1e-160", spar_session_solve_initial(y.s, short_one, NULL, NULL, NULL));
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "dt is 1e-160", spar_step_adaptive(y.s, &short_one, NULL, NULL, NULL, NULL));
     still_sound(&y);
     y = open_yard();
     OK(y.s, spar_step(y.s, 1e-100, NULL, NULL, NULL));

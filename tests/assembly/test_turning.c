@@ -262,7 +262,7 @@ static void test_fluid(void **state) {
         for (int i = 1; i <= (fine ? 200 : 100); i++) {
             const double angle = W[2] * dt * i, rate[6] = {0, 0, 0, 0, 0, W[2]};
             const double q[7] = {0, 0, 0, cos(0.5 * angle), 0, 0, sin(0.5 * angle)};
-            OK(s, spar_member_drive_root(hub, q, rate, NULL));
+            OK(s, spar_member_drive(hub, q, rate, NULL));
             OK(s, spar_step(s, dt, blow, &a, NULL));
             places(b[0], N, angle, x[1]);
             for (int k = 3 * N - 3; k < 3 * N; k++) {
@@ -281,7 +281,7 @@ static void step_hub(spar_session *s, spar_member *hub, double W, double dt, int
     for (int i = from + 1; i <= from + n; i++) {
         const double angle = W * dt * i, rate[6] = {0, 0, 0, 0, 0, W};
         const double q[7] = {0, 0, 0, cos(0.5 * angle), 0, 0, sin(0.5 * angle)};
-        OK(s, spar_member_drive_root(hub, q, rate, NULL));
+        OK(s, spar_member_drive(hub, q, rate, NULL));
         scene_run(s, dt, 1);
     }
 }

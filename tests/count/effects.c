@@ -265,7 +265,7 @@ static void make_aero(scene *s) {
     }
     for (int b = 0; b < BLADES; b++) {
         MUST(spar_fluid_create(s->member[b], "blade", &s->fluid[b]));
-        MUST(spar_fluid_set_sections(s->fluid[b], SECTIONS, xi, offset[0]));
+        MUST(spar_fluid_set_stations(s->fluid[b], SECTIONS, xi, offset[0]));
         MUST(spar_fluid_map(s->fluid[b]));
     }
     MUST(spar_polar_create(ROWS, alpha, cl, cd, s->is.cm ? cm : NULL, &s->polar));
@@ -362,7 +362,7 @@ static void step(scene *s, int k) {
     s->turn[3] = cos(half);
     s->turn[s->is.aero ? 4 : 6] = sin(half);
     for (int b = 0; b < BLADES && s->member[b]; b++) {
-        MUST(spar_member_drive_root(s->member[b], s->turn, s->rates, a));
+        MUST(spar_member_drive(s->member[b], s->turn, s->rates, a));
     }
     MUST(spar_step_begin(s->session, dt));
     while (!done) {

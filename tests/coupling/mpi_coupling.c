@@ -277,21 +277,21 @@ static void totals_over_ranks(void **state) {
     for (int step = 0; step < 3; step++) {
         OK(all.session, spar_step(all.session, 0.02, solve, &all, NULL));
         OK(alone.session, spar_step(alone.session, 0.02, solve, &alone, NULL));
-        OK(all.session, spar_fluid_get_total(all.around, point, x, x + 3));
-        OK(alone.session, spar_fluid_get_total(alone.around, point, y, y + 3));
+        OK(all.session, spar_fluid_sum_loads(all.around, point, x, x + 3));
+        OK(alone.session, spar_fluid_sum_loads(alone.around, point, y, y + 3));
         double force = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]);
         assert_true(force > 1e-3);
         for (int k = 0; k < 6; k++) {
             NEAR(x[k], y[k], 1e-11 * 10 * force);
         }
-        OK(all.session, spar_fluid_check_total(all.around, point, x, x + 3, 1e-14));
+        OK(all.session, spar_fluid_check_loads(all.around, point, x, x + 3, 1e-14));
         y[0] += 1e-6 * force; /* as if a node were pushed twice */
-        assert_int_equal(spar_fluid_check_total(all.around, point, y, NULL, 1e-9), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_fluid_check_loads(all.around, point, y, NULL, 1e-9), SPAR_ERR_ARGUMENT);
     }
     int expected = size > 1 ? SPAR_ERR_COMM : SPAR_OK;
-    assert_int_equal(spar_fluid_get_total(rank == 0 ? all.around : all.added, point, x, x + 3), expected);
+    assert_int_equal(spar_fluid_sum_loads(rank == 0 ? all.around : all.added, point, x, x + 3), expected);
     const double own[3] = {rank == 0, 0, 0};
-    assert_int_equal(spar_fluid_get_total(all.around, own, x, x + 3), expected);
+    assert_int_equal(spar_fluid_sum_loads(all.around, own, x, x + 3), expected);
     assert_true(size == 1 || strstr(spar_session_message(all.session), "point (x)"));
     check_goes_on(&all);
     spar_session_destroy(&all.session);

@@ -88,7 +88,7 @@ static void begin(pair *p, int step) {
     if (p->drive > 0) {
         double turn = p->drive * (step + 1) * dt, q[7] = {0}, v[6] = {0, 0, 0, 0, 0, p->drive};
         spari_quat_exp((double[]){0, 0, turn}, q + 3);
-        OK(p->session, spar_member_drive_root(p->member[0], q, v, NULL));
+        OK(p->session, spar_member_drive(p->member[0], q, v, NULL));
     }
     OK(p->session, spar_step_begin(p->session, dt));
     OK(p->session, spar_step_solve(p->session));

@@ -195,10 +195,10 @@ static void joints_by_hand(spar_session *s, spar_member **m) {
     scene_diagonal(k, 10, 10, 10, 10, 10, 10);
     OK(s, spar_joint_create(s, "tether", m[7], 0, NULL, 0, 63, &j));
     OK(s, spar_joint_set_spring(j, k, NULL, NULL));
-    OK(s, spar_line_create(s, "rope", m[5], 0, hang, m[0], 9, tip, &j));
-    OK(s, spar_line_set_spring(j, 50, 0.5, 4, 0));
-    OK(s, spar_line_create(s, "stay", m[5], 0, hang, NULL, 0, above, &j));
-    OK(s, spar_line_set_spring(j, 5, 0, 4, 1));
+    OK(s, spar_link_create(s, "rope", m[5], 0, hang, m[0], 9, tip, &j));
+    OK(s, spar_link_set_spring(j, 50, 0.5, 4, 0));
+    OK(s, spar_link_create(s, "stay", m[5], 0, hang, NULL, 0, above, &j));
+    OK(s, spar_link_set_spring(j, 5, 0, 4, 1));
     scene_diagonal(d, .1, .1, .1, .1, .1, .1);
     OK(s, spar_joint_create(s, "moss", m[5], 0, NULL, 0, 63, &j));
     OK(s, spar_joint_set_spring(j, k, d, preload));
@@ -362,7 +362,7 @@ static void test_blade(void **state) {
     OK(s[1], spar_member_commit(m[1]));
     for (int k = 0; k < 2; k++) {
         double motion[7] = {0, 0, 0, cos(0.01), 0, 0, sin(0.01)};
-        OK(s[k], spar_member_drive_root(m[k], motion, NULL, NULL));
+        OK(s[k], spar_member_drive(m[k], motion, NULL, NULL));
         OK(s[k], spar_step(s[k], 0.01, NULL, NULL, NULL));
     }
     double motion[2][7 * 10];
@@ -495,7 +495,7 @@ static void test_mistakes(void **state) {
         {"[point tip]\n[joint j]\na tip 0\nb ground\nfree q\n", "line 5: free: 'q' is not known", "rx, ry, rz"},
         {"[point tip]\n[joint j]\na tip 0\nb ground\nfree y\nstiffness 1 1 1 1 1 1\n", "line 6: spar_joint_set_spring",
          "j"},
-        {"[point tip]\n[line j]\na tip 0 0 0 0\nb ground 0 0 0\n", "line 2: spar_line_create", "j"},
+        {"[point tip]\n[line j]\na tip 0 0 0 0\nb ground 0 0 0\n", "line 2: spar_link_create", "j"},
         {"[point tip]\n[line j]\na tip 0 0 0 0\nb ground 0 0 1 1 1\n", "line 4: b has 6 values", "give 4 to 5"},
         {"[point tip]\n[output]\nwatch tip 0\n", "line 3: watch adds columns", "give history FILE"},
         {"[point tip]\n[output]\nhistory h\nwatch top 0\n", "line 4: there is no member 'top'", "'tip'"},
@@ -731,7 +731,7 @@ static void air_by_hand(spar_session *s, spar_member *wing, by_hand *h) {
     spar_fluid *fluid = NULL;
     spar_polar *polar = NULL;
     OK(s, spar_fluid_create(wing, "air", &fluid));
-    OK(s, spar_fluid_set_sections(fluid, 3, xi, offset));
+    OK(s, spar_fluid_set_stations(fluid, 3, xi, offset));
     OK(s, spar_fluid_map(fluid));
     OK(s, spar_aero_create(1, &fluid, &h->aero));
     OK(NULL, spar_polar_create(2, alpha, cl, cd, cm, &polar));

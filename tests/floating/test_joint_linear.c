@@ -254,8 +254,8 @@ static void blade(int kind, double dt, double off[2]) {
         double q[7] = {0, 0, 0, cos(angle / 2), 0, 0, sin(angle / 2)},
                v[6] = {0, 0, 0, 0, 0, turn * (1 - cos(acos(-1.0) * t)) / 2},
                a[6] = {0, 0, 0, 0, 0, turn * acos(-1.0) * sin(acos(-1.0) * t) / 2};
-        OK(s, spar_member_drive_root(driven, q, v, a));
-        OK(s, spar_member_drive_root(hub, q, v, a));
+        OK(s, spar_member_drive(driven, q, v, a));
+        OK(s, spar_member_drive(hub, q, v, a));
         scene_run(s, dt, 1);
     }
     for (int k = 0; k < 3; k++) {

@@ -35,14 +35,14 @@ static void test_sections_are_linear(void **state) {
         for (int i = 0; i <= 10; i++) {
             double eta = i / 10.0, arm = 10 * (1 - eta);
             double closed[6] = {load[0], load[1], load[2], load[3], load[4] - arm * load[2], load[5] + arm * load[1]};
-            OK(s, spar_beam_get_section(b, 1, &eta, NULL, force, NULL, NULL));
+            OK(s, spar_beam_evaluate(b, 1, &eta, NULL, force, NULL, NULL));
             for (int c = 0; c < 6; c++) {
                 NEAR(force[c], closed[c], 1e-10 * 2e5);
             }
         }
         OK(s, spar_member_get_reaction(b, r));
         double root = 0;
-        OK(s, spar_beam_get_section(b, 1, &root, NULL, force, NULL, NULL));
+        OK(s, spar_beam_evaluate(b, 1, &root, NULL, force, NULL, NULL));
         for (int c = 0; c < 6; c++) {
             NEAR(r[c], -force[c], 1e-10 * 2e5);
         }
@@ -50,7 +50,7 @@ static void test_sections_are_linear(void **state) {
             double xi, w;
             gsl_integration_glfixed_point(0, 1, (size_t)(i % 8), &xi, &w, gauss);
             double eta = 0.5 * (i / 8 + xi);
-            OK(s, spar_beam_get_section(b, 1, &eta, strain, force, NULL, NULL));
+            OK(s, spar_beam_evaluate(b, 1, &eta, strain, force, NULL, NULL));
             for (int c = 0; c < 6; c++) {
                 work += 0.5 * w * 5 * strain[c] * force[c];
             }
@@ -72,12 +72,12 @@ static void test_sections_turn_with_the_root(void **state) {
         const double q[7] = {1, 2, 3, cos(0.6), 0, 0, sin(0.6)};
         OK(s, spar_member_commit(b));
         if (turned) {
-            OK(s, spar_member_drive_root(b, q, NULL, NULL));
+            OK(s, spar_member_drive(b, q, NULL, NULL));
             scene_run(s, 1, 1);
         }
         OK(s, spar_member_set_load(b, NODES - 1, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
-        OK(s, spar_beam_get_section(b, 1, &eta, NULL, force[turned], NULL, NULL));
+        OK(s, spar_beam_evaluate(b, 1, &eta, NULL, force[turned], NULL, NULL));
         spar_session_destroy(&s);
     }
     for (int c = 0; c < 6; c++) {
@@ -117,7 +117,7 @@ static account run(int fidelity, int64_t modes, int root, double A, double dt, d
                    a = 0.05 * A * w * w * cos(w * (double)k * dt);
             const double q[7] = {0, 0, p, cos(p / 2), 0, sin(p / 2), 0}, rate[6] = {0, 0, v, 0, v, 0},
                          accel[6] = {0, 0, a, 0, a, 0};
-            OK(s, spar_member_drive_root(b, q, rate, accel));
+            OK(s, spar_member_drive(b, q, rate, accel));
         }
         scene_run(s, dt, k > 0);
         OK(s, spar_member_get_work(b, 3, now.work));
@@ -136,7 +136,7 @@ static account run(int fidelity, int64_t modes, int root, double A, double dt, d
     scene_tip(b, tip);
     memcpy(now.tip, tip, sizeof now.tip);
     OK(s, spar_member_get_reaction(b, now.reaction));
-    OK(s, spar_beam_get_section(b, 1, &eta, NULL, now.section, NULL, NULL));
+    OK(s, spar_beam_evaluate(b, 1, &eta, NULL, now.section, NULL, NULL));
     if (modes >= FREQUENCIES || fidelity == SPAR_FIDELITY_EXACT) {
         double f[FREQUENCIES];
         OK(s, spar_member_solve_modes(b, FREQUENCIES, f, NULL));
@@ -348,7 +348,7 @@ static void test_pitch_while_turning(void **state) {
             double q[7] = {0}, rate[6] = {0, 0, 0, pd * x[0], pd * x[1], W},
                    accel[6] = {0, 0, 0, pdd * x[0] - pd * W * x[1], pdd * x[1] + pd * W * x[0], 0};
             spari_quat_mul(turn, pitch, q + 3);
-            OK(s, spar_member_drive_root(b, q, rate, accel));
+            OK(s, spar_member_drive(b, q, rate, accel));
             scene_run(s, dt, 1);
             scene_tip(b, tip[k][i]);
         }
@@ -378,7 +378,7 @@ static void test_half_a_turn(void **state) {
         while (status == SPAR_OK && steps < 40) {
             scene_tip(b, tip);
             OK(s, spar_member_get_energy(b, 4, energy));
-            OK(s, spar_beam_get_section(b, 1, &eta, strain, NULL, NULL, NULL));
+            OK(s, spar_beam_evaluate(b, 1, &eta, strain, NULL, NULL, NULL));
             assert_true(fabs(energy[1]) < 1e-4 * energy[0]);
             for (int c = 0; c < 6; c++) {
                 NEAR(strain[c], 0, 1e-4);

@@ -146,7 +146,7 @@ static void sections_stand_where_asked(void **state) {
     rig_start(&r, 0);
     spar_fluid *f;
     OK(spar_fluid_create(r.member, "sections", &f));
-    OK(spar_fluid_set_sections(f, N, xi, offset[0]));
+    OK(spar_fluid_set_stations(f, N, xi, offset[0]));
     assert_int_equal(spar_fluid_pull_motion(f, 1, x[0], NULL), SPAR_ERR_STATE);
     assert_true(says(&r, "spar_fluid_map") && says(&r, "sections") && says(&r, "blade"));
     OK(spar_fluid_map(f));
@@ -257,7 +257,7 @@ static void poses_and_matrices(void **state) {
     rig_start(&r, 0);
     spar_fluid *f;
     OK(spar_fluid_create(r.member, "sections", &f));
-    OK(spar_fluid_set_sections(f, N, xi, offset[0]));
+    OK(spar_fluid_set_stations(f, N, xi, offset[0]));
     OK(spar_fluid_map(f));
     bend(&r, 0.8);
     OK(spar_fluid_pull_poses(f, 1, x[0][0], q[0][0], v[0][0], omega[0][0], accel[0][0], alpha[0]));
@@ -611,7 +611,7 @@ static void history_is_an_effect(void **state) {
         spar_fluid *f;
         rig_start(&r, effects[k % KINDS]);
         OK(spar_fluid_create(r.member, "line", &f));
-        OK(sections ? spar_fluid_set_sections(f, 2, xi, NULL) : spar_fluid_set_force_nodes(f, 2, node[0]));
+        OK(sections ? spar_fluid_set_stations(f, 2, xi, NULL) : spar_fluid_set_force_nodes(f, 2, node[0]));
         OK(spar_fluid_map(f));
         OK(spar_fluid_push_forces(f, force[0], NULL));
         assert_int_equal(spar_fluid_pull_forces(f, 1, got[0]), kept ? SPAR_OK : SPAR_ERR_STATE);
@@ -733,7 +733,7 @@ static void totals_are_of_one_fluid(void **state) {
     scatter(node, N, &seed);
     for (int k = 0; k < 2; k++) {
         OK(spar_fluid_create(r.member, k ? "b" : "a", &f[k]));
-        OK(spar_fluid_get_total(f[k], NULL, got, got + 3));
+        OK(spar_fluid_sum_loads(f[k], NULL, got, got + 3));
         assert_true(spari_norm(got) + spari_norm(got + 3) == 0);
         OK(spar_fluid_set_motion_nodes(f[k], N, node[0]));
         OK(spar_fluid_set_force_nodes(f[k], N, node[0]));
@@ -755,7 +755,7 @@ static void totals_are_of_one_fluid(void **state) {
         }
         OK(spar_fluid_push_forces(f[k], force[k][0], NULL));
     }
-    OK(spar_fluid_get_total(f[0], point, got, got + 3));
+    OK(spar_fluid_sum_loads(f[0], point, got, got + 3));
     for (int i = 0; i < 6; i++) {
         CLOSE(got[i], want[i], 1e-12);
     }
@@ -765,7 +765,7 @@ static void totals_are_of_one_fluid(void **state) {
         }
     }
     OK(spar_member_set_motion(r.member, r.q[0], NULL, NULL));
-    OK(spar_fluid_get_total(f[0], point, before, before + 3));
+    OK(spar_fluid_sum_loads(f[0], point, before, before + 3));
     spari_cross(shift, got, t);
     for (int i = 0; i < 3; i++) {
         CLOSE(before[i], got[i], 0);
@@ -773,28 +773,28 @@ static void totals_are_of_one_fluid(void **state) {
     }
     /* what the host claims: those very sums, to the rounding of the transfer; then a node pushed twice, of 1e-9 of all
      */
-    OK(spar_fluid_check_total(f[0], point, before, before + 3, 1e-13));
-    OK(spar_fluid_check_total(f[0], point, before, NULL, 1e-13));
-    OK(spar_fluid_check_total(f[1], NULL, got, NULL, 1e300));
+    OK(spar_fluid_check_loads(f[0], point, before, before + 3, 1e-13));
+    OK(spar_fluid_check_loads(f[0], point, before, NULL, 1e-13));
+    OK(spar_fluid_check_loads(f[1], NULL, got, NULL, 1e300));
     memcpy(got, before, sizeof got);
     got[1] += 1e-9 * spari_norm(force[0][0]);
-    assert_int_equal(spar_fluid_check_total(f[0], point, got, NULL, 1e-13), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_loads(f[0], point, got, NULL, 1e-13), SPAR_ERR_ARGUMENT);
     assert_true(says(&r, "forces pushed on all ranks") && says(&r, "from exactly one rank"));
     got[1] = before[1];
     got[4] *= 1 + 1e-9;
-    assert_int_equal(spar_fluid_check_total(f[0], point, got, got + 3, 1e-13), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_loads(f[0], point, got, got + 3, 1e-13), SPAR_ERR_ARGUMENT);
     assert_true(says(&r, "moments pushed"));
     const double bad[3] = {0, NAN, 0};
-    assert_int_equal(spar_fluid_check_total(NULL, point, before, NULL, 1), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_fluid_check_total(f[0], point, NULL, NULL, 1), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_fluid_check_total(f[0], point, bad, NULL, 1), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_fluid_check_total(f[0], point, before, bad, 1), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_fluid_check_total(f[0], point, before, NULL, 0), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_fluid_check_total(f[0], point, before, NULL, NAN), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_fluid_get_total(NULL, point, got, got + 3), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_fluid_get_total(f[0], bad, got, got + 3), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_loads(NULL, point, before, NULL, 1), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_loads(f[0], point, NULL, NULL, 1), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_loads(f[0], point, bad, NULL, 1), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_loads(f[0], point, before, bad, 1), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_loads(f[0], point, before, NULL, 0), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_check_loads(f[0], point, before, NULL, NAN), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_sum_loads(NULL, point, got, got + 3), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_sum_loads(f[0], bad, got, got + 3), SPAR_ERR_ARGUMENT);
     assert_true(says(&r, "the point is (0, nan, 0)"));
-    OK(spar_fluid_get_total(f[0], point, NULL, NULL));
+    OK(spar_fluid_sum_loads(f[0], point, NULL, NULL));
     rig_end(&r);
 }
 
@@ -860,7 +860,7 @@ static void bad_calls_are_refused(void **state) {
     assert_int_equal(spar_fluid_set_motion_nodes(f, 1, NULL), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_fluid_set_motion_nodes(f, 2, node[0]), SPAR_ERR_ARGUMENT);
     assert_true(says(&r, "motion node 1, component 1"));
-    assert_int_equal(spar_fluid_set_sections(f, 1, xi, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_fluid_set_stations(f, 1, xi, NULL), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_fluid_set_projection(f, 7, 0), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_fluid_set_interpolation(f, 7), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_fluid_get_map(f, 2, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);

@@ -191,7 +191,7 @@ static void compare_pushes(const pair *p, const int64_t l[2], int kind) {
                        : kind == 1 ? spar_fluid_push_forces_f32(fluid[k], f32[k], m32[k])
                                    : spar_fluid_push_forces_at(fluid[k], 0.5, f[k], m[k]));
         OK(p->session, spar_fluid_get_audit(fluid[k], 8, audit[k]));
-        OK(p->session, spar_fluid_get_total(fluid[k], NULL, total[k], total[k] + 3));
+        OK(p->session, spar_fluid_sum_loads(fluid[k], NULL, total[k], total[k] + 3));
         clear(x[k], x32[k]);
         clear(v[k], v32[k]);
         clear(w[k], v32[k]);
@@ -283,7 +283,7 @@ static void life_of_layouts(void **state) {
     assert_true(node == 3 && component == 1);
     OK(s, spar_fluid_get_layout(p.other, SPAR_NODES_FORCE, NULL, &component));
     assert_true(component == N);
-    OK(s, spar_fluid_set_sections(p.other, 2, xi, NULL));
+    OK(s, spar_fluid_set_stations(p.other, 2, xi, NULL));
     OK(s, spar_fluid_get_layout(p.other, SPAR_NODES_FORCE, &node, NULL));
     assert_true(node == 3);
     OK(s, spar_fluid_map(p.other));

@@ -62,9 +62,9 @@ static void move(const blade *b, double t) {
 static spar_fluid *line(const blade *b, const char *name, int apart) {
     spar_fluid *f = NULL;
     OK(b->session, spar_fluid_create(b->beam, name, &f));
-    OK(b->session, spar_fluid_set_sections(f, N, force_xi, force_offset[0]));
+    OK(b->session, spar_fluid_set_stations(f, N, force_xi, force_offset[0]));
     if (apart) {
-        OK(b->session, spar_fluid_set_motion_sections(f, M, motion_xi, motion_offset[0]));
+        OK(b->session, spar_fluid_set_motion_stations(f, M, motion_xi, motion_offset[0]));
     }
     OK(b->session, spar_fluid_map(f));
     return f;
@@ -87,7 +87,7 @@ static void same_places_same_bits(void **state) {
     blade b;
     blade_begin(&b, 0);
     spar_fluid *f[2] = {line(&b, "shared", 0), line(&b, "apart", 0)};
-    OK(b.session, spar_fluid_set_motion_sections(f[1], N, force_xi, force_offset[0]));
+    OK(b.session, spar_fluid_set_motion_stations(f[1], N, force_xi, force_offset[0]));
     OK(b.session, spar_fluid_map(f[1]));
     for (int k = 0; k < 3; k++) {
         OK(b.session, spar_step_begin(b.session, 0.1));
@@ -129,14 +129,14 @@ static void either_set_is_where_asked(void **state) {
     spar_fluid *both = line(&b, "apart", 1), *motion = NULL, *force = line(&b, "forces", 0),
                *unpulled = line(&b, "unpulled", 0);
     OK(b.session, spar_fluid_create(b.beam, "motion", &motion));
-    OK(b.session, spar_fluid_set_sections(motion, M, motion_xi, motion_offset[0]));
+    OK(b.session, spar_fluid_set_stations(motion, M, motion_xi, motion_offset[0]));
     OK(b.session, spar_fluid_map(motion));
     OK(b.session, spar_fluid_get_kind(both, SPAR_NODES_MOTION, &kind[0]));
     OK(b.session, spar_fluid_get_kind(both, SPAR_NODES_FORCE, &kind[1]));
-    assert_int_equal(kind[0], SPAR_KIND_SECTIONS);
-    assert_int_equal(kind[1], SPAR_KIND_SECTIONS | SPAR_KIND_FORCES);
+    assert_int_equal(kind[0], SPAR_KIND_STATIONS);
+    assert_int_equal(kind[1], SPAR_KIND_STATIONS | SPAR_KIND_FORCES);
     OK(b.session, spar_fluid_get_kind(motion, SPAR_NODES_MOTION, &kind[0]));
-    assert_int_equal(kind[0], SPAR_KIND_SECTIONS | SPAR_KIND_SHARED | SPAR_KIND_FORCES);
+    assert_int_equal(kind[0], SPAR_KIND_STATIONS | SPAR_KIND_SHARED | SPAR_KIND_FORCES);
     move(&b, 0.2);
     for (int i = 0; i < 6; i++) {
         double theta = 0.5 * (i % 3);
@@ -158,7 +158,7 @@ static void either_set_is_where_asked(void **state) {
         assert_memory_equal(v[0], v[1], sizeof v[0]);
     }
     int asked = spari_fluid_asked(both);
-    OK(b.session, spar_fluid_get_places(both, SPAR_NODES_FORCE, x[0][0], v[0][0], q[0][0], foot[0]));
+    OK(b.session, spar_fluid_get_positions(both, SPAR_NODES_FORCE, x[0][0], v[0][0], q[0][0], foot[0]));
     assert_int_equal(spari_fluid_asked(both), asked);
     assert_memory_equal(x[0], x[1], sizeof x[0]);
     assert_memory_equal(q[0], q[1], sizeof q[0]);
@@ -172,7 +172,7 @@ static void either_set_is_where_asked(void **state) {
             NEAR(foot[j][i], x[0][j][i] - arm[i], 1e-14 * 20);
         }
     }
-    OK(b.session, spar_fluid_get_places(unpulled, SPAR_NODES_MOTION, x[0][0], v[0][0], q[0][0], NULL));
+    OK(b.session, spar_fluid_get_positions(unpulled, SPAR_NODES_MOTION, x[0][0], v[0][0], q[0][0], NULL));
     OK(b.session, spar_fluid_get_forces(unpulled, x[0][0]));
     assert_int_equal(spari_fluid_asked(unpulled), 0);
     blade_end(&b);
@@ -203,7 +203,7 @@ static void loads_are_conserved(void **state) {
     }
     NEAR(audit[SPAR_AUDIT_POWER], power, 1e-12 * 2000);
     assert_true(fabs(power) > 10);
-    OK(b.session, spar_fluid_get_total(f, NULL, total, total + 3));
+    OK(b.session, spar_fluid_sum_loads(f, NULL, total, total + 3));
     for (int i = 0; i < 6; i++) {
         NEAR(total[i], want[i], 1e-12 * 2000);
     }
@@ -223,26 +223,26 @@ static void force_sections_stay(void **state) {
     spar_fluid *f = line(&b, "line", 0), *loose = NULL;
     some_forces(force, 2);
     OK(b.session, spar_fluid_push_forces(f, force[0], NULL));
-    OK(b.session, spar_fluid_get_places(f, SPAR_NODES_FORCE, x[0][0], NULL, NULL, NULL));
-    OK(b.session, spar_fluid_set_motion_sections(f, M, motion_xi, NULL));
+    OK(b.session, spar_fluid_get_positions(f, SPAR_NODES_FORCE, x[0][0], NULL, NULL, NULL));
+    OK(b.session, spar_fluid_set_motion_stations(f, M, motion_xi, NULL));
     OK(b.session, spar_fluid_get_kind(f, SPAR_NODES_FORCE, &kind));
-    assert_int_equal(kind, SPAR_KIND_SECTIONS | SPAR_KIND_FORCES);
+    assert_int_equal(kind, SPAR_KIND_STATIONS | SPAR_KIND_FORCES);
     REFUSED(b.session, SPAR_ERR_STATE, "spar_fluid_map", spar_fluid_pull_motion(f, 1, x[1][0], NULL));
     OK(b.session, spar_fluid_map(f));
     OK(b.session, spar_fluid_get_count(f, SPAR_NODES_MOTION, &n));
     assert_int_equal(n, M);
     OK(b.session, spar_fluid_get_count(f, SPAR_NODES_FORCE, &n));
     assert_int_equal(n, N);
-    OK(b.session, spar_fluid_get_places(f, SPAR_NODES_FORCE, x[1][0], NULL, NULL, NULL));
+    OK(b.session, spar_fluid_get_positions(f, SPAR_NODES_FORCE, x[1][0], NULL, NULL, NULL));
     assert_memory_equal(x[0], x[1], sizeof x[0]);
     OK(b.session, spar_fluid_get_forces(f, got[0]));
     assert_memory_equal(got, force, sizeof got);
-    OK(b.session, spar_fluid_set_sections(f, N, force_xi, NULL)); /* both again */
+    OK(b.session, spar_fluid_set_stations(f, N, force_xi, NULL)); /* both again */
     OK(b.session, spar_fluid_get_kind(f, SPAR_NODES_MOTION, &kind));
     assert_true(kind & SPAR_KIND_SHARED);
     OK(b.session, spar_fluid_create(b.beam, "loose", &loose));
     OK(b.session, spar_fluid_set_force_nodes(loose, N, x[0][0]));
-    OK(b.session, spar_fluid_set_motion_sections(loose, M, motion_xi, NULL));
+    OK(b.session, spar_fluid_set_motion_stations(loose, M, motion_xi, NULL));
     OK(b.session, spar_fluid_map(loose));
     OK(b.session, spar_fluid_get_kind(loose, SPAR_NODES_FORCE, &kind));
     assert_int_equal(kind, 0);
@@ -342,9 +342,9 @@ static void control_points_of_their_own(void **state) {
         blade_begin(&b, 1);
         spar_fluid *f = NULL;
         OK(b.session, spar_fluid_create(b.beam, "line", &f));
-        OK(b.session, spar_fluid_set_sections(f, N, force_xi, NULL));
+        OK(b.session, spar_fluid_set_stations(f, N, force_xi, NULL));
         if (k == 0) {
-            OK(b.session, spar_fluid_set_motion_sections(f, N, force_xi, behind[0]));
+            OK(b.session, spar_fluid_set_motion_stations(f, N, force_xi, behind[0]));
         }
         OK(b.session, spar_fluid_map(f));
         OK(b.session, spar_aero_create(1, &f, &aero));
@@ -372,13 +372,13 @@ static void control_points_of_their_own(void **state) {
                 want[i] += load[k][j][i], want[3 + i] += t[i];
             }
         }
-        OK(b.session, spar_fluid_get_total(f, NULL, total, total + 3));
+        OK(b.session, spar_fluid_sum_loads(f, NULL, total, total + 3));
         for (int i = 0; i < 6; i++) {
             NEAR(total[i], want[i], 1e-9);
         }
         assert_true(spari_norm(want) > 100);
         if (k == 0) { /* another number of them is none of sections */
-            OK(b.session, spar_fluid_set_motion_sections(f, M, motion_xi, NULL));
+            OK(b.session, spar_fluid_set_motion_stations(f, M, motion_xi, NULL));
             OK(b.session, spar_fluid_map(f));
             REFUSED(b.session, SPAR_ERR_STATE, "make a new one", spar_aero_solve(aero, 1.2, wind[0], 1));
         }
@@ -405,25 +405,25 @@ static void bad_sections_are_refused(void **state) {
     spar_session *s = b.session;
     spar_fluid *f = line(&b, "line", 1);
     OK(s, spar_fluid_pull_motion(f, 1, before[0], NULL));
-    assert_int_equal(spar_fluid_set_motion_sections(NULL, 2, xi, NULL), SPAR_ERR_ARGUMENT);
-    REFUSED(s, SPAR_ERR_ARGUMENT, "-1 sections", spar_fluid_set_motion_sections(f, -1, xi, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "without coordinates", spar_fluid_set_motion_sections(f, 2, NULL, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "section 1", spar_fluid_set_motion_sections(f, 2, beyond, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "section 1", spar_fluid_set_motion_sections(f, 2, xi, offset[0]));
+    assert_int_equal(spar_fluid_set_motion_stations(NULL, 2, xi, NULL), SPAR_ERR_ARGUMENT);
+    REFUSED(s, SPAR_ERR_ARGUMENT, "-1 sections", spar_fluid_set_motion_stations(f, -1, xi, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "without coordinates", spar_fluid_set_motion_stations(f, 2, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "section 1", spar_fluid_set_motion_stations(f, 2, beyond, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "section 1", spar_fluid_set_motion_stations(f, 2, xi, offset[0]));
     REFUSED(s, SPAR_ERR_ARGUMENT, "theta", spar_fluid_pull_force_places(f, 1.5, x[0], NULL, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "set 2", spar_fluid_get_places(f, 2, x[0], NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "set 2", spar_fluid_get_positions(f, 2, x[0], NULL, NULL, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "set -1", spar_fluid_get_kind(f, -1, &kind));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_get_kind(f, 0, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_get_forces(f, NULL));
     OK(s, spar_step_begin(s, 0.1));
-    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_fluid_set_motion_sections(f, 2, xi, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_fluid_set_motion_stations(f, 2, xi, NULL));
     OK(s, spar_step_reject(s));
     OK(s, spar_fluid_pull_motion(f, 1, x[0], NULL));
     assert_memory_equal(x, before, M * sizeof x[0]);
-    OK(s, spar_fluid_set_motion_sections(f, 0, NULL, NULL)); /* none at all */
+    OK(s, spar_fluid_set_motion_stations(f, 0, NULL, NULL)); /* none at all */
     OK(s, spar_fluid_map(f));
     OK(s, spar_fluid_pull_motion(f, 1, NULL, NULL));
-    OK(s, spar_fluid_get_places(f, SPAR_NODES_MOTION, NULL, NULL, NULL, NULL));
+    OK(s, spar_fluid_get_positions(f, SPAR_NODES_MOTION, NULL, NULL, NULL, NULL));
     blade_end(&b);
 }
 

@@ -143,8 +143,8 @@ static void trial_and_file(void **state) {
     OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_FIXED_POINT, 1e-13, 1e-13, 50));
     OK(again.s, spar_session_set_coupling(again.s, SPAR_COUPLING_FIXED_POINT, 1e-13, 1e-13, 50));
     OK(base.s, spar_session_set_coupling(base.s, SPAR_COUPLING_FIXED_POINT, 1e-13, 1e-13, 50));
-    OK(c.s, spar_session_start(c.s, 0.1, solve, &c, NULL));
-    OK(base.s, spar_session_start(base.s, 0.1, solve, &base, NULL));
+    OK(c.s, spar_session_solve_initial(c.s, 0.1, solve, &c, NULL));
+    OK(base.s, spar_session_solve_initial(base.s, 0.1, solve, &base, NULL));
     for (int i = 0; i < ALL; i++) {
         z[i] = 0.5;
     }

@@ -515,7 +515,7 @@ static void bad_weights_are_refused(void **state) {
     OK(s, spar_step_reject(s));
     OK(s, spar_fluid_get_motion_weights(m.weighted, got));
     assert_memory_equal(got, m.w, sizeof got);
-    OK(s, spar_fluid_set_sections(m.plain, 2, xi, NULL));
+    OK(s, spar_fluid_set_stations(m.plain, 2, xi, NULL));
     REFUSED(s, SPAR_ERR_STATE, "sections", spar_fluid_set_motion_weights(m.plain, 2, m.w));
     REFUSED(s, SPAR_ERR_STATE, "sections", spar_fluid_fade_motion(m.plain, 0, 1, 2, NULL, NULL));
     spar_member *raw;

@@ -193,14 +193,14 @@ contains
     call body%get_motion(q, v, a)
     call body%get_energy(energy)
     call fluid%get_audit(audit)
-    call fluid%get_total(force=force, moment=moment)
+    call fluid%sum_loads(force=force, moment=moment)
     call check(all(abs(force - f(:,1)) < 1e-14_c_double) .and. all(abs(moment) < 1e-12_c_double), &
         'the force of all nodes, through the origin')
-    call fluid%get_total(q(1:3,1) - [0.0_c_double, 0.0_c_double, 1.0_c_double], moment=moment)
+    call fluid%sum_loads(q(1:3,1) - [0.0_c_double, 0.0_c_double, 1.0_c_double], moment=moment)
     call check(all(abs(moment - [2.0_c_double, 1.0_c_double, 0.0_c_double]) < 1e-12_c_double), 'its moment, an arm of 1 along z')
-    call fluid%check_total(q(1:3,1) - [0.0_c_double, 0.0_c_double, 1.0_c_double], f(:,1), &
+    call fluid%check_loads(q(1:3,1) - [0.0_c_double, 0.0_c_double, 1.0_c_double], f(:,1), &
         [2.0_c_double, 1.0_c_double, 0.0_c_double], 1e-12_c_double)
-    call fluid%check_total(force=f(:,1), moment=[0.0_c_double, 0.0_c_double, 1.0_c_double], rtol=1e-12_c_double, stat=stat)
+    call fluid%check_loads(force=f(:,1), moment=[0.0_c_double, 0.0_c_double, 1.0_c_double], rtol=1e-12_c_double, stat=stat)
     call check(stat == SPAR_ERR_ARGUMENT, 'a total that is not that of the loads')
     call session%get_residual(change, loads)
     call check(abs(change) < 1e-14_c_double .and. abs(loads - sqrt(14.0_c_double)) < 1e-12_c_double, 'the last residual')
@@ -317,20 +317,20 @@ contains
     f = 0
     f(:,3) = [1, 2, 4]
     call fluid%push_forces(f)
-    call fluid%get_total(force=total)
+    call fluid%sum_loads(force=total)
     call check(all(abs(total - [0, 0, 7]) < 1e-14_c_double), 'forces by component')
     call fluid%pull_force_places(1.0_c_double, x)
     call check(all(abs(x(:,2) - [2, 2, 5]) < 1e-15_c_double), 'force nodes have no weights')
-    call fluid%get_places(SPAR_NODES_FORCE, x, foot=xdot)
+    call fluid%get_positions(SPAR_NODES_FORCE, x, foot=xdot)
     call check(all(abs(x(2,:) - [2, 2, 5]) < 1e-15_c_double) .and. all(abs(xdot(2,:) - 2) < 1e-15_c_double), &
         'getters are packed')
     call fluid%get_forces(x)
     call check(all(abs(x(3,:) - [1, 2, 4]) < 1e-15_c_double), 'forces as kept')
     call session%step_reject()
     call fluid%set_motion_weights()
-    call fluid%set_motion_sections([-1, 1] * 1.0_c_double)
+    call fluid%set_motion_stations([-1, 1] * 1.0_c_double)
     call fluid%get_kind(SPAR_NODES_MOTION, kind)
-    call check(kind == SPAR_KIND_SECTIONS, 'motion nodes as sections')
+    call check(kind == SPAR_KIND_STATIONS, 'motion nodes as sections')
   end subroutine moved_mesh
 
   subroutine check_and_accept(session)
@@ -491,7 +491,7 @@ contains
     call check(all(abs(reaction(1:3) + p(1:3)) < 1e-12_c_double), 'force at the root')
     call check(abs(reaction(5) - 2 * p(3)) < 1e-12_c_double .and. abs(reaction(6) + 2 * p(2)) < 1e-12_c_double, &
         'moment at the root')
-    call beam%get_section([0.0_c_double, 0.5_c_double], force=q(1:6,1:2))
+    call beam%evaluate([0.0_c_double, 0.5_c_double], force=q(1:6,1:2))
     q(2:3,1) = q(2:3,1) - p(2:3)
     q(5:6,1:2) = q(5:6,1:2) - reshape([-2 * p(3), 2 * p(2), -p(3), p(2)], [2, 2])
     call check(maxval(abs(q([2, 3, 5, 6],1))) < 1e-12_c_double .and. maxval(abs(q(5:6,2))) < 1e-12_c_double, &
@@ -557,7 +557,7 @@ contains
     do i = 1, 20
       angle = 2 * pi * dt * i
       q = [0.0_c_double, 0.0_c_double, 0.0_c_double, cos(angle / 2), 0.0_c_double, 0.0_c_double, sin(angle / 2)]
-      call body%drive_root(q, w, a)
+      call body%drive(q, w, a)
       call session%step(dt)
       call fluid%pull_motion(1.0_c_double, x, v)
       call check(all(abs(x(:,1) - 2 * [cos(angle), sin(angle), 0.0_c_double]) < 1e-13_c_double), 'the tip of a driven body')

@@ -455,7 +455,7 @@ static void fin_create(fin *f, const fin_case *c) {
         f->weight[k] = w[k % 5];
     }
     OK(f->session, spar_fluid_create(f->beam, "strips", &f->fluid));
-    OK(f->session, spar_fluid_set_sections(f->fluid, STRIPS, xi, NULL));
+    OK(f->session, spar_fluid_set_stations(f->fluid, STRIPS, xi, NULL));
     OK(f->session, spar_fluid_map(f->fluid));
     OK(f->session, spar_session_set_integrator(f->session, 0.9, c->substeps > 0 ? c->substeps : 1));
     OK(f->session, spar_session_set_predictor(f->session, c->order));
@@ -468,7 +468,7 @@ static void fin_drive(const fin *f, double t) {
                  a[6] = {-0.2 * sin(t), 0, 0, 0, 0, 0};
     double q[7] = {0.2 * sin(t), 0, 0};
     spari_quat_exp(psi, q + 3);
-    OK(f->session, spar_member_drive_root(f->beam, q, v, a));
+    OK(f->session, spar_member_drive(f->beam, q, v, a));
 }
 
 /* Steps with the fluid; 0, or the status that ended them. */

@@ -79,7 +79,7 @@ static void arms_create_by(arms *m, double mass, double guess, int fidelity, int
     OK(s, spar_fluid_set_force_nodes(m->fluid[0], 1, x));
     OK(s, spar_fluid_map(m->fluid[0]));
     OK(s, spar_fluid_create(m->beam, "on beam", &m->fluid[1]));
-    OK(s, spar_fluid_set_sections(m->fluid[1], ARM_NODES, xi, NULL));
+    OK(s, spar_fluid_set_stations(m->fluid[1], ARM_NODES, xi, NULL));
     OK(s, spar_fluid_map(m->fluid[1]));
     double rough = is_frame(fidelity) ? 100 : 1;
     OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 1e-12 * rough, 1e-11 * rough, 300));
@@ -326,7 +326,7 @@ static void mast_create(mast *m, double mass, double guess, int fidelity) {
     OK(s, spar_member_set_added_mass(m->beam, 1, eta, A));
     OK(s, spar_member_commit(m->beam));
     OK(s, spar_fluid_create(m->beam, "strips", &m->fluid));
-    OK(s, spar_fluid_set_sections(m->fluid, ARM_NODES, xi, NULL));
+    OK(s, spar_fluid_set_stations(m->fluid, ARM_NODES, xi, NULL));
     OK(s, spar_fluid_map(m->fluid));
     double rough = is_frame(fidelity) ? 100 : 1;
     OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 1e-12 * rough, 1e-11 * rough, 300));
@@ -407,7 +407,7 @@ static void swing_create(mast *m, double mass, double guess, int fidelity, int b
     OK(s, spar_joint_create(s, "hinge", m->beam, by_tip ? 5 : 0, NULL, 0, SPAR_FREE_RZ, &hinge));
     OK(s, spar_joint_set_frame(hinge, x, ahead[0]));
     OK(s, spar_fluid_create(m->beam, "strips", &m->fluid));
-    OK(s, spar_fluid_set_sections(m->fluid, ARM_NODES, xi, NULL));
+    OK(s, spar_fluid_set_stations(m->fluid, ARM_NODES, xi, NULL));
     OK(s, spar_fluid_map(m->fluid));
     OK(s, spar_fluid_push_forces(m->fluid, first, NULL));
     double rough = is_frame(fidelity) && by_tip ? 4e3 : 1;

@@ -269,7 +269,7 @@ static void test_steep_lines(void **state) {
             OK(s, spar_beam_set_axis(b, 4, eta, xyz, NULL));
             OK(s, spar_beam_set_sections(b, 1, ends, K, M));
             OK(s, spar_member_commit(b));
-            OK(s, spar_beam_get_section(b, 2, ends, NULL, NULL, NULL, q));
+            OK(s, spar_beam_evaluate(b, 2, ends, NULL, NULL, NULL, q));
             memcpy(first, i == 0 ? q : first, sizeof first);
             for (int end = 0; end < 2; end++) {
                 const double *at = q + 4 * end, *fine = first + 4 * end;

@@ -187,7 +187,7 @@ static void test_use_before_commit_and_loads(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "finite", spar_member_set_load(b, 3, SPAR_LOAD_DEAD, load));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_member_set_load(b, 3, SPAR_LOAD_DEAD, NULL));
     REFUSED(s, SPAR_ERR_STATE, "external", spar_member_set_motion(b, q, NULL, NULL));
-    REFUSED(s, SPAR_ERR_STATE, "driven", spar_member_drive_root(b, q, NULL, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "driven", spar_member_drive(b, q, NULL, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "modes", spar_member_solve_modes(b, 100, f, NULL));
     still_works(s, "after");
     spar_session_destroy(&s);
@@ -429,12 +429,12 @@ static void test_counts_beyond_memory(void **state) {
         int64_t n = huge[k];
         assert_int_equal(spar_fluid_set_motion_nodes(f, n, x), SPAR_ERR_ARGUMENT);
         assert_int_equal(spar_fluid_set_force_nodes(f, n, x), SPAR_ERR_ARGUMENT);
-        assert_int_equal(spar_fluid_set_sections(f, n, eta, NULL), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_fluid_set_stations(f, n, eta, NULL), SPAR_ERR_ARGUMENT);
         assert_int_equal(spar_beam_set_axis(open, n, eta, x, NULL), SPAR_ERR_ARGUMENT);
         assert_int_equal(spar_beam_set_nodes(open, n, x, NULL), SPAR_ERR_ARGUMENT);
         assert_int_equal(spar_beam_set_sections(open, n, eta, K, M), SPAR_ERR_ARGUMENT);
         assert_int_equal(spar_beam_set_line_load(b, SPAR_LOAD_DEAD, n, eta, x), SPAR_ERR_ARGUMENT);
-        assert_int_equal(spar_beam_get_section(b, n, eta, out, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_beam_evaluate(b, n, eta, out, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
         assert_int_equal(spar_member_solve_modes(b, n, out, NULL), SPAR_ERR_ARGUMENT);
     }
     spar_session_destroy(&s);
@@ -459,7 +459,7 @@ static void test_loads_beyond_numbers(void **state) {
             const double q[7] = {0, 0, 0, 1, 0, 0, 0}, fast[6] = {0, 0, 0, 1e200, 0, 1e200};
             OK(s, k == 0   ? spar_member_set_load(b, 3, SPAR_LOAD_DEAD, huge)
                   : k == 1 ? spar_session_set_gravity(s, heavy)
-                           : spar_member_drive_root(b, q, fast, NULL));
+                           : spar_member_drive(b, q, fast, NULL));
             int status = spar_step(s, 0.1, NULL, NULL, NULL);
             int bears = fidelity == SPAR_FIDELITY_PRESCRIBED || (fidelity == SPAR_FIDELITY_RIGID && k == 0);
             assert_int_equal(status, k < 2 && bears ? SPAR_OK : SPAR_ERR_NUMERIC);
@@ -471,7 +471,7 @@ static void test_loads_beyond_numbers(void **state) {
             assert_memory_equal(tip, after, sizeof tip);
             OK(s, spar_member_set_load(b, 3, SPAR_LOAD_DEAD, none));
             OK(s, spar_session_set_gravity(s, no_g));
-            OK(s, spar_member_drive_root(b, q, NULL, NULL));
+            OK(s, spar_member_drive(b, q, NULL, NULL));
             scene_run(s, 0.1, 1);
             scene_tip(b, tip);
         }

@@ -283,7 +283,7 @@ static void fin_create(fin *f, const fin_case *c) {
         place[3 * k] = 4 * f->eta[k];
     }
     OK(f->session, spar_fluid_create(f->beam, "strips", &f->fluid));
-    OK(f->session, spar_fluid_set_sections(f->fluid, STRIPS, xi, NULL));
+    OK(f->session, spar_fluid_set_stations(f->fluid, STRIPS, xi, NULL));
     OK(f->session, spar_fluid_set_motion_nodes(f->fluid, STRIPS, place));
     OK(f->session, spar_fluid_map(f->fluid));
     OK(f->session, spar_session_set_integrator(f->session, 0.9, 1));

@@ -142,7 +142,7 @@ static void test_steady_turn(void **state) {
         scene_tip(b, first);
         for (int i = 1; i <= 20; i++) {
             q[3] = cos(1.5 * 0.01 * i), q[6] = sin(1.5 * 0.01 * i);
-            OK(s, spar_member_drive_root(b, q, v, NULL));
+            OK(s, spar_member_drive(b, q, v, NULL));
             scene_run(s, 0.01, 1);
         }
         scene_tip(b, tip);

@@ -134,7 +134,7 @@ static void test_cantilever(void **state) {
         scene_tip(b, q);
         NEAR(q[2] / w, 1, 5e-5);
         NEAR(q[0], 0, 1e-9);
-        OK(s, spar_beam_get_section(b, 1, &root, NULL, force, NULL, NULL));
+        OK(s, spar_beam_evaluate(b, 1, &root, NULL, force, NULL, NULL));
         NEAR(force[0] / N, 1, 1e-6);
         NEAR(force[4] / (-P * tanh(l * L) / l), 1, 1e-3); /* at an end of an element, where strains are least exact */
         OK(s, spar_member_get_reaction(b, reaction));
@@ -163,7 +163,7 @@ static void test_lets_go(void **state) {
     OK(s, spar_beam_set_pretension(b, 1, eta, small));
     OK(s, spar_member_commit(b));
     OK(s, spar_member_solve_static(b, 1));
-    OK(s, spar_beam_get_section(b, 3, at, strain[0], force[0], NULL, NULL));
+    OK(s, spar_beam_evaluate(b, 3, at, strain[0], force[0], NULL, NULL));
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 6; k++) {
             back[k] = 0;
@@ -204,7 +204,7 @@ static void test_stations(void **state) {
     assert_memory_equal(back, force, sizeof back);
     OK(s, spar_member_commit(b));
     OK(s, spar_member_solve_static(b, 1));
-    OK(s, spar_beam_get_section(b, 5, at, strain[0], NULL, NULL, NULL));
+    OK(s, spar_beam_evaluate(b, 5, at, strain[0], NULL, NULL, NULL));
     for (int i = 0; i < 5; i++) {
         NEAR(strain[i][0], -N[i] / EA, 1e-12);
         NEAR(strain[i][3], -T[i] / 100, 1e-7); /* turns are a field of quaternions */

@@ -18,7 +18,7 @@ static void test_arc(void **state) {
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_load(b, 14, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_solve_static(b, 1));
-    OK(s, spar_beam_get_section(b, 5, eta, strain, force, x, q));
+    OK(s, spar_beam_evaluate(b, 5, eta, strain, force, x, q));
     for (int i = 0; i < 5; i++) {
         for (int k = 0; k < 6; k++) {
             NEAR(strain[6 * i + k], k == 4 ? -1 / r : 0, 1e-8);
@@ -56,7 +56,7 @@ static void test_balance(void **state) {
     OK(s, spar_member_set_load(b, 13, SPAR_LOAD_DEAD, F));
     OK(s, spar_member_solve_static(b, 1));
     double force[6 * 40], x[3 * 40], q[4 * 40], r[6];
-    OK(s, spar_beam_get_section(b, 40, eta, NULL, force, x, q));
+    OK(s, spar_beam_evaluate(b, 40, eta, NULL, force, x, q));
     OK(s, spar_member_get_reaction(b, r));
     for (int i = 0; i < 40; i++) {
         double arm[3], m[3];
@@ -97,7 +97,7 @@ static void test_balance_at_gauss_points(void **state) {
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, F));
     OK(s, spar_member_solve_static(b, 1));
-    OK(s, spar_beam_get_section(b, P - 1, eta, NULL, force, NULL, q));
+    OK(s, spar_beam_evaluate(b, P - 1, eta, NULL, force, NULL, q));
     for (int i = 0; i < P - 1; i++) {
         spari_rotate(q + 4 * i, force + 6 * i, force + 6 * i);
         for (int k = 0; k < 3; k++) {
@@ -120,7 +120,7 @@ static void test_linear(void **state) {
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_load(b, 3, SPAR_LOAD_DEAD, F));
     OK(s, spar_member_solve_static(b, 1));
-    OK(s, spar_beam_get_section(b, 3, eta, strain, force, NULL, NULL));
+    OK(s, spar_beam_evaluate(b, 3, eta, strain, force, NULL, NULL));
     for (int i = 0; i < 3; i++) {
         NEAR(force[6 * i + 4], -F[2] * L * (1 - eta[i]), 1e-9 * F[2] * L);
         NEAR(strain[6 * i + 4], -F[2] * L * (1 - eta[i]) / EI, 1e-9);
@@ -146,7 +146,7 @@ static void test_damping(void **state) {
     scene_run(s, h, 60);
     for (int i = 0; i < 3; i++) {
         scene_run(s, h, 1);
-        OK(s, spar_beam_get_section(b, 1, eta, strain[i], force[i], NULL, NULL));
+        OK(s, spar_beam_evaluate(b, 1, eta, strain[i], force[i], NULL, NULL));
     }
     double rate = (strain[2][0] - strain[0][0]) / (2 * h);
     assert_true(fabs(mu[0] * EA * rate) > 1e-2);
@@ -161,12 +161,12 @@ static void test_refusals(void **state) {
     scene_diagonal(K, 1, 1, 1, 1, 1, 1);
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "b", 1, 2, 1, K, NULL);
-    assert_int_equal(spar_beam_get_section(NULL, 1, eta, out, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_beam_get_section(b, 1, eta, out, NULL, NULL, NULL), SPAR_ERR_STATE);
+    assert_int_equal(spar_beam_evaluate(NULL, 1, eta, out, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_beam_evaluate(b, 1, eta, out, NULL, NULL, NULL), SPAR_ERR_STATE);
     OK(s, spar_member_commit(b));
-    assert_int_equal(spar_beam_get_section(b, 1, eta, out, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_beam_get_section(b, 1, NULL, out, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
-    OK(s, spar_beam_get_section(b, 0, NULL, NULL, NULL, NULL, NULL));
+    assert_int_equal(spar_beam_evaluate(b, 1, eta, out, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_beam_evaluate(b, 1, NULL, out, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+    OK(s, spar_beam_evaluate(b, 0, NULL, NULL, NULL, NULL, NULL));
     spar_session_destroy(&s);
 }
 
@@ -184,7 +184,7 @@ static void test_root_of_cantilever(void **state) {
         OK(s, spar_member_commit(b));
         OK(s, spar_member_set_load(b, nodes - 1, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 4));
-        OK(s, spar_beam_get_section(b, 1, &root, NULL, force, NULL, NULL));
+        OK(s, spar_beam_evaluate(b, 1, &root, NULL, force, NULL, NULL));
         OK(s, spar_member_get_reaction(b, reaction));
         scene_tip(b, tip);
         const double arm[3] = {2 + tip[0], tip[1], tip[2]};
@@ -256,11 +256,11 @@ static void swing_beam(int fidelity, int root, int nodes, double by_balance[6 * 
         const double w = 0.01 * k, q[7] = {0, 0, 0.05 * w, cos(w / 4), 0, sin(w / 4), 0},
                      v[6] = {0, 0, 0.05, 0, 0.5, 0}, a[6] = {0};
         if (root == SPAR_ROOT_DRIVEN) {
-            OK(s, spar_member_drive_root(b, q, v, a));
+            OK(s, spar_member_drive(b, q, v, a));
         }
         scene_run(s, 0.01, 1);
     }
-    OK(s, spar_beam_get_section(b, PLACES, eta, strain, by_balance, NULL, NULL));
+    OK(s, spar_beam_evaluate(b, PLACES, eta, strain, by_balance, NULL, NULL));
     for (int i = 0; i < 6 * PLACES; i++) {
         by_strains[i] = 0;
         for (int j = 0; j < 6; j++) {

@@ -318,7 +318,7 @@ static void test_bent_on_a_turned_root(void **state) {
     for (int i = 1; i <= 20; i++) { /* in small steps, so slow that nothing swings */
         double half = atan(1) * i / 20;
         const double at[7] = {0.25 * i, 0.3 * i, 0.35 * i, cos(half), 0, 0, sin(half)};
-        OK(s, spar_member_drive_root(b, at, NULL, NULL));
+        OK(s, spar_member_drive(b, at, NULL, NULL));
         OK(s, spar_step(s, 10, NULL, NULL, NULL));
     }
     OK(s, spar_member_set_load(b, N - 1, SPAR_LOAD_DEAD, tip));
@@ -429,7 +429,7 @@ static void test_fluids(void **state) {
     double x[9], v[9];
     move(&m);
     OK(m.session, spar_fluid_create(m.beam, "sections", &sections));
-    OK(m.session, spar_fluid_set_sections(sections, 3, xi, offset));
+    OK(m.session, spar_fluid_set_stations(sections, 3, xi, offset));
     assert_int_equal(spar_fluid_write_vtk(sections, "output_fluid.vtp"), SPAR_ERR_STATE);
     OK(m.session, spar_fluid_map(sections));
     OK(m.session, spar_fluid_push_forces(sections, force, NULL));

@@ -65,7 +65,7 @@ class Values(unittest.TestCase):
             q = beam.get_motion(v=None, a=None)
             self.assertAlmostEqual(q[-1, 2], 1e-3 * 8 / 3e3, delta=1e-3 * 8 / 3e3 * 2e-6)
             numpy.testing.assert_allclose(beam.get_reaction(), [0, 0, -1e-3, 0, 2e-3, 0], atol=1e-9)  # GA = 1e9 N
-            strain, force, x, _ = beam.get_section([0.25, 0.5])
+            strain, force, x, _ = beam.evaluate([0.25, 0.5])
             self.assertEqual((strain.shape, x.shape), ((2, 6), (2, 3)))
             numpy.testing.assert_allclose(x[:, 0], [0.5, 1.0], atol=1e-9)
             self.assertAlmostEqual(abs(force[1, 4]), 1e-3, delta=1e-6)  # bending at half the length
@@ -129,7 +129,7 @@ class Values(unittest.TestCase):
                 s.step_accept()
             self.assertAlmostEqual(member.get_motion()[0][0, 1], 0.1, delta=1e-8)
             numpy.testing.assert_allclose(joint.get_load(), [-3, -5, -7, 0, 0, 0], atol=1e-5)
-            force, moment = fluid.get_total([0, 0, 1.0])
+            force, moment = fluid.sum_loads([0, 0, 1.0])
             numpy.testing.assert_allclose(force, [3, 5, 7], atol=1e-12)
             numpy.testing.assert_allclose(moment, [0.1 * 7 + 1.0 * 5, -1.0 * 3, -0.1 * 3], atol=1e-6)
 
@@ -150,7 +150,7 @@ class Values(unittest.TestCase):
             blade.set_root(spar.ROOT_FIXED)
             blade.commit()
             sections = blade.fluid_create('sections')
-            sections.set_sections([-1, 1])
+            sections.set_stations([-1, 1])
             sections.map()
             aero = spar.Aero([sections])
             polar = spar.Polar([-3, 3], [1.2, 1.2], [0, 0])
@@ -312,7 +312,7 @@ class Edges(unittest.TestCase):
         beam.set_sections([0], [numpy.eye(6) * 1e6], [numpy.eye(6)])
         beam.commit()
         sections = beam.fluid_create('sections')
-        sections.set_sections([-1, 1])
+        sections.set_stations([-1, 1])
         sections.map()
         aero = spar.Aero([sections])
         s.close()
@@ -370,9 +370,9 @@ class Edges(unittest.TestCase):
             joint = s.joint_create('joint', member, 0, None, 0, 63)
             joint.set_spring(numpy.eye(6) * 50)
             with self.assertRaisesRegex(spar.Error, 'not a line'):
-                joint.line_set_spring(1.0, 0.0, 1.0, 0)
-            line = s.line_create('line', member, 0, [0, 0, 0], None, 0, [0, 0, 1])
-            line.line_set_spring(10.0, 0.0, 1.0, 1)
+                joint.link_set_spring(1.0, 0.0, 1.0, 0)
+            line = s.link_create('line', member, 0, [0, 0, 0], None, 0, [0, 0, 1])
+            line.link_set_spring(10.0, 0.0, 1.0, 1)
             s.step(0.1)
 
     def test_within(self):
@@ -409,10 +409,10 @@ class Every(unittest.TestCase):
         member, fluid = body(s)
         beam = cantilever(s)
         blade = beam.fluid_create('blade')
-        blade.set_sections([-1, 1])
+        blade.set_stations([-1, 1])
         blade.map()
         joint = s.joint_create('joint', member, 0, None, 0, 63)
-        line = s.line_create('line', member, 0, [0, 0, 0], None, 0, [0, 0, 1])
+        line = s.link_create('line', member, 0, [0, 0, 0], None, 0, [0, 0, 1])
         point = s.point_create('point', [5, 0, 0], UNIT)
         point.commit()
         return {'session': [s], 'member': [beam, member, point, *([s.beam_create('new', 1, 4)] if new else [])],

@@ -42,7 +42,7 @@ static void create(run *r, spar_session *s, int first, int ranks, int nodes, int
     }
     OK(s, spar_fluid_create(r->beam, "nodes", &r->fluid));
     if (kind == SECTIONS) {
-        OK(s, spar_fluid_set_sections(r->fluid, r->n, xi, NULL));
+        OK(s, spar_fluid_set_stations(r->fluid, r->n, xi, NULL));
     } else {
         OK(s, spar_fluid_set_motion_nodes(r->fluid, r->n, x));
         OK(s, spar_fluid_set_force_nodes(r->fluid, r->n, x));

@@ -30,8 +30,8 @@ static spar_member *body_at(spar_session *s, const char *name, const double x[3]
 
 static void add_rod(scene *c) {
     static const double from[3] = {1, 6, 0}, to[3] = {0, 7, 0};
-    OK(c->session, spar_line_create(c->session, "rod", c->member[3], 0, from, c->member[2], 0, to, &c->joint[4]));
-    OK(c->session, spar_line_set_spring(c->joint[4], 0, 3, 1, 0));
+    OK(c->session, spar_link_create(c->session, "rod", c->member[3], 0, from, c->member[2], 0, to, &c->joint[4]));
+    OK(c->session, spar_link_set_spring(c->joint[4], 0, 3, 1, 0));
 }
 
 /* A beam with a flap on a sprung hinge and a weight on a rope, and a rotor on a driven shaft with a sprung mass on its
@@ -61,8 +61,8 @@ static void create(scene *c, int way) {
                             &c->joint[0]));
     OK(s, spar_joint_set_frame(c->joint[0], way == OTHER_PLACE ? (double[]){4, 0.1, 0} : tip, rest));
     OK(s, spar_joint_set_spring(c->joint[0], spring, NULL, NULL));
-    OK(s, spar_line_create(s, "rope", c->member[1], 0, hang, NULL, 0, (double[]){5, 0, 3}, &c->joint[1]));
-    OK(s, spar_line_set_spring(c->joint[1], 5, 0.1, way == OTHER_ROPE ? 3 : 4, 1));
+    OK(s, spar_link_create(s, "rope", c->member[1], 0, hang, NULL, 0, (double[]){5, 0, 3}, &c->joint[1]));
+    OK(s, spar_link_set_spring(c->joint[1], 5, 0.1, way == OTHER_ROPE ? 3 : 4, 1));
     OK(s, spar_joint_create(s, "shaft", c->member[2], 0, NULL, 0, SPAR_FREE_RZ, &c->joint[2]));
     OK(s, spar_joint_set_driven(c->joint[2], way == OTHER_DRIVE ? 0 : SPAR_FREE_RZ));
     OK(s, spar_joint_set_frame(c->joint[2], hub, rest));

@@ -62,7 +62,7 @@ static void drive(const run *r, double t) {
     double turn = 0.4 * t * t, rate = 0.8 * t;
     double q[7] = {0, 0, 0, cos(turn / 2), 0, 0, sin(turn / 2)}, v[6] = {0, 0, 0, 0, 0, rate},
            a[6] = {0, 0, 0, 0, 0, 0.8};
-    OK(r->session, spar_member_drive_root(r->blade, q, v, a));
+    OK(r->session, spar_member_drive(r->blade, q, v, a));
 }
 
 /* The fluid: its answer depends on the present motion and on what the session itself remembers. */

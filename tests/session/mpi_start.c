@@ -113,8 +113,8 @@ static void as_one_process_has_it(void **state) {
     double a[MOTION], load[6];
     create(&c, rank, size);
     create(&alone, 0, 1);
-    OK(c.session, spar_session_start(c.session, 0.01, solve, &c, &n[0]));
-    OK(alone.session, spar_session_start(alone.session, 0.01, solve, &alone, &n[1]));
+    OK(c.session, spar_session_solve_initial(c.session, 0.01, solve, &c, &n[0]));
+    OK(alone.session, spar_session_solve_initial(alone.session, 0.01, solve, &alone, &n[1]));
     assert_int_equal(c.calls, n[0]);
     assert_true(abs(n[0] - n[1]) <= 1); /* the last one may be rounding's */
     compare(&c, &alone, 1e-8);
@@ -140,21 +140,21 @@ static void a_failure_is_everybodys(void **state) {
     create(&hit, rank, size);
     create(&calm, rank, size);
     hit.user_call = rank == size - 1 ? 3 : 0;
-    int status = spar_session_start(hit.session, 0.01, solve, &hit, NULL);
+    int status = spar_session_solve_initial(hit.session, 0.01, solve, &hit, NULL);
     assert_int_equal(status, of_one(size - 1, SPAR_ERR_USER));
     hit.user_call = hit.calls = 0;
     hit.bad_call = rank == 0 ? 2 : 0;
-    status = spar_session_start(hit.session, 0.01, solve, &hit, NULL);
+    status = spar_session_solve_initial(hit.session, 0.01, solve, &hit, NULL);
     assert_int_equal(status, of_one(0, SPAR_ERR_ARGUMENT));
     hit.bad_call = 0;
     if (size > 1) {
-        status = spar_session_start(hit.session, rank == 0 ? 0.01 : 0.02, solve, &hit, NULL);
+        status = spar_session_solve_initial(hit.session, rank == 0 ? 0.01 : 0.02, solve, &hit, NULL);
         assert_int_equal(status, SPAR_ERR_COMM);
     }
     look(&hit, a, load);
     assert_true(a[6 * POINTS - 4] == 0 && load[2] == 0);
-    OK(hit.session, spar_session_start(hit.session, 0.01, solve, &hit, NULL));
-    OK(calm.session, spar_session_start(calm.session, 0.01, solve, &calm, NULL));
+    OK(hit.session, spar_session_solve_initial(hit.session, 0.01, solve, &hit, NULL));
+    OK(calm.session, spar_session_solve_initial(calm.session, 0.01, solve, &calm, NULL));
     compare(&hit, &calm, 0);
     spar_session_destroy(&hit.session);
     spar_session_destroy(&calm.session);

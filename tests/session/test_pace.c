@@ -49,16 +49,16 @@ static void error_of_a_step(void **state) {
         double found, t, pace[SPAR_PACE_COUNT];
         create_swing(&w, rows[k].rho);
         OK(w.session, spar_session_set_tolerance(w.session, 1e-3, 0));
-        OK(w.session, spar_session_start(w.session, h, NULL, NULL, NULL));
+        OK(w.session, spar_session_solve_initial(w.session, h, NULL, NULL, NULL));
         for (int i = 0; i < 30; i++) {
             OK(w.session, spar_step(w.session, h, NULL, NULL, NULL));
-            OK(w.session, spar_member_get_error(w.body, &found, NULL));
+            OK(w.session, spar_member_estimate_error(w.body, &found, NULL));
             OK(w.session, spar_session_get_time(w.session, &t, NULL, NULL));
             double change = rate * rate * fabs(cos(rate * t) - cos(rate * (t - h)));
             if (i > 10) { /* with rho 0 the start has died away */
                 NEAR(found, rows[k].factor * h * h * change, 0.06 * rows[k].factor * h * h * change);
             }
-            OK(w.session, spar_session_get_pace(w.session, SPAR_PACE_COUNT, pace));
+            OK(w.session, spar_session_get_step_control(w.session, SPAR_PACE_COUNT, pace));
             NEAR(pace[SPAR_PACE_RATIO], found / h / 1e-3, 1e-12 * pace[SPAR_PACE_RATIO]);
         }
         spar_session_destroy(&w.session);
@@ -76,11 +76,11 @@ static void error_goes_with_the_tolerance(void **state) {
         int steps = 0;
         create_swing(&w, 0.9);
         OK(w.session, spar_session_set_tolerance(w.session, 1e-6, rtol));
-        OK(w.session, spar_session_start(w.session, dt, NULL, NULL, NULL));
+        OK(w.session, spar_session_solve_initial(w.session, dt, NULL, NULL, NULL));
         for (; t < 5; t += taken, steps++) {
-            OK(w.session, spar_step_within(w.session, &dt, NULL, NULL, NULL, &taken));
+            OK(w.session, spar_step_adaptive(w.session, &dt, NULL, NULL, NULL, &taken));
         }
-        OK(w.session, spar_session_get_pace(w.session, SPAR_PACE_COUNT, pace));
+        OK(w.session, spar_session_get_step_control(w.session, SPAR_PACE_COUNT, pace));
         OK(w.session, spar_member_get_motion(w.body, q, v, NULL));
         double error = hypot(q[0] - (1 - cos(rate * t)), v[0] / rate - sin(rate * t));
         print_message("rtol %.1e: %d steps, %g rejected, error %.2e\n", rtol, steps, pace[SPAR_PACE_REJECTED], error);
@@ -92,7 +92,7 @@ static void error_goes_with_the_tolerance(void **state) {
     }
 }
 
-/* By hand: reject as it is told, and nothing but dt has changed; the run has the bits of spar_step_within. */
+/* By hand: reject as it is told, and nothing but dt has changed; the run has the bits of spar_step_adaptive. */
 static void by_hand_as_by_one_call(void **state) {
     (void)state;
     swing w, by;
@@ -102,17 +102,17 @@ static void by_hand_as_by_one_call(void **state) {
     create_swing(&by, 0.9);
     OK(w.session, spar_session_set_tolerance(w.session, 1e-6, 1e-3));
     OK(by.session, spar_session_set_tolerance(by.session, 1e-6, 1e-3));
-    OK(w.session, spar_session_start(w.session, dt, NULL, NULL, NULL));
-    OK(by.session, spar_session_start(by.session, dt, NULL, NULL, NULL));
+    OK(w.session, spar_session_solve_initial(w.session, dt, NULL, NULL, NULL));
+    OK(by.session, spar_session_solve_initial(by.session, dt, NULL, NULL, NULL));
     for (int i = 0; i < 40; i++) {
-        OK(w.session, spar_step_within(w.session, &dt, NULL, NULL, NULL, &taken));
+        OK(w.session, spar_step_adaptive(w.session, &dt, NULL, NULL, NULL, &taken));
     }
     dt = 0.3;
     for (int accepted = 0; accepted < 40;) {
         OK(by.session, spar_step_begin(by.session, dt));
         OK(by.session, spar_step_solve(by.session));
         OK(by.session, spar_step_check(by.session, &done));
-        OK(by.session, spar_session_get_pace(by.session, SPAR_PACE_COUNT, pace));
+        OK(by.session, spar_session_get_step_control(by.session, SPAR_PACE_COUNT, pace));
         dt = pace[SPAR_PACE_NEXT_DT];
         if (pace[SPAR_PACE_REJECT] > 0) {
             OK(by.session, spar_step_reject(by.session));
@@ -127,7 +127,7 @@ static void by_hand_as_by_one_call(void **state) {
     OK(w.session, spar_member_get_motion(w.body, q[0], NULL, NULL));
     OK(by.session, spar_member_get_motion(by.body, q[1], NULL, NULL));
     assert_memory_equal(q[0], q[1], sizeof q[0]);
-    OK(w.session, spar_session_get_pace(w.session, SPAR_PACE_COUNT, pace));
+    OK(w.session, spar_session_get_step_control(w.session, SPAR_PACE_COUNT, pace));
     assert_true(pace[SPAR_PACE_REJECTED] >= 1);
     spar_session_destroy(&w.session);
     spar_session_destroy(&by.session);
@@ -143,15 +143,15 @@ static void it_is_saved(void **state) {
     OK(w.session, spar_session_set_tolerance(w.session, 1e-6, 1e-3));
     OK(by.session, spar_session_set_tolerance(by.session, 1e-6, 1e-3));
     for (int i = 0; i < 15; i++) {
-        OK(w.session, spar_step_within(w.session, &dt, NULL, NULL, NULL, &taken));
+        OK(w.session, spar_step_adaptive(w.session, &dt, NULL, NULL, NULL, &taken));
     }
     OK(w.session, spar_session_save(w.session, "test_pace.saved"));
     OK(by.session, spar_session_load(by.session, "test_pace.saved"));
     assert_int_equal(remove("test_pace.saved"), 0);
     dt2 = dt;
     for (int i = 0; i < 15; i++) {
-        OK(w.session, spar_step_within(w.session, &dt, NULL, NULL, NULL, &taken));
-        OK(by.session, spar_step_within(by.session, &dt2, NULL, NULL, NULL, &taken));
+        OK(w.session, spar_step_adaptive(w.session, &dt, NULL, NULL, NULL, &taken));
+        OK(by.session, spar_step_adaptive(by.session, &dt2, NULL, NULL, NULL, &taken));
         assert_true(dt == dt2);
     }
     OK(w.session, spar_member_get_motion(w.body, q[0], NULL, NULL));
@@ -204,7 +204,7 @@ static void errors_of_steps_are_true(void **state) {
             }
             OK(run->session, scene_step(run, &seconds, &iterations));
             if (looks) {
-                OK(run->session, spar_member_get_error(run->member, &step, NULL));
+                OK(run->session, spar_member_estimate_error(run->member, &step, NULL));
                 OK(run->session, spar_member_get_motion(run->member, q, NULL, NULL));
                 said += step * step;
                 for (int64_t j = 0; j < n; j++) {
@@ -252,7 +252,7 @@ static void test_double_pendulum(void **state) {
     }
     for (; t < 2; steps++) {
         double taken = 0;
-        OK(s, spar_step_within(s, &dt, NULL, NULL, NULL, &taken));
+        OK(s, spar_step_adaptive(s, &dt, NULL, NULL, NULL, &taken));
         t += taken;
         least = fmin(least, taken);
     }
@@ -285,7 +285,7 @@ static void test_velocity_that_jumps(void **state) {
     OK(s, spar_joint_set_frame(slider, origin, upright));
     OK(s, spar_joint_set_driven(slider, SPAR_FREE_X));
     for (int i = 0; i < 100 && status == SPAR_OK; i++) {
-        status = spar_step_within(s, &dt, drive_to, NULL, slider, NULL);
+        status = spar_step_adaptive(s, &dt, drive_to, NULL, slider, NULL);
     }
     assert_int_equal(status, SPAR_ERR_NUMERIC);
     assert_non_null(strstr(spar_session_message(s), "a velocity is discontinuous"));
@@ -305,27 +305,27 @@ static void what_is_refused(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "drift is -1", spar_session_set_tolerance(s, -1, 0));
     REFUSED(s, SPAR_ERR_ARGUMENT, "rtol is 2", spar_session_set_tolerance(s, 1, 2));
     REFUSED(s, SPAR_ERR_ARGUMENT, "drift is 0", spar_session_set_tolerance(s, 0, 0.1));
-    REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first", spar_session_get_pace(s, SPAR_PACE_COUNT, pace));
-    REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first", spar_step_within(s, &dt, NULL, NULL, NULL, NULL));
-    REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first", spar_member_get_error(w.body, &x, NULL));
-    OK(s, spar_member_get_error(w.body, NULL, &x));
+    REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first", spar_session_get_step_control(s, SPAR_PACE_COUNT, pace));
+    REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first", spar_step_adaptive(s, &dt, NULL, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first", spar_member_estimate_error(w.body, &x, NULL));
+    OK(s, spar_member_estimate_error(w.body, NULL, &x));
     assert_true(x == 0); /* one node */
     OK(s, spar_session_set_tolerance(s, 1e-3, 0.1));
     OK(s, spar_session_get_tolerance(s, &x, &dt));
     assert_true(x == 1e-3 && dt == 0.1);
-    REFUSED(s, SPAR_ERR_STATE, "no step", spar_session_get_pace(s, SPAR_PACE_COUNT, pace));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_step_within(s, NULL, NULL, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "no step", spar_session_get_step_control(s, SPAR_PACE_COUNT, pace));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_step_adaptive(s, NULL, NULL, NULL, NULL, NULL));
     dt = -1;
-    REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_step_within(s, &dt, NULL, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_step_adaptive(s, &dt, NULL, NULL, NULL, NULL));
     OK(s, spar_session_set_tolerance(s, 1e-300, 0)); /* smaller than anything: the session stays where it is */
-    OK(s, spar_session_start(s, 0.1, NULL, NULL, NULL));
+    OK(s, spar_session_solve_initial(s, 0.1, NULL, NULL, NULL));
     dt = 0.1;
-    REFUSED(s, SPAR_ERR_NUMERIC, "no dt down to", spar_step_within(s, &dt, NULL, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_NUMERIC, "no dt down to", spar_step_adaptive(s, &dt, NULL, NULL, NULL, NULL));
     OK(s, spar_session_get_time(s, &x, NULL, NULL));
     assert_true(x == 0 && dt == 0.1);
     OK(s, spar_step_begin(s, 0.1));
-    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_step_within(s, &dt, NULL, NULL, NULL, NULL));
-    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_member_get_error(w.body, NULL, &x));
+    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_step_adaptive(s, &dt, NULL, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_member_estimate_error(w.body, NULL, &x));
     OK(s, spar_step_reject(s));
     spar_session_destroy(&w.session);
 }
@@ -347,7 +347,7 @@ static void watch_nodes(const scene *of, int nodes, int onto, double x[SAMPLES][
     for (int i = 1; i <= steps; i++) {
         OK(run->session, scene_step(run, &seconds, &iterations));
         if (i * SAMPLES % steps < SAMPLES) {
-            OK(run->session, spar_member_get_error(run->member, NULL, &one));
+            OK(run->session, spar_member_estimate_error(run->member, NULL, &one));
             *said += one * one / SAMPLES;
             (void)deformed(run->session, run->member, MOST_NODES, u);
             spari_resample_values((spari_mesh){1, nodes}, (spari_mesh){1, onto}, 3, -1, u, x[i * SAMPLES / steps - 1]);

@@ -1,4 +1,4 @@
-/* The balanced start (spar_session_start): accelerations and loads at t = 0 that belong together, against closed forms,
+/* The balanced start (spar_session_solve_initial): accelerations and loads at t = 0 that belong together, against closed forms,
    twins whose own mass has the fluid's in it, and the order of the runs that begin with it. */
 #include "scene.h"
 
@@ -65,7 +65,7 @@ static double piston_error(enum begin how, double dt) {
     if (how == AS_PULLED) {
         assert_int_equal(piston_fluid(p.session, 0, dt, 0, &p), 0);
     } else if (how == BALANCED) {
-        OK(p.session, spar_session_start(p.session, dt, piston_fluid, &p, NULL));
+        OK(p.session, spar_session_solve_initial(p.session, dt, piston_fluid, &p, NULL));
         assert_true(p.dt_seen == 0);
     }
     for (int64_t i = 1; i <= steps; i++) {
@@ -91,7 +91,7 @@ static void accelerations_and_loads_belong_together(void **state) {
             continue;
         }
         piston_create(&p, scheme, 1e-10);
-        OK(p.session, spar_session_start(p.session, 0.1, piston_fluid, &p, &iterations));
+        OK(p.session, spar_session_solve_initial(p.session, 0.1, piston_fluid, &p, &iterations));
         assert_true(iterations == p.calls && iterations <= 4);
         OK(p.session, spar_member_get_motion(p.body, q, v, a));
         OK(p.session, spar_member_get_loads(p.body, load));
@@ -126,9 +126,9 @@ static void a_loop_of_the_host_starts_alike(void **state) {
     int done = 0;
     piston_create(&one, SPAR_COUPLING_AITKEN, 1e-9);
     piston_create(&own, SPAR_COUPLING_AITKEN, 1e-9);
-    OK(one.session, spar_session_start(one.session, 0.1, piston_fluid, &one, NULL));
+    OK(one.session, spar_session_solve_initial(one.session, 0.1, piston_fluid, &one, NULL));
     for (int again = 0; again < 2; again++) {
-        OK(own.session, spar_step_begin_start(own.session, 0.1));
+        OK(own.session, spar_step_begin_initial(own.session, 0.1));
         for (int k = 0; !done; k++) {
             OK(own.session, spar_step_solve(own.session));
             assert_int_equal(piston_fluid(own.session, 0, 0, k, &own), 0);
@@ -141,7 +141,7 @@ static void a_loop_of_the_host_starts_alike(void **state) {
         if (!again) {
             const double zero[3] = {0, 0, 0}; /* what was pushed in the start that was rejected is gone with it */
             double force[3], moment[3];
-            OK(own.session, spar_fluid_get_total(own.fluid, zero, force, moment));
+            OK(own.session, spar_fluid_sum_loads(own.fluid, zero, force, moment));
             assert_true(force[0] == 0);
         }
     }
@@ -165,14 +165,14 @@ static void a_start_that_fails_leaves_no_trace(void **state) {
         piston_create(&hit, SPAR_COUPLING_IQN_ILS, 1e-9);
         piston_create(&calm, SPAR_COUPLING_IQN_ILS, 1e-9);
         hit.fails_at = fails_at;
-        assert_int_equal(spar_session_start(hit.session, 0.1, piston_fluid, &hit, NULL), SPAR_ERR_USER);
+        assert_int_equal(spar_session_solve_initial(hit.session, 0.1, piston_fluid, &hit, NULL), SPAR_ERR_USER);
         hit.fails_at = 0;
         OK(hit.session, spar_session_set_coupling(hit.session, SPAR_COUPLING_IQN_ILS, 0, 1e-300, 2));
-        assert_int_equal(spar_session_start(hit.session, 0.1, piston_fluid, &hit, NULL), SPAR_ERR_NUMERIC);
-        assert_non_null(strstr(spar_session_message(hit.session), "spar_session_start"));
+        assert_int_equal(spar_session_solve_initial(hit.session, 0.1, piston_fluid, &hit, NULL), SPAR_ERR_NUMERIC);
+        assert_non_null(strstr(spar_session_message(hit.session), "spar_session_solve_initial"));
         OK(hit.session, spar_session_set_coupling(hit.session, SPAR_COUPLING_IQN_ILS, 0, 1e-9, 50));
-        assert_int_equal(spar_session_start(hit.session, 0, piston_fluid, &hit, NULL), SPAR_ERR_ARGUMENT);
-        assert_int_equal(spar_session_start(hit.session, NAN, piston_fluid, &hit, NULL), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_session_solve_initial(hit.session, 0, piston_fluid, &hit, NULL), SPAR_ERR_ARGUMENT);
+        assert_int_equal(spar_session_solve_initial(hit.session, NAN, piston_fluid, &hit, NULL), SPAR_ERR_ARGUMENT);
         OK(hit.session, spar_member_get_motion(hit.body, NULL, NULL, a[0]));
         assert_true(a[0][0] == 0);
         for (int i = 0; i < 5; i++) {
@@ -182,9 +182,9 @@ static void a_start_that_fails_leaves_no_trace(void **state) {
             OK(calm.session, spar_member_get_motion(calm.body, NULL, NULL, a[1]));
             assert_memory_equal(a[0], a[1], sizeof a[0]);
         }
-        assert_int_equal(spar_session_start(hit.session, 0.1, piston_fluid, &hit, NULL), SPAR_ERR_STATE);
+        assert_int_equal(spar_session_solve_initial(hit.session, 0.1, piston_fluid, &hit, NULL), SPAR_ERR_STATE);
         OK(hit.session, spar_step_begin(hit.session, 0.1));
-        assert_int_equal(spar_step_begin_start(hit.session, 0.1), SPAR_ERR_STATE);
+        assert_int_equal(spar_step_begin_initial(hit.session, 0.1), SPAR_ERR_STATE);
         spar_session_destroy(&hit.session);
         spar_session_destroy(&calm.session);
     }
@@ -201,7 +201,7 @@ static void a_trial_starts_as_the_run(void **state) {
         int in_step;
         piston_create(&p, SPAR_COUPLING_IQN_ILS, 1e-9);
         if (started) {
-            OK(p.session, spar_session_start(p.session, 0.1, piston_fluid, &p, NULL));
+            OK(p.session, spar_session_solve_initial(p.session, 0.1, piston_fluid, &p, NULL));
         }
         p.calls = 0;
         OK(p.session, spar_session_try(p.session, 0.1, 8, NULL, piston_fluid, &p, 0, SPAR_TRY_COUNT, report));
@@ -244,7 +244,7 @@ static void cantilever_create(cantilever *c, int fidelity, int substeps, double 
     OK(s, spar_member_set_load(c->beam, NODES - 1, SPAR_LOAD_DEAD, load));
     spari_gauss(POINTS, c->xi, c->weight);
     OK(s, spar_fluid_create(c->beam, "strips", &c->strips));
-    OK(s, spar_fluid_set_sections(c->strips, POINTS, c->xi, NULL));
+    OK(s, spar_fluid_set_stations(c->strips, POINTS, c->xi, NULL));
     OK(s, spar_fluid_map(c->strips));
     OK(s, spar_session_set_integrator(s, 0.9, substeps));
     OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 0, 1e-9, 100));
@@ -273,8 +273,8 @@ static void a_beam_starts_as_one_with_the_fluids_mass(void **state) {
             double a[2][NODES][6], largest = 0;
             cantilever_create(&wet, kind[k], substeps, 1, 3);
             cantilever_create(&heavy, kind[k], substeps, 4, 0);
-            OK(wet.session, spar_session_start(wet.session, 1e-5, cantilever_fluid, &wet, NULL));
-            OK(heavy.session, spar_session_start(heavy.session, 1e-5, cantilever_fluid, &heavy, NULL));
+            OK(wet.session, spar_session_solve_initial(wet.session, 1e-5, cantilever_fluid, &wet, NULL));
+            OK(heavy.session, spar_session_solve_initial(heavy.session, 1e-5, cantilever_fluid, &heavy, NULL));
             OK(wet.session, spar_member_get_motion(wet.beam, NULL, NULL, a[0][0]));
             OK(heavy.session, spar_member_get_motion(heavy.beam, NULL, NULL, a[1][0]));
             for (int i = 0; i < 6 * NODES; i++) {
@@ -298,7 +298,7 @@ static void cantilever_tip(int fidelity, double dt, int balanced, double tip[7])
     cantilever_create(&c, fidelity, 1, 1, 3);
     OK(c.session, spar_session_set_option(c.session, "coupling.norm", "loads"));
     if (balanced) {
-        OK(c.session, spar_session_start(c.session, dt, cantilever_fluid, &c, NULL));
+        OK(c.session, spar_session_solve_initial(c.session, dt, cantilever_fluid, &c, NULL));
     } else {
         (void)cantilever_fluid(c.session, 0, dt, 0, &c);
     }
@@ -386,7 +386,7 @@ static double pendulum_error(double dt) {
     pendulum p;
     double q[7], t = 1.6;
     pendulum_create(&p);
-    OK(p.session, spar_session_start(p.session, dt, pendulum_fluid, &p, NULL));
+    OK(p.session, spar_session_solve_initial(p.session, dt, pendulum_fluid, &p, NULL));
     for (int64_t i = 0; i < steps_of(t, dt); i++) {
         OK(p.session, spar_step(p.session, dt, pendulum_fluid, &p, NULL));
     }
@@ -402,7 +402,7 @@ static void joints_carry_their_loads(void **state) {
     pendulum p;
     double a[6], load[6], alpha = bob * g / (bob + drag_mass + bob_inertia);
     pendulum_create(&p);
-    OK(p.session, spar_session_start(p.session, 0.02, pendulum_fluid, &p, NULL));
+    OK(p.session, spar_session_solve_initial(p.session, 0.02, pendulum_fluid, &p, NULL));
     OK(p.session, spar_member_get_motion(p.body, NULL, NULL, a));
     OK(p.session, spar_joint_get_load(p.hinge, load));
     NEAR(a[2], -alpha, 1e-8);
@@ -449,7 +449,7 @@ static void an_external_member_answers(void **state) {
     OK(s, spar_joint_create(s, "weld", own, 0, theirs, 0, 0, &weld));
     OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 0, 1e-10, 50));
     welded w = {theirs};
-    OK(s, spar_session_start(s, 0.01, external_fluid, &w, NULL));
+    OK(s, spar_session_solve_initial(s, 0.01, external_fluid, &w, NULL));
     OK(s, spar_member_get_motion(own, NULL, NULL, a[0]));
     OK(s, spar_member_get_motion(theirs, NULL, NULL, a[1]));
     OK(s, spar_member_get_loads(theirs, carried));
@@ -526,7 +526,7 @@ static void saved_before_the_first_step(void **state) {
             wet_arm w;
             wet_arm_create(&w, substeps, k / 2 % 2 ? "tied" : "strict");
             if (!loaded || again) { /* another start is forgotten */
-                OK(w.session, spar_session_start(w.session, loaded ? 0.02 : 0.01, arm_fluid, &w, NULL));
+                OK(w.session, spar_session_solve_initial(w.session, loaded ? 0.02 : 0.01, arm_fluid, &w, NULL));
             }
             OK(w.session, loaded ? spar_session_load(w.session, path) : spar_session_save(w.session, path));
             if (again) {
@@ -558,7 +558,7 @@ static void saved_within_the_first_step(void **state) {
         wet_arm w, other;
         int done = 0;
         wet_arm_create(&w, 1 + k % 2, "tied");
-        OK(w.session, spar_session_start(w.session, 0.01, arm_fluid, &w, NULL));
+        OK(w.session, spar_session_solve_initial(w.session, 0.01, arm_fluid, &w, NULL));
         first_step(&w, k / 2, path);
         OK(w.session, spar_member_get_motion(w.arm, seen[0], seen[0] + 7 * ARM_NODES, seen[0] + 13 * ARM_NODES));
         wet_arm_create(&other, 1 + k % 2, "tied");

@@ -52,7 +52,7 @@ static void wing_create(wing *w, int elements, int nodes, double lambda_l, int s
         }
     }
     OK(w->session, spar_fluid_create(w->beam, "strips", &w->strips));
-    OK(w->session, spar_fluid_set_sections(w->strips, w->n, w->xi, NULL));
+    OK(w->session, spar_fluid_set_stations(w->strips, w->n, w->xi, NULL));
     OK(w->session, spar_fluid_map(w->strips));
     OK(w->session, spar_session_set_coupling(w->session, scheme, 0, 1e-12, 500));
     OK(w->session, spar_session_set_log(w->session, listen, NULL));
@@ -521,7 +521,7 @@ static void test_company(void **state) {
     OK(s, spar_fluid_set_motion_nodes(c.around, 1, none));
     OK(s, spar_fluid_set_force_nodes(c.around, 1, none));
     OK(s, spar_fluid_map(c.around));
-    OK(s, spar_member_drive_root(c.driven, to, NULL, NULL));
+    OK(s, spar_member_drive(c.driven, to, NULL, NULL));
     OK(s, spar_session_solve_static(s, 1, company_fluid, &c, NULL));
     scene_tip(c.mine, q);
     NEAR(q[0], 1, 1e-12);

@@ -142,7 +142,7 @@ static void whole_run(int threads, int late, double *record) {
         double *at = record + ROW * step;
         const double turned[7] = {0, 0, 1e-3 * step, cos(0.02 * step), 0, sin(0.02 * step), 0},
                      rate[6] = {0, 0, 0.2, 0, 8, 0}, none[6] = {0};
-        OK(w.s, spar_member_drive_root(w.beam[5], turned, rate, none));
+        OK(w.s, spar_member_drive(w.beam[5], turned, rate, none));
         OK(w.s, spar_step(w.s, step == 2 ? 0.02 : 0.005, whole_fluid, &w, &iterations));
         for (int i = 0; i < BEAMS; i++) {
             scene_tip(w.beam[i], at + 7 * i);
@@ -205,7 +205,7 @@ static void long_run(int threads, int driven, double motion[19 * NODES]) {
     for (int step = 1; step <= STEPS; step++) {
         const double turned[7] = {0, 0, 0, cos(0.005 * step), 0, sin(0.005 * step), 0}, rate[6] = {0, 0, 0, 0, 2, 0};
         if (driven) {
-            OK(s, spar_member_drive_root(b, turned, rate, none));
+            OK(s, spar_member_drive(b, turned, rate, none));
         }
         OK(s, spar_member_set_load(b, NODES / 2, SPAR_LOAD_DEAD, (const double[6]){1, 20.0 * step, 3, 0, 0.5, 0}));
         scene_run(s, step == 3 ? 0.02 : 0.005, 1); /* the third is much longer than the second */
@@ -301,7 +301,7 @@ static void farm_run(int threads, double record[FARM][FARM_RECORD]) {
     OK(w.s, spar_joint_set_frame(tie, place, NULL));
     for (int step = 1; step <= STEPS; step++) {
         const double turned[7] = {0, 0, 0, cos(0.005 * step), 0, sin(0.005 * step), 0};
-        OK(w.s, spar_member_drive_root(w.m[11], turned, rate, none));
+        OK(w.s, spar_member_drive(w.m[11], turned, rate, none));
         OK(w.s, spar_step(w.s, 0.01, farm_fluid, &w, NULL));
     }
     for (int i = 0; i < FARM; i++) {
@@ -399,8 +399,8 @@ static void add_tied(told_scene *w, int i) {
     (void)snprintf(name, sizeof name, "j%d", i);
     switch (draw(w, 4)) {
     case 0:
-        OK(w->s, spar_line_create(w->s, name, w->tied[i], 0, x, b, node, (const double[3]){0, 0, 2}, &j));
-        OK(w->s, spar_line_set_spring(j, 500, 5, 1, draw(w, 2)));
+        OK(w->s, spar_link_create(w->s, name, w->tied[i], 0, x, b, node, (const double[3]){0, 0, 2}, &j));
+        OK(w->s, spar_link_set_spring(j, 500, 5, 1, draw(w, 2)));
         break;
     case 1:
         j = scene_joint_at(w->s, name, w->tied[i], 0, b, node, 63, x);
@@ -420,7 +420,7 @@ static void told_move(told_scene *w, double t, int external) {
         if (external && i % 3 == 2) {
             OK(w->s, spar_member_set_motion(w->told[i], q, v, a));
         } else if (!external && i % 3 != 2) {
-            OK(w->s, spar_member_drive_root(w->told[i], q, v, a));
+            OK(w->s, spar_member_drive(w->told[i], q, v, a));
         }
     }
 }

@@ -35,7 +35,7 @@ static spar_session *turning(int fidelity, int64_t modes, int root, double size,
 
 static void drive(spar_session *s, spar_member *b, double t) {
     const double q[7] = {0, 0, 0, cos(0.5 * SPIN * t), 0, 0, sin(0.5 * SPIN * t)}, v[6] = {0, 0, 0, 0, 0, SPIN};
-    OK(s, spar_member_drive_root(b, q, v, NULL));
+    OK(s, spar_member_drive(b, q, v, NULL));
 }
 
 static void run(spar_session *s, spar_member *b, int root, int n) {
@@ -449,7 +449,7 @@ static void test_sudden_start(void **state) {
         OK(s, spar_member_set_initial_velocity(b, none, none, none));
         for (int i = 1; i <= 50; i++) {
             const double q[7] = {0, 0, 2e-4 * i, 1, 0, 0, 0}, v[6] = {0, 0, 0.1, 0, 0, 0};
-            OK(s, spar_member_drive_root(b, q, v, NULL));
+            OK(s, spar_member_drive(b, q, v, NULL));
             scene_run(s, DT, 1);
         }
         scene_tip(b, tip[k]);

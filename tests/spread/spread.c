@@ -374,11 +374,11 @@ int spread_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x) {
 }
 
 int spread_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
-    return set_nodes(fluid, 2, n, xi, 1, offset, spar_fluid_set_sections);
+    return set_nodes(fluid, 2, n, xi, 1, offset, spar_fluid_set_stations);
 }
 
 int spread_set_motion_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
-    return set_nodes(fluid, SPAR_NODES_MOTION, n, xi, 1, offset, spar_fluid_set_motion_sections);
+    return set_nodes(fluid, SPAR_NODES_MOTION, n, xi, 1, offset, spar_fluid_set_motion_stations);
 }
 
 int spread_set_motion_weights(spar_fluid *fluid, int64_t n, const double *w) {
@@ -439,7 +439,7 @@ int spread_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q
 int spread_get_places(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *foot) {
     cut c = cut_of(fluid, which);
     double *part[4] = {place_for(&c, 3, x), place_for(&c, 3, v), place_for(&c, 4, q), place_for(&c, 3, foot)};
-    int status = spar_fluid_get_places(fluid, which, part[0], part[1], part[2], part[3]);
+    int status = spar_fluid_get_positions(fluid, which, part[0], part[1], part[2], part[3]);
     return put_together(&c, status, 4, part, (int[]){3, 3, 4, 3}, (double *[]){x, v, q, foot});
 }
 
@@ -633,7 +633,7 @@ int spread_solve_static(spar_session *session, int load_steps, spar_fluid_solver
 
 int spread_start(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
     iterating++;
-    int status = verdict(spar_session_start(session, dt, solve, context, iterations));
+    int status = verdict(spar_session_solve_initial(session, dt, solve, context, iterations));
     iterating--;
     return status;
 }

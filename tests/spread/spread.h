@@ -72,14 +72,14 @@ int spread_remove(const char *path);
 #define spar_fluid_create spread_create
 #define spar_fluid_set_motion_nodes spread_set_motion_nodes
 #define spar_fluid_set_force_nodes spread_set_force_nodes
-#define spar_fluid_set_sections spread_set_sections
-#define spar_fluid_set_motion_sections spread_set_motion_sections
+#define spar_fluid_set_stations spread_set_sections
+#define spar_fluid_set_motion_stations spread_set_motion_sections
 #define spar_fluid_set_motion_weights spread_set_motion_weights
 #define spar_fluid_get_count spread_get_count
 #define spar_fluid_get_flag_count spread_get_flag_count
 #define spar_fluid_get_map spread_get_map
 #define spar_fluid_get_feet spread_get_feet
-#define spar_fluid_get_places spread_get_places
+#define spar_fluid_get_positions spread_get_places
 #define spar_fluid_pull_motion spread_pull_motion
 #define spar_fluid_pull_sections spread_pull_sections
 #define spar_fluid_pull_poses spread_pull_poses
@@ -96,7 +96,7 @@ int spread_remove(const char *path);
 #define spar_member_commit spread_commit
 #define spar_member_solve_static spread_member_solve_static
 #define spar_session_solve_static spread_solve_static
-#define spar_session_start spread_start
+#define spar_session_solve_initial spread_start
 #define spar_step spread_step
 #define spar_step_begin spread_step_begin
 #define spar_step_solve spread_step_solve

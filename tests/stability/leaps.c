@@ -125,7 +125,7 @@ static void test_turning_root(void **state) {
             t += dt;
             const double root[7] = {0, 0, 0, cos(0.5 * speed * t), 0, 0, sin(0.5 * speed * t)},
                          rate[6] = {0, 0, 0, 0, 0, speed};
-            OK(s, spar_member_drive_root(b, root, rate, NULL));
+            OK(s, spar_member_drive(b, root, rate, NULL));
             OK(s, spar_step(s, dt, NULL, NULL, NULL));
             OK(s, spar_member_get_motion(b, q, NULL, NULL));
             radius[i >= 20] = hypot(10 + q[35], q[36]);

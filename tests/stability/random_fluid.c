@@ -128,7 +128,7 @@ static void make(bath *b, int kind, int fluid, double rho) {
     OK(s, spar_fluid_set_motion_nodes(b->fluid, b->nodes, x));
     OK(s, spar_fluid_map(b->fluid));
     OK(s, spar_fluid_pull_motion(b->fluid, 1, NULL, b->before));
-    OK(s, spar_session_start(s, 1e-3 * steps[kind], answer, b, NULL));
+    OK(s, spar_session_solve_initial(s, 1e-3 * steps[kind], answer, b, NULL));
 }
 
 static double energy(const bath *b, double *kinetic) {

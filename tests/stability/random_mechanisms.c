@@ -150,8 +150,8 @@ static void ropes(sequence_world *w) {
     for (int i = 0; i < 3; i++) {
         const double k = i < 2 ? 500 : 40, rest = i ? 1.05 : 1,
                      length = hypot(hypot(q[i][0] - p[i][0], q[i][1] - p[i][1]), q[i][2] - p[i][2]);
-        OK(w->s, spar_line_create(w->s, names[i], b, 0, p[i], NULL, 0, q[i], &w->j[w->joints]));
-        OK(w->s, spar_line_set_spring(w->j[w->joints++], k, i < 2 ? 0 : 1, rest, i < 2));
+        OK(w->s, spar_link_create(w->s, names[i], b, 0, p[i], NULL, 0, q[i], &w->j[w->joints]));
+        OK(w->s, spar_link_set_spring(w->j[w->joints++], k, i < 2 ? 0 : 1, rest, i < 2));
         w->stored += 0.5 * k * pow(i < 2 ? fmax(length - rest, 0) : length - rest, 2);
     }
     OK(w->s, spar_member_set_initial_velocity(b, origin, (double[]){0.5, 0.3, 1}, (double[]){0.5, 1, 0.3}));
@@ -162,7 +162,7 @@ static void rods(sequence_world *w) {
     spar_member *b = body(w, "platform", origin, 2, 0.02, 0.15, 0.15);
     const double p[2][3] = {{-0.4, 0, 0}, {0.4, 0.1, 0}}, q[2][3] = {{-0.7, 0, 0.6}, {0.3, 0.2, 0.9}};
     for (int i = 0; i < 2; i++) {
-        OK(w->s, spar_line_create(w->s, i ? "long" : "short", b, 0, p[i], NULL, 0, q[i], &w->j[w->joints++]));
+        OK(w->s, spar_link_create(w->s, i ? "long" : "short", b, 0, p[i], NULL, 0, q[i], &w->j[w->joints++]));
     }
 }
 
@@ -339,7 +339,7 @@ static void step(sequence_world *w, int kind, double dt) {
     if (kind >= DRIVEN_LINEAR) {
         const double q[7] = {0, 0, 0, cos(turn / 2), 0, 0, sin(turn / 2)}, v[6] = {0, 0, 0, 0, 0, rate},
                      a[6] = {0, 0, 0, 0, 0, acceleration};
-        OK(w->s, spar_member_drive_root(w->m[0], q, v, a));
+        OK(w->s, spar_member_drive(w->m[0], q, v, a));
     }
     OK(w->s, spar_step(w->s, dt, NULL, NULL, NULL));
 }

@@ -142,7 +142,7 @@ static void step(world *w, double dt) {
     if (w->kind == TURNING) {
         const double W = 4, c = t - sin(t), turn = W * c, rate[6] = {0, 0, 0, 0, 0, W * (1 - cos(t))},
                      a[6] = {0, 0, 0, 0, 0, W * sin(t)}, q[7] = {0, 0, 0, cos(turn / 2), 0, 0, sin(turn / 2)};
-        OK(w->s, spar_member_drive_root(w->m[0], q, rate, a));
+        OK(w->s, spar_member_drive(w->m[0], q, rate, a));
     }
     OK(w->s, spar_step(w->s, dt, NULL, NULL, NULL));
 }

@@ -323,7 +323,7 @@ static void test_stiff_arm_that_turns(void **state) {
             }
             const double q[7] = {0, 0, 0, cos(psi / 2), 0, 0, sin(psi / 2)}, v[6] = {0, 0, 0, 0, 0, w},
                          accel[6] = {0, 0, 0, 0, 0, a};
-            OK(s, spar_member_drive_root(b, q, v, accel));
+            OK(s, spar_member_drive(b, q, v, accel));
             scene_run(s, cases[k].dt, 1);
         }
         double a[16][6];

@@ -67,7 +67,7 @@ static void nothing_is_fed(void **state) {
             double dt = 0.1, omega = theta[i % 7] / dt, most = 0, x[6];
             mode_create(&p, rho[k], substeps[i / 28], omega * omega, ratio[i / 7 % 4]);
             let_fall(&p, omega * omega);
-            OK(p.session, spar_session_start(p.session, dt, mode_fluid, &p, NULL));
+            OK(p.session, spar_session_solve_initial(p.session, dt, mode_fluid, &p, NULL));
             for (int n = 0; n < 200; n++) {
                 OK(p.session, spar_step(p.session, dt, mode_fluid, &p, NULL));
                 OK(p.session, spar_joint_get_motion(p.spring, x, NULL, NULL));
@@ -85,7 +85,7 @@ static double error_of(double dt, int substeps, double uneven) {
     double worst = 0, t = 0, x[6], omega = 2;
     mode_create(&p, 0.9, substeps, omega * omega, 10);
     let_fall(&p, omega * omega);
-    OK(p.session, spar_session_start(p.session, dt * (1 + uneven), mode_fluid, &p, NULL));
+    OK(p.session, spar_session_solve_initial(p.session, dt * (1 + uneven), mode_fluid, &p, NULL));
     for (int i = 0; t < 6; i++) {
         double h = dt * (i % 2 == 0 ? 1 + uneven : 1 - uneven);
         OK(p.session, spar_step(p.session, h, mode_fluid, &p, NULL));
@@ -196,11 +196,11 @@ static double swing(int fidelity, int substeps, double dt, double added, int *it
     OK(s, spar_member_set_load(c.beam, NODES - 1, SPAR_LOAD_DEAD, load));
     spari_gauss(POINTS, c.xi, c.weight);
     OK(s, spar_fluid_create(c.beam, "strips", &c.strips));
-    OK(s, spar_fluid_set_sections(c.strips, POINTS, c.xi, NULL));
+    OK(s, spar_fluid_set_stations(c.strips, POINTS, c.xi, NULL));
     OK(s, spar_fluid_map(c.strips));
     OK(s, spar_session_set_integrator(s, 0.9, substeps));
     OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 0, 1e-6, 30));
-    OK(s, spar_session_start(s, dt, strips, &c, NULL));
+    OK(s, spar_session_solve_initial(s, dt, strips, &c, NULL));
     *iterations = 0;
     for (int i = 0; i < (int)(2 / dt + 0.5); i++) {
         int n;

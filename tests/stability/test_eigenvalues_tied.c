@@ -64,7 +64,7 @@ static void turn_hub(spar_session *s, spar_member *hub) {
     for (int i = 1; i <= 150; i++) {
         const double angle = 0.012 * i, rate[6] = {0, 0, 0, 0, 0, 6};
         const double q[7] = {0, 0, 0, cos(0.5 * angle), 0, 0, sin(0.5 * angle)};
-        OK(s, spar_member_drive_root(hub, q, rate, NULL));
+        OK(s, spar_member_drive(hub, q, rate, NULL));
         scene_run(s, 0.002, 1);
     }
 }

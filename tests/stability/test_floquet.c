@@ -102,7 +102,7 @@ static int drive(spar_session *s, double t, double dt, void *context) {
     const double v[6] = {0, 0, -h->height * h->W * sin(wave), 0, 0, h->height > 0 ? 0 : h->W};
     const double a[6] = {0, 0, -h->height * h->W * h->W * cos(wave), 0, 0, 0};
     (void)s;
-    return h->hub ? spar_member_drive_root(h->hub, q, v, a) : SPAR_OK;
+    return h->hub ? spar_member_drive(h->hub, q, v, a) : SPAR_OK;
 }
 
 static void run(spar_session *s, host *h, double dt, int64_t steps, int64_t from) {

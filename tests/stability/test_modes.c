@@ -114,7 +114,7 @@ static void test_steady_turn(void **state) {
     for (int64_t i = 1; i <= steps; i++) {
         double drive[7] = {0, 0, 0, cos(0.5 * W * dt * (double)i), 0, 0, sin(0.5 * W * dt * (double)i)};
         double rate[6] = {0, 0, 0, 0, 0, W};
-        OK(s, spar_member_drive_root(b, drive, rate, NULL));
+        OK(s, spar_member_drive(b, drive, rate, NULL));
         scene_run(s, dt, 1);
     }
     OK(s, spar_member_get_motion(b, q, NULL, NULL));

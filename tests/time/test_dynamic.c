@@ -120,7 +120,7 @@ static void test_point_follows(void **state) {
     for (int i = 0; i < 3; i++) {
         NEAR(v[i], v0[i] + c[i], 1e-15);
     }
-    OK(s, spar_member_drive_root(p, q, rate, NULL));
+    OK(s, spar_member_drive(p, q, rate, NULL));
     scene_run(s, 0.1, 1);
     OK(s, spar_member_get_motion(p, got, v, NULL));
     assert_memory_equal(got, q, sizeof q);
@@ -257,7 +257,7 @@ static void turning_scene(const double p[4], double q[7], double v[6], double r[
         double root[7] = {0, 0, 0, 1, 0, 0, 0}, rate[6] = {0, 0, 0, wt[0], wt[1], wt[2]},
                psi[3] = {wt[0] * n * dt, wt[1] * n * dt, wt[2] * n * dt};
         spari_quat_exp(psi, root + 3);
-        OK(s, spar_member_drive_root(b, root, rate, NULL));
+        OK(s, spar_member_drive(b, root, rate, NULL));
         scene_run(s, dt, 1);
     }
     double all_q[56], all_v[48];
@@ -312,7 +312,7 @@ static void test_steady_rotation_over_many_turns(void **state) {
     double dt = 0.01;
     for (int k = 1; k <= n; k++) {
         double root[7] = {0, 0, 0, cos(10 * k * dt), 0, 0, sin(10 * k * dt)}, rate[6] = {0, 0, 0, 0, 0, 20};
-        OK(s, spar_member_drive_root(b, root, rate, NULL));
+        OK(s, spar_member_drive(b, root, rate, NULL));
         scene_run(s, dt, 1);
     }
     OK(s, spar_member_get_motion(b, q, NULL, NULL));
@@ -341,7 +341,7 @@ static void root_jumps(const double by[3], double angle, int elements, int nodes
     OK(s, spar_session_set_integrator(s, 0, 1));
     for (int n = 1; n <= 3; n++) {
         const double half = 0.5 * n * angle, root[7] = {n * by[0], n * by[1], n * by[2], cos(half), 0, 0, sin(half)};
-        OK(s, spar_member_drive_root(b, root, NULL, NULL));
+        OK(s, spar_member_drive(b, root, NULL, NULL));
         scene_run(s, 10, 1);
         OK(s, spar_member_get_motion(b, motion, NULL, NULL));
         tip[0] = root[0] + 2 * cos(n * angle) - 2, tip[1] = root[1] + 2 * sin(n * angle), tip[2] = root[2];
@@ -382,7 +382,7 @@ static double manoeuvre(int n, int uneven, int substeps, double q[7]) {
         double w = 0.5 * f * d * (1 - c), a = 0.5 * f * f * (c - c * c + d * d);
         double root[7] = {0, 0, 0, cos(angle / 2), 0, 0, sin(angle / 2)}, rate[6] = {0, 0, 0, 0, 0, w},
                acc[6] = {0, 0, 0, 0, 0, a};
-        OK(s, spar_member_drive_root(b, root, rate, acc));
+        OK(s, spar_member_drive(b, root, rate, acc));
         scene_run(s, dt, 1);
     }
     scene_tip(b, q);
@@ -473,7 +473,7 @@ static void lead_tip(const lead *l, int n, double dt, double tip[3], double seen
     for (int k = 1; k <= n; k++) {
         lead_at(l, k * dt, root, rate, faster);
         const double z[6] = {root[0], root[1], root[2], 0, 2 * atan2(root[5], root[3]), 0};
-        OK(s, l->joint ? spar_joint_drive(j, z, rate, faster) : spar_member_drive_root(b, root, rate, faster));
+        OK(s, l->joint ? spar_joint_drive(j, z, rate, faster) : spar_member_drive(b, root, rate, faster));
         scene_run(s, dt, 1);
     }
     OK(s, spar_member_get_motion(b, q, v, a));

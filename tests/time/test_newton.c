@@ -78,7 +78,7 @@ static flown fly(int beam, double dt, int64_t steps, double rho, int strict) {
         f.momentum = beam ? 0 : fmax(f.momentum, from(v, w, 3) / spari_norm(w));
         f.momentum_of_turns = fmax(f.momentum_of_turns, beam ? 0 : from(L, L0, 3) / spari_norm(L0));
     }
-    OK(s, spar_member_get_newton(m, &taken, NULL));
+    OK(s, spar_member_get_iterations(m, &taken, NULL));
     f.newton = (double)taken / (double)steps;
     spar_session_destroy(&s);
     return f;
@@ -189,8 +189,8 @@ static void drop(double dt, int64_t steps, int strict, double place[3]) {
     OK(s, spar_rigid_create(s, "ball", zero, NULL, M, &ball));
     OK(s, spar_member_commit(ball));
     OK(s, spar_member_set_initial_velocity(ball, zero, v0, w));
-    OK(s, spar_line_create(s, "line", ball, 0, eye, NULL, 0, above, &line));
-    OK(s, spar_line_set_spring(line, 2e4, 10, 3, 1));
+    OK(s, spar_link_create(s, "line", ball, 0, eye, NULL, 0, above, &line));
+    OK(s, spar_link_set_spring(line, 2e4, 10, 3, 1));
     scene_run(s, dt, steps);
     OK(s, spar_member_get_motion(ball, q, NULL, NULL));
     memcpy(place, q, 3 * sizeof *place);
@@ -275,7 +275,7 @@ static void test_saved_and_loaded(void **state) {
         }
         scene_run(s, 0.01, 50);
         OK(s, spar_member_get_motion(b, q[k], v[k], NULL));
-        OK(s, spar_member_get_newton(b, taken + k, NULL));
+        OK(s, spar_member_get_iterations(b, taken + k, NULL));
         spar_session_destroy(&s);
     }
     assert_memory_equal(q[0], q[1], sizeof q[0]);
@@ -317,10 +317,10 @@ static void test_getter(void **state) {
     double left = -1;
     spar_session *s = scene_session();
     spar_member *p;
-    assert_int_equal(spar_member_get_newton(NULL, &taken, &left), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_member_get_iterations(NULL, &taken, &left), SPAR_ERR_ARGUMENT);
     OK(s, spar_point_create(s, "point", x, NULL, &p));
-    OK(s, spar_member_get_newton(p, NULL, NULL));
-    OK(s, spar_member_get_newton(p, &taken, &left));
+    OK(s, spar_member_get_iterations(p, NULL, NULL));
+    OK(s, spar_member_get_iterations(p, &taken, &left));
     assert_true(taken == 0 && left == 0);
     REFUSED(s, SPAR_ERR_ARGUMENT, "give tied or strict", spar_session_set_option(s, "newton.stop", "loose"));
     spar_session_destroy(&s);

@@ -20,7 +20,7 @@ static played play(const scene *of, double dt, int strict) {
         OK(run->session, spar_session_set_option(run->session, "newton.stop", "strict"));
     }
     OK(run->session, scene_march(run, &p.result));
-    OK(run->session, spar_member_get_newton(run->member, &taken, &left));
+    OK(run->session, spar_member_get_iterations(run->member, &taken, &left));
     p.newton = (double)taken / (double)p.result.steps;
     assert_true(left >= 0 && left < 1e-7);
     scene_destroy(&run);

@@ -290,18 +290,18 @@ static void same_steps(void **state) {
     OK(all.session, spar_session_set_tolerance(all.session, 1e-6, 3e-3));
     OK(alone.session, spar_session_set_tolerance(alone.session, 1e-6, 3e-3));
     for (int i = 0; i < 30; i++) {
-        OK(all.session, spar_step_within(all.session, next, before, solve, &all, taken));
-        OK(alone.session, spar_step_within(alone.session, next + 1, before, solve, &alone, taken + 1));
+        OK(all.session, spar_step_adaptive(all.session, next, before, solve, &all, taken));
+        OK(alone.session, spar_step_adaptive(alone.session, next + 1, before, solve, &alone, taken + 1));
         same_on_all(next, 1);
         same_on_all(taken, 1);
         NEAR(taken[0], taken[1], 1e-6 * taken[1]);
     }
-    OK(all.session, spar_session_get_pace(all.session, SPAR_PACE_COUNT, pace[0]));
-    OK(alone.session, spar_session_get_pace(alone.session, SPAR_PACE_COUNT, pace[1]));
-    OK(all.session, spar_member_get_error(all.beam, error[0], error[0] + 1));
-    OK(all.session, spar_member_get_error(all.body, error[0] + 2, error[0] + 3));
-    OK(alone.session, spar_member_get_error(alone.beam, error[1], error[1] + 1));
-    OK(alone.session, spar_member_get_error(alone.body, error[1] + 2, error[1] + 3));
+    OK(all.session, spar_session_get_step_control(all.session, SPAR_PACE_COUNT, pace[0]));
+    OK(alone.session, spar_session_get_step_control(alone.session, SPAR_PACE_COUNT, pace[1]));
+    OK(all.session, spar_member_estimate_error(all.beam, error[0], error[0] + 1));
+    OK(all.session, spar_member_estimate_error(all.body, error[0] + 2, error[0] + 3));
+    OK(alone.session, spar_member_estimate_error(alone.beam, error[1], error[1] + 1));
+    OK(alone.session, spar_member_estimate_error(alone.body, error[1] + 2, error[1] + 3));
     same_on_all(pace[0], SPAR_PACE_COUNT);
     same_on_all(error[0], 4);
     assert_true(pace[0][SPAR_PACE_REJECTED] >= 1);

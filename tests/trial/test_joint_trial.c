@@ -49,8 +49,8 @@ static void create(scene *c, int nodes, int64_t node, double damping) {
     OK(s, spar_joint_create(s, "hinge", c->member[1], 0, c->member[0], node, SPAR_FREE_RY, &c->joint[0]));
     OK(s, spar_joint_set_frame(c->joint[0], place + 3 * node, rest));
     OK(s, spar_joint_set_spring(c->joint[0], spring, damper, NULL));
-    OK(s, spar_line_create(s, "rope", c->member[1], 0, tip, NULL, 0, (double[]){4, 0, 3}, &c->joint[1]));
-    OK(s, spar_line_set_spring(c->joint[1], 30, 0.1, 2.5, 1));
+    OK(s, spar_link_create(s, "rope", c->member[1], 0, tip, NULL, 0, (double[]){4, 0, 3}, &c->joint[1]));
+    OK(s, spar_link_set_spring(c->joint[1], 30, 0.1, 2.5, 1));
     OK(s, spar_joint_create(s, "shaft", c->member[2], 0, NULL, 0, SPAR_FREE_RZ, &c->joint[2]));
     OK(s, spar_joint_set_frame(c->joint[2], hub, rest));
     OK(s, spar_joint_set_driven(c->joint[2], SPAR_FREE_RZ));

@@ -137,7 +137,7 @@ static void test_sections_under_a_line_load(void **state) {
         wish.elements = to[k][0], wish.per_element = to[k][1];
         OK(s, spari_member_rebuild(b, &wish, &old));
         OK(s, spar_member_solve_static(b, 1));
-        OK(s, spar_beam_get_section(b, PLACES, eta, NULL, force[0], NULL, NULL));
+        OK(s, spar_beam_evaluate(b, PLACES, eta, NULL, force[0], NULL, NULL));
         for (int i = 0; i < PLACES; i++) {
             double rest = L * (1 - eta[i]);
             NEAR(fabs(force[i][2]), p * rest,

@@ -1,4 +1,4 @@
-/* What steps and nodes are said to leave (spar_member_get_error) on the scenes of benchmarks/worlds.h, which the
+/* What steps and nodes are said to leave (spar_member_estimate_error) on the scenes of benchmarks/worlds.h, which the
    estimates were not made with, against runs that are finer. */
 #include "check.h"
 
@@ -18,7 +18,7 @@ static void begin(int k, int nodes, double fading, double dt, world *w) {
     OK(w->s, spar_session_set_coupling(w->s, SPAR_COUPLING_IQN_ILS, 1e-12, 1e-7, 50));
     OK(w->s, spar_session_set_newton(w->s, 1e-14, 1e-10, 50));
     if (dt > 0) {
-        OK(w->s, spar_session_start(w->s, dt, world_solve, w, NULL));
+        OK(w->s, spar_session_solve_initial(w->s, dt, world_solve, w, NULL));
     }
 }
 
@@ -64,7 +64,7 @@ static void add_step(const world *w, double q[WORLD_MEMBERS][7 * MOST], sums *e)
     for (int m = 0; m < w->members; m++) {
         double now[7 * MOST], said;
         int64_t n;
-        OK(w->s, spar_member_get_error(w->m[m], &said, NULL));
+        OK(w->s, spar_member_estimate_error(w->m[m], &said, NULL));
         OK(w->s, spar_member_get_count(w->m[m], &n));
         OK(w->s, spar_member_get_motion(w->m[m], now, NULL, NULL));
         e->said[m] += said * said;
@@ -135,7 +135,7 @@ static void watch_nodes(int k, int nodes, double fading, world *w, sums *e, doub
                 continue;
             }
             (void)shape(&fine, m, FINE, y);
-            OK(w->s, spar_member_get_error(w->m[m], NULL, &said));
+            OK(w->s, spar_member_estimate_error(w->m[m], NULL, &said));
             e->said[m] += said * said;
             for (int c = 0; c < 3 * FINE; c++) {
                 e->is[m] += pow(x[c] - y[c], 2) / FINE;

@@ -34,7 +34,7 @@ static void create(wing *w, double root) {
     OK(s, spar_member_commit(w->beam));
     spari_gauss(STRIPS, w->xi, w->weight);
     OK(s, spar_fluid_create(w->beam, "strips", &w->strips));
-    OK(s, spar_fluid_set_sections(w->strips, STRIPS, w->xi, NULL));
+    OK(s, spar_fluid_set_stations(w->strips, STRIPS, w->xi, NULL));
     OK(s, spar_fluid_map(w->strips));
 }
 

@@ -236,8 +236,8 @@ static void test_taut_lines(void **state) {
     spar_member *b = scene_body(s, "bead", zero, m, J);
     for (int i = 0; i < 2; i++) {
         spar_joint *j = NULL;
-        OK(s, spar_line_create(s, i ? "left" : "right", b, 0, zero, NULL, 0, end[i], &j));
-        OK(s, spar_line_set_spring(j, k, 0, 0.8, 1));
+        OK(s, spar_link_create(s, i ? "left" : "right", b, 0, zero, NULL, 0, end[i], &j));
+        OK(s, spar_link_set_spring(j, k, 0, 0.8, 1));
     }
     OK(s, spar_member_solve_modes(b, 6, f, NULL));
     const double expected[6] = {0, 0, 0, sqrt(2 * T / m), sqrt(2 * T / m), sqrt(2 * k / m)};

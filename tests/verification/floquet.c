@@ -18,7 +18,7 @@ static int shake(spar_session *s, double t, double dt, void *context) {
     const double q[7] = {0, 0, h * (cos(wave) - 1), 1, 0, 0, 0}, v[6] = {0, 0, -2 * h * sin(wave), 0, 0, 0},
                  a[6] = {0, 0, -4 * h * cos(wave), 0, 0, 0};
     (void)s;
-    return spar_member_drive_root(p->member, q, v, a);
+    return spar_member_drive(p->member, q, v, a);
 }
 
 /* Growth rate and frequency of the pendulum, by so many steps a period. */

@@ -60,7 +60,7 @@ static void build(wing *w, const wing_data *of, double speed, double angle) {
         xi[i] = -1 + 2.0 * i / (STRIPS - 1);
         offset[i][1] = (-0.25 - of->axis) * of->chord;
     }
-    OK(w->s, spar_fluid_set_sections(w->air, STRIPS, xi, offset[0]));
+    OK(w->s, spar_fluid_set_stations(w->air, STRIPS, xi, offset[0]));
     OK(w->s, spar_fluid_map(w->air));
     OK(w->s, spar_polar_create(2, alpha, cl, cd, NULL, &w->polar));
     OK(w->s, spar_aero_create(1, &w->air, &w->aero));

@@ -90,8 +90,8 @@ static squeezer squeezer_create(void) {
     squeezer_hinge(&k, K4, K2, E);
     squeezer_hinge(&k, K6, K2, E);
     spar_joint *spring = NULL;
-    OK(k.s, spar_line_create(k.s, "spring", k.body[K3], 0, D, NULL, 0, C, &spring));
-    OK(k.s, spar_line_set_spring(spring, 4530, 0, 0.07785, 0));
+    OK(k.s, spar_link_create(k.s, "spring", k.body[K3], 0, D, NULL, 0, C, &spring));
+    OK(k.s, spar_link_set_spring(spring, 4530, 0, 0.07785, 0));
     OK(k.s, spar_joint_set_load(k.hinge[0], (double[]){0, 0, 0, 0, 0, 0.033}));
     return k;
 }

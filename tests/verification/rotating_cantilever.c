@@ -75,7 +75,7 @@ static void test_in_time(void **state) {
     OK(s, spar_member_set_load(b, NODES - 1, SPAR_LOAD_DEAD, none));
     for (int n = 1; passages < 21; n++) {
         double a = 5 * n * dt, root[7] = {0, 0, 0, cos(a / 2), 0, 0, sin(a / 2)}, v[6] = {0, 0, 0, 0, 0, 5};
-        OK(s, spar_member_drive_root(b, root, v, none));
+        OK(s, spar_member_drive(b, root, v, none));
         scene_run(s, dt, 1);
         scene_tip(b, q);
         if (last < 0 && q[2] >= 0) {

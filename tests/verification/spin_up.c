@@ -18,7 +18,7 @@ static void drive(spar_session *s, spar_member *b, double t, double *psi) {
     }
     double q[7] = {0, 0, 0, cos(*psi / 2), 0, 0, sin(*psi / 2)}, v[6] = {0, 0, 0, 0, 0, rate},
            a[6] = {0, 0, 0, 0, 0, acceleration};
-    OK(s, spar_member_drive_root(b, q, v, a));
+    OK(s, spar_member_drive(b, q, v, a));
 }
 
 enum { TIMES = 11 };

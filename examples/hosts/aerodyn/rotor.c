@@ -91,7 +91,7 @@ static int drive(scene *s, double t) {
     for (int b = 0; b < BLADES; b++) {
         double q[7], v[6], a[6];
         nrel5mw_root_motion(s->data, &s->rotor, b, s->speed * t, s->speed, 0, q, v, a);
-        TRY(spar_member_drive_root(s->blade[b], q, v, a));
+        TRY(spar_member_drive(s->blade[b], q, v, a));
     }
     return SPAR_OK;
 }
@@ -184,7 +184,7 @@ static int create(scene *s, const options *o, const nrel5mw *data, int with_aero
 static int look(scene *s, double t) {
     double motion[7 * 64], place[3 * 64], force[3] = {0}, sum[3], q[7], v[6], a[6];
     for (int b = 0; b < BLADES; b++) {
-        TRY(spar_fluid_get_total(s->fluid[b], NULL, sum, NULL));
+        TRY(spar_fluid_sum_loads(s->fluid[b], NULL, sum, NULL));
         for (int i = 0; i < 3; i++) {
             force[i] += sum[i];
         }

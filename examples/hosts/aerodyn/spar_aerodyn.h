@@ -3,7 +3,7 @@
    once more.
 
    The blades' own frames (spar_member_set_placement) have x along the pitch axis, y from leading to trailing edge, z =
-   x cross y, as examples/nrel5mw.h makes them; their fluids are sections (spar_fluid_set_sections) at the nodes of
+   x cross y, as examples/nrel5mw.h makes them; their fluids are sections (spar_fluid_set_stations) at the nodes of
    AeroDyn's blade file. The library has one state for the process: one rotor, all its fluids on one rank. That state
    cannot be saved, nor go back by more than the step under way: no restart, no trials. */
 #ifndef SPAR_AERODYN_H

@@ -74,7 +74,7 @@ static int place_rows(const spar_case *c, const case_block *block, int64_t n, sp
                             "section has %d values; give xi chord twist POLAR, and y z if it is off the line", line->n);
         status = status == SPAR_OK && line->n == 6 ? case_numbers(&c->text, line, 5, 2, offset + 3 * i + 1) : status;
     }
-    status = status == SPAR_OK ? case_told(c, number, spar_fluid_set_sections(fluid, n, xi, offset)) : status;
+    status = status == SPAR_OK ? case_told(c, number, spar_fluid_set_stations(fluid, n, xi, offset)) : status;
     free(xi);
     return status;
 }

@@ -652,7 +652,7 @@ static int describe_line(const spar_case *c, const case_block *block, spar_joint
     CASE_TRY(case_numbers(&c->text, a, 3, 3, from));
     CASE_TRY(case_numbers(&c->text, b, member_b ? 3 : 2, 3, to));
     DO(c, block->number,
-       spar_line_create(c->session, block->name, member_a, node_a, from, member_b, node_b, to, joint));
+       spar_link_create(c->session, block->name, member_a, node_a, from, member_b, node_b, to, joint));
     for (int i = 0; i < 3; i++) {
         if ((line = case_find(block, key[i]))) {
             CASE_TRY(case_numbers(&c->text, line, 1, 1, spring + i));
@@ -664,7 +664,7 @@ static int describe_line(const spar_case *c, const case_block *block, spar_joint
         given = line->number;
     }
     if (given) {
-        DO(c, given, spar_line_set_spring(*joint, spring[0], spring[1], spring[2], tension));
+        DO(c, given, spar_link_set_spring(*joint, spring[0], spring[1], spring[2], tension));
     }
     if ((line = case_find(block, "driven"))) {
         CASE_TRY(case_on_or_off(c, line, &on));

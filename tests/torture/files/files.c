@@ -114,9 +114,9 @@ static void tie(scene *c) {
     MUST(s, spar_joint_set_frame(hinge, tip, NULL));
     MUST(s, spar_joint_set_spring(hinge, soft, NULL, NULL));
     MUST(s, spar_joint_set_load(hinge, load));
-    MUST(s, spar_line_create(s, "rope", c->member[6], 0, x, NULL, 0, up, &rope));
-    MUST(s, spar_line_set_spring(rope, 5, 0.1, 7, 1));
-    MUST(s, spar_line_create(s, "actuator", c->member[4], 0, tip, NULL, 0, up, &actuator));
+    MUST(s, spar_link_create(s, "rope", c->member[6], 0, x, NULL, 0, up, &rope));
+    MUST(s, spar_link_set_spring(rope, 5, 0.1, 7, 1));
+    MUST(s, spar_link_create(s, "actuator", c->member[4], 0, tip, NULL, 0, up, &actuator));
     MUST(s, spar_joint_set_driven(actuator, SPAR_FREE_X));
 }
 
@@ -183,7 +183,7 @@ static int step(scene *c) {
         (void)spar_session_get_time(c->session, &t, NULL, NULL);
         q[3] = cos(0.05 * (t + dt)), q[6] = sin(0.05 * (t + dt));
         v[5] = 0.1;
-        (void)spar_member_drive_root(c->member[2], q, v, NULL);
+        (void)spar_member_drive(c->member[2], q, v, NULL);
     }
     return spar_step(c->session, dt, solve, c, NULL);
 }

@@ -73,12 +73,12 @@ static void set_sections(call *c, int (*set)(spar_fluid *fluid, int64_t n, const
     RUN(c, set(f->f, n, xi, offset));
 }
 
-void do_spar_fluid_set_sections(call *c) {
-    set_sections(c, spar_fluid_set_sections);
+void do_spar_fluid_set_stations(call *c) {
+    set_sections(c, spar_fluid_set_stations);
 }
 
-void do_spar_fluid_set_motion_sections(call *c) {
-    set_sections(c, spar_fluid_set_motion_sections);
+void do_spar_fluid_set_motion_stations(call *c) {
+    set_sections(c, spar_fluid_set_motion_stations);
 }
 
 void do_spar_fluid_set_motion_weights(call *c) {
@@ -297,13 +297,13 @@ void do_spar_fluid_pull_force_places(call *c) {
     RUN(c, spar_fluid_pull_force_places(f->f, theta, x, v, q));
 }
 
-void do_spar_fluid_get_places(call *c) {
+void do_spar_fluid_get_positions(call *c) {
     live_fluid *f = arg_fluid(c);
     int which = arg_int(c, 0, 1);
     int64_t n = fluid_count(f, which);
     double *x = OUT_OR_NULL(c, 3 * n), *v = OUT_OR_NULL(c, 3 * n), *q = OUT_OR_NULL(c, 4 * n),
            *foot = OUT_OR_NULL(c, 3 * n);
-    RUN(c, spar_fluid_get_places(f->f, which, x, v, q, foot));
+    RUN(c, spar_fluid_get_positions(f->f, which, x, v, q, foot));
 }
 
 void do_spar_fluid_get_forces(call *c) {
@@ -404,17 +404,17 @@ void do_spar_fluid_get_audit(call *c) {
     RUN(c, spar_fluid_get_audit(f->f, n, audit));
 }
 
-void do_spar_fluid_get_total(call *c) {
+void do_spar_fluid_sum_loads(call *c) {
     live_fluid *f = arg_fluid(c);
     double *point = arg_reals_or_null(c, 3, -3, 3), *force = OUT_OR_NULL(c, 3), *moment = OUT_OR_NULL(c, 3);
-    RUN(c, spar_fluid_get_total(f->f, point, force, moment));
+    RUN(c, spar_fluid_sum_loads(f->f, point, force, moment));
 }
 
-void do_spar_fluid_check_total(call *c) {
+void do_spar_fluid_check_loads(call *c) {
     live_fluid *f = arg_fluid(c);
     double *point = arg_reals_or_null(c, 3, -3, 3), *force = arg_reals_or_null(c, 3, -3, 3);
     double *moment = arg_reals_or_null(c, 3, -3, 3), rtol = arg_real(c, 1e-12, 2);
-    RUN(c, spar_fluid_check_total(f->f, point, force, moment, rtol));
+    RUN(c, spar_fluid_check_loads(f->f, point, force, moment, rtol));
 }
 
 void do_spar_fluid_get_travel(call *c) {

@@ -61,7 +61,7 @@ void do_spar_joint_create(call *c) {
     joint_made(c, at, j, (int)(e.session - c->w->session), 0, mask);
 }
 
-void do_spar_line_create(call *c) {
+void do_spar_link_create(call *c) {
     live_joint *at = free_joint(c);
     if (!at) {
         return;
@@ -71,7 +71,7 @@ void do_spar_line_create(call *c) {
     double *from = arg_reals(c, 3, -1, 1), *to = arg_reals(c, 3, -1, 1);
     int nowhere = odd(c);
     spar_joint *j = NULL;
-    RUN(c, spar_line_create(e.session->s, name, e.a, e.node_a, from, e.b, e.node_b, to, nowhere ? NULL : &j));
+    RUN(c, spar_link_create(e.session->s, name, e.a, e.node_a, from, e.b, e.node_b, to, nowhere ? NULL : &j));
     joint_made(c, at, j, (int)(e.session - c->w->session), 1, 1);
 }
 
@@ -104,11 +104,11 @@ void do_spar_joint_set_spring(call *c) {
     RUN(c, spar_joint_set_spring(j->j, K, D, preload));
 }
 
-void do_spar_line_set_spring(call *c) {
+void do_spar_link_set_spring(call *c) {
     live_joint *j = arg_joint(c, JOINT_LINE);
     double k = arg_real(c, 0, 100), d = arg_real(c, 0, 5), length = arg_real(c, 0, 2);
     int slack = arg_int(c, 0, 1);
-    RUN(c, spar_line_set_spring(j->j, k, d, length, slack));
+    RUN(c, spar_link_set_spring(j->j, k, d, length, slack));
 }
 
 void do_spar_member_set_spring(call *c) {

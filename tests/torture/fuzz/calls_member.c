@@ -335,10 +335,10 @@ void do_spar_member_set_motion(call *c) {
     RUN(c, spar_member_set_motion(m->m, q, v, a));
 }
 
-void do_spar_member_drive_root(call *c) {
+void do_spar_member_drive(call *c) {
     live_member *m = arg_member(c, -1);
     double *q = arg_motions(c, 1), *v = arg_reals_or_null(c, 6, -0.1, 0.1), *a = arg_reals_or_null(c, 6, -1, 1);
-    RUN(c, spar_member_drive_root(m->m, q, v, a));
+    RUN(c, spar_member_drive(m->m, q, v, a));
 }
 
 static int64_t arg_node(call *c, const live_member *m) {
@@ -460,12 +460,12 @@ void do_spar_member_get_reaction(call *c) {
     RUN(c, spar_member_get_reaction(m->m, load));
 }
 
-void do_spar_beam_get_section(call *c) {
+void do_spar_beam_evaluate(call *c) {
     live_member *b = arg_member(c, KIND_BEAM);
     int64_t n = arg_count(c, 0, 4), room = length(n);
     double *eta = arg_reals(c, room, 0, 1), *strain = OUT_OR_NULL(c, 6 * room), *force = OUT_OR_NULL(c, 6 * room),
            *x = OUT_OR_NULL(c, 3 * room), *q = OUT_OR_NULL(c, 4 * room);
-    RUN(c, spar_beam_get_section(b->m, n, eta, strain, force, x, q));
+    RUN(c, spar_beam_evaluate(b->m, n, eta, strain, force, x, q));
 }
 
 void do_spar_member_get_energy(call *c) {
@@ -475,17 +475,17 @@ void do_spar_member_get_energy(call *c) {
     RUN(c, spar_member_get_energy(m->m, n, energy));
 }
 
-void do_spar_member_get_error(call *c) {
+void do_spar_member_estimate_error(call *c) {
     live_member *m = arg_member(c, -1);
     double *step = OUT_OR_NULL(c, 1), *nodes = OUT_OR_NULL(c, 1);
-    RUN(c, spar_member_get_error(m->m, step, nodes));
+    RUN(c, spar_member_estimate_error(m->m, step, nodes));
 }
 
-void do_spar_member_get_newton(call *c) {
+void do_spar_member_get_iterations(call *c) {
     live_member *m = arg_member(c, -1);
     int64_t *iterations = arg_out(c, (int64_t)sizeof *iterations, 1);
     double *left = OUT_OR_NULL(c, 1);
-    RUN(c, spar_member_get_newton(m->m, iterations, left));
+    RUN(c, spar_member_get_iterations(m->m, iterations, left));
 }
 
 void do_spar_member_get_work(call *c) {

@@ -165,11 +165,11 @@ void do_spar_session_get_tolerance(call *c) {
     RUN(c, spar_session_get_tolerance(l->s, drift, rtol));
 }
 
-void do_spar_session_get_pace(call *c) {
+void do_spar_session_get_step_control(call *c) {
     live_session *l = arg_session(c);
     int64_t n = arg_count(c, 0, SPAR_PACE_COUNT + 2);
     double *pace = OUT_OR_NULL(c, length(n));
-    RUN(c, spar_session_get_pace(l->s, n, pace));
+    RUN(c, spar_session_get_step_control(l->s, n, pace));
 }
 
 void do_spar_session_set_predictor(call *c) {
@@ -339,13 +339,13 @@ void do_spar_session_sum(call *c) {
     RUN(c, spar_session_sum(l->s, status, n, x));
 }
 
-void do_spar_session_get_balance(call *c) {
+void do_spar_session_sum_balance(call *c) {
     live_session *l = arg_session(c);
     int64_t n = arg_count(c, 0, 6);
     int64_t *members = arg_out(c, length(n) * (int64_t)sizeof *members, 1);
     double *expected = arg_out(c, length(n) * (int64_t)sizeof *expected, 1);
     double *counted = arg_out(c, length(n) * (int64_t)sizeof *counted, 1);
-    RUN(c, spar_session_get_balance(l->s, n, members, expected, counted));
+    RUN(c, spar_session_sum_balance(l->s, n, members, expected, counted));
 }
 
 void do_spar_session_get_option(call *c) {
@@ -450,16 +450,16 @@ void do_spar_step(call *c) {
     RUN(c, spar_step(l->s, dt, solve, h, iterations));
 }
 
-void do_spar_session_start(call *c) {
+void do_spar_session_solve_initial(call *c) {
     live_session *l = arg_session(c);
     double dt = arg_dt(c);
     spar_fluid_solver solve;
     host *h = arg_host(c, &solve, NULL);
     int *iterations = arg_out(c, sizeof *iterations, 1);
-    RUN(c, spar_session_start(l->s, dt, solve, h, iterations));
+    RUN(c, spar_session_solve_initial(l->s, dt, solve, h, iterations));
 }
 
-void do_spar_step_within(call *c) {
+void do_spar_step_adaptive(call *c) {
     live_session *l = arg_session(c);
     spar_fluid_solver solve;
     spar_before_step before;
@@ -468,13 +468,13 @@ void do_spar_step_within(call *c) {
     if (dt) {
         *dt = 0.01;
     }
-    RUN(c, spar_step_within(l->s, dt, before, solve, h, taken));
+    RUN(c, spar_step_adaptive(l->s, dt, before, solve, h, taken));
 }
 
-void do_spar_step_begin_start(call *c) {
+void do_spar_step_begin_initial(call *c) {
     live_session *l = arg_session(c);
     double dt = arg_dt(c);
-    RUN(c, spar_step_begin_start(l->s, dt));
+    RUN(c, spar_step_begin_initial(l->s, dt));
 }
 
 void do_spar_session_solve_static(call *c) {

@@ -51,7 +51,7 @@ enum {
     CALL(spar_session_set_threads, 20, FUZZ_CHANGES)                                                                   \
     CALL(spar_session_set_tolerance, 60, FUZZ_CHANGES)                                                                 \
     CALL(spar_session_get_tolerance, 20, FUZZ_PURE)                                                                    \
-    CALL(spar_session_get_pace, 40, FUZZ_PURE)                                                                         \
+    CALL(spar_session_get_step_control, 40, FUZZ_PURE)                                                                         \
     CALL(spar_session_set_option, 140, FUZZ_CHANGES)                                                                   \
     CALL(spar_session_get_gravity, 20, FUZZ_PURE)                                                                      \
     CALL(spar_session_get_integrator, 20, FUZZ_PURE)                                                                   \
@@ -67,7 +67,7 @@ enum {
     CALL(spar_member_get_effects, 20, FUZZ_PURE)                                                                       \
     CALL(spar_member_get_fidelity, 20, FUZZ_PURE)                                                                      \
     CALL(spar_member_get_owner, 20, FUZZ_PURE)                                                                         \
-    CALL(spar_member_get_newton, 20, FUZZ_PURE)                                                                        \
+    CALL(spar_member_get_iterations, 20, FUZZ_PURE)                                                                        \
     CALL(spar_beam_get_elements, 20, FUZZ_PURE)                                                                        \
     CALL(spar_beam_get_quadrature, 20, FUZZ_PURE)                                                                      \
     CALL(spar_beam_get_damping, 20, FUZZ_PURE)                                                                         \
@@ -75,7 +75,7 @@ enum {
     CALL(spar_fluid_get_interpolation, 20, FUZZ_PURE)                                                                  \
     CALL(spar_session_get_phase, 20, FUZZ_PURE)                                                                        \
     CALL(spar_session_sum, 20, FUZZ_PURE)                                                                              \
-    CALL(spar_session_get_balance, 20, FUZZ_PURE)                                                                      \
+    CALL(spar_session_sum_balance, 20, FUZZ_PURE)                                                                      \
     CALL(spar_member_get_session, 20, FUZZ_PURE)                                                                       \
     CALL(spar_member_get_name, 10, FUZZ_PURE | FUZZ_TEXT)                                                              \
     CALL(spar_fluid_get_member, 20, FUZZ_PURE)                                                                         \
@@ -107,7 +107,7 @@ enum {
     CALL(spar_beam_read_beamdyn, 15, FUZZ_CHANGES)                                                                     \
     CALL(spar_beam_set_line_load, 100, FUZZ_CHANGES)                                                                   \
     CALL(spar_beam_set_modal_damping, 30, FUZZ_CHANGES)                                                                \
-    CALL(spar_beam_get_section, 100, FUZZ_PURE)                                                                        \
+    CALL(spar_beam_evaluate, 100, FUZZ_PURE)                                                                        \
     CALL(spar_member_set_placement, 40, FUZZ_CHANGES)                                                                  \
     CALL(spar_member_set_root, 40, FUZZ_CHANGES)                                                                       \
     CALL(spar_member_set_external, 30, FUZZ_CHANGES)                                                                   \
@@ -124,7 +124,7 @@ enum {
     CALL(spar_member_get_reference, 60, FUZZ_PURE)                                                                     \
     CALL(spar_member_get_motion, 80, FUZZ_PURE)                                                                        \
     CALL(spar_member_set_motion, 100, FUZZ_CHANGES)                                                                    \
-    CALL(spar_member_drive_root, 140, FUZZ_CHANGES)                                                                    \
+    CALL(spar_member_drive, 140, FUZZ_CHANGES)                                                                    \
     CALL(spar_member_set_load, 240, FUZZ_CHANGES)                                                                      \
     CALL(spar_member_get_loads, 60, FUZZ_PURE)                                                                         \
     CALL(spar_member_get_reaction, 60, FUZZ_PURE)                                                                      \
@@ -136,11 +136,11 @@ enum {
     CALL(spar_member_get_advice, 80, FUZZ_PURE)                                                                        \
     CALL(spar_member_write_vtk, 10, FUZZ_PURE)                                                                         \
     CALL(spar_joint_create, 80, FUZZ_CHANGES)                                                                          \
-    CALL(spar_line_create, 40, FUZZ_CHANGES)                                                                           \
+    CALL(spar_link_create, 40, FUZZ_CHANGES)                                                                           \
     CALL(spar_joint_set_frame, 60, FUZZ_CHANGES)                                                                       \
     CALL(spar_joint_set_spring, 50, FUZZ_CHANGES)                                                                      \
     CALL(spar_member_set_spring, 30, FUZZ_CHANGES)                                                                     \
-    CALL(spar_line_set_spring, 50, FUZZ_CHANGES)                                                                       \
+    CALL(spar_link_set_spring, 50, FUZZ_CHANGES)                                                                       \
     CALL(spar_joint_set_driven, 60, FUZZ_CHANGES)                                                                      \
     CALL(spar_joint_drive, 80, FUZZ_CHANGES)                                                                           \
     CALL(spar_joint_set_load, 30, FUZZ_CHANGES)                                                                        \
@@ -151,14 +151,14 @@ enum {
     CALL(spar_fluid_destroy, 20, FUZZ_TEXT)                                                                            \
     CALL(spar_fluid_set_motion_nodes, 60, FUZZ_CHANGES)                                                                \
     CALL(spar_fluid_set_force_nodes, 60, FUZZ_CHANGES)                                                                 \
-    CALL(spar_fluid_set_sections, 60, FUZZ_CHANGES)                                                                    \
+    CALL(spar_fluid_set_stations, 60, FUZZ_CHANGES)                                                                    \
     CALL(spar_fluid_set_motion_weights, 60, FUZZ_CHANGES)                                                              \
     CALL(spar_fluid_get_motion_weights, 20, FUZZ_PURE)                                                                 \
     CALL(spar_fluid_fade_motion, 40, FUZZ_CHANGES)                                                                     \
-    CALL(spar_fluid_set_motion_sections, 60, FUZZ_CHANGES)                                                             \
+    CALL(spar_fluid_set_motion_stations, 60, FUZZ_CHANGES)                                                             \
     CALL(spar_fluid_get_kind, 20, FUZZ_PURE)                                                                           \
     CALL(spar_fluid_pull_force_places, 60, FUZZ_PURE)                                                                  \
-    CALL(spar_fluid_get_places, 40, FUZZ_PURE)                                                                         \
+    CALL(spar_fluid_get_positions, 40, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_get_forces, 30, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_set_states, 60, FUZZ_CHANGES)                                                                      \
     CALL(spar_fluid_get_states, 20, FUZZ_PURE)                                                                         \
@@ -187,8 +187,8 @@ enum {
     CALL(spar_fluid_push_forces_at, 120, FUZZ_PUSH)                                                                    \
     CALL(spar_fluid_push_forces_f32, 80, FUZZ_PUSH)                                                                    \
     CALL(spar_fluid_get_audit, 40, FUZZ_PURE)                                                                          \
-    CALL(spar_fluid_check_total, 20, FUZZ_PURE)                                                                        \
-    CALL(spar_fluid_get_total, 40, FUZZ_PURE)                                                                          \
+    CALL(spar_fluid_check_loads, 20, FUZZ_PURE)                                                                        \
+    CALL(spar_fluid_sum_loads, 40, FUZZ_PURE)                                                                          \
     CALL(spar_fluid_get_travel, 40, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_write_vtk, 10, FUZZ_PURE)                                                                          \
     CALL(spar_step_begin, 350, FUZZ_CHANGES)                                                                           \
@@ -197,10 +197,10 @@ enum {
     CALL(spar_step_accept, 250, FUZZ_CHANGES)                                                                          \
     CALL(spar_step_reject, 100, FUZZ_CHANGES)                                                                          \
     CALL(spar_step, 250, FUZZ_CHANGES)                                                                                 \
-    CALL(spar_session_start, 60, FUZZ_CHANGES)                                                                         \
-    CALL(spar_step_within, 80, FUZZ_CHANGES)                                                                           \
-    CALL(spar_member_get_error, 60, FUZZ_PURE)                                                                         \
-    CALL(spar_step_begin_start, 60, FUZZ_CHANGES)                                                                      \
+    CALL(spar_session_solve_initial, 60, FUZZ_CHANGES)                                                                         \
+    CALL(spar_step_adaptive, 80, FUZZ_CHANGES)                                                                           \
+    CALL(spar_member_estimate_error, 60, FUZZ_PURE)                                                                         \
+    CALL(spar_step_begin_initial, 60, FUZZ_CHANGES)                                                                      \
     CALL(spar_session_solve_static, 60, FUZZ_CHANGES)                                                                  \
     CALL(spar_session_save, 20, FUZZ_PURE)                                                                             \
     CALL(spar_session_load, 20, FUZZ_CHANGES)                                                                          \

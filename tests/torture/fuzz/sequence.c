@@ -57,7 +57,7 @@ static void fluid(writer *w) {
     part(w, 15, CALL_spar_fluid_set_projection);
     part(w, 30, CALL_spar_fluid_set_interpolation);
     if (roll(w, 100) < 45) {
-        part(w, 100, CALL_spar_fluid_set_sections);
+        part(w, 100, CALL_spar_fluid_set_stations);
     } else {
         part(w, 95, CALL_spar_fluid_set_motion_nodes);
         part(w, 95, CALL_spar_fluid_set_force_nodes);
@@ -78,7 +78,7 @@ static void member(writer *w) {
     part(w, 5, CALL_spar_member_set_external);
     part(w, 25, CALL_spar_member_set_initial_velocity);
     part(w, 98, CALL_spar_member_commit);
-    part(w, 30, CALL_spar_member_drive_root);
+    part(w, 30, CALL_spar_member_drive);
     part(w, 30, CALL_spar_member_set_load);
     part(w, 20, CALL_spar_beam_set_line_load);
     part(w, 10, CALL_spar_member_get_work);
@@ -100,8 +100,8 @@ static void blades(writer *w) {
 }
 
 static void step(writer *w) {
-    part(w, 10, CALL_spar_session_start);
-    put(w, roll(w, 20) == 0 ? CALL_spar_step_begin_start : CALL_spar_step_begin, STYLE_GOOD | STYLE_RECENT);
+    part(w, 10, CALL_spar_session_solve_initial);
+    put(w, roll(w, 20) == 0 ? CALL_spar_step_begin_initial : CALL_spar_step_begin, STYLE_GOOD | STYLE_RECENT);
     for (int k = 1 + (roll(w, 4) == 0) * roll(w, 4); k > 0; k--) {
         put(w, CALL_spar_step_solve, STYLE_GOOD | STYLE_RECENT);
         part(w, 50, CALL_spar_fluid_pull_motion);

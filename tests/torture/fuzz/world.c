@@ -70,7 +70,7 @@ static void see_member(const world *w, const live_member *m, uint64_t *h) {
     add_seen(h, spar_member_get_energy(m->m, 4, seen), shapes_are_open(w, m) ? 0 : 4);
     if (m->kind == KIND_BEAM) {
         const double eta[2] = {0.3, 1};
-        add_seen(h, spar_beam_get_section(m->m, 2, eta, seen, NULL, seen + 12, seen + 18), 26);
+        add_seen(h, spar_beam_evaluate(m->m, 2, eta, seen, NULL, seen + 12, seen + 18), 26);
     }
 }
 
@@ -90,7 +90,7 @@ static void see_fluid(const live_fluid *f, uint64_t *h, uint64_t *of_last_push) 
             add(h, seen_index, (size_t)n * sizeof *seen_index);
         }
         if (status == SPAR_OK && which == SPAR_NODES_MOTION) {
-            add_seen(h, spar_fluid_get_places(f->f, which, seen, seen + 3 * n, NULL, NULL), 6 * n);
+            add_seen(h, spar_fluid_get_positions(f->f, which, seen, seen + 3 * n, NULL, NULL), 6 * n);
         }
     }
     add_seen(of_last_push, spar_fluid_get_audit(f->f, 8, seen), 8);
@@ -208,7 +208,7 @@ static const char *message_of(const call *c) {
 static int names(const call *c, const char *message) {
     int trial = (c->what->flags & FUZZ_TRIAL) != 0;
     return strstr(message, c->what->name) ||
-           ((c->index == CALL_spar_step || c->index == CALL_spar_step_within) && strstr(message, "spar_step_")) ||
+           ((c->index == CALL_spar_step || c->index == CALL_spar_step_adaptive) && strstr(message, "spar_step_")) ||
            (trial && (strstr(message, "spar_step") || strstr(message, "spar_session_try")));
 }
 
@@ -262,7 +262,7 @@ static void check_state(const call *c) {
         }
         parts[2] = c->index != CALL_spar_aero_solve;
     }
-    if (c->index == CALL_spar_step || c->index == CALL_spar_step_within || c->index == CALL_spar_session_start ||
+    if (c->index == CALL_spar_step || c->index == CALL_spar_step_adaptive || c->index == CALL_spar_session_solve_initial ||
         c->index == CALL_spar_session_solve_static) {
         parts[1] = parts[2] = 0;
     }

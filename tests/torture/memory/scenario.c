@@ -406,7 +406,7 @@ static void act_step(void) {
     for (int i = 1; i <= 5; i++) {
         double turn = 0.02 * i, q[7] = {0, 0, 0, cos(0.5 * turn), sin(0.5 * turn), 0, 0}, v[6] = {0, 0, 0, 1},
                a[6] = {0};
-        CALL(spar_member_drive_root, b, q, v, a);
+        CALL(spar_member_drive, b, q, v, a);
         int64_t before = alloc_counted();
         CALL(spar_step_begin, s, 0.02);
         done = 0;
@@ -428,27 +428,27 @@ static void act_step(void) {
     CALL(spar_session_get_residual, s, residual, size);
     CALL(spar_session_get_report, s, SPAR_REPORT_COUNT, report);
     NOTE(report);
-    CALL(spar_session_get_pace, s, SPAR_PACE_COUNT, pace);
-    CALL(spar_member_get_error, b, pace, pace + 1);
-    CALL(spar_member_get_newton, b, &taken, &left);
+    CALL(spar_session_get_step_control, s, SPAR_PACE_COUNT, pace);
+    CALL(spar_member_estimate_error, b, pace, pace + 1);
+    CALL(spar_member_get_iterations, b, &taken, &left);
     NOTE(pace);
     CALL(spar_session_get_time, s, &t, &step, &iteration);
     CALL(spar_fluid_get_audit, h.fluid[0], 8, audit);
-    CALL(spar_fluid_get_total, h.fluid[0], NULL, total, total + 3);
-    CALL(spar_fluid_check_total, h.fluid[0], NULL, total, total + 3, 1e-9);
+    CALL(spar_fluid_sum_loads, h.fluid[0], NULL, total, total + 3);
+    CALL(spar_fluid_check_loads, h.fluid[0], NULL, total, total + 3, 1e-9);
     CALL(spar_fluid_get_travel, h.fluid[0], total, &node);
     read_back(s, b, h.fluid[0]);
     CALL(spar_fluid_get_member, h.fluid[0], &owner);
     CALL(spar_member_get_session, owner, &whole);
     CALL(spar_session_sum, whole, SPAR_OK, 6, load);
-    CALL(spar_session_get_balance, whole, 2, solved, load, NULL);
+    CALL(spar_session_sum_balance, whole, 2, solved, load, NULL);
     CALL(spar_fluid_fail, h.fluid[0], SPAR_ERR_NUMERIC, "between steps nobody waits for it");
     NOTE(audit);
     CALL(spar_member_get_loads, b, all);
     note(all, 36 * sizeof *all);
     CALL(spar_member_get_work, b, 3, work);
     NOTE(work);
-    CALL(spar_beam_get_section, b, 2, eta, strain, force, NULL, NULL);
+    CALL(spar_beam_evaluate, b, 2, eta, strain, force, NULL, NULL);
     NOTE(force);
     end_session(&s);
 }
@@ -528,9 +528,9 @@ static void act_fluids(void) {
     CALL(spar_fluid_set_interpolation, f, SPAR_INTERPOLATE_CONSISTENT);
     CALL(spar_fluid_map, f);
     CALL(spar_fluid_create, b, "sections", &sections);
-    CALL(spar_fluid_set_sections, sections, 5, xi, NULL);
+    CALL(spar_fluid_set_stations, sections, 5, xi, NULL);
     CALL(spar_fluid_map, sections);
-    CALL(spar_fluid_set_motion_sections, sections, 5, xi, NULL);
+    CALL(spar_fluid_set_motion_stations, sections, 5, xi, NULL);
     CALL(spar_fluid_map, sections);
     CALL(spar_fluid_get_kind, sections, SPAR_NODES_FORCE, flags);
     CALL(spar_fluid_set_layout, sections, SPAR_NODES_FORCE, 3, 1);
@@ -546,7 +546,7 @@ static void act_fluids(void) {
     CALL(spar_fluid_pull_sections, sections, 1, q, w, NULL);
     CALL(spar_fluid_pull_sections, sections, 0.5, q, w, out);
     CALL(spar_fluid_pull_force_places, sections, 0.5, out, w, q);
-    CALL(spar_fluid_get_places, sections, SPAR_NODES_FORCE, out, w, q, NULL);
+    CALL(spar_fluid_get_positions, sections, SPAR_NODES_FORCE, out, w, q, NULL);
     CALL(spar_fluid_get_forces, sections, w);
     CALL(spar_fluid_set_states, sections, 2);
     CALL(spar_fluid_get_states, sections, &count, NULL);
@@ -572,7 +572,7 @@ static void act_fluids(void) {
     CALL(spar_fluid_get_audit, sections, 8, audit);
     CALL(spar_step_reject, s);
     go(&h, 2);
-    CALL(spar_fluid_set_sections, sections, 3, xi, NULL); /* mapped again */
+    CALL(spar_fluid_set_stations, sections, 3, xi, NULL); /* mapped again */
     CALL(spar_fluid_map, sections);
     h.steps = 0;
     go(&h, 1);
@@ -597,7 +597,7 @@ static void act_static(void) {
         CALL(spar_member_set_load, b, 3, SPAR_LOAD_DEAD, load);
         if (k == 1) {
             double turned[7] = {0, 0, 0, 1}, rate[6] = {0, 0, 0, 0.5};
-            CALL(spar_member_drive_root, b, turned, rate, still);
+            CALL(spar_member_drive, b, turned, rate, still);
         }
         CALL(spar_member_solve_static, b, 2);
         note_member(b);
@@ -647,9 +647,9 @@ static void act_equilibrium(void) {
             CALL(spar_fluid_map, h.fluid[k]);
         }
         int calls = 0;
-        CALL(spar_session_start, s, 0.02, solve, &h, &calls);
+        CALL(spar_session_solve_initial, s, 0.02, solve, &h, &calls);
         note(&calls, sizeof calls);
-        CALL(spar_step_begin_start, s, 0.02);
+        CALL(spar_step_begin_initial, s, 0.02);
         CALL(spar_step_solve, s);
         CALL(spar_step_reject, s);
         for (int k = 0; k < 2; k++) {
@@ -687,8 +687,8 @@ static void act_joints(void) {
     CALL(spar_joint_set_frame, spring, there, NULL);
     CALL(spar_joint_set_spring, spring, stiffness, NULL, NULL);
     CALL(spar_member_set_spring, b[0], 2, SPAR_FREE_X | SPAR_FREE_Y | SPAR_FREE_Z, stiffness, NULL, NULL, NULL);
-    CALL(spar_line_create, s, "line", b[1], 1, there, NULL, 0, here, &line);
-    CALL(spar_line_set_spring, line, 100, 1, 0.5, 1);
+    CALL(spar_link_create, s, "line", b[1], 1, there, NULL, 0, here, &line);
+    CALL(spar_link_set_spring, line, 100, 1, 0.5, 1);
     CALL(spar_joint_set_load, spring, load);
     CALL(spar_member_solve_static, b[1], 2);
     for (int k = 0; k < 2; k++) {
@@ -764,7 +764,7 @@ static void act_try(void) {
     }
     double next = 0.02, taken;
     CALL(spar_session_set_tolerance, h.session, 1, 0.1);
-    CALL(spar_step_within, h.session, &next, before_step, solve, &h, &taken);
+    CALL(spar_step_adaptive, h.session, &next, before_step, solve, &h, &taken);
     note(&next, sizeof next);
     CALL(spar_session_set_tolerance, h.session, 0, 0);
     go(&h, 1);
@@ -903,7 +903,7 @@ static void act_aero(void) {
         alpha[i] = -pi + i * pi / 3;
         cl[i] = i == 6 ? sin(2 * alpha[0]) : sin(2 * alpha[i]), cd[i] = 0.02, cm[i] = -0.01;
     }
-    CALL(spar_fluid_set_sections, f, here ? N : 0, here ? xi : NULL, NULL);
+    CALL(spar_fluid_set_stations, f, here ? N : 0, here ? xi : NULL, NULL);
     CALL(spar_fluid_map, f);
     if (here) {
         CALL(spar_polar_create, 7, alpha, cl, cd, cm, &polar);

@@ -99,8 +99,8 @@ static void ready(scene *c) {
     spar_session *s = c->session;
     MUST(s, spar_member_commit(c->beam));
     MUST(s, spar_member_commit(c->body));
-    MUST(s, spar_line_create(s, "rope", c->beam, NODES - 1, tip, c->body, 0, (double[]){0, 5, 0}, &c->rope));
-    MUST(s, spar_line_set_spring(c->rope, 2, 0.1, 9, 0));
+    MUST(s, spar_link_create(s, "rope", c->beam, NODES - 1, tip, c->body, 0, (double[]){0, 5, 0}, &c->rope));
+    MUST(s, spar_link_set_spring(c->rope, 2, 0.1, 9, 0));
     MUST(s, spar_fluid_create(c->beam, "tip", &c->fluid));
     MUST(s, spar_fluid_set_motion_nodes(c->fluid, rank == 0, rank == 0 ? tip : NULL));
     MUST(s, spar_fluid_set_force_nodes(c->fluid, rank == 0, rank == 0 ? tip : NULL));
@@ -229,11 +229,11 @@ static int make_reject(scene *c, const arguments *a) {
     return spar_step_reject(c->session);
 }
 static int make_total(scene *c, const arguments *a) {
-    return spar_fluid_get_total(c->fluid, a->point, out, out + 3);
+    return spar_fluid_sum_loads(c->fluid, a->point, out, out + 3);
 }
 static int make_check_total(scene *c, const arguments *a) {
     static const double force[3] = {1, 2, 3};
-    return spar_fluid_check_total(c->fluid, a->point, force, NULL, 1e300);
+    return spar_fluid_check_loads(c->fluid, a->point, force, NULL, 1e300);
 }
 static int make_step(scene *c, const arguments *a) {
     return spar_step(c->session, a->dt, a->solve, c, NULL);
@@ -242,19 +242,19 @@ static int make_equilibrium(scene *c, const arguments *a) {
     return spar_session_solve_static(c->session, a->load_steps, a->solve, c, NULL);
 }
 static int make_start(scene *c, const arguments *a) {
-    return spar_session_start(c->session, a->dt, a->solve, c, NULL);
+    return spar_session_solve_initial(c->session, a->dt, a->solve, c, NULL);
 }
 static int make_within(scene *c, const arguments *a) {
     double step = a->dt; /* a tolerance that any step keeps, on all ranks that are here, and none afterwards */
     int set_now = spar_session_set_tolerance(c->session, 1e9, 0) == SPAR_OK; /* not within a step */
-    int status = spar_step_within(c->session, &step, NULL, a->solve, c, NULL);
+    int status = spar_step_adaptive(c->session, &step, NULL, a->solve, c, NULL);
     if (set_now) {
         (void)spar_session_set_tolerance(c->session, 0, 0);
     }
     return status;
 }
 static int make_begin_start(scene *c, const arguments *a) {
-    return spar_step_begin_start(c->session, a->dt);
+    return spar_step_begin_initial(c->session, a->dt);
 }
 static int make_save(scene *c, const arguments *a) {
     return spar_session_save(c->session, a->path);
@@ -295,7 +295,7 @@ static int make_sum(scene *c, const arguments *a) {
 }
 static int make_balance(scene *c, const arguments *a) {
     int64_t members[2];
-    return spar_session_get_balance(c->session, a->no_out ? -1 : 2, members, NULL, NULL);
+    return spar_session_sum_balance(c->session, a->no_out ? -1 : 2, members, NULL, NULL);
 }
 static int make_aero(scene *c, const arguments *a) {
     return spar_aero_report_effects(c->aero, c->session, a->dt, a->steps, a->before, a->solve, c,
@@ -338,13 +338,13 @@ static const struct call {
     {"spar_step_check", make_check, SOLVED, OUT},
     {"spar_step_accept", make_accept, CHECKED, 0},
     {"spar_step_reject", make_reject, CHECKED, 0},
-    {"spar_fluid_get_total", make_total, IDLE, POINT | SETTINGS},
-    {"spar_fluid_check_total", make_check_total, IDLE, POINT | SETTINGS},
+    {"spar_fluid_sum_loads", make_total, IDLE, POINT | SETTINGS},
+    {"spar_fluid_check_loads", make_check_total, IDLE, POINT | SETTINGS},
     {"spar_step", make_step, IDLE, DT | SETTINGS},
-    {"spar_step_within", make_within, IDLE, DT | SETTINGS},
+    {"spar_step_adaptive", make_within, IDLE, DT | SETTINGS},
     {"spar_session_solve_static", make_equilibrium, FIRST, LOAD_STEPS | SETTINGS},
-    {"spar_session_start", make_start, FIRST, DT | SETTINGS},
-    {"spar_step_begin_start", make_begin_start, FIRST, DT | SETTINGS},
+    {"spar_session_solve_initial", make_start, FIRST, DT | SETTINGS},
+    {"spar_step_begin_initial", make_begin_start, FIRST, DT | SETTINGS},
     {"spar_session_save", make_save, IDLE, PATH | SETTINGS},
     {"spar_session_load", make_load, IDLE, PATH | SETTINGS},
     {"spar_session_try", make_try, IDLE, TRIAL | COMPARE},
@@ -353,7 +353,7 @@ static const struct call {
     {"spar_session_apply_advice", make_apply, IDLE, SETTINGS},
     {"spar_aero_report_effects", make_aero, IDLE, TRIAL | NEEDS_SOLVE},
     {"spar_session_sum", make_sum, IDLE, OUT | SETTINGS},
-    {"spar_session_get_balance", make_balance, IDLE, OUT},
+    {"spar_session_sum_balance", make_balance, IDLE, OUT},
     {"spar_session_solve_eigenvalues", make_eigenvalues, IDLE, DT | CALLBACKS | OUT | SETTINGS | NEEDS_SOLVE},
     {"spar_session_solve_floquet", make_floquet, IDLE, DT | CALLBACKS | OUT | SETTINGS},
 };

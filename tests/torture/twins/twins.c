@@ -154,7 +154,7 @@ static void add_joint(scene *w) {
         far[i] = x[i] + 0.3 + 0.2 * i;
     }
     spar_member *to = b < w->members ? w->member[b] : NULL;
-    int status = line ? spar_line_create(w->s, name, w->member[a], last, x, to, 0, far, &w->joint[k])
+    int status = line ? spar_link_create(w->s, name, w->member[a], last, x, to, 0, far, &w->joint[k])
                       : spar_joint_create(w->s, name, w->member[a], last, to, 0, free_motions, &w->joint[k]);
     if (status != SPAR_OK) {
         return;
@@ -162,7 +162,7 @@ static void add_joint(scene *w) {
     w->joints++;
     w->driven[k] = 0;
     if (line) {
-        (void)(draw(&w->random, 3) ? spar_line_set_spring(w->joint[k], 400, 4, 0.5, draw(&w->random, 2)) : 0);
+        (void)(draw(&w->random, 3) ? spar_link_set_spring(w->joint[k], 400, 4, 0.5, draw(&w->random, 2)) : 0);
         return;
     }
     diagonal(K, 60, 20);
@@ -271,7 +271,7 @@ static void tell(scene *w, double t, int within) {
         if (within && w->kind[i] == KIND_EXTERNAL) {
             (void)spar_member_set_motion(w->member[i], q, v, a);
         } else if (!within && (w->kind[i] == KIND_POINT || (root == SPAR_ROOT_DRIVEN && w->kind[i] != KIND_EXTERNAL))) {
-            (void)spar_member_drive_root(w->member[i], q, v, a);
+            (void)spar_member_drive(w->member[i], q, v, a);
         }
     }
     for (int k = 0; k < w->joints && !within; k++) {
@@ -320,11 +320,11 @@ static int refused(scene *w, int which) {
     case 6:
         return spar_member_solve_static(m, 0);
     case 7:
-        return spar_step_within(w->s, &dt, NULL, NULL, NULL, NULL);
+        return spar_step_adaptive(w->s, &dt, NULL, NULL, NULL, NULL);
     case 8:
         return spar_member_solve_modes(m, 100000, &dt, NULL);
     case 9:
-        return spar_member_drive_root(m, bad, NULL, NULL);
+        return spar_member_drive(m, bad, NULL, NULL);
     case 10:
         return spar_session_save(w->s, "/nowhere/at/all");
     default:
@@ -340,7 +340,7 @@ static void ask(scene *w, int which) {
     (void)spar_member_get_count(m, &n);
     switch (which) {
     case 0:
-        (void)spar_member_get_error(m, NULL, &error);
+        (void)spar_member_estimate_error(m, NULL, &error);
         break;
     case 1:
         (void)spar_member_solve_modes(m, 1, x, NULL);
@@ -363,7 +363,7 @@ static void ask(scene *w, int which) {
         (void)spar_session_get_iterations(w->s, NULL, 10, x, x + 10);
         break;
     case 6:
-        (void)spar_beam_get_section(m, 1, &(const double){0.4}, x, x + 6, x + 12, x + 15);
+        (void)spar_beam_evaluate(m, 1, &(const double){0.4}, x, x + 6, x + 12, x + 15);
         break;
     case 7:
         (void)spar_member_solve_eigenvalues(m, 1, NULL, x, NULL, more);
@@ -487,7 +487,7 @@ static int play(uint64_t seed, enum way way, double row[STEPS + 1][ROW], int *wi
     *within = way == LOADED && w.within;
     double dt = between(&w.random, 0.002, 0.02);
     if (w.start && w.members > 0) {
-        status = spar_session_start(w.s, dt, start_fluid, &w, NULL);
+        status = spar_session_solve_initial(w.s, dt, start_fluid, &w, NULL);
         if (status == SPAR_OK) {
             between_calls(&w, seed, &bad);
         }

@@ -154,7 +154,7 @@ static int make_points(actuator_machine *a, int b) {
         }
     }
     status = status ? status : spar_fluid_create(t->blade[b], name, &a->point[b]);
-    status = status ? status : spar_fluid_set_motion_sections(a->point[b], n, xi, offset);
+    status = status ? status : spar_fluid_set_motion_stations(a->point[b], n, xi, offset);
     status = status ? status : spar_fluid_map(a->point[b]);
     status = status ? status : spar_fluid_set_layout(a->point[b], SPAR_NODES_MOTION, 1, a->points);
     free(work);
@@ -241,7 +241,7 @@ static int steer(actuator_machine *a, double dt) {
     for (int b = 0; b < TURBINE_BLADES; b++) {
         double q[7], v[6], acceleration[6];
         nrel5mw_root_motion(&t->data, &t->rotor, b, a->angle + a->speed * dt, a->speed, 0, q, v, acceleration);
-        TRY(spar_member_drive_root(t->blade[b], q, v, acceleration));
+        TRY(spar_member_drive(t->blade[b], q, v, acceleration));
     }
     return SPAR_OK;
 }

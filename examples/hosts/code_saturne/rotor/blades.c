@@ -87,7 +87,7 @@ static void drive(double dt) {
     for (int b = 0; b < BLADES; b++) {
         double q[7], v[6], a[6];
         nrel5mw_root_motion(&lines.data, &lines.rotor, b, lines.angle, lines.speed, 0, q, v, a);
-        saturne_check(spar_member_drive_root(lines.blade[b], q, v, a));
+        saturne_check(spar_member_drive(lines.blade[b], q, v, a));
     }
 }
 

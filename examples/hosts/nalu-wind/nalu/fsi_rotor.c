@@ -176,11 +176,11 @@ static int drive(fsi_rotor *r, double t) {
     const double angle = r->speed * t, s = sin(angle / 2), *n = r->rotor.axis;
     const double turn[7] = {0, 0, 0, cos(angle / 2), s * n[0], s * n[1], s * n[2]},
                  spin[6] = {0, 0, 0, r->speed * n[0], r->speed * n[1], r->speed * n[2]};
-    TRY(spar_member_drive_root(r->hub, turn, spin, NULL));
+    TRY(spar_member_drive(r->hub, turn, spin, NULL));
     for (int b = 0; b < FSI_BLADES; b++) {
         double q[7], v[6], a[6];
         nrel5mw_root_motion(&r->data, &r->rotor, b, angle, r->speed, 0, q, v, a);
-        TRY(spar_member_drive_root(r->blade[b], q, v, a));
+        TRY(spar_member_drive(r->blade[b], q, v, a));
     }
     return SPAR_OK;
 }
@@ -213,7 +213,7 @@ int fsi_rotor_get_force(fsi_rotor *r, double force[3]) {
     double one[3];
     memset(force, 0, sizeof one);
     for (int b = 0; b < FSI_BLADES; b++) {
-        TRY(spar_fluid_get_total(r->fluid[b], NULL, one, NULL));
+        TRY(spar_fluid_sum_loads(r->fluid[b], NULL, one, NULL));
         for (int i = 0; i < 3; i++) {
             force[i] += one[i];
         }

@@ -183,7 +183,7 @@ void Foam::fv::sparActuatorLines::advance(const volVectorField& U, scalar dt)
     {
         double q[7], v[6], a[6];
         nrel5mw_root_motion(&data_, &rotor_, b, angle_, speed_, 0, q, v, a);
-        check(spar_member_drive_root(blade_[b], q, v, a));
+        check(spar_member_drive(blade_[b], q, v, a));
     }
     check(spar_step_begin(session_, dt));
     check(spar_step_solve(session_));
