@@ -7,6 +7,9 @@
 #include "scenes.h"
 
 #include <math.h>
+#include <spar/spar.h>
+#include <spar/spar_analysis.h>
+#include <spar/spar_structure.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -5,6 +5,8 @@
                           of the steps between (benchmarks/run-joints does that) */
 #include <math.h>
 #include <spar/spar.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_structure.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>

@@ -8,6 +8,7 @@
 #include <malloc.h>
 #include <math.h>
 #include <spar/spar.h>
+#include <spar/spar_coupling.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

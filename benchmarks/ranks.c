@@ -17,6 +17,7 @@
    --ping: seconds of a message of 8 bytes between ranks 0 and 1, and bytes a second of one of 4 MB: half of there and
    back, the least and the median of many. */
 #include <spar/spar.h>
+#include <spar/spar_coupling.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

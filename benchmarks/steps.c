@@ -13,6 +13,8 @@
    A sequence has 200 steps, or ends where the amplitude is 1e-4 or 1e100 of what it was. */
 #include <math.h>
 #include <spar/spar.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_structure.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,6 +5,7 @@
    threads linear MEMBERS ELEMENTS NODES STEPS: one of these, for valgrind --tool=callgrind */
 #include <math.h>
 #include <spar/spar.h>
+#include <spar/spar_coupling.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -17,6 +17,8 @@
 #include <gsl/gsl_poly.h>
 #include <math.h>
 #include <spar/spar.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_structure.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -2,6 +2,8 @@
 #include "try.h"
 
 #include <math.h>
+#include <spar/spar.h>
+#include <spar/spar_structure.h>
 #include <stdio.h>
 #include <string.h>
 

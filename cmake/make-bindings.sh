@@ -6,6 +6,7 @@
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 out=${1:-$root/fortran} out_python=${1:-$root/examples/python}
+headers='spar spar_structure spar_coupling spar_analysis spar_aero spar_output'
 made=$(mktemp)
 trap 'rm -f "$made" "$made.file"' EXIT
 # of <header> calls|constants|names
@@ -30,11 +31,10 @@ module spar_calls
 
   interface
 HEAD
-    of spar calls
-    echo
-    of spar_aero calls
-    echo
-    of spar_output calls
+    for name in $headers; do
+        of "$name" calls
+        echo
+    done | sed '$d'
     cat <<'MIDDLE'
   end interface
 end module spar_calls
@@ -47,8 +47,7 @@ module spar_c
   public
 
 MIDDLE
-    of spar constants
-    of spar_aero constants
+    for name in $headers; do of "$name" constants; done
     echo 'end module spar_c'
 } >"$made"
 cat "$made" >"$out/spar_c.f90"
@@ -61,16 +60,16 @@ put_between() {
         !skip && !index($0, mark)' "$1" >"$made.file"
 }
 
-{ of spar names; of spar_aero names; } >"$made"
+for name in $headers; do of "$name" names; done >"$made"
 put_between "$root/fortran/spar.f90.in" 'constants of the headers {'
-for name in spar spar_aero spar_output; do
+for name in $headers; do
     awk -v null=1 -f "$root/cmake/interface.awk" "$root/include/spar/$name.h"
 done | awk -f "$root/cmake/plain.awk" "$made.file" - >"$made"
 awk -f "$root/cmake/single.awk" "$made" "$made" >"$out/spar.f90"
 
 {
     echo 'TABLE = """'
-    for name in spar spar_aero spar_output; do
+    for name in $headers; do
         awk -f "$root/cmake/interface.awk" "$root/include/spar/$name.h" | tr '\t' ' '
     done
     echo '"""'

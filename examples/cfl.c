@@ -8,6 +8,8 @@
      cfl [folder] */
 #include <math.h>
 #include <spar/spar.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_structure.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -3,6 +3,7 @@
    directions in turn and let go; printed are where it rests and the periods. */
 #include <math.h>
 #include <spar/spar.h>
+#include <spar/spar_structure.h>
 #include <stdio.h>
 
 static const double pi = 3.14159265358979323846, g = 9.81, m = 8e6, centre = -40, inertia[3] = {9e9, 9e9, 4e8};

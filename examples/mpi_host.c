@@ -5,6 +5,8 @@
    wall, on its moved faces. */
 #include <math.h>
 #include <spar/spar.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_structure.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

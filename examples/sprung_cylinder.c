@@ -3,6 +3,8 @@
    water's added mass; a flow solver would stand in its place. Printed: the amplitude over the speed, with lock-in. */
 #include <math.h>
 #include <spar/spar.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_structure.h>
 #include <stdio.h>
 
 static const double diameter = 0.05, rho = 1000, strouhal = 0.2, epsilon = 0.3, forcing = 12, lift0 = 0.3; /* SI */

@@ -4,6 +4,8 @@
    4 q alpha sqrt((1 - s)/s) over the chord, alpha by the moved mesh and its velocity. */
 #include <math.h>
 #include <spar/spar.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_structure.h>
 #include <stdio.h>
 #include <stdlib.h>
 #ifdef SPAR_WITH_MPI

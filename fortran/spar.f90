@@ -59,33 +59,35 @@ module spar
   integer, parameter, public :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
       SPAR_ERR_NUMERIC = 4, SPAR_ERR_MAPPING = 5, SPAR_ERR_COMM = 6, SPAR_ERR_PEER = 7, SPAR_ERR_IO = 8, &
       SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10, SPAR_ERR_LIMIT = 11
+  integer, parameter, public :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
   integer, parameter, public :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, SPAR_COUPLING_AITKEN = 2, &
       SPAR_COUPLING_IQN_ILS = 3
+  integer, parameter, public :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, SPAR_ROOT_DRIVEN = 3
+  integer, parameter, public :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
+  integer, parameter, public :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
+  integer, parameter, public :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2
+  integer, parameter, public :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
+      SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
+  integer, parameter, public :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
+      SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_FLUID_MOMENT = 32, SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, &
+      SPAR_EFFECT_DEFAULT = 256, SPAR_EFFECT_MASSES = 512, SPAR_EFFECT_FOUNDATION = 1024, SPAR_EFFECT_PRETENSION = 2048
+  integer, parameter, public :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
+      SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_FOUNDATION = 4, SPAR_ENERGY_COUNT = 5
+  integer, parameter, public :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_JOINTS = 3, &
+      SPAR_WORK_COUNT = 4
+  integer, parameter, public :: SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, &
+      SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32
+  integer, parameter, public :: SPAR_JOINT_ENERGY_SPRING = 0, SPAR_JOINT_ENERGY_DAMPER = 1, &
+      SPAR_JOINT_ENERGY_DRIVE = 2, SPAR_JOINT_ENERGY_LOAD = 3, SPAR_JOINT_ENERGY_COUNT = 4
   integer, parameter, public :: SPAR_REPORT_CONTRACTION = 0, SPAR_REPORT_ADDED_MASS = 1, SPAR_REPORT_COLUMNS = 2, &
       SPAR_REPORT_DROPPED = 3, SPAR_REPORT_ERROR = 4, SPAR_REPORT_WORK_DEFECT = 5, SPAR_REPORT_UNCONVERGED = 6, &
       SPAR_REPORT_ADDED_MASS_SPREAD = 7, SPAR_REPORT_MOTION_ERROR = 8, SPAR_REPORT_COUNT = 9
   integer, parameter, public :: SPAR_PHASE_START = 0, SPAR_PHASE_BETWEEN = 1, SPAR_PHASE_BEGUN = 2, &
       SPAR_PHASE_SOLVED = 3, SPAR_PHASE_CHECKED = 4
-  integer, parameter, public :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
-  integer, parameter, public :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, SPAR_ROOT_DRIVEN = 3
-  integer, parameter, public :: SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, &
-      SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32
-  integer, parameter, public :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
-  integer, parameter, public :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2
-  integer, parameter, public :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
-      SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_FLUID_MOMENT = 32, SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, &
-      SPAR_EFFECT_DEFAULT = 256, SPAR_EFFECT_MASSES = 512, SPAR_EFFECT_FOUNDATION = 1024, SPAR_EFFECT_PRETENSION = 2048
-  integer, parameter, public :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
-      SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
-  integer, parameter, public :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
-      SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_FOUNDATION = 4, SPAR_ENERGY_COUNT = 5
-  integer, parameter, public :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_JOINTS = 3, &
-      SPAR_WORK_COUNT = 4
-  integer, parameter, public :: SPAR_JOINT_ENERGY_SPRING = 0, SPAR_JOINT_ENERGY_DAMPER = 1, &
-      SPAR_JOINT_ENERGY_DRIVE = 2, SPAR_JOINT_ENERGY_LOAD = 3, SPAR_JOINT_ENERGY_COUNT = 4
+  integer, parameter, public :: SPAR_PACE_RATIO = 0, SPAR_PACE_NEXT_DT = 1, SPAR_PACE_REJECT = 2, &
+      SPAR_PACE_REJECTED = 3, SPAR_PACE_COUNT = 4
   integer, parameter, public :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
   integer, parameter, public :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
-  integer, parameter, public :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
   integer, parameter, public :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
   integer, parameter, public :: SPAR_KIND_STATIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, &
       SPAR_KIND_FORCES = 8
@@ -93,8 +95,6 @@ module spar
   integer, parameter, public :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
       SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &
       SPAR_AUDIT_NODES = 7, SPAR_AUDIT_COUNT = 8
-  integer, parameter, public :: SPAR_PACE_RATIO = 0, SPAR_PACE_NEXT_DT = 1, SPAR_PACE_REJECT = 2, &
-      SPAR_PACE_REJECTED = 3, SPAR_PACE_COUNT = 4
   integer, parameter, public :: SPAR_TRY_MOTION = 0, SPAR_TRY_REACTION = 1, SPAR_TRY_LOAD = 2, SPAR_TRY_SECONDS = 3, &
       SPAR_TRY_SOLUTIONS = 4, SPAR_TRY_COUNT = 5
   integer, parameter, public :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &
@@ -133,6 +133,19 @@ module spar
     generic :: set_gravity => session_set_gravity, session_set_gravity_single_1
     procedure, private :: session_get_gravity, session_get_gravity_single_1
     generic :: get_gravity => session_get_gravity, session_get_gravity_single_1
+    procedure, private :: session_set_coupling, session_set_coupling_single_1
+    generic :: set_coupling => session_set_coupling, session_set_coupling_single_1
+    procedure, private :: session_get_coupling, session_get_coupling_single_1, session_get_coupling_single_2
+    generic :: get_coupling => session_get_coupling, session_get_coupling_single_1, session_get_coupling_single_2
+    procedure, private :: session_get_time, session_get_time_single_1
+    generic :: get_time => session_get_time, session_get_time_single_1
+    procedure, private :: session_step_begin, session_step_begin_single_1
+    generic :: step_begin => session_step_begin, session_step_begin_single_1
+    procedure :: step_solve => session_step_solve
+    procedure :: step_accept => session_step_accept
+    procedure :: step_reject => session_step_reject
+    procedure :: save => session_save
+    procedure :: load => session_load
     procedure, private :: session_set_integrator, session_set_integrator_single_1
     generic :: set_integrator => session_set_integrator, session_set_integrator_single_1
     procedure, private :: session_get_integrator, session_get_integrator_single_1
@@ -143,41 +156,28 @@ module spar
     generic :: get_newton => session_get_newton, session_get_newton_single_1, session_get_newton_single_2
     procedure :: set_predictor => session_set_predictor
     procedure :: get_predictor => session_get_predictor
-    procedure, private :: session_set_coupling, session_set_coupling_single_1
-    generic :: set_coupling => session_set_coupling, session_set_coupling_single_1
-    procedure, private :: session_get_coupling, session_get_coupling_single_1, session_get_coupling_single_2
-    generic :: get_coupling => session_get_coupling, session_get_coupling_single_1, session_get_coupling_single_2
     procedure, private :: session_set_relaxation, session_set_relaxation_single_1
     generic :: set_relaxation => session_set_relaxation, session_set_relaxation_single_1
     procedure, private :: session_get_relaxation, session_get_relaxation_single_1
     generic :: get_relaxation => session_get_relaxation, session_get_relaxation_single_1
-    procedure :: set_reproducible => session_set_reproducible
-    procedure :: get_reproducible => session_get_reproducible
-    procedure :: set_threads => session_set_threads
-    procedure :: get_threads => session_get_threads
     procedure :: set_option => session_set_option
     procedure, private :: session_get_residual, session_get_residual_single_1, session_get_residual_single_2
     generic :: get_residual => session_get_residual, session_get_residual_single_1, session_get_residual_single_2
     procedure, private :: session_get_report, session_get_report_single_1
     generic :: get_report => session_get_report, session_get_report_single_1
-    procedure, private :: session_get_time, session_get_time_single_1
-    generic :: get_time => session_get_time, session_get_time_single_1
     procedure :: get_phase => session_get_phase
-    procedure, private :: session_step_begin, session_step_begin_single_1
-    generic :: step_begin => session_step_begin, session_step_begin_single_1
-    procedure :: step_solve => session_step_solve
-    procedure :: step_accept => session_step_accept
-    procedure :: step_reject => session_step_reject
+    procedure, private :: session_step_begin_initial, session_step_begin_initial_single_1
+    generic :: step_begin_initial => session_step_begin_initial, session_step_begin_initial_single_1
     procedure, private :: session_set_tolerance, session_set_tolerance_single_1
     generic :: set_tolerance => session_set_tolerance, session_set_tolerance_single_1
     procedure, private :: session_get_tolerance, session_get_tolerance_single_1, session_get_tolerance_single_2
     generic :: get_tolerance => session_get_tolerance, session_get_tolerance_single_1, session_get_tolerance_single_2
     procedure, private :: session_get_step_control, session_get_step_control_single_1
     generic :: get_step_control => session_get_step_control, session_get_step_control_single_1
-    procedure, private :: session_step_begin_initial, session_step_begin_initial_single_1
-    generic :: step_begin_initial => session_step_begin_initial, session_step_begin_initial_single_1
-    procedure :: save => session_save
-    procedure :: load => session_load
+    procedure :: set_reproducible => session_set_reproducible
+    procedure :: get_reproducible => session_get_reproducible
+    procedure :: set_threads => session_set_threads
+    procedure :: get_threads => session_get_threads
     procedure :: set_goal => session_set_goal
     procedure :: get_goal => session_get_goal
     procedure, private :: session_push_numbers, session_push_numbers_single_1
@@ -251,13 +251,36 @@ module spar
     integer(c_int64_t) :: elements = 1
     character(:), allocatable :: name
   contains
-    procedure :: get_elements => member_get_elements
     procedure, private :: member_set_axis, member_set_axis_single_1
     generic :: set_axis => member_set_axis, member_set_axis_single_1
-    procedure, private :: member_set_nodes, member_set_nodes_single_1
-    generic :: set_nodes => member_set_nodes, member_set_nodes_single_1
     procedure, private :: member_set_sections, member_set_sections_single_1
     generic :: set_sections => member_set_sections, member_set_sections_single_1
+    procedure, private :: member_set_placement, member_set_placement_single_1, member_set_placement_single_2
+    generic :: set_placement => member_set_placement, member_set_placement_single_1, member_set_placement_single_2
+    procedure :: set_root => member_set_root
+    procedure :: set_external => member_set_external
+    procedure, private :: member_set_initial_velocity, member_set_initial_velocity_single_1, &
+        member_set_initial_velocity_single_2, member_set_initial_velocity_single_3
+    generic :: set_initial_velocity => member_set_initial_velocity, member_set_initial_velocity_single_1, &
+        member_set_initial_velocity_single_2, member_set_initial_velocity_single_3
+    procedure :: commit => member_commit
+    procedure, private :: member_get_reference, member_get_reference_single_1, member_get_reference_single_2
+    generic :: get_reference => member_get_reference, member_get_reference_single_1, member_get_reference_single_2
+    procedure, private :: member_get_motion, member_get_motion_single_1, member_get_motion_single_2, &
+        member_get_motion_single_3
+    generic :: get_motion => member_get_motion, member_get_motion_single_1, member_get_motion_single_2, &
+        member_get_motion_single_3
+    procedure, private :: member_set_motion, member_set_motion_single_1, member_set_motion_single_2, &
+        member_set_motion_single_3
+    generic :: set_motion => member_set_motion, member_set_motion_single_1, member_set_motion_single_2, &
+        member_set_motion_single_3
+    procedure, private :: member_drive, member_drive_single_1
+    generic :: drive => member_drive, member_drive_single_1
+    procedure, private :: member_get_loads, member_get_loads_single_1
+    generic :: get_loads => member_get_loads, member_get_loads_single_1
+    procedure :: get_elements => member_get_elements
+    procedure, private :: member_set_nodes, member_set_nodes_single_1
+    generic :: set_nodes => member_set_nodes, member_set_nodes_single_1
     procedure, private :: member_set_masses, member_set_masses_single_1
     generic :: set_masses => member_set_masses, member_set_masses_single_1
     procedure, private :: member_set_foundation, member_set_foundation_single_1
@@ -274,42 +297,15 @@ module spar
     generic :: get_mass_damping => member_get_mass_damping, member_get_mass_damping_single_1
     procedure, private :: member_get_damping, member_get_damping_single_1
     generic :: get_damping => member_get_damping, member_get_damping_single_1
-    procedure, private :: member_set_placement, member_set_placement_single_1, member_set_placement_single_2
-    generic :: set_placement => member_set_placement, member_set_placement_single_1, member_set_placement_single_2
     procedure, private :: member_get_placement, member_get_placement_single_1, member_get_placement_single_2
     generic :: get_placement => member_get_placement, member_get_placement_single_1, member_get_placement_single_2
-    procedure :: set_root => member_set_root
     procedure :: get_root => member_get_root
-    procedure :: set_external => member_set_external
     procedure :: get_external => member_get_external
+    procedure :: get_fidelity => member_get_fidelity
     procedure :: set_effects => member_set_effects
     procedure :: get_effects => member_get_effects
-    procedure :: get_fidelity => member_get_fidelity
-    procedure, private :: member_set_added_mass, member_set_added_mass_single_1
-    generic :: set_added_mass => member_set_added_mass, member_set_added_mass_single_1
-    procedure, private :: member_set_initial_velocity, member_set_initial_velocity_single_1, &
-        member_set_initial_velocity_single_2, member_set_initial_velocity_single_3
-    generic :: set_initial_velocity => member_set_initial_velocity, member_set_initial_velocity_single_1, &
-        member_set_initial_velocity_single_2, member_set_initial_velocity_single_3
-    procedure :: set_owner => member_set_owner
-    procedure :: get_owner => member_get_owner
-    procedure :: commit => member_commit
-    procedure, private :: member_get_reference, member_get_reference_single_1, member_get_reference_single_2
-    generic :: get_reference => member_get_reference, member_get_reference_single_1, member_get_reference_single_2
-    procedure, private :: member_get_motion, member_get_motion_single_1, member_get_motion_single_2, &
-        member_get_motion_single_3
-    generic :: get_motion => member_get_motion, member_get_motion_single_1, member_get_motion_single_2, &
-        member_get_motion_single_3
-    procedure, private :: member_set_motion, member_set_motion_single_1, member_set_motion_single_2, &
-        member_set_motion_single_3
-    generic :: set_motion => member_set_motion, member_set_motion_single_1, member_set_motion_single_2, &
-        member_set_motion_single_3
-    procedure, private :: member_drive, member_drive_single_1
-    generic :: drive => member_drive, member_drive_single_1
     procedure, private :: member_set_line_load, member_set_line_load_single_1
     generic :: set_line_load => member_set_line_load, member_set_line_load_single_1
-    procedure, private :: member_get_loads, member_get_loads_single_1
-    generic :: get_loads => member_get_loads, member_get_loads_single_1
     procedure, private :: member_get_reaction, member_get_reaction_single_1
     generic :: get_reaction => member_get_reaction, member_get_reaction_single_1
     procedure, private :: member_evaluate, member_evaluate_single_1
@@ -319,10 +315,14 @@ module spar
     procedure, private :: member_get_work, member_get_work_single_1
     generic :: get_work => member_get_work, member_get_work_single_1
     procedure :: solve_static => member_solve_static
-    procedure, private :: member_estimate_error, member_estimate_error_single_1, member_estimate_error_single_2
-    generic :: estimate_error => member_estimate_error, member_estimate_error_single_1, member_estimate_error_single_2
     procedure, private :: member_get_iterations, member_get_iterations_single_1
     generic :: get_iterations => member_get_iterations, member_get_iterations_single_1
+    procedure, private :: member_set_added_mass, member_set_added_mass_single_1
+    generic :: set_added_mass => member_set_added_mass, member_set_added_mass_single_1
+    procedure :: set_owner => member_set_owner
+    procedure :: get_owner => member_get_owner
+    procedure, private :: member_estimate_error, member_estimate_error_single_1, member_estimate_error_single_2
+    generic :: estimate_error => member_estimate_error, member_estimate_error_single_1, member_estimate_error_single_2
     procedure :: get_advice => member_get_advice
     procedure :: write_vtk => member_write_vtk
     procedure, private :: member_create_point, member_create_point_single_1
@@ -411,37 +411,15 @@ module spar
   contains
     procedure, private :: fluid_set_motion_nodes, fluid_set_motion_nodes_single_1
     generic :: set_motion_nodes => fluid_set_motion_nodes, fluid_set_motion_nodes_single_1
-    procedure, private :: fluid_get_motion_weights, fluid_get_motion_weights_single_1
-    generic :: get_motion_weights => fluid_get_motion_weights, fluid_get_motion_weights_single_1
     procedure, private :: fluid_set_force_nodes, fluid_set_force_nodes_single_1
     generic :: set_force_nodes => fluid_set_force_nodes, fluid_set_force_nodes_single_1
     procedure, private :: fluid_set_stations, fluid_set_stations_single_1
     generic :: set_stations => fluid_set_stations, fluid_set_stations_single_1
-    procedure, private :: fluid_set_motion_stations, fluid_set_motion_stations_single_1
-    generic :: set_motion_stations => fluid_set_motion_stations, fluid_set_motion_stations_single_1
-    procedure :: set_layout => fluid_set_layout
-    procedure :: get_layout => fluid_get_layout
-    procedure, private :: fluid_set_projection, fluid_set_projection_single_1
-    generic :: set_projection => fluid_set_projection, fluid_set_projection_single_1
-    procedure, private :: fluid_get_projection, fluid_get_projection_single_1
-    generic :: get_projection => fluid_get_projection, fluid_get_projection_single_1
-    procedure :: set_interpolation => fluid_set_interpolation
-    procedure :: get_interpolation => fluid_get_interpolation
     procedure :: map => fluid_map
-    procedure :: get_kind => fluid_get_kind
-    procedure :: get_flag_count => fluid_get_flag_count
-    procedure, private :: fluid_get_feet, fluid_get_feet_single_1, fluid_get_feet_single_2, fluid_get_feet_single_3
-    generic :: get_feet => fluid_get_feet, fluid_get_feet_single_1, fluid_get_feet_single_2, fluid_get_feet_single_3
     procedure, private :: fluid_pull_motion, fluid_pull_motion_single_1, fluid_pull_motion_single_2, &
         fluid_pull_motion_single_3, fluid_pull_motion_single_4, fluid_pull_motion_single_5
     generic :: pull_motion => fluid_pull_motion, fluid_pull_motion_single_1, fluid_pull_motion_single_2, &
         fluid_pull_motion_single_3, fluid_pull_motion_single_4, fluid_pull_motion_single_5
-    procedure, private :: fluid_pull_sections, fluid_pull_sections_single_1, fluid_pull_sections_single_2, &
-        fluid_pull_sections_single_3, fluid_pull_sections_single_4, fluid_pull_sections_single_5, &
-        fluid_pull_sections_single_6, fluid_pull_sections_single_7
-    generic :: pull_sections => fluid_pull_sections, fluid_pull_sections_single_1, fluid_pull_sections_single_2, &
-        fluid_pull_sections_single_3, fluid_pull_sections_single_4, fluid_pull_sections_single_5, &
-        fluid_pull_sections_single_6, fluid_pull_sections_single_7
     procedure, private :: fluid_pull_poses, fluid_pull_poses_single_1, fluid_pull_poses_single_2, &
         fluid_pull_poses_single_3, fluid_pull_poses_single_4, fluid_pull_poses_single_5, fluid_pull_poses_single_6, &
         fluid_pull_poses_single_7, fluid_pull_poses_single_8, fluid_pull_poses_single_9, fluid_pull_poses_single_10, &
@@ -450,6 +428,29 @@ module spar
         fluid_pull_poses_single_3, fluid_pull_poses_single_4, fluid_pull_poses_single_5, fluid_pull_poses_single_6, &
         fluid_pull_poses_single_7, fluid_pull_poses_single_8, fluid_pull_poses_single_9, fluid_pull_poses_single_10, &
         fluid_pull_poses_single_11, fluid_pull_poses_single_12, fluid_pull_poses_single_13
+    procedure :: fail => fluid_fail
+    procedure, private :: fluid_set_motion_stations, fluid_set_motion_stations_single_1
+    generic :: set_motion_stations => fluid_set_motion_stations, fluid_set_motion_stations_single_1
+    procedure, private :: fluid_get_motion_weights, fluid_get_motion_weights_single_1
+    generic :: get_motion_weights => fluid_get_motion_weights, fluid_get_motion_weights_single_1
+    procedure :: set_layout => fluid_set_layout
+    procedure :: get_layout => fluid_get_layout
+    procedure, private :: fluid_set_projection, fluid_set_projection_single_1
+    generic :: set_projection => fluid_set_projection, fluid_set_projection_single_1
+    procedure, private :: fluid_get_projection, fluid_get_projection_single_1
+    generic :: get_projection => fluid_get_projection, fluid_get_projection_single_1
+    procedure :: set_interpolation => fluid_set_interpolation
+    procedure :: get_interpolation => fluid_get_interpolation
+    procedure :: get_kind => fluid_get_kind
+    procedure :: get_flag_count => fluid_get_flag_count
+    procedure, private :: fluid_get_feet, fluid_get_feet_single_1, fluid_get_feet_single_2, fluid_get_feet_single_3
+    generic :: get_feet => fluid_get_feet, fluid_get_feet_single_1, fluid_get_feet_single_2, fluid_get_feet_single_3
+    procedure, private :: fluid_pull_sections, fluid_pull_sections_single_1, fluid_pull_sections_single_2, &
+        fluid_pull_sections_single_3, fluid_pull_sections_single_4, fluid_pull_sections_single_5, &
+        fluid_pull_sections_single_6, fluid_pull_sections_single_7
+    generic :: pull_sections => fluid_pull_sections, fluid_pull_sections_single_1, fluid_pull_sections_single_2, &
+        fluid_pull_sections_single_3, fluid_pull_sections_single_4, fluid_pull_sections_single_5, &
+        fluid_pull_sections_single_6, fluid_pull_sections_single_7
     procedure, private :: fluid_get_travel, fluid_get_travel_single_1
     generic :: get_travel => fluid_get_travel, fluid_get_travel_single_1
     procedure, private :: fluid_pull_force_places, fluid_pull_force_places_single_1, &
@@ -468,7 +469,6 @@ module spar
         fluid_pull_forces_single_3
     procedure, private :: fluid_get_forces, fluid_get_forces_single_1
     generic :: get_forces => fluid_get_forces, fluid_get_forces_single_1
-    procedure :: fail => fluid_fail
     procedure :: set_states => fluid_set_states
     procedure, private :: fluid_get_states, fluid_get_states_single_1
     generic :: get_states => fluid_get_states, fluid_get_states_single_1
@@ -2464,6 +2464,98 @@ contains
     call finish(spar_session_get_gravity(self%handle, g), self%handle, stat, errmsg)
   end subroutine session_get_gravity
 
+  subroutine session_set_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(in) :: scheme
+    real(c_double), intent(in) :: atol, rtol
+    integer, intent(in) :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_coupling(self%handle, to_c(scheme), atol, rtol, to_c(max_iterations)), self%handle, &
+        stat, errmsg)
+  end subroutine session_set_coupling
+
+  subroutine session_get_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout), optional :: scheme
+    real(c_double), intent(inout), optional :: atol, rtol
+    integer, intent(inout), optional :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_scheme, c_max_iterations
+
+    status = spar_session_get_coupling(self%handle, c_scheme, atol, rtol, c_max_iterations)
+    call hand(status, c_scheme, scheme)
+    call hand(status, c_max_iterations, max_iterations)
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_coupling
+
+  subroutine session_get_time(self, t, step, iteration, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: t
+    integer(c_int64_t), intent(inout), optional :: step
+    integer, intent(inout), optional :: iteration
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_iteration
+
+    status = spar_session_get_time(self%handle, t, step, c_iteration)
+    call hand(status, c_iteration, iteration)
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_time
+
+  subroutine session_step_begin(self, dt, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: dt
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_begin(self%handle, dt), self%handle, stat, errmsg)
+  end subroutine session_step_begin
+
+  subroutine session_step_solve(self, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_solve(self%handle), self%handle, stat, errmsg)
+  end subroutine session_step_solve
+
+  subroutine session_step_accept(self, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_accept(self%handle), self%handle, stat, errmsg)
+  end subroutine session_step_accept
+
+  subroutine session_step_reject(self, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_reject(self%handle), self%handle, stat, errmsg)
+  end subroutine session_step_reject
+
+  subroutine session_save(self, path, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    character(*), intent(in) :: path
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_save(self%handle, c_text(path)), self%handle, stat, errmsg)
+  end subroutine session_save
+
+  subroutine session_load(self, path, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    character(*), intent(in) :: path
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_load(self%handle, c_text(path)), self%handle, stat, errmsg)
+  end subroutine session_load
+
   subroutine session_set_integrator(self, rho_inf, substeps, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: rho_inf
@@ -2531,33 +2623,6 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_predictor
 
-  subroutine session_set_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(in) :: scheme
-    real(c_double), intent(in) :: atol, rtol
-    integer, intent(in) :: max_iterations
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_set_coupling(self%handle, to_c(scheme), atol, rtol, to_c(max_iterations)), self%handle, &
-        stat, errmsg)
-  end subroutine session_set_coupling
-
-  subroutine session_get_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    integer, intent(inout), optional :: scheme
-    real(c_double), intent(inout), optional :: atol, rtol
-    integer, intent(inout), optional :: max_iterations
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_scheme, c_max_iterations
-
-    status = spar_session_get_coupling(self%handle, c_scheme, atol, rtol, c_max_iterations)
-    call hand(status, c_scheme, scheme)
-    call hand(status, c_max_iterations, max_iterations)
-    call finish(status, self%handle, stat, errmsg)
-  end subroutine session_get_coupling
-
   subroutine session_set_relaxation(self, omega, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: omega
@@ -2575,6 +2640,81 @@ contains
 
     call finish(spar_session_get_relaxation(self%handle, omega), self%handle, stat, errmsg)
   end subroutine session_get_relaxation
+
+  subroutine session_set_option(self, key, value, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    character(*), intent(in) :: key, value
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_option(self%handle, c_text(key), c_text(value)), self%handle, stat, errmsg)
+  end subroutine session_set_option
+
+  subroutine session_get_residual(self, residual, size, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: residual, size
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_residual(self%handle, residual, size), self%handle, stat, errmsg)
+  end subroutine session_get_residual
+
+  subroutine session_get_report(self, report, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: report(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_report(self%handle, size(report, kind=c_int64_t), report), self%handle, stat, errmsg)
+  end subroutine session_get_report
+
+  subroutine session_get_phase(self, phase, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout) :: phase
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_phase
+
+    status = spar_session_get_phase(self%handle, c_phase)
+    call hand(status, c_phase, phase)
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_get_phase
+
+  subroutine session_step_begin_initial(self, dt, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: dt
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_begin_initial(self%handle, dt), self%handle, stat, errmsg)
+  end subroutine session_step_begin_initial
+
+  subroutine session_set_tolerance(self, drift, rtol, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: drift, rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_set_tolerance(self%handle, drift, rtol), self%handle, stat, errmsg)
+  end subroutine session_set_tolerance
+
+  subroutine session_get_tolerance(self, drift, rtol, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), intent(inout), optional :: drift, rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_tolerance(self%handle, drift, rtol), self%handle, stat, errmsg)
+  end subroutine session_get_tolerance
+
+  subroutine session_get_step_control(self, pace, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: pace(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_get_step_control(self%handle, size(pace, kind=c_int64_t), pace), self%handle, stat, errmsg)
+  end subroutine session_get_step_control
 
   subroutine session_set_reproducible(self, on, stat, errmsg)
     class(spar_session), intent(inout) :: self
@@ -2618,146 +2758,6 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_threads
 
-  subroutine session_set_option(self, key, value, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    character(*), intent(in) :: key, value
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_set_option(self%handle, c_text(key), c_text(value)), self%handle, stat, errmsg)
-  end subroutine session_set_option
-
-  subroutine session_get_residual(self, residual, size, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), intent(inout), optional :: residual, size
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_get_residual(self%handle, residual, size), self%handle, stat, errmsg)
-  end subroutine session_get_residual
-
-  subroutine session_get_report(self, report, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: report(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_get_report(self%handle, size(report, kind=c_int64_t), report), self%handle, stat, errmsg)
-  end subroutine session_get_report
-
-  subroutine session_get_time(self, t, step, iteration, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), intent(inout), optional :: t
-    integer(c_int64_t), intent(inout), optional :: step
-    integer, intent(inout), optional :: iteration
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_iteration
-
-    status = spar_session_get_time(self%handle, t, step, c_iteration)
-    call hand(status, c_iteration, iteration)
-    call finish(status, self%handle, stat, errmsg)
-  end subroutine session_get_time
-
-  subroutine session_get_phase(self, phase, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    integer, intent(inout) :: phase
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_phase
-
-    status = spar_session_get_phase(self%handle, c_phase)
-    call hand(status, c_phase, phase)
-    call finish(status, self%handle, stat, errmsg)
-  end subroutine session_get_phase
-
-  subroutine session_step_begin(self, dt, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_double), intent(in) :: dt
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_begin(self%handle, dt), self%handle, stat, errmsg)
-  end subroutine session_step_begin
-
-  subroutine session_step_solve(self, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_solve(self%handle), self%handle, stat, errmsg)
-  end subroutine session_step_solve
-
-  subroutine session_step_accept(self, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_accept(self%handle), self%handle, stat, errmsg)
-  end subroutine session_step_accept
-
-  subroutine session_step_reject(self, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_reject(self%handle), self%handle, stat, errmsg)
-  end subroutine session_step_reject
-
-  subroutine session_set_tolerance(self, drift, rtol, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_double), intent(in) :: drift, rtol
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_set_tolerance(self%handle, drift, rtol), self%handle, stat, errmsg)
-  end subroutine session_set_tolerance
-
-  subroutine session_get_tolerance(self, drift, rtol, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), intent(inout), optional :: drift, rtol
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_get_tolerance(self%handle, drift, rtol), self%handle, stat, errmsg)
-  end subroutine session_get_tolerance
-
-  subroutine session_get_step_control(self, pace, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: pace(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_get_step_control(self%handle, size(pace, kind=c_int64_t), pace), self%handle, stat, errmsg)
-  end subroutine session_get_step_control
-
-  subroutine session_step_begin_initial(self, dt, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_double), intent(in) :: dt
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_begin_initial(self%handle, dt), self%handle, stat, errmsg)
-  end subroutine session_step_begin_initial
-
-  subroutine session_save(self, path, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    character(*), intent(in) :: path
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_save(self%handle, c_text(path)), self%handle, stat, errmsg)
-  end subroutine session_save
-
-  subroutine session_load(self, path, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    character(*), intent(in) :: path
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_load(self%handle, c_text(path)), self%handle, stat, errmsg)
-  end subroutine session_load
-
   subroutine session_set_goal(self, goals, stat, errmsg)
     class(spar_session), intent(inout) :: self
     integer, intent(in) :: goals
@@ -2791,19 +2791,6 @@ contains
 
   ! Written by cmake/make-bindings.sh.
 
-  subroutine member_get_elements(self, elements, nodes_per_element, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout), optional :: elements, nodes_per_element
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_elements, c_nodes_per_element
-
-    status = spar_beam_get_elements(self%handle, c_elements, c_nodes_per_element)
-    call hand(status, c_elements, elements)
-    call hand(status, c_nodes_per_element, nodes_per_element)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_elements
-
   subroutine member_set_axis(self, eta, xyz, twist, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:), xyz(:,:)
@@ -2820,23 +2807,6 @@ contains
     end if
     call finish(spar_beam_set_axis(self%handle, size(eta, kind=c_int64_t), eta, xyz, twist), self%session, stat, errmsg)
   end subroutine member_set_axis
-
-  subroutine member_set_nodes(self, x, q, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: x(:,:)
-    real(c_double), contiguous, intent(in), optional :: q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, kind=c_int64_t)])
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, size(x, 2, kind=c_int64_t)])
-    if (allocated(fault)) then
-      call refuse('member%set_nodes', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_beam_set_nodes(self%handle, size(x, 2, kind=c_int64_t), x, q), self%session, stat, errmsg)
-  end subroutine member_set_nodes
 
   subroutine member_set_sections(self, eta, stiffness, mass, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -2857,6 +2827,183 @@ contains
     call finish(spar_beam_set_sections(self%handle, size(eta, kind=c_int64_t), eta, stiffness, mass), self%session, &
         stat, errmsg)
   end subroutine member_set_sections
+
+  subroutine member_set_placement(self, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in), optional :: x(3), q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_placement(self%handle, x, q), self%session, stat, errmsg)
+  end subroutine member_set_placement
+
+  subroutine member_set_root(self, kind, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: kind
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_root(self%handle, to_c(kind)), self%session, stat, errmsg)
+  end subroutine member_set_root
+
+  subroutine member_set_external(self, on, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    logical, intent(in) :: on
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_external(self%handle, flag(on)), self%session, stat, errmsg)
+  end subroutine member_set_external
+
+  subroutine member_set_initial_velocity(self, x0, v0, omega, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in), optional :: x0(3), v0(3), omega(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_initial_velocity(self%handle, x0, v0, omega), self%session, stat, errmsg)
+  end subroutine member_set_initial_velocity
+
+  subroutine member_commit(self, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_commit(self%handle), self%session, stat, errmsg)
+  end subroutine member_commit
+
+  subroutine member_get_reference(self, x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('member%get_reference', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_member_get_reference(self%handle, x, q), self%session, stat, errmsg)
+  end subroutine member_get_reference
+
+  subroutine member_get_motion(self, q, v, a, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(inout), optional :: q(:,:), v(:,:), a(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('member%get_motion', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_member_get_motion(self%handle, q, v, a), self%session, stat, errmsg)
+  end subroutine member_get_motion
+
+  subroutine member_set_motion(self, q, v, a, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in), optional :: q(:,:), v(:,:), a(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
+    if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('member%set_motion', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_member_set_motion(self%handle, q, v, a), self%session, stat, errmsg)
+  end subroutine member_set_motion
+
+  subroutine member_drive(self, q, v, a, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in) :: q(7)
+    real(c_double), intent(in), optional :: v(6), a(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_drive(self%handle, q, v, a), self%session, stat, errmsg)
+  end subroutine member_drive
+
+  subroutine member_get_loads(self, load, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: load(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_member_get_count(self%handle, n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, 'load', shape(load, kind=c_int64_t), [6_c_int64_t, n])
+    if (allocated(fault)) then
+      call refuse('member%get_loads', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_member_get_loads(self%handle, load), self%session, stat, errmsg)
+  end subroutine member_get_loads
+
+  subroutine member_get_elements(self, elements, nodes_per_element, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout), optional :: elements, nodes_per_element
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_elements, c_nodes_per_element
+
+    status = spar_beam_get_elements(self%handle, c_elements, c_nodes_per_element)
+    call hand(status, c_elements, elements)
+    call hand(status, c_nodes_per_element, nodes_per_element)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_elements
+
+  subroutine member_set_nodes(self, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: x(:,:)
+    real(c_double), contiguous, intent(in), optional :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, size(x, 2, kind=c_int64_t)])
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, size(x, 2, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%set_nodes', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_beam_set_nodes(self%handle, size(x, 2, kind=c_int64_t), x, q), self%session, stat, errmsg)
+  end subroutine member_set_nodes
 
   subroutine member_set_masses(self, eta, mass, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -2963,15 +3110,6 @@ contains
     call finish(spar_beam_get_damping(self%handle, mu), self%session, stat, errmsg)
   end subroutine member_get_damping
 
-  subroutine member_set_placement(self, x, q, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), intent(in), optional :: x(3), q(4)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_set_placement(self%handle, x, q), self%session, stat, errmsg)
-  end subroutine member_set_placement
-
   subroutine member_get_placement(self, x, q, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), intent(inout), optional :: x(3), q(4)
@@ -2980,15 +3118,6 @@ contains
 
     call finish(spar_member_get_placement(self%handle, x, q), self%session, stat, errmsg)
   end subroutine member_get_placement
-
-  subroutine member_set_root(self, kind, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer, intent(in) :: kind
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_set_root(self%handle, to_c(kind)), self%session, stat, errmsg)
-  end subroutine member_set_root
 
   subroutine member_get_root(self, kind, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -3002,15 +3131,6 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_root
 
-  subroutine member_set_external(self, on, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    logical, intent(in) :: on
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_set_external(self%handle, flag(on)), self%session, stat, errmsg)
-  end subroutine member_set_external
-
   subroutine member_get_external(self, on, stat, errmsg)
     class(spar_member), intent(in) :: self
     logical, intent(inout) :: on
@@ -3022,6 +3142,19 @@ contains
     if (status == SPAR_OK) on = c_on /= 0
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_external
+
+  subroutine member_get_fidelity(self, kind, modes, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout), optional :: kind
+    integer(c_int64_t), intent(inout), optional :: modes
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_kind
+
+    status = spar_member_get_fidelity(self%handle, c_kind, modes)
+    call hand(status, c_kind, kind)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_fidelity
 
   subroutine member_set_effects(self, effects, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -3044,154 +3177,6 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_effects
 
-  subroutine member_get_fidelity(self, kind, modes, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout), optional :: kind
-    integer(c_int64_t), intent(inout), optional :: modes
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_kind
-
-    status = spar_member_get_fidelity(self%handle, c_kind, modes)
-    call hand(status, c_kind, kind)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_fidelity
-
-  subroutine member_set_added_mass(self, eta, mass, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: eta(:), mass(:,:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    call need(fault, 'mass', shape(mass, kind=c_int64_t), [6_c_int64_t, 6_c_int64_t, size(eta, kind=c_int64_t)])
-    if (allocated(fault)) then
-      call refuse('member%set_added_mass', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_member_set_added_mass(self%handle, size(eta, kind=c_int64_t), eta, mass), self%session, stat, &
-        errmsg)
-  end subroutine member_set_added_mass
-
-  subroutine member_set_initial_velocity(self, x0, v0, omega, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), intent(in), optional :: x0(3), v0(3), omega(3)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_set_initial_velocity(self%handle, x0, v0, omega), self%session, stat, errmsg)
-  end subroutine member_set_initial_velocity
-
-  subroutine member_set_owner(self, rank, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer, intent(in) :: rank
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_set_owner(self%handle, to_c(rank)), self%session, stat, errmsg)
-  end subroutine member_set_owner
-
-  subroutine member_get_owner(self, rank, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout) :: rank
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_rank
-
-    status = spar_member_get_owner(self%handle, c_rank)
-    call hand(status, c_rank, rank)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_owner
-
-  subroutine member_commit(self, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_commit(self%handle), self%session, stat, errmsg)
-  end subroutine member_commit
-
-  subroutine member_get_reference(self, x, q, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_member_get_count(self%handle, n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('member%get_reference', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_member_get_reference(self%handle, x, q), self%session, stat, errmsg)
-  end subroutine member_get_reference
-
-  subroutine member_get_motion(self, q, v, a, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), contiguous, intent(inout), optional :: q(:,:), v(:,:), a(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_member_get_count(self%handle, n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
-    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
-    if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('member%get_motion', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_member_get_motion(self%handle, q, v, a), self%session, stat, errmsg)
-  end subroutine member_get_motion
-
-  subroutine member_set_motion(self, q, v, a, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), contiguous, intent(in), optional :: q(:,:), v(:,:), a(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_member_get_count(self%handle, n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [7_c_int64_t, n])
-    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [6_c_int64_t, n])
-    if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [6_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('member%set_motion', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_member_set_motion(self%handle, q, v, a), self%session, stat, errmsg)
-  end subroutine member_set_motion
-
-  subroutine member_drive(self, q, v, a, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), intent(in) :: q(7)
-    real(c_double), intent(in), optional :: v(6), a(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_drive(self%handle, q, v, a), self%session, stat, errmsg)
-  end subroutine member_drive
-
   subroutine member_set_line_load(self, kind, eta, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(in) :: kind
@@ -3208,28 +3193,6 @@ contains
     call finish(spar_beam_set_line_load(self%handle, to_c(kind), size(eta, kind=c_int64_t), eta, load), self%session, &
         stat, errmsg)
   end subroutine member_set_line_load
-
-  subroutine member_get_loads(self, load, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: load(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_member_get_count(self%handle, n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    call need(fault, 'load', shape(load, kind=c_int64_t), [6_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('member%get_loads', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_member_get_loads(self%handle, load), self%session, stat, errmsg)
-  end subroutine member_get_loads
 
   subroutine member_get_reaction(self, load, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -3289,15 +3252,6 @@ contains
     call finish(spar_member_solve_static(self%handle, to_c(load_steps)), self%session, stat, errmsg)
   end subroutine member_solve_static
 
-  subroutine member_estimate_error(self, step, nodes, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_double), intent(inout), optional :: step, nodes
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_estimate_error(self%handle, step, nodes), self%session, stat, errmsg)
-  end subroutine member_estimate_error
-
   subroutine member_get_iterations(self, iterations, left, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int64_t), intent(inout), optional :: iterations
@@ -3307,6 +3261,52 @@ contains
 
     call finish(spar_member_get_iterations(self%handle, iterations, left), self%session, stat, errmsg)
   end subroutine member_get_iterations
+
+  subroutine member_set_added_mass(self, eta, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: eta(:), mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'mass', shape(mass, kind=c_int64_t), [6_c_int64_t, 6_c_int64_t, size(eta, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%set_added_mass', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_member_set_added_mass(self%handle, size(eta, kind=c_int64_t), eta, mass), self%session, stat, &
+        errmsg)
+  end subroutine member_set_added_mass
+
+  subroutine member_set_owner(self, rank, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: rank
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_owner(self%handle, to_c(rank)), self%session, stat, errmsg)
+  end subroutine member_set_owner
+
+  subroutine member_get_owner(self, rank, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout) :: rank
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_rank
+
+    status = spar_member_get_owner(self%handle, c_rank)
+    call hand(status, c_rank, rank)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_owner
+
+  subroutine member_estimate_error(self, step, nodes, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(inout), optional :: step, nodes
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_estimate_error(self%handle, step, nodes), self%session, stat, errmsg)
+  end subroutine member_estimate_error
 
   subroutine member_get_advice(self, fidelity, modes, nodes_per_element, points, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -3426,28 +3426,6 @@ contains
     call finish(spar_fluid_set_motion_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
   end subroutine fluid_set_motion_nodes
 
-  subroutine fluid_get_motion_weights(self, w, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: w(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    call need(fault, 'w', shape(w, kind=c_int64_t), [n])
-    if (allocated(fault)) then
-      call refuse('fluid%get_motion_weights', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_get_motion_weights(self%handle, w), self%session, stat, errmsg)
-  end subroutine fluid_get_motion_weights
-
   subroutine fluid_set_force_nodes(self, x, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: x(:,:)
@@ -3480,6 +3458,76 @@ contains
     call finish(spar_fluid_set_stations(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, stat, errmsg)
   end subroutine fluid_set_stations
 
+  subroutine fluid_map(self, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_map(self%handle), self%session, stat, errmsg)
+  end subroutine fluid_map
+
+  subroutine fluid_pull_motion(self, theta, x, v, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
+    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
+    if (allocated(fault)) then
+      call refuse('fluid%pull_motion', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_motion(self%handle, theta, x, v), self%session, stat, errmsg)
+  end subroutine fluid_pull_motion
+
+  subroutine fluid_pull_poses(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:), v(:,:), omega(:,:), accel(:,:), alpha(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
+    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
+    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
+    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
+    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
+    if (present(alpha)) call need_triples(self, SPAR_NODES_MOTION, fault, 'alpha', shape(alpha, kind=c_int64_t), n)
+    if (allocated(fault)) then
+      call refuse('fluid%pull_poses', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_poses(self%handle, theta, x, q, v, omega, accel, alpha), self%session, stat, errmsg)
+  end subroutine fluid_pull_poses
+
+  subroutine fluid_fail(self, status, message, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: status
+    character(*), intent(in) :: message
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_fail(self%handle, to_c(status), c_text(message)), self%session, stat, errmsg)
+  end subroutine fluid_fail
+
   subroutine fluid_set_motion_stations(self, xi, offset, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: xi(:)
@@ -3497,6 +3545,28 @@ contains
     call finish(spar_fluid_set_motion_stations(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, &
         stat, errmsg)
   end subroutine fluid_set_motion_stations
+
+  subroutine fluid_get_motion_weights(self, w, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), contiguous, intent(inout) :: w(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    call need(fault, 'w', shape(w, kind=c_int64_t), [n])
+    if (allocated(fault)) then
+      call refuse('fluid%get_motion_weights', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_get_motion_weights(self%handle, w), self%session, stat, errmsg)
+  end subroutine fluid_get_motion_weights
 
   subroutine fluid_set_layout(self, which, node, component, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
@@ -3562,14 +3632,6 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_interpolation
 
-  subroutine fluid_map(self, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_map(self%handle), self%session, stat, errmsg)
-  end subroutine fluid_map
-
   subroutine fluid_get_kind(self, which, kind, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
@@ -3618,30 +3680,6 @@ contains
     call finish(spar_fluid_get_feet(self%handle, to_c(which), x_map, q_map, con), self%session, stat, errmsg)
   end subroutine fluid_get_feet
 
-  subroutine fluid_pull_motion(self, theta, x, v, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
-    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
-    if (allocated(fault)) then
-      call refuse('fluid%pull_motion', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_motion(self%handle, theta, x, v), self%session, stat, errmsg)
-  end subroutine fluid_pull_motion
-
   subroutine fluid_pull_sections(self, theta, q, omega, accel, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
@@ -3666,34 +3704,6 @@ contains
     end if
     call finish(spar_fluid_pull_sections(self%handle, theta, q, omega, accel), self%session, stat, errmsg)
   end subroutine fluid_pull_sections
-
-  subroutine fluid_pull_poses(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:), v(:,:), omega(:,:), accel(:,:), alpha(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
-    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
-    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
-    if (present(alpha)) call need_triples(self, SPAR_NODES_MOTION, fault, 'alpha', shape(alpha, kind=c_int64_t), n)
-    if (allocated(fault)) then
-      call refuse('fluid%pull_poses', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_poses(self%handle, theta, x, q, v, omega, accel, alpha), self%session, stat, errmsg)
-  end subroutine fluid_pull_poses
 
   subroutine fluid_get_travel(self, largest, node, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -3800,16 +3810,6 @@ contains
     end if
     call finish(spar_fluid_get_forces(self%handle, force), self%session, stat, errmsg)
   end subroutine fluid_get_forces
-
-  subroutine fluid_fail(self, status, message, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(in) :: status
-    character(*), intent(in) :: message
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_fail(self%handle, to_c(status), c_text(message)), self%session, stat, errmsg)
-  end subroutine fluid_fail
 
   subroutine fluid_set_states(self, width, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
@@ -5950,6 +5950,77 @@ contains
     call take(c_g, g)
   end subroutine session_get_gravity_single_1
 
+  subroutine session_set_coupling_single_1(self, scheme, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(in) :: scheme
+    real(c_float), intent(in) :: atol
+    real(c_float), intent(in) :: rtol
+    integer, intent(in) :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_set_coupling(self, scheme=scheme, atol=real(atol, c_double), rtol=real(rtol, c_double), &
+        max_iterations=max_iterations, stat=stat, errmsg=errmsg)
+  end subroutine session_set_coupling_single_1
+
+  subroutine session_get_coupling_single_1(self, scheme, atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout), optional :: scheme
+    real(c_float), intent(inout) :: atol
+    real(c_float), intent(inout), optional :: rtol
+    integer, intent(inout), optional :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_atol
+    real(c_double), allocatable :: c_rtol
+
+    allocate (c_atol, source=untouched)
+    if (present(rtol)) allocate (c_rtol, source=untouched)
+    call session_get_coupling(self, scheme=scheme, atol=c_atol, rtol=c_rtol, max_iterations=max_iterations, &
+        stat=stat, errmsg=errmsg)
+    call take(c_atol, atol)
+    call take(c_rtol, rtol)
+  end subroutine session_get_coupling_single_1
+
+  subroutine session_get_coupling_single_2(self, scheme, no_atol, rtol, max_iterations, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(inout), optional :: scheme
+    type(absent), intent(in), optional :: no_atol
+    real(c_float), intent(inout) :: rtol
+    integer, intent(inout), optional :: max_iterations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_rtol
+
+    allocate (c_rtol, source=untouched)
+    if (present(no_atol)) return
+    call session_get_coupling(self, scheme=scheme, rtol=c_rtol, max_iterations=max_iterations, stat=stat, errmsg=errmsg)
+    call take(c_rtol, rtol)
+  end subroutine session_get_coupling_single_2
+
+  subroutine session_get_time_single_1(self, t, step, iteration, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    real(c_float), intent(inout) :: t
+    integer(c_int64_t), intent(inout), optional :: step
+    integer, intent(inout), optional :: iteration
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_t
+
+    allocate (c_t, source=untouched)
+    call session_get_time(self, t=c_t, step=step, iteration=iteration, stat=stat, errmsg=errmsg)
+    call take(c_t, t)
+  end subroutine session_get_time_single_1
+
+  subroutine session_step_begin_single_1(self, dt, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_float), intent(in) :: dt
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_step_begin(self, dt=real(dt, c_double), stat=stat, errmsg=errmsg)
+  end subroutine session_step_begin_single_1
+
   subroutine session_set_integrator_single_1(self, rho_inf, substeps, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_float), intent(in) :: rho_inf
@@ -6017,54 +6088,6 @@ contains
     call take(c_rtol, rtol)
   end subroutine session_get_newton_single_2
 
-  subroutine session_set_coupling_single_1(self, scheme, atol, rtol, max_iterations, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(in) :: scheme
-    real(c_float), intent(in) :: atol
-    real(c_float), intent(in) :: rtol
-    integer, intent(in) :: max_iterations
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call session_set_coupling(self, scheme=scheme, atol=real(atol, c_double), rtol=real(rtol, c_double), &
-        max_iterations=max_iterations, stat=stat, errmsg=errmsg)
-  end subroutine session_set_coupling_single_1
-
-  subroutine session_get_coupling_single_1(self, scheme, atol, rtol, max_iterations, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    integer, intent(inout), optional :: scheme
-    real(c_float), intent(inout) :: atol
-    real(c_float), intent(inout), optional :: rtol
-    integer, intent(inout), optional :: max_iterations
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_atol
-    real(c_double), allocatable :: c_rtol
-
-    allocate (c_atol, source=untouched)
-    if (present(rtol)) allocate (c_rtol, source=untouched)
-    call session_get_coupling(self, scheme=scheme, atol=c_atol, rtol=c_rtol, max_iterations=max_iterations, &
-        stat=stat, errmsg=errmsg)
-    call take(c_atol, atol)
-    call take(c_rtol, rtol)
-  end subroutine session_get_coupling_single_1
-
-  subroutine session_get_coupling_single_2(self, scheme, no_atol, rtol, max_iterations, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    integer, intent(inout), optional :: scheme
-    type(absent), intent(in), optional :: no_atol
-    real(c_float), intent(inout) :: rtol
-    integer, intent(inout), optional :: max_iterations
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_rtol
-
-    allocate (c_rtol, source=untouched)
-    if (present(no_atol)) return
-    call session_get_coupling(self, scheme=scheme, rtol=c_rtol, max_iterations=max_iterations, stat=stat, errmsg=errmsg)
-    call take(c_rtol, rtol)
-  end subroutine session_get_coupling_single_2
-
   subroutine session_set_relaxation_single_1(self, omega, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_float), intent(in) :: omega
@@ -6128,28 +6151,14 @@ contains
     call take(c_report, report)
   end subroutine session_get_report_single_1
 
-  subroutine session_get_time_single_1(self, t, step, iteration, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_float), intent(inout) :: t
-    integer(c_int64_t), intent(inout), optional :: step
-    integer, intent(inout), optional :: iteration
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_t
-
-    allocate (c_t, source=untouched)
-    call session_get_time(self, t=c_t, step=step, iteration=iteration, stat=stat, errmsg=errmsg)
-    call take(c_t, t)
-  end subroutine session_get_time_single_1
-
-  subroutine session_step_begin_single_1(self, dt, stat, errmsg)
+  subroutine session_step_begin_initial_single_1(self, dt, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_float), intent(in) :: dt
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call session_step_begin(self, dt=real(dt, c_double), stat=stat, errmsg=errmsg)
-  end subroutine session_step_begin_single_1
+    call session_step_begin_initial(self, dt=real(dt, c_double), stat=stat, errmsg=errmsg)
+  end subroutine session_step_begin_initial_single_1
 
   subroutine session_set_tolerance_single_1(self, drift, rtol, stat, errmsg)
     class(spar_session), intent(inout) :: self
@@ -6203,15 +6212,6 @@ contains
     call take(c_pace, pace)
   end subroutine session_get_step_control_single_1
 
-  subroutine session_step_begin_initial_single_1(self, dt, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_float), intent(in) :: dt
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call session_step_begin_initial(self, dt=real(dt, c_double), stat=stat, errmsg=errmsg)
-  end subroutine session_step_begin_initial_single_1
-
   subroutine session_push_numbers_single_1(self, numbers, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_float), intent(in) :: numbers(:)
@@ -6235,18 +6235,6 @@ contains
         errmsg=errmsg)
   end subroutine member_set_axis_single_1
 
-  subroutine member_set_nodes_single_1(self, x, q, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_float), intent(in) :: x(:,:)
-    real(c_float), intent(in), optional :: q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_q(:,:)
-
-    if (present(q)) allocate (c_q, source=real(q, c_double))
-    call member_set_nodes(self, x=real(x, c_double), q=c_q, stat=stat, errmsg=errmsg)
-  end subroutine member_set_nodes_single_1
-
   subroutine member_set_sections_single_1(self, eta, stiffness, mass, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_float), intent(in) :: eta(:)
@@ -6260,79 +6248,6 @@ contains
     call member_set_sections(self, eta=real(eta, c_double), stiffness=real(stiffness, c_double), mass=c_mass, &
         stat=stat, errmsg=errmsg)
   end subroutine member_set_sections_single_1
-
-  subroutine member_set_masses_single_1(self, eta, mass, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_float), intent(in) :: eta(:)
-    real(c_float), intent(in) :: mass(:,:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call member_set_masses(self, eta=real(eta, c_double), mass=real(mass, c_double), stat=stat, errmsg=errmsg)
-  end subroutine member_set_masses_single_1
-
-  subroutine member_set_foundation_single_1(self, eta, stiffness, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_float), intent(in) :: eta(:)
-    real(c_float), intent(in) :: stiffness(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call member_set_foundation(self, eta=real(eta, c_double), stiffness=real(stiffness, c_double), stat=stat, &
-        errmsg=errmsg)
-  end subroutine member_set_foundation_single_1
-
-  subroutine member_set_pretension_single_1(self, eta, force, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_float), intent(in) :: eta(:)
-    real(c_float), intent(in) :: force(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call member_set_pretension(self, eta=real(eta, c_double), force=real(force, c_double), stat=stat, errmsg=errmsg)
-  end subroutine member_set_pretension_single_1
-
-  subroutine member_set_damping_single_1(self, mu, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_float), intent(in) :: mu(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call member_set_damping(self, mu=real(mu, c_double), stat=stat, errmsg=errmsg)
-  end subroutine member_set_damping_single_1
-
-  subroutine member_set_mass_damping_single_1(self, alpha, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_float), intent(in) :: alpha
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call member_set_mass_damping(self, alpha=real(alpha, c_double), stat=stat, errmsg=errmsg)
-  end subroutine member_set_mass_damping_single_1
-
-  subroutine member_get_mass_damping_single_1(self, alpha, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_float), intent(inout) :: alpha
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_alpha
-
-    allocate (c_alpha, source=untouched)
-    call member_get_mass_damping(self, alpha=c_alpha, stat=stat, errmsg=errmsg)
-    call take(c_alpha, alpha)
-  end subroutine member_get_mass_damping_single_1
-
-  subroutine member_get_damping_single_1(self, mu, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_float), intent(inout) :: mu(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_mu(:)
-
-    allocate (c_mu(ubound(mu, 1, c_int64_t)), source=untouched)
-    call member_get_damping(self, mu=c_mu, stat=stat, errmsg=errmsg)
-    call take(c_mu, mu)
-  end subroutine member_get_damping_single_1
 
   subroutine member_set_placement_single_1(self, x, q, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -6356,46 +6271,6 @@ contains
     if (present(no_x)) return
     call member_set_placement(self, q=real(q, c_double), stat=stat, errmsg=errmsg)
   end subroutine member_set_placement_single_2
-
-  subroutine member_get_placement_single_1(self, x, q, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_float), intent(inout) :: x(3)
-    real(c_float), intent(inout), optional :: q(4)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_x(:)
-    real(c_double), allocatable :: c_q(:)
-
-    allocate (c_x(ubound(x, 1, c_int64_t)), source=untouched)
-    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t)), source=untouched)
-    call member_get_placement(self, x=c_x, q=c_q, stat=stat, errmsg=errmsg)
-    call take(c_x, x)
-    call take(c_q, q)
-  end subroutine member_get_placement_single_1
-
-  subroutine member_get_placement_single_2(self, no_x, q, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    type(absent), intent(in), optional :: no_x
-    real(c_float), intent(inout) :: q(4)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_q(:)
-
-    allocate (c_q(ubound(q, 1, c_int64_t)), source=untouched)
-    if (present(no_x)) return
-    call member_get_placement(self, q=c_q, stat=stat, errmsg=errmsg)
-    call take(c_q, q)
-  end subroutine member_get_placement_single_2
-
-  subroutine member_set_added_mass_single_1(self, eta, mass, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    real(c_float), intent(in) :: eta(:)
-    real(c_float), intent(in) :: mass(:,:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call member_set_added_mass(self, eta=real(eta, c_double), mass=real(mass, c_double), stat=stat, errmsg=errmsg)
-  end subroutine member_set_added_mass_single_1
 
   subroutine member_set_initial_velocity_single_1(self, x0, v0, omega, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -6577,18 +6452,6 @@ contains
     call member_drive(self, q=real(q, c_double), v=c_v, a=c_a, stat=stat, errmsg=errmsg)
   end subroutine member_drive_single_1
 
-  subroutine member_set_line_load_single_1(self, kind, eta, load, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer, intent(in) :: kind
-    real(c_float), intent(in) :: eta(:)
-    real(c_float), intent(in) :: load(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call member_set_line_load(self, kind=kind, eta=real(eta, c_double), load=real(load, c_double), stat=stat, &
-        errmsg=errmsg)
-  end subroutine member_set_line_load_single_1
-
   subroutine member_get_loads_single_1(self, load, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_float), intent(inout) :: load(:,:)
@@ -6600,6 +6463,133 @@ contains
     call member_get_loads(self, load=c_load, stat=stat, errmsg=errmsg)
     call take(c_load, load)
   end subroutine member_get_loads_single_1
+
+  subroutine member_set_nodes_single_1(self, x, q, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: x(:,:)
+    real(c_float), intent(in), optional :: q(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:,:)
+
+    if (present(q)) allocate (c_q, source=real(q, c_double))
+    call member_set_nodes(self, x=real(x, c_double), q=c_q, stat=stat, errmsg=errmsg)
+  end subroutine member_set_nodes_single_1
+
+  subroutine member_set_masses_single_1(self, eta, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(in) :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_masses(self, eta=real(eta, c_double), mass=real(mass, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_masses_single_1
+
+  subroutine member_set_foundation_single_1(self, eta, stiffness, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(in) :: stiffness(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_foundation(self, eta=real(eta, c_double), stiffness=real(stiffness, c_double), stat=stat, &
+        errmsg=errmsg)
+  end subroutine member_set_foundation_single_1
+
+  subroutine member_set_pretension_single_1(self, eta, force, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(in) :: force(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_pretension(self, eta=real(eta, c_double), force=real(force, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_pretension_single_1
+
+  subroutine member_set_damping_single_1(self, mu, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: mu(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_damping(self, mu=real(mu, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_damping_single_1
+
+  subroutine member_set_mass_damping_single_1(self, alpha, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: alpha
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_mass_damping(self, alpha=real(alpha, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_mass_damping_single_1
+
+  subroutine member_get_mass_damping_single_1(self, alpha, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: alpha
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_alpha
+
+    allocate (c_alpha, source=untouched)
+    call member_get_mass_damping(self, alpha=c_alpha, stat=stat, errmsg=errmsg)
+    call take(c_alpha, alpha)
+  end subroutine member_get_mass_damping_single_1
+
+  subroutine member_get_damping_single_1(self, mu, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: mu(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_mu(:)
+
+    allocate (c_mu(ubound(mu, 1, c_int64_t)), source=untouched)
+    call member_get_damping(self, mu=c_mu, stat=stat, errmsg=errmsg)
+    call take(c_mu, mu)
+  end subroutine member_get_damping_single_1
+
+  subroutine member_get_placement_single_1(self, x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: x(3)
+    real(c_float), intent(inout), optional :: q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_x(:)
+    real(c_double), allocatable :: c_q(:)
+
+    allocate (c_x(ubound(x, 1, c_int64_t)), source=untouched)
+    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t)), source=untouched)
+    call member_get_placement(self, x=c_x, q=c_q, stat=stat, errmsg=errmsg)
+    call take(c_x, x)
+    call take(c_q, q)
+  end subroutine member_get_placement_single_1
+
+  subroutine member_get_placement_single_2(self, no_x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    type(absent), intent(in), optional :: no_x
+    real(c_float), intent(inout) :: q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:)
+
+    allocate (c_q(ubound(q, 1, c_int64_t)), source=untouched)
+    if (present(no_x)) return
+    call member_get_placement(self, q=c_q, stat=stat, errmsg=errmsg)
+    call take(c_q, q)
+  end subroutine member_get_placement_single_2
+
+  subroutine member_set_line_load_single_1(self, kind, eta, load, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: kind
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(in) :: load(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_line_load(self, kind=kind, eta=real(eta, c_double), load=real(load, c_double), stat=stat, &
+        errmsg=errmsg)
+  end subroutine member_set_line_load_single_1
 
   subroutine member_get_reaction_single_1(self, load, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -6664,6 +6654,29 @@ contains
     call take(c_work, work)
   end subroutine member_get_work_single_1
 
+  subroutine member_get_iterations_single_1(self, iterations, left, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: iterations
+    real(c_float), intent(inout) :: left
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_left
+
+    allocate (c_left, source=untouched)
+    call member_get_iterations(self, iterations=iterations, left=c_left, stat=stat, errmsg=errmsg)
+    call take(c_left, left)
+  end subroutine member_get_iterations_single_1
+
+  subroutine member_set_added_mass_single_1(self, eta, mass, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_float), intent(in) :: eta(:)
+    real(c_float), intent(in) :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call member_set_added_mass(self, eta=real(eta, c_double), mass=real(mass, c_double), stat=stat, errmsg=errmsg)
+  end subroutine member_set_added_mass_single_1
+
   subroutine member_estimate_error_single_1(self, step, nodes, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_float), intent(inout) :: step
@@ -6693,19 +6706,6 @@ contains
     call member_estimate_error(self, nodes=c_nodes, stat=stat, errmsg=errmsg)
     call take(c_nodes, nodes)
   end subroutine member_estimate_error_single_2
-
-  subroutine member_get_iterations_single_1(self, iterations, left, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer(c_int64_t), intent(inout), optional :: iterations
-    real(c_float), intent(inout) :: left
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_left
-
-    allocate (c_left, source=untouched)
-    call member_get_iterations(self, iterations=iterations, left=c_left, stat=stat, errmsg=errmsg)
-    call take(c_left, left)
-  end subroutine member_get_iterations_single_1
 
   subroutine joint_set_frame_single_1(self, x, q, stat, errmsg)
     class(spar_joint), intent(inout) :: self
@@ -6872,18 +6872,6 @@ contains
     call fluid_set_motion_nodes(self, x=real(x, c_double), stat=stat, errmsg=errmsg)
   end subroutine fluid_set_motion_nodes_single_1
 
-  subroutine fluid_get_motion_weights_single_1(self, w, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(inout) :: w(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_w(:)
-
-    allocate (c_w(ubound(w, 1, c_int64_t)), source=untouched)
-    call fluid_get_motion_weights(self, w=c_w, stat=stat, errmsg=errmsg)
-    call take(c_w, w)
-  end subroutine fluid_get_motion_weights_single_1
-
   subroutine fluid_set_force_nodes_single_1(self, x, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_float), intent(in) :: x(:,:)
@@ -6904,97 +6892,6 @@ contains
     if (present(offset)) allocate (c_offset, source=real(offset, c_double))
     call fluid_set_stations(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
   end subroutine fluid_set_stations_single_1
-
-  subroutine fluid_set_motion_stations_single_1(self, xi, offset, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    real(c_float), intent(in) :: xi(:)
-    real(c_float), intent(in), optional :: offset(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_offset(:,:)
-
-    if (present(offset)) allocate (c_offset, source=real(offset, c_double))
-    call fluid_set_motion_stations(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
-  end subroutine fluid_set_motion_stations_single_1
-
-  subroutine fluid_set_projection_single_1(self, method, max_distance, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    integer, intent(in) :: method
-    real(c_float), intent(in) :: max_distance
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call fluid_set_projection(self, method=method, max_distance=real(max_distance, c_double), stat=stat, errmsg=errmsg)
-  end subroutine fluid_set_projection_single_1
-
-  subroutine fluid_get_projection_single_1(self, method, max_distance, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(inout), optional :: method
-    real(c_float), intent(inout) :: max_distance
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_max_distance
-
-    allocate (c_max_distance, source=untouched)
-    call fluid_get_projection(self, method=method, max_distance=c_max_distance, stat=stat, errmsg=errmsg)
-    call take(c_max_distance, max_distance)
-  end subroutine fluid_get_projection_single_1
-
-  subroutine fluid_get_feet_single_1(self, which, x_map, q_map, con, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(in) :: which
-    real(c_float), intent(inout) :: x_map(:,:)
-    real(c_float), intent(inout), optional :: q_map(:,:)
-    real(c_float), intent(inout), optional :: con(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_x_map(:,:)
-    real(c_double), allocatable :: c_q_map(:,:)
-    real(c_double), allocatable :: c_con(:,:)
-
-    allocate (c_x_map(ubound(x_map, 1, c_int64_t), ubound(x_map, 2, c_int64_t)), source=untouched)
-    if (present(q_map)) allocate (c_q_map(ubound(q_map, 1, c_int64_t), ubound(q_map, 2, c_int64_t)), source=untouched)
-    if (present(con)) allocate (c_con(ubound(con, 1, c_int64_t), ubound(con, 2, c_int64_t)), source=untouched)
-    call fluid_get_feet(self, which=which, x_map=c_x_map, q_map=c_q_map, con=c_con, stat=stat, errmsg=errmsg)
-    call take(c_x_map, x_map)
-    call take(c_q_map, q_map)
-    call take(c_con, con)
-  end subroutine fluid_get_feet_single_1
-
-  subroutine fluid_get_feet_single_2(self, which, no_x_map, q_map, con, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(in) :: which
-    type(absent), intent(in), optional :: no_x_map
-    real(c_float), intent(inout) :: q_map(:,:)
-    real(c_float), intent(inout), optional :: con(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_q_map(:,:)
-    real(c_double), allocatable :: c_con(:,:)
-
-    allocate (c_q_map(ubound(q_map, 1, c_int64_t), ubound(q_map, 2, c_int64_t)), source=untouched)
-    if (present(con)) allocate (c_con(ubound(con, 1, c_int64_t), ubound(con, 2, c_int64_t)), source=untouched)
-    if (present(no_x_map)) return
-    call fluid_get_feet(self, which=which, q_map=c_q_map, con=c_con, stat=stat, errmsg=errmsg)
-    call take(c_q_map, q_map)
-    call take(c_con, con)
-  end subroutine fluid_get_feet_single_2
-
-  subroutine fluid_get_feet_single_3(self, which, no_x_map, no_q_map, con, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(in) :: which
-    type(absent), intent(in), optional :: no_x_map
-    type(absent), intent(in), optional :: no_q_map
-    real(c_float), intent(inout) :: con(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_con(:,:)
-
-    allocate (c_con(ubound(con, 1, c_int64_t), ubound(con, 2, c_int64_t)), source=untouched)
-    if (present(no_x_map) .or. present(no_q_map)) return
-    call fluid_get_feet(self, which=which, con=c_con, stat=stat, errmsg=errmsg)
-    call take(c_con, con)
-  end subroutine fluid_get_feet_single_3
 
   subroutine fluid_pull_motion_single_1(self, theta, x, v, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -7052,95 +6949,6 @@ contains
     if (present(no_x)) return
     call fluid_pull_motion_f32(self, theta=real(theta, c_double), v=v, stat=stat, errmsg=errmsg)
   end subroutine fluid_pull_motion_single_5
-
-  subroutine fluid_pull_sections_single_1(self, theta, q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(in) :: theta
-    real(c_double), contiguous, intent(inout), optional :: q(:,:)
-    real(c_double), contiguous, intent(inout), optional :: omega(:,:)
-    real(c_double), contiguous, intent(inout), optional :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call fluid_pull_sections(self, theta=real(theta, c_double), q=q, omega=omega, accel=accel, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_1
-
-  subroutine fluid_pull_sections_single_2(self, theta, q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_float), contiguous, intent(inout) :: q(:,:)
-    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
-    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call fluid_pull_sections_f32(self, theta=theta, q=q, omega=omega, accel=accel, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_2
-
-  subroutine fluid_pull_sections_single_3(self, theta, no_q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    type(absent), intent(in), optional :: no_q
-    real(c_float), contiguous, intent(inout) :: omega(:,:)
-    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    if (present(no_q)) return
-    call fluid_pull_sections_f32(self, theta=theta, omega=omega, accel=accel, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_3
-
-  subroutine fluid_pull_sections_single_4(self, theta, no_q, no_omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    type(absent), intent(in), optional :: no_q
-    type(absent), intent(in), optional :: no_omega
-    real(c_float), contiguous, intent(inout) :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    if (present(no_q) .or. present(no_omega)) return
-    call fluid_pull_sections_f32(self, theta=theta, accel=accel, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_4
-
-  subroutine fluid_pull_sections_single_5(self, theta, q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(in) :: theta
-    real(c_float), contiguous, intent(inout) :: q(:,:)
-    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
-    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call fluid_pull_sections_f32(self, theta=real(theta, c_double), q=q, omega=omega, accel=accel, stat=stat, &
-        errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_5
-
-  subroutine fluid_pull_sections_single_6(self, theta, no_q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(in) :: theta
-    type(absent), intent(in), optional :: no_q
-    real(c_float), contiguous, intent(inout) :: omega(:,:)
-    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    if (present(no_q)) return
-    call fluid_pull_sections_f32(self, theta=real(theta, c_double), omega=omega, accel=accel, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_6
-
-  subroutine fluid_pull_sections_single_7(self, theta, no_q, no_omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(in) :: theta
-    type(absent), intent(in), optional :: no_q
-    type(absent), intent(in), optional :: no_omega
-    real(c_float), contiguous, intent(inout) :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    if (present(no_q) .or. present(no_omega)) return
-    call fluid_pull_sections_f32(self, theta=real(theta, c_double), accel=accel, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_7
 
   subroutine fluid_pull_poses_single_1(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -7480,6 +7288,198 @@ contains
     call fluid_pull_poses(self, theta=real(theta, c_double), alpha=c_alpha, stat=stat, errmsg=errmsg)
     call take(c_alpha, alpha)
   end subroutine fluid_pull_poses_single_13
+
+  subroutine fluid_set_motion_stations_single_1(self, xi, offset, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: xi(:)
+    real(c_float), intent(in), optional :: offset(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_offset(:,:)
+
+    if (present(offset)) allocate (c_offset, source=real(offset, c_double))
+    call fluid_set_motion_stations(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_motion_stations_single_1
+
+  subroutine fluid_get_motion_weights_single_1(self, w, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(inout) :: w(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_w(:)
+
+    allocate (c_w(ubound(w, 1, c_int64_t)), source=untouched)
+    call fluid_get_motion_weights(self, w=c_w, stat=stat, errmsg=errmsg)
+    call take(c_w, w)
+  end subroutine fluid_get_motion_weights_single_1
+
+  subroutine fluid_set_projection_single_1(self, method, max_distance, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer, intent(in) :: method
+    real(c_float), intent(in) :: max_distance
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_set_projection(self, method=method, max_distance=real(max_distance, c_double), stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_projection_single_1
+
+  subroutine fluid_get_projection_single_1(self, method, max_distance, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(inout), optional :: method
+    real(c_float), intent(inout) :: max_distance
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_max_distance
+
+    allocate (c_max_distance, source=untouched)
+    call fluid_get_projection(self, method=method, max_distance=c_max_distance, stat=stat, errmsg=errmsg)
+    call take(c_max_distance, max_distance)
+  end subroutine fluid_get_projection_single_1
+
+  subroutine fluid_get_feet_single_1(self, which, x_map, q_map, con, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    real(c_float), intent(inout) :: x_map(:,:)
+    real(c_float), intent(inout), optional :: q_map(:,:)
+    real(c_float), intent(inout), optional :: con(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_x_map(:,:)
+    real(c_double), allocatable :: c_q_map(:,:)
+    real(c_double), allocatable :: c_con(:,:)
+
+    allocate (c_x_map(ubound(x_map, 1, c_int64_t), ubound(x_map, 2, c_int64_t)), source=untouched)
+    if (present(q_map)) allocate (c_q_map(ubound(q_map, 1, c_int64_t), ubound(q_map, 2, c_int64_t)), source=untouched)
+    if (present(con)) allocate (c_con(ubound(con, 1, c_int64_t), ubound(con, 2, c_int64_t)), source=untouched)
+    call fluid_get_feet(self, which=which, x_map=c_x_map, q_map=c_q_map, con=c_con, stat=stat, errmsg=errmsg)
+    call take(c_x_map, x_map)
+    call take(c_q_map, q_map)
+    call take(c_con, con)
+  end subroutine fluid_get_feet_single_1
+
+  subroutine fluid_get_feet_single_2(self, which, no_x_map, q_map, con, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    type(absent), intent(in), optional :: no_x_map
+    real(c_float), intent(inout) :: q_map(:,:)
+    real(c_float), intent(inout), optional :: con(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q_map(:,:)
+    real(c_double), allocatable :: c_con(:,:)
+
+    allocate (c_q_map(ubound(q_map, 1, c_int64_t), ubound(q_map, 2, c_int64_t)), source=untouched)
+    if (present(con)) allocate (c_con(ubound(con, 1, c_int64_t), ubound(con, 2, c_int64_t)), source=untouched)
+    if (present(no_x_map)) return
+    call fluid_get_feet(self, which=which, q_map=c_q_map, con=c_con, stat=stat, errmsg=errmsg)
+    call take(c_q_map, q_map)
+    call take(c_con, con)
+  end subroutine fluid_get_feet_single_2
+
+  subroutine fluid_get_feet_single_3(self, which, no_x_map, no_q_map, con, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    type(absent), intent(in), optional :: no_x_map
+    type(absent), intent(in), optional :: no_q_map
+    real(c_float), intent(inout) :: con(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_con(:,:)
+
+    allocate (c_con(ubound(con, 1, c_int64_t), ubound(con, 2, c_int64_t)), source=untouched)
+    if (present(no_x_map) .or. present(no_q_map)) return
+    call fluid_get_feet(self, which=which, con=c_con, stat=stat, errmsg=errmsg)
+    call take(c_con, con)
+  end subroutine fluid_get_feet_single_3
+
+  subroutine fluid_pull_sections_single_1(self, theta, q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: q(:,:)
+    real(c_double), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_double), contiguous, intent(inout), optional :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_sections(self, theta=real(theta, c_double), q=q, omega=omega, accel=accel, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_1
+
+  subroutine fluid_pull_sections_single_2(self, theta, q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_float), contiguous, intent(inout) :: q(:,:)
+    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_sections_f32(self, theta=theta, q=q, omega=omega, accel=accel, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_2
+
+  subroutine fluid_pull_sections_single_3(self, theta, no_q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    type(absent), intent(in), optional :: no_q
+    real(c_float), contiguous, intent(inout) :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_q)) return
+    call fluid_pull_sections_f32(self, theta=theta, omega=omega, accel=accel, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_3
+
+  subroutine fluid_pull_sections_single_4(self, theta, no_q, no_omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    type(absent), intent(in), optional :: no_q
+    type(absent), intent(in), optional :: no_omega
+    real(c_float), contiguous, intent(inout) :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_q) .or. present(no_omega)) return
+    call fluid_pull_sections_f32(self, theta=theta, accel=accel, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_4
+
+  subroutine fluid_pull_sections_single_5(self, theta, q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    real(c_float), contiguous, intent(inout) :: q(:,:)
+    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_pull_sections_f32(self, theta=real(theta, c_double), q=q, omega=omega, accel=accel, stat=stat, &
+        errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_5
+
+  subroutine fluid_pull_sections_single_6(self, theta, no_q, omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    type(absent), intent(in), optional :: no_q
+    real(c_float), contiguous, intent(inout) :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_q)) return
+    call fluid_pull_sections_f32(self, theta=real(theta, c_double), omega=omega, accel=accel, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_6
+
+  subroutine fluid_pull_sections_single_7(self, theta, no_q, no_omega, accel, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_float), intent(in) :: theta
+    type(absent), intent(in), optional :: no_q
+    type(absent), intent(in), optional :: no_omega
+    real(c_float), contiguous, intent(inout) :: accel(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    if (present(no_q) .or. present(no_omega)) return
+    call fluid_pull_sections_f32(self, theta=real(theta, c_double), accel=accel, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_sections_single_7
 
   subroutine fluid_get_travel_single_1(self, largest, node, stat, errmsg)
     class(spar_fluid), intent(in) :: self

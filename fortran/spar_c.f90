@@ -56,6 +56,14 @@ module spar_calls
       type(c_ptr) :: text
     end function spar_session_message
 
+    function spar_session_set_log(session, log, context) bind(c) result(status)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      type(c_funptr), value :: log
+      type(c_ptr), value :: context
+      integer(c_int) :: status
+    end function spar_session_set_log
+
     function spar_session_set_gravity(session, g) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: session
@@ -69,52 +77,6 @@ module spar_calls
       real(c_double), intent(inout), optional :: g(3)
       integer(c_int) :: status
     end function spar_session_get_gravity
-
-    function spar_session_set_integrator(session, rho_inf, substeps) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: rho_inf
-      integer(c_int), value :: substeps
-      integer(c_int) :: status
-    end function spar_session_set_integrator
-
-    function spar_session_get_integrator(session, rho_inf, substeps) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), intent(inout), optional :: rho_inf
-      integer(c_int), intent(inout), optional :: substeps
-      integer(c_int) :: status
-    end function spar_session_get_integrator
-
-    function spar_session_set_newton(session, atol, rtol, max_iterations) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: atol, rtol
-      integer(c_int), value :: max_iterations
-      integer(c_int) :: status
-    end function spar_session_set_newton
-
-    function spar_session_get_newton(session, atol, rtol, max_iterations) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), intent(inout), optional :: atol, rtol
-      integer(c_int), intent(inout), optional :: max_iterations
-      integer(c_int) :: status
-    end function spar_session_get_newton
-
-    function spar_session_set_predictor(session, order) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), value :: order
-      integer(c_int) :: status
-    end function spar_session_set_predictor
-
-    function spar_session_get_predictor(session, order) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), intent(inout), optional :: order
-      integer(c_int) :: status
-    end function spar_session_get_predictor
 
     function spar_session_set_coupling(session, scheme, atol, rtol, max_iterations) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -134,97 +96,6 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_get_coupling
 
-    function spar_session_set_relaxation(session, omega) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: omega
-      integer(c_int) :: status
-    end function spar_session_set_relaxation
-
-    function spar_session_get_relaxation(session, omega) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), intent(inout), optional :: omega
-      integer(c_int) :: status
-    end function spar_session_get_relaxation
-
-    function spar_session_set_reproducible(session, on) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), value :: on
-      integer(c_int) :: status
-    end function spar_session_set_reproducible
-
-    function spar_session_get_reproducible(session, on) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), intent(inout), optional :: on
-      integer(c_int) :: status
-    end function spar_session_get_reproducible
-
-    function spar_session_set_threads(session, threads) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), value :: threads
-      integer(c_int) :: status
-    end function spar_session_set_threads
-
-    function spar_session_get_threads(session, threads) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), intent(inout), optional :: threads
-      integer(c_int) :: status
-    end function spar_session_get_threads
-
-    function spar_session_set_option(session, key, value) bind(c) result(status)
-      import :: c_char, c_int, c_ptr
-      type(c_ptr), value :: session
-      character(kind=c_char), intent(in), optional :: key(*), value(*)
-      integer(c_int) :: status
-    end function spar_session_set_option
-
-    function spar_session_get_option(session, key, capacity, text) bind(c) result(status)
-      import :: c_char, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      character(kind=c_char), intent(in), optional :: key(*)
-      integer(c_int64_t), value :: capacity
-      character(kind=c_char), intent(inout), optional :: text(*)
-      integer(c_int) :: status
-    end function spar_session_get_option
-
-    function spar_session_get_iterations(session, iterations, capacity, residual, size) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), intent(inout), optional :: iterations
-      integer(c_int64_t), value :: capacity
-      real(c_double), intent(inout), optional :: residual(*), size(*)
-      integer(c_int) :: status
-    end function spar_session_get_iterations
-
-    function spar_session_get_residual(session, residual, size) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), intent(inout), optional :: residual, size
-      integer(c_int) :: status
-    end function spar_session_get_residual
-
-    function spar_session_get_report(session, capacity, report) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int64_t), value :: capacity
-      real(c_double), intent(inout), optional :: report(*)
-      integer(c_int) :: status
-    end function spar_session_get_report
-
-    function spar_session_sum_balance(session, capacity, members, expected, counted) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int64_t), value :: capacity
-      integer(c_int64_t), intent(inout), optional :: members(*)
-      real(c_double), intent(inout), optional :: expected(*), counted(*)
-      integer(c_int) :: status
-    end function spar_session_sum_balance
-
     function spar_session_get_time(session, t, step, iteration) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session
@@ -233,30 +104,6 @@ module spar_calls
       integer(c_int), intent(inout), optional :: iteration
       integer(c_int) :: status
     end function spar_session_get_time
-
-    function spar_session_get_phase(session, phase) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), intent(inout), optional :: phase
-      integer(c_int) :: status
-    end function spar_session_get_phase
-
-    function spar_session_sum(session, status, n, x) bind(c) result(answer)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), value :: status
-      integer(c_int64_t), value :: n
-      real(c_double), intent(inout), optional :: x(*)
-      integer(c_int) :: answer
-    end function spar_session_sum
-
-    function spar_session_set_log(session, log, context) bind(c) result(status)
-      import :: c_funptr, c_int, c_ptr
-      type(c_ptr), value :: session
-      type(c_funptr), value :: log
-      type(c_ptr), value :: context
-      integer(c_int) :: status
-    end function spar_session_set_log
 
     function spar_point_create(session, name, x, q, member) bind(c) result(status)
       import :: c_char, c_double, c_int, c_ptr
@@ -285,13 +132,6 @@ module spar_calls
       integer(c_int) :: status
     end function spar_beam_create
 
-    function spar_beam_get_elements(beam, elements, nodes_per_element) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: beam
-      integer(c_int), intent(inout), optional :: elements, nodes_per_element
-      integer(c_int) :: status
-    end function spar_beam_get_elements
-
     function spar_beam_set_axis(beam, n, eta, xyz, twist) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: beam
@@ -300,14 +140,6 @@ module spar_calls
       integer(c_int) :: status
     end function spar_beam_set_axis
 
-    function spar_beam_set_nodes(beam, n, x, q) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: beam
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in), optional :: x(*), q(*)
-      integer(c_int) :: status
-    end function spar_beam_set_nodes
-
     function spar_beam_set_sections(beam, n, eta, stiffness, mass) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: beam
@@ -315,6 +147,237 @@ module spar_calls
       real(c_double), intent(in), optional :: eta(*), stiffness(*), mass(*)
       integer(c_int) :: status
     end function spar_beam_set_sections
+
+    function spar_member_set_placement(member, x, q) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(in), optional :: x(3), q(4)
+      integer(c_int) :: status
+    end function spar_member_set_placement
+
+    function spar_member_set_root(member, kind) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), value :: kind
+      integer(c_int) :: status
+    end function spar_member_set_root
+
+    function spar_member_set_external(member, on) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), value :: on
+      integer(c_int) :: status
+    end function spar_member_set_external
+
+    function spar_member_set_initial_velocity(member, x0, v0, omega) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(in), optional :: x0(3), v0(3), omega(3)
+      integer(c_int) :: status
+    end function spar_member_set_initial_velocity
+
+    function spar_member_commit(member) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int) :: status
+    end function spar_member_commit
+
+    function spar_member_get_count(member, nodes) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), intent(inout), optional :: nodes
+      integer(c_int) :: status
+    end function spar_member_get_count
+
+    function spar_member_get_reference(member, x, q) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(inout), optional :: x(*), q(*)
+      integer(c_int) :: status
+    end function spar_member_get_reference
+
+    function spar_member_get_motion(member, q, v, a) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(inout), optional :: q(*), v(*), a(*)
+      integer(c_int) :: status
+    end function spar_member_get_motion
+
+    function spar_member_set_motion(member, q, v, a) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(in), optional :: q(*), v(*), a(*)
+      integer(c_int) :: status
+    end function spar_member_set_motion
+
+    function spar_member_drive(member, q, v, a) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(in), optional :: q(7), v(6), a(6)
+      integer(c_int) :: status
+    end function spar_member_drive
+
+    function spar_member_set_load(member, node, kind, load) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), value :: node
+      integer(c_int), value :: kind
+      real(c_double), intent(in), optional :: load(6)
+      integer(c_int) :: status
+    end function spar_member_set_load
+
+    function spar_member_get_loads(member, load) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: member
+      real(c_double), intent(inout), optional :: load(*)
+      integer(c_int) :: status
+    end function spar_member_get_loads
+
+    function spar_fluid_create(member, name, fluid) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: member
+      character(kind=c_char), intent(in), optional :: name(*)
+      type(c_ptr), intent(inout), optional :: fluid
+      integer(c_int) :: status
+    end function spar_fluid_create
+
+    subroutine spar_fluid_destroy(fluid) bind(c)
+      import :: c_ptr
+      type(c_ptr), intent(inout), optional :: fluid
+    end subroutine spar_fluid_destroy
+
+    function spar_fluid_set_motion_nodes(fluid, n, x) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: x(*)
+      integer(c_int) :: status
+    end function spar_fluid_set_motion_nodes
+
+    function spar_fluid_set_force_nodes(fluid, n, x) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: x(*)
+      integer(c_int) :: status
+    end function spar_fluid_set_force_nodes
+
+    function spar_fluid_set_stations(fluid, n, xi, offset) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: xi(*), offset(*)
+      integer(c_int) :: status
+    end function spar_fluid_set_stations
+
+    function spar_fluid_map(fluid) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int) :: status
+    end function spar_fluid_map
+
+    function spar_fluid_pull_motion(fluid, theta, x, v) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_double), intent(inout), optional :: x(*), v(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_motion
+
+    function spar_fluid_pull_poses(fluid, theta, x, q, v, omega, accel, alpha) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_double), intent(inout), optional :: x(*), q(*), v(*), omega(*), accel(*), alpha(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_poses
+
+    function spar_fluid_push_forces(fluid, force, moment) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), intent(in), optional :: force(*), moment(*)
+      integer(c_int) :: status
+    end function spar_fluid_push_forces
+
+    function spar_fluid_fail(fluid, status, message) bind(c) result(answer)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: status
+      character(kind=c_char), intent(in), optional :: message(*)
+      integer(c_int) :: answer
+    end function spar_fluid_fail
+
+    function spar_step_begin(session, dt) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      integer(c_int) :: status
+    end function spar_step_begin
+
+    function spar_step_solve(session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int) :: status
+    end function spar_step_solve
+
+    function spar_step_check(session, done) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: done
+      integer(c_int) :: status
+    end function spar_step_check
+
+    function spar_step_accept(session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int) :: status
+    end function spar_step_accept
+
+    function spar_step_reject(session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int) :: status
+    end function spar_step_reject
+
+    function spar_step(session, dt, solve, context, iterations) bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      type(c_funptr), value :: solve
+      type(c_ptr), value :: context
+      integer(c_int), intent(inout), optional :: iterations
+      integer(c_int) :: status
+    end function spar_step
+
+    function spar_session_save(session, path) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: path(*)
+      integer(c_int) :: status
+    end function spar_session_save
+
+    function spar_session_load(session, path) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: path(*)
+      integer(c_int) :: status
+    end function spar_session_load
+
+    ! spar_structure.h
+    function spar_beam_get_elements(beam, elements, nodes_per_element) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int), intent(inout), optional :: elements, nodes_per_element
+      integer(c_int) :: status
+    end function spar_beam_get_elements
+
+    function spar_beam_set_nodes(beam, n, x, q) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: x(*), q(*)
+      integer(c_int) :: status
+    end function spar_beam_set_nodes
 
     function spar_beam_set_masses(beam, n, eta, mass) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
@@ -416,26 +479,12 @@ module spar_calls
       integer(c_int) :: status
     end function spar_beam_read_beamdyn
 
-    function spar_member_set_placement(member, x, q) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: member
-      real(c_double), intent(in), optional :: x(3), q(4)
-      integer(c_int) :: status
-    end function spar_member_set_placement
-
     function spar_member_get_placement(member, x, q) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: member
       real(c_double), intent(inout), optional :: x(3), q(4)
       integer(c_int) :: status
     end function spar_member_get_placement
-
-    function spar_member_set_root(member, kind) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int), value :: kind
-      integer(c_int) :: status
-    end function spar_member_set_root
 
     function spar_member_get_root(member, kind) bind(c) result(status)
       import :: c_int, c_ptr
@@ -444,13 +493,6 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_get_root
 
-    function spar_member_set_external(member, on) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int), value :: on
-      integer(c_int) :: status
-    end function spar_member_set_external
-
     function spar_member_get_external(member, on) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: member
@@ -458,19 +500,18 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_get_external
 
-    function spar_member_set_effects(member, effects) bind(c) result(status)
+    function spar_member_get_session(member, session) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: member
-      integer(c_int), value :: effects
+      type(c_ptr), intent(inout), optional :: session
       integer(c_int) :: status
-    end function spar_member_set_effects
+    end function spar_member_get_session
 
-    function spar_member_get_effects(member, effects) bind(c) result(status)
-      import :: c_int, c_ptr
+    function spar_member_get_name(member) bind(c) result(text)
+      import :: c_ptr
       type(c_ptr), value :: member
-      integer(c_int), intent(inout), optional :: effects
-      integer(c_int) :: status
-    end function spar_member_get_effects
+      type(c_ptr) :: text
+    end function spar_member_get_name
 
     function spar_member_set_fidelity(member, kind, modes) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
@@ -488,125 +529,19 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_get_fidelity
 
-    function spar_member_set_added_mass(member, n, eta, mass) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in), optional :: eta(*), mass(*)
-      integer(c_int) :: status
-    end function spar_member_set_added_mass
-
-    function spar_member_get_added_mass(member, n, capacity, eta, mass) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int64_t), intent(inout), optional :: n
-      integer(c_int64_t), value :: capacity
-      real(c_double), intent(inout), optional :: eta(*), mass(*)
-      integer(c_int) :: status
-    end function spar_member_get_added_mass
-
-    function spar_member_learn_added_mass(member, n, eta) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in), optional :: eta(*)
-      integer(c_int) :: status
-    end function spar_member_learn_added_mass
-
-    function spar_member_get_learned_added_mass(member, used, spread, n, capacity, eta, mass) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int), intent(inout), optional :: used
-      real(c_double), intent(inout), optional :: spread
-      integer(c_int64_t), intent(inout), optional :: n
-      integer(c_int64_t), value :: capacity
-      real(c_double), intent(inout), optional :: eta(*), mass(*)
-      integer(c_int) :: status
-    end function spar_member_get_learned_added_mass
-
-    function spar_member_set_initial_velocity(member, x0, v0, omega) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: member
-      real(c_double), intent(in), optional :: x0(3), v0(3), omega(3)
-      integer(c_int) :: status
-    end function spar_member_set_initial_velocity
-
-    function spar_member_set_owner(member, rank) bind(c) result(status)
+    function spar_member_set_effects(member, effects) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: member
-      integer(c_int), value :: rank
+      integer(c_int), value :: effects
       integer(c_int) :: status
-    end function spar_member_set_owner
+    end function spar_member_set_effects
 
-    function spar_member_get_owner(member, rank) bind(c) result(status)
+    function spar_member_get_effects(member, effects) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: member
-      integer(c_int), intent(inout), optional :: rank
+      integer(c_int), intent(inout), optional :: effects
       integer(c_int) :: status
-    end function spar_member_get_owner
-
-    function spar_member_commit(member) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int) :: status
-    end function spar_member_commit
-
-    function spar_member_get_count(member, nodes) bind(c) result(status)
-      import :: c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int64_t), intent(inout), optional :: nodes
-      integer(c_int) :: status
-    end function spar_member_get_count
-
-    function spar_member_get_session(member, session) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: member
-      type(c_ptr), intent(inout), optional :: session
-      integer(c_int) :: status
-    end function spar_member_get_session
-
-    function spar_member_get_name(member) bind(c) result(text)
-      import :: c_ptr
-      type(c_ptr), value :: member
-      type(c_ptr) :: text
-    end function spar_member_get_name
-
-    function spar_member_get_reference(member, x, q) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: member
-      real(c_double), intent(inout), optional :: x(*), q(*)
-      integer(c_int) :: status
-    end function spar_member_get_reference
-
-    function spar_member_get_motion(member, q, v, a) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: member
-      real(c_double), intent(inout), optional :: q(*), v(*), a(*)
-      integer(c_int) :: status
-    end function spar_member_get_motion
-
-    function spar_member_set_motion(member, q, v, a) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: member
-      real(c_double), intent(in), optional :: q(*), v(*), a(*)
-      integer(c_int) :: status
-    end function spar_member_set_motion
-
-    function spar_member_drive(member, q, v, a) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: member
-      real(c_double), intent(in), optional :: q(7), v(6), a(6)
-      integer(c_int) :: status
-    end function spar_member_drive
-
-    function spar_member_set_load(member, node, kind, load) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int64_t), value :: node
-      integer(c_int), value :: kind
-      real(c_double), intent(in), optional :: load(6)
-      integer(c_int) :: status
-    end function spar_member_set_load
+    end function spar_member_get_effects
 
     function spar_beam_set_line_load(beam, kind, n, eta, load) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
@@ -616,13 +551,6 @@ module spar_calls
       real(c_double), intent(in), optional :: eta(*), load(*)
       integer(c_int) :: status
     end function spar_beam_set_line_load
-
-    function spar_member_get_loads(member, load) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: member
-      real(c_double), intent(inout), optional :: load(*)
-      integer(c_int) :: status
-    end function spar_member_get_loads
 
     function spar_member_get_reaction(member, load) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -792,13 +720,257 @@ module spar_calls
       integer(c_int) :: status
     end function spar_joint_get_energy
 
-    function spar_fluid_create(member, name, fluid) bind(c) result(status)
-      import :: c_char, c_int, c_ptr
-      type(c_ptr), value :: member
-      character(kind=c_char), intent(in), optional :: name(*)
-      type(c_ptr), intent(inout), optional :: fluid
+    ! spar_coupling.h
+    function spar_session_set_integrator(session, rho_inf, substeps) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: rho_inf
+      integer(c_int), value :: substeps
       integer(c_int) :: status
-    end function spar_fluid_create
+    end function spar_session_set_integrator
+
+    function spar_session_get_integrator(session, rho_inf, substeps) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: rho_inf
+      integer(c_int), intent(inout), optional :: substeps
+      integer(c_int) :: status
+    end function spar_session_get_integrator
+
+    function spar_session_set_newton(session, atol, rtol, max_iterations) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: atol, rtol
+      integer(c_int), value :: max_iterations
+      integer(c_int) :: status
+    end function spar_session_set_newton
+
+    function spar_session_get_newton(session, atol, rtol, max_iterations) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: atol, rtol
+      integer(c_int), intent(inout), optional :: max_iterations
+      integer(c_int) :: status
+    end function spar_session_get_newton
+
+    function spar_member_get_iterations(member, iterations, left) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), intent(inout), optional :: iterations
+      real(c_double), intent(inout), optional :: left
+      integer(c_int) :: status
+    end function spar_member_get_iterations
+
+    function spar_session_set_predictor(session, order) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: order
+      integer(c_int) :: status
+    end function spar_session_set_predictor
+
+    function spar_session_get_predictor(session, order) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: order
+      integer(c_int) :: status
+    end function spar_session_get_predictor
+
+    function spar_session_set_relaxation(session, omega) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: omega
+      integer(c_int) :: status
+    end function spar_session_set_relaxation
+
+    function spar_session_get_relaxation(session, omega) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: omega
+      integer(c_int) :: status
+    end function spar_session_get_relaxation
+
+    function spar_session_set_option(session, key, value) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: key(*), value(*)
+      integer(c_int) :: status
+    end function spar_session_set_option
+
+    function spar_session_get_option(session, key, capacity, text) bind(c) result(status)
+      import :: c_char, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: key(*)
+      integer(c_int64_t), value :: capacity
+      character(kind=c_char), intent(inout), optional :: text(*)
+      integer(c_int) :: status
+    end function spar_session_get_option
+
+    function spar_session_get_iterations(session, iterations, capacity, residual, size) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: iterations
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: residual(*), size(*)
+      integer(c_int) :: status
+    end function spar_session_get_iterations
+
+    function spar_session_get_residual(session, residual, size) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: residual, size
+      integer(c_int) :: status
+    end function spar_session_get_residual
+
+    function spar_session_get_report(session, capacity, report) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: report(*)
+      integer(c_int) :: status
+    end function spar_session_get_report
+
+    function spar_session_get_phase(session, phase) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: phase
+      integer(c_int) :: status
+    end function spar_session_get_phase
+
+    function spar_member_set_added_mass(member, n, eta, mass) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: eta(*), mass(*)
+      integer(c_int) :: status
+    end function spar_member_set_added_mass
+
+    function spar_member_get_added_mass(member, n, capacity, eta, mass) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int64_t), intent(inout), optional :: n
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: eta(*), mass(*)
+      integer(c_int) :: status
+    end function spar_member_get_added_mass
+
+    function spar_session_solve_initial(session, dt, solve, context, iterations) bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      type(c_funptr), value :: solve
+      type(c_ptr), value :: context
+      integer(c_int), intent(inout), optional :: iterations
+      integer(c_int) :: status
+    end function spar_session_solve_initial
+
+    function spar_step_begin_initial(session, dt) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      integer(c_int) :: status
+    end function spar_step_begin_initial
+
+    function spar_session_solve_static(session, load_steps, solve, context, iterations) bind(c) result(status)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: load_steps
+      type(c_funptr), value :: solve
+      type(c_ptr), value :: context
+      integer(c_int), intent(inout), optional :: iterations
+      integer(c_int) :: status
+    end function spar_session_solve_static
+
+    function spar_session_set_tolerance(session, drift, rtol) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: drift, rtol
+      integer(c_int) :: status
+    end function spar_session_set_tolerance
+
+    function spar_session_get_tolerance(session, drift, rtol) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: drift, rtol
+      integer(c_int) :: status
+    end function spar_session_get_tolerance
+
+    function spar_session_get_step_control(session, capacity, pace) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: pace(*)
+      integer(c_int) :: status
+    end function spar_session_get_step_control
+
+    function spar_step_adaptive(session, dt, before, solve, context, taken) bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), intent(inout), optional :: dt
+      type(c_funptr), value :: before, solve
+      type(c_ptr), value :: context
+      real(c_double), intent(inout), optional :: taken
+      integer(c_int) :: status
+    end function spar_step_adaptive
+
+    function spar_session_set_reproducible(session, on) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: on
+      integer(c_int) :: status
+    end function spar_session_set_reproducible
+
+    function spar_session_get_reproducible(session, on) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: on
+      integer(c_int) :: status
+    end function spar_session_get_reproducible
+
+    function spar_session_set_threads(session, threads) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: threads
+      integer(c_int) :: status
+    end function spar_session_set_threads
+
+    function spar_session_get_threads(session, threads) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: threads
+      integer(c_int) :: status
+    end function spar_session_get_threads
+
+    function spar_member_set_owner(member, rank) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), value :: rank
+      integer(c_int) :: status
+    end function spar_member_set_owner
+
+    function spar_member_get_owner(member, rank) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: rank
+      integer(c_int) :: status
+    end function spar_member_get_owner
+
+    function spar_session_sum_balance(session, capacity, members, expected, counted) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int64_t), value :: capacity
+      integer(c_int64_t), intent(inout), optional :: members(*)
+      real(c_double), intent(inout), optional :: expected(*), counted(*)
+      integer(c_int) :: status
+    end function spar_session_sum_balance
+
+    function spar_session_sum(session, status, n, x) bind(c) result(answer)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: status
+      integer(c_int64_t), value :: n
+      real(c_double), intent(inout), optional :: x(*)
+      integer(c_int) :: answer
+    end function spar_session_sum
 
     function spar_fluid_get_member(fluid, member) bind(c) result(status)
       import :: c_int, c_ptr
@@ -813,18 +985,13 @@ module spar_calls
       type(c_ptr) :: text
     end function spar_fluid_get_name
 
-    subroutine spar_fluid_destroy(fluid) bind(c)
-      import :: c_ptr
-      type(c_ptr), intent(inout), optional :: fluid
-    end subroutine spar_fluid_destroy
-
-    function spar_fluid_set_motion_nodes(fluid, n, x) bind(c) result(status)
+    function spar_fluid_set_motion_stations(fluid, n, xi, offset) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid
       integer(c_int64_t), value :: n
-      real(c_double), intent(in), optional :: x(*)
+      real(c_double), intent(in), optional :: xi(*), offset(*)
       integer(c_int) :: status
-    end function spar_fluid_set_motion_nodes
+    end function spar_fluid_set_motion_stations
 
     function spar_fluid_set_motion_weights(fluid, n, w) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
@@ -850,30 +1017,6 @@ module spar_calls
       integer(c_int), intent(in), optional :: held(*)
       integer(c_int) :: status
     end function spar_fluid_fade_motion
-
-    function spar_fluid_set_force_nodes(fluid, n, x) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in), optional :: x(*)
-      integer(c_int) :: status
-    end function spar_fluid_set_force_nodes
-
-    function spar_fluid_set_stations(fluid, n, xi, offset) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in), optional :: xi(*), offset(*)
-      integer(c_int) :: status
-    end function spar_fluid_set_stations
-
-    function spar_fluid_set_motion_stations(fluid, n, xi, offset) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in), optional :: xi(*), offset(*)
-      integer(c_int) :: status
-    end function spar_fluid_set_motion_stations
 
     function spar_fluid_set_layout(fluid, which, node, component) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
@@ -920,12 +1063,6 @@ module spar_calls
       integer(c_int), intent(inout), optional :: kind
       integer(c_int) :: status
     end function spar_fluid_get_interpolation
-
-    function spar_fluid_map(fluid) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int) :: status
-    end function spar_fluid_map
 
     function spar_fluid_get_count(fluid, which, n) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
@@ -977,14 +1114,6 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_get_basis
 
-    function spar_fluid_pull_motion(fluid, theta, x, v) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      real(c_double), value :: theta
-      real(c_double), intent(inout), optional :: x(*), v(*)
-      integer(c_int) :: status
-    end function spar_fluid_pull_motion
-
     function spar_fluid_pull_sections(fluid, theta, q, omega, accel) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
@@ -992,14 +1121,6 @@ module spar_calls
       real(c_double), intent(inout), optional :: q(*), omega(*), accel(*)
       integer(c_int) :: status
     end function spar_fluid_pull_sections
-
-    function spar_fluid_pull_poses(fluid, theta, x, q, v, omega, accel, alpha) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      real(c_double), value :: theta
-      real(c_double), intent(inout), optional :: x(*), q(*), v(*), omega(*), accel(*), alpha(*)
-      integer(c_int) :: status
-    end function spar_fluid_pull_poses
 
     function spar_fluid_get_travel(fluid, largest, node) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
@@ -1057,13 +1178,6 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_get_forces
 
-    function spar_fluid_push_forces(fluid, force, moment) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      real(c_double), intent(in), optional :: force(*), moment(*)
-      integer(c_int) :: status
-    end function spar_fluid_push_forces
-
     function spar_fluid_push_forces_at(fluid, theta, force, moment) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
@@ -1071,14 +1185,6 @@ module spar_calls
       real(c_double), intent(in), optional :: force(*), moment(*)
       integer(c_int) :: status
     end function spar_fluid_push_forces_at
-
-    function spar_fluid_fail(fluid, status, message) bind(c) result(answer)
-      import :: c_char, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int), value :: status
-      character(kind=c_char), intent(in), optional :: message(*)
-      integer(c_int) :: answer
-    end function spar_fluid_fail
 
     function spar_fluid_set_states(fluid, width) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
@@ -1166,80 +1272,7 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_check_loads
 
-    function spar_step_begin(session, dt) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: dt
-      integer(c_int) :: status
-    end function spar_step_begin
-
-    function spar_step_solve(session) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int) :: status
-    end function spar_step_solve
-
-    function spar_step_check(session, done) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), intent(inout), optional :: done
-      integer(c_int) :: status
-    end function spar_step_check
-
-    function spar_step_accept(session) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int) :: status
-    end function spar_step_accept
-
-    function spar_step_reject(session) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int) :: status
-    end function spar_step_reject
-
-    function spar_step(session, dt, solve, context, iterations) bind(c) result(status)
-      import :: c_double, c_funptr, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: dt
-      type(c_funptr), value :: solve
-      type(c_ptr), value :: context
-      integer(c_int), intent(inout), optional :: iterations
-      integer(c_int) :: status
-    end function spar_step
-
-    function spar_session_set_tolerance(session, drift, rtol) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: drift, rtol
-      integer(c_int) :: status
-    end function spar_session_set_tolerance
-
-    function spar_session_get_tolerance(session, drift, rtol) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), intent(inout), optional :: drift, rtol
-      integer(c_int) :: status
-    end function spar_session_get_tolerance
-
-    function spar_session_get_step_control(session, capacity, pace) bind(c) result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int64_t), value :: capacity
-      real(c_double), intent(inout), optional :: pace(*)
-      integer(c_int) :: status
-    end function spar_session_get_step_control
-
-    function spar_step_adaptive(session, dt, before, solve, context, taken) bind(c) result(status)
-      import :: c_double, c_funptr, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), intent(inout), optional :: dt
-      type(c_funptr), value :: before, solve
-      type(c_ptr), value :: context
-      real(c_double), intent(inout), optional :: taken
-      integer(c_int) :: status
-    end function spar_step_adaptive
-
+    ! spar_analysis.h
     function spar_member_estimate_error(member, step, nodes) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: member
@@ -1247,54 +1280,24 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_estimate_error
 
-    function spar_member_get_iterations(member, iterations, left) bind(c) result(status)
+    function spar_member_learn_added_mass(member, n, eta) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: member
-      integer(c_int64_t), intent(inout), optional :: iterations
-      real(c_double), intent(inout), optional :: left
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: eta(*)
       integer(c_int) :: status
-    end function spar_member_get_iterations
+    end function spar_member_learn_added_mass
 
-    function spar_session_solve_initial(session, dt, solve, context, iterations) bind(c) result(status)
-      import :: c_double, c_funptr, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: dt
-      type(c_funptr), value :: solve
-      type(c_ptr), value :: context
-      integer(c_int), intent(inout), optional :: iterations
+    function spar_member_get_learned_added_mass(member, used, spread, n, capacity, eta, mass) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: used
+      real(c_double), intent(inout), optional :: spread
+      integer(c_int64_t), intent(inout), optional :: n
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: eta(*), mass(*)
       integer(c_int) :: status
-    end function spar_session_solve_initial
-
-    function spar_step_begin_initial(session, dt) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: dt
-      integer(c_int) :: status
-    end function spar_step_begin_initial
-
-    function spar_session_solve_static(session, load_steps, solve, context, iterations) bind(c) result(status)
-      import :: c_funptr, c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), value :: load_steps
-      type(c_funptr), value :: solve
-      type(c_ptr), value :: context
-      integer(c_int), intent(inout), optional :: iterations
-      integer(c_int) :: status
-    end function spar_session_solve_static
-
-    function spar_session_save(session, path) bind(c) result(status)
-      import :: c_char, c_int, c_ptr
-      type(c_ptr), value :: session
-      character(kind=c_char), intent(in), optional :: path(*)
-      integer(c_int) :: status
-    end function spar_session_save
-
-    function spar_session_load(session, path) bind(c) result(status)
-      import :: c_char, c_int, c_ptr
-      type(c_ptr), value :: session
-      character(kind=c_char), intent(in), optional :: path(*)
-      integer(c_int) :: status
-    end function spar_session_load
+    end function spar_member_get_learned_added_mass
 
     function spar_session_set_progress(session, progress, context) bind(c) result(status)
       import :: c_funptr, c_int, c_ptr
@@ -1636,41 +1639,44 @@ module spar_c
   integer(c_int), parameter :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
       SPAR_ERR_NUMERIC = 4, SPAR_ERR_MAPPING = 5, SPAR_ERR_COMM = 6, SPAR_ERR_PEER = 7, SPAR_ERR_IO = 8, &
       SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10, SPAR_ERR_LIMIT = 11
+  integer(c_int), parameter :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
   integer(c_int), parameter :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, SPAR_COUPLING_AITKEN = 2, &
       SPAR_COUPLING_IQN_ILS = 3
+  integer(c_int), parameter :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, SPAR_ROOT_DRIVEN = 3
+  integer(c_int), parameter :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
+  integer(c_int), parameter :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
+  ! spar_structure.h
+  integer(c_int), parameter :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2
+  integer(c_int), parameter :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
+      SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
+  integer(c_int), parameter :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
+      SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_FLUID_MOMENT = 32, SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, &
+      SPAR_EFFECT_DEFAULT = 256, SPAR_EFFECT_MASSES = 512, SPAR_EFFECT_FOUNDATION = 1024, SPAR_EFFECT_PRETENSION = 2048
+  integer(c_int), parameter :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
+      SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_FOUNDATION = 4, SPAR_ENERGY_COUNT = 5
+  integer(c_int), parameter :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_JOINTS = 3, &
+      SPAR_WORK_COUNT = 4
+  integer(c_int), parameter :: SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, &
+      SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32
+  integer(c_int), parameter :: SPAR_JOINT_ENERGY_SPRING = 0, SPAR_JOINT_ENERGY_DAMPER = 1, &
+      SPAR_JOINT_ENERGY_DRIVE = 2, SPAR_JOINT_ENERGY_LOAD = 3, SPAR_JOINT_ENERGY_COUNT = 4
+  ! spar_coupling.h
   integer(c_int), parameter :: SPAR_REPORT_CONTRACTION = 0, SPAR_REPORT_ADDED_MASS = 1, SPAR_REPORT_COLUMNS = 2, &
       SPAR_REPORT_DROPPED = 3, SPAR_REPORT_ERROR = 4, SPAR_REPORT_WORK_DEFECT = 5, SPAR_REPORT_UNCONVERGED = 6, &
       SPAR_REPORT_ADDED_MASS_SPREAD = 7, SPAR_REPORT_MOTION_ERROR = 8, SPAR_REPORT_COUNT = 9
   integer(c_int), parameter :: SPAR_PHASE_START = 0, SPAR_PHASE_BETWEEN = 1, SPAR_PHASE_BEGUN = 2, &
       SPAR_PHASE_SOLVED = 3, SPAR_PHASE_CHECKED = 4
-  integer(c_int), parameter :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
-  integer(c_int), parameter :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, SPAR_ROOT_DRIVEN = 3
-  integer(c_int), parameter :: SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, &
-      SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32
-  integer(c_int), parameter :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
-  integer(c_int), parameter :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2
-  integer(c_int), parameter :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
-      SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_FLUID_MOMENT = 32, SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, &
-      SPAR_EFFECT_DEFAULT = 256, SPAR_EFFECT_MASSES = 512, SPAR_EFFECT_FOUNDATION = 1024, SPAR_EFFECT_PRETENSION = 2048
-  integer(c_int), parameter :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
-      SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
-  integer(c_int), parameter :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
-      SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_FOUNDATION = 4, SPAR_ENERGY_COUNT = 5
-  integer(c_int), parameter :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_JOINTS = 3, &
-      SPAR_WORK_COUNT = 4
-  integer(c_int), parameter :: SPAR_JOINT_ENERGY_SPRING = 0, SPAR_JOINT_ENERGY_DAMPER = 1, &
-      SPAR_JOINT_ENERGY_DRIVE = 2, SPAR_JOINT_ENERGY_LOAD = 3, SPAR_JOINT_ENERGY_COUNT = 4
+  integer(c_int), parameter :: SPAR_PACE_RATIO = 0, SPAR_PACE_NEXT_DT = 1, SPAR_PACE_REJECT = 2, &
+      SPAR_PACE_REJECTED = 3, SPAR_PACE_COUNT = 4
   integer(c_int), parameter :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
   integer(c_int), parameter :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
-  integer(c_int), parameter :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
   integer(c_int), parameter :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
   integer(c_int), parameter :: SPAR_KIND_STATIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, SPAR_KIND_FORCES = 8
   integer(c_int), parameter :: SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, SPAR_MATRIX_GLOBAL_TO_LOCAL = 1
   integer(c_int), parameter :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
       SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &
       SPAR_AUDIT_NODES = 7, SPAR_AUDIT_COUNT = 8
-  integer(c_int), parameter :: SPAR_PACE_RATIO = 0, SPAR_PACE_NEXT_DT = 1, SPAR_PACE_REJECT = 2, &
-      SPAR_PACE_REJECTED = 3, SPAR_PACE_COUNT = 4
+  ! spar_analysis.h
   integer(c_int), parameter :: SPAR_TRY_MOTION = 0, SPAR_TRY_REACTION = 1, SPAR_TRY_LOAD = 2, SPAR_TRY_SECONDS = 3, &
       SPAR_TRY_SOLUTIONS = 4, SPAR_TRY_COUNT = 5
   integer(c_int), parameter :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include <math.h>
-#include <spar/spar.h>
+#include <spar/spar_all.h>
 #include <string.h>
 
 /* The call must succeed; else the message says why. */

@@ -40,53 +40,59 @@ constants SPAR_OK=0 SPAR_ERR_ARGUMENT=1 SPAR_ERR_STATE=2 SPAR_ERR_MEMORY=3 SPAR_
 call spar_status_text text status|int|value|
 call spar_version text
 call spar_has int feature|char|in|[]
-constants SPAR_COUPLING_EXPLICIT=0 SPAR_COUPLING_FIXED_POINT=1 SPAR_COUPLING_AITKEN=2 SPAR_COUPLING_IQN_ILS=3
-constants SPAR_REPORT_CONTRACTION=0 SPAR_REPORT_ADDED_MASS=1 SPAR_REPORT_COLUMNS=2 SPAR_REPORT_DROPPED=3 SPAR_REPORT_ERROR=4 SPAR_REPORT_WORK_DEFECT=5 SPAR_REPORT_UNCONVERGED=6 SPAR_REPORT_ADDED_MASS_SPREAD=7 SPAR_REPORT_MOTION_ERROR=8 SPAR_REPORT_COUNT=9
 call spar_session_create int session|session|out|
 call spar_session_create_fcomm int comm|int|value| session|session|out|
 call spar_session_destroy none session|session|out|
 call spar_session_message text session|session|value|
-call spar_session_set_gravity int session|session|value| g|double|in|[3]
-call spar_session_get_gravity int session|session|value| g|double|out|[3]
-call spar_session_set_integrator int session|session|value| rho_inf|double|value| substeps|int|value|
-call spar_session_get_integrator int session|session|value| rho_inf|double|out| substeps|int|out|
-call spar_session_set_newton int session|session|value| atol|double|value| rtol|double|value| max_iterations|int|value|
-call spar_session_get_newton int session|session|value| atol|double|out| rtol|double|out| max_iterations|int|out|
-call spar_session_set_predictor int session|session|value| order|int|value|
-call spar_session_get_predictor int session|session|value| order|int|out|
-call spar_session_set_coupling int session|session|value| scheme|int|value| atol|double|value| rtol|double|value| max_iterations|int|value|
-call spar_session_get_coupling int session|session|value| scheme|int|out| atol|double|out| rtol|double|out| max_iterations|int|out|
-call spar_session_set_relaxation int session|session|value| omega|double|value|
-call spar_session_get_relaxation int session|session|value| omega|double|out|
-call spar_session_set_reproducible int session|session|value| on|int|value|
-call spar_session_get_reproducible int session|session|value| on|int|out|
-call spar_session_set_threads int session|session|value| threads|int|value|
-call spar_session_get_threads int session|session|value| threads|int|out|
-call spar_session_set_option int session|session|value| key|char|in|[] value|char|in|[]
-call spar_session_get_option int session|session|value| key|char|in|[] capacity|int64_t|value| text|char|out|[capacity]
-call spar_session_get_iterations int session|session|value| iterations|int|out| capacity|int64_t|value| residual|double|out|[capacity] size|double|out|[capacity]
-call spar_session_get_residual int session|session|value| residual|double|out| size|double|out|
-call spar_session_get_report int session|session|value| capacity|int64_t|value| report|double|out|[SPAR_REPORT_COUNT]
-call spar_session_sum_balance int session|session|value| capacity|int64_t|value| members|int64_t|out|[capacity] expected|double|out|[capacity] counted|double|out|[capacity]
-call spar_session_get_time int session|session|value| t|double|out| step|int64_t|out| iteration|int|out|
-constants SPAR_PHASE_START=0 SPAR_PHASE_BETWEEN=1 SPAR_PHASE_BEGUN=2 SPAR_PHASE_SOLVED=3 SPAR_PHASE_CHECKED=4
-call spar_session_get_phase int session|session|value| phase|int|out|
-call spar_session_sum int session|session|value| status|int|value| n|int64_t|value| x|double|out|[n]
 constants SPAR_LOG_ERROR=0 SPAR_LOG_WARNING=1 SPAR_LOG_INFO=2
 call spar_session_set_log int session|session|value| log|log|callback| context|context|value|
+call spar_session_set_gravity int session|session|value| g|double|in|[3]
+call spar_session_get_gravity int session|session|value| g|double|out|[3]
+constants SPAR_COUPLING_EXPLICIT=0 SPAR_COUPLING_FIXED_POINT=1 SPAR_COUPLING_AITKEN=2 SPAR_COUPLING_IQN_ILS=3
+call spar_session_set_coupling int session|session|value| scheme|int|value| atol|double|value| rtol|double|value| max_iterations|int|value|
+call spar_session_get_coupling int session|session|value| scheme|int|out| atol|double|out| rtol|double|out| max_iterations|int|out|
+call spar_session_get_time int session|session|value| t|double|out| step|int64_t|out| iteration|int|out|
 constants SPAR_ROOT_FREE=0 SPAR_ROOT_FIXED=1 SPAR_ROOT_PINNED=2 SPAR_ROOT_DRIVEN=3
-constants SPAR_FREE_X=1 SPAR_FREE_Y=2 SPAR_FREE_Z=4 SPAR_FREE_RX=8 SPAR_FREE_RY=16 SPAR_FREE_RZ=32
 constants SPAR_LOAD_DEAD=0 SPAR_LOAD_FOLLOWER=1
-constants SPAR_QUADRATURE_GAUSS=0 SPAR_QUADRATURE_LOBATTO=1 SPAR_QUADRATURE_SECTIONS=2
-constants SPAR_EFFECT_INERTIA=1 SPAR_EFFECT_GYROSCOPIC=2 SPAR_EFFECT_GRAVITY=4 SPAR_EFFECT_DAMPING=8 SPAR_EFFECT_FLUID_MOMENT=32 SPAR_EFFECT_FLUID_HISTORY=64 SPAR_EFFECT_WORK=128 SPAR_EFFECT_DEFAULT=256 SPAR_EFFECT_MASSES=512 SPAR_EFFECT_FOUNDATION=1024 SPAR_EFFECT_PRETENSION=2048
-constants SPAR_FIDELITY_PRESCRIBED=0 SPAR_FIDELITY_RIGID=1 SPAR_FIDELITY_LINEAR=2 SPAR_FIDELITY_MODAL=3 SPAR_FIDELITY_EXACT=4
 call spar_point_create int session|session|value| name|char|in|[] x|double|in|[3] q|double|in|[4] member|member|out|
 call spar_rigid_create int session|session|value| name|char|in|[] x|double|in|[3] q|double|in|[4] mass|double|in|[36] member|member|out|
 call spar_beam_create int session|session|value| name|char|in|[] elements|int|value| nodes_per_element|int|value| member|member|out|
-call spar_beam_get_elements int beam|member|value| elements|int|out| nodes_per_element|int|out|
 call spar_beam_set_axis int beam|member|value| n|int64_t|value| eta|double|in|[n] xyz|double|in|[n][3] twist|double|in|[n]
-call spar_beam_set_nodes int beam|member|value| n|int64_t|value| x|double|in|[n][3] q|double|in|[n][4]
 call spar_beam_set_sections int beam|member|value| n|int64_t|value| eta|double|in|[n] stiffness|double|in|[n][36] mass|double|in|[n][36]
+call spar_member_set_placement int member|member|value| x|double|in|[3] q|double|in|[4]
+call spar_member_set_root int member|member|value| kind|int|value|
+call spar_member_set_external int member|member|value| on|int|value|
+call spar_member_set_initial_velocity int member|member|value| x0|double|in|[3] v0|double|in|[3] omega|double|in|[3]
+call spar_member_commit int member|member|value|
+call spar_member_get_count int member|member|value| nodes|int64_t|out|
+call spar_member_get_reference int member|member|value| x|double|out|[n][3] q|double|out|[n][4]
+call spar_member_get_motion int member|member|value| q|double|out|[n][7] v|double|out|[n][6] a|double|out|[n][6]
+call spar_member_set_motion int member|member|value| q|double|in|[n][7] v|double|in|[n][6] a|double|in|[n][6]
+call spar_member_drive int member|member|value| q|double|in|[7] v|double|in|[6] a|double|in|[6]
+call spar_member_set_load int member|member|value| node|int64_t|value| kind|int|value| load|double|in|[6]
+call spar_member_get_loads int member|member|value| load|double|out|[n][6]
+constants SPAR_NODES_MOTION=0 SPAR_NODES_FORCE=1
+call spar_fluid_create int member|member|value| name|char|in|[] fluid|fluid|out|
+call spar_fluid_destroy none fluid|fluid|out|
+call spar_fluid_set_motion_nodes int fluid|fluid|value| n|int64_t|value| x|double|in|[n][3]
+call spar_fluid_set_force_nodes int fluid|fluid|value| n|int64_t|value| x|double|in|[n][3]
+call spar_fluid_set_stations int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
+call spar_fluid_map int fluid|fluid|value|
+call spar_fluid_pull_motion int fluid|fluid|value| theta|double|value| x|double|out|[n][3] v|double|out|[n][3]
+call spar_fluid_pull_poses int fluid|fluid|value| theta|double|value| x|double|out|[n][3] q|double|out|[n][4] v|double|out|[n][3] omega|double|out|[n][3] accel|double|out|[n][3] alpha|double|out|[n][3]
+call spar_fluid_push_forces int fluid|fluid|value| force|double|in|[n][3] moment|double|in|[n][3]
+call spar_fluid_fail int fluid|fluid|value| status|int|value| message|char|in|[]
+call spar_step_begin int session|session|value| dt|double|value|
+call spar_step_solve int session|session|value|
+call spar_step_check int session|session|value| done|int|out|
+call spar_step_accept int session|session|value|
+call spar_step_reject int session|session|value|
+call spar_step int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
+call spar_session_save int session|session|value| path|char|in|[]
+call spar_session_load int session|session|value| path|char|in|[]
+constants SPAR_QUADRATURE_GAUSS=0 SPAR_QUADRATURE_LOBATTO=1 SPAR_QUADRATURE_SECTIONS=2
+call spar_beam_get_elements int beam|member|value| elements|int|out| nodes_per_element|int|out|
+call spar_beam_set_nodes int beam|member|value| n|int64_t|value| x|double|in|[n][3] q|double|in|[n][4]
 call spar_beam_set_masses int beam|member|value| n|int64_t|value| eta|double|in|[n] mass|double|in|[n][36]
 call spar_beam_get_masses int beam|member|value| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] mass|double|out|[capacity][36]
 call spar_beam_set_foundation int beam|member|value| n|int64_t|value| eta|double|in|[n] stiffness|double|in|[n][3]
@@ -100,34 +106,18 @@ call spar_beam_set_mass_damping int beam|member|value| alpha|double|value|
 call spar_beam_get_mass_damping int beam|member|value| alpha|double|out|
 call spar_beam_get_damping int beam|member|value| mu|double|out|[6]
 call spar_beam_read_beamdyn int beam|member|value| primary_path|char|in|[] blade_path|char|in|[]
-call spar_member_set_placement int member|member|value| x|double|in|[3] q|double|in|[4]
 call spar_member_get_placement int member|member|value| x|double|out|[3] q|double|out|[4]
-call spar_member_set_root int member|member|value| kind|int|value|
 call spar_member_get_root int member|member|value| kind|int|out|
-call spar_member_set_external int member|member|value| on|int|value|
 call spar_member_get_external int member|member|value| on|int|out|
-call spar_member_set_effects int member|member|value| effects|int|value|
-call spar_member_get_effects int member|member|value| effects|int|out|
-call spar_member_set_fidelity int member|member|value| kind|int|value| modes|int64_t|value|
-call spar_member_get_fidelity int member|member|value| kind|int|out| modes|int64_t|out|
-call spar_member_set_added_mass int member|member|value| n|int64_t|value| eta|double|in|[n] mass|double|in|[n][36]
-call spar_member_get_added_mass int member|member|value| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] mass|double|out|[capacity][36]
-call spar_member_learn_added_mass int member|member|value| n|int64_t|value| eta|double|in|[n]
-call spar_member_get_learned_added_mass int member|member|value| used|int|out| spread|double|out| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] mass|double|out|[capacity][36]
-call spar_member_set_initial_velocity int member|member|value| x0|double|in|[3] v0|double|in|[3] omega|double|in|[3]
-call spar_member_set_owner int member|member|value| rank|int|value|
-call spar_member_get_owner int member|member|value| rank|int|out|
-call spar_member_commit int member|member|value|
-call spar_member_get_count int member|member|value| nodes|int64_t|out|
 call spar_member_get_session int member|member|value| session|session|out|
 call spar_member_get_name text member|member|value|
-call spar_member_get_reference int member|member|value| x|double|out|[n][3] q|double|out|[n][4]
-call spar_member_get_motion int member|member|value| q|double|out|[n][7] v|double|out|[n][6] a|double|out|[n][6]
-call spar_member_set_motion int member|member|value| q|double|in|[n][7] v|double|in|[n][6] a|double|in|[n][6]
-call spar_member_drive int member|member|value| q|double|in|[7] v|double|in|[6] a|double|in|[6]
-call spar_member_set_load int member|member|value| node|int64_t|value| kind|int|value| load|double|in|[6]
+constants SPAR_FIDELITY_PRESCRIBED=0 SPAR_FIDELITY_RIGID=1 SPAR_FIDELITY_LINEAR=2 SPAR_FIDELITY_MODAL=3 SPAR_FIDELITY_EXACT=4
+call spar_member_set_fidelity int member|member|value| kind|int|value| modes|int64_t|value|
+call spar_member_get_fidelity int member|member|value| kind|int|out| modes|int64_t|out|
+constants SPAR_EFFECT_INERTIA=1 SPAR_EFFECT_GYROSCOPIC=2 SPAR_EFFECT_GRAVITY=4 SPAR_EFFECT_DAMPING=8 SPAR_EFFECT_FLUID_MOMENT=32 SPAR_EFFECT_FLUID_HISTORY=64 SPAR_EFFECT_WORK=128 SPAR_EFFECT_DEFAULT=256 SPAR_EFFECT_MASSES=512 SPAR_EFFECT_FOUNDATION=1024 SPAR_EFFECT_PRETENSION=2048
+call spar_member_set_effects int member|member|value| effects|int|value|
+call spar_member_get_effects int member|member|value| effects|int|out|
 call spar_beam_set_line_load int beam|member|value| kind|int|value| n|int64_t|value| eta|double|in|[n] load|double|in|[n][6]
-call spar_member_get_loads int member|member|value| load|double|out|[n][6]
 call spar_member_get_reaction int member|member|value| load|double|out|[6]
 call spar_beam_evaluate int beam|member|value| n|int64_t|value| eta|double|in|[n] strain|double|out|[n][6] force|double|out|[n][6] x|double|out|[n][3] q|double|out|[n][4]
 constants SPAR_ENERGY_KINETIC=0 SPAR_ENERGY_STRAIN=1 SPAR_ENERGY_GRAVITY=2 SPAR_ENERGY_DISSIPATED=3 SPAR_ENERGY_FOUNDATION=4 SPAR_ENERGY_COUNT=5
@@ -138,6 +128,7 @@ call spar_member_solve_static int member|member|value| load_steps|int|value|
 call spar_member_solve_modes int member|member|value| n|int64_t|value| frequency_hz|double|out|[n] shapes|double|out|[n][nodes][6]
 call spar_member_solve_eigenvalues int member|member|value| n|int64_t|value| shift|double|in|[2] eigenvalue|double|out|[n][2] shapes|double|out|[n][nodes][6][2] frame|double|out|[3]
 call spar_beam_set_modal_damping int beam|member|value| mode|int64_t|in|[2] ratio|double|in|[2] mu|double|out|[6]
+constants SPAR_FREE_X=1 SPAR_FREE_Y=2 SPAR_FREE_Z=4 SPAR_FREE_RX=8 SPAR_FREE_RY=16 SPAR_FREE_RZ=32
 call spar_joint_create int session|session|value| name|char|in|[] a|member|value| node_a|int64_t|value| b|member|value| node_b|int64_t|value| free_motions|int|value| joint|joint|out|
 call spar_joint_set_frame int joint|joint|value| x|double|in|[3] q|double|in|[4]
 call spar_joint_set_spring int joint|joint|value| stiffness|double|in|[36] damping|double|in|[36] preload|double|in|[6]
@@ -151,28 +142,56 @@ call spar_joint_get_motion int joint|joint|value| motion|double|out|[6] rate|dou
 call spar_joint_get_load int joint|joint|value| load|double|out|[6]
 constants SPAR_JOINT_ENERGY_SPRING=0 SPAR_JOINT_ENERGY_DAMPER=1 SPAR_JOINT_ENERGY_DRIVE=2 SPAR_JOINT_ENERGY_LOAD=3 SPAR_JOINT_ENERGY_COUNT=4
 call spar_joint_get_energy int joint|joint|value| capacity|int64_t|value| energy|double|out|[SPAR_JOINT_ENERGY_COUNT]
+call spar_session_set_integrator int session|session|value| rho_inf|double|value| substeps|int|value|
+call spar_session_get_integrator int session|session|value| rho_inf|double|out| substeps|int|out|
+call spar_session_set_newton int session|session|value| atol|double|value| rtol|double|value| max_iterations|int|value|
+call spar_session_get_newton int session|session|value| atol|double|out| rtol|double|out| max_iterations|int|out|
+call spar_member_get_iterations int member|member|value| iterations|int64_t|out| left|double|out|
+call spar_session_set_predictor int session|session|value| order|int|value|
+call spar_session_get_predictor int session|session|value| order|int|out|
+call spar_session_set_relaxation int session|session|value| omega|double|value|
+call spar_session_get_relaxation int session|session|value| omega|double|out|
+call spar_session_set_option int session|session|value| key|char|in|[] value|char|in|[]
+call spar_session_get_option int session|session|value| key|char|in|[] capacity|int64_t|value| text|char|out|[capacity]
+call spar_session_get_iterations int session|session|value| iterations|int|out| capacity|int64_t|value| residual|double|out|[capacity] size|double|out|[capacity]
+call spar_session_get_residual int session|session|value| residual|double|out| size|double|out|
+constants SPAR_REPORT_CONTRACTION=0 SPAR_REPORT_ADDED_MASS=1 SPAR_REPORT_COLUMNS=2 SPAR_REPORT_DROPPED=3 SPAR_REPORT_ERROR=4 SPAR_REPORT_WORK_DEFECT=5 SPAR_REPORT_UNCONVERGED=6 SPAR_REPORT_ADDED_MASS_SPREAD=7 SPAR_REPORT_MOTION_ERROR=8 SPAR_REPORT_COUNT=9
+call spar_session_get_report int session|session|value| capacity|int64_t|value| report|double|out|[SPAR_REPORT_COUNT]
+constants SPAR_PHASE_START=0 SPAR_PHASE_BETWEEN=1 SPAR_PHASE_BEGUN=2 SPAR_PHASE_SOLVED=3 SPAR_PHASE_CHECKED=4
+call spar_session_get_phase int session|session|value| phase|int|out|
+call spar_member_set_added_mass int member|member|value| n|int64_t|value| eta|double|in|[n] mass|double|in|[n][36]
+call spar_member_get_added_mass int member|member|value| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] mass|double|out|[capacity][36]
+call spar_session_solve_initial int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
+call spar_step_begin_initial int session|session|value| dt|double|value|
+call spar_session_solve_static int session|session|value| load_steps|int|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
+call spar_session_set_tolerance int session|session|value| drift|double|value| rtol|double|value|
+call spar_session_get_tolerance int session|session|value| drift|double|out| rtol|double|out|
+constants SPAR_PACE_RATIO=0 SPAR_PACE_NEXT_DT=1 SPAR_PACE_REJECT=2 SPAR_PACE_REJECTED=3 SPAR_PACE_COUNT=4
+call spar_session_get_step_control int session|session|value| capacity|int64_t|value| pace|double|out|[SPAR_PACE_COUNT]
+call spar_step_adaptive int session|session|value| dt|double|out| before|before_step|callback| solve|fluid_solver|callback| context|context|value| taken|double|out|
+call spar_session_set_reproducible int session|session|value| on|int|value|
+call spar_session_get_reproducible int session|session|value| on|int|out|
+call spar_session_set_threads int session|session|value| threads|int|value|
+call spar_session_get_threads int session|session|value| threads|int|out|
+call spar_member_set_owner int member|member|value| rank|int|value|
+call spar_member_get_owner int member|member|value| rank|int|out|
+call spar_session_sum_balance int session|session|value| capacity|int64_t|value| members|int64_t|out|[capacity] expected|double|out|[capacity] counted|double|out|[capacity]
+call spar_session_sum int session|session|value| status|int|value| n|int64_t|value| x|double|out|[n]
 constants SPAR_PROJECT_BOUNDED=0 SPAR_PROJECT_RPOLY=1
 constants SPAR_INTERPOLATE_NODAL=0 SPAR_INTERPOLATE_CONSISTENT=1
-constants SPAR_NODES_MOTION=0 SPAR_NODES_FORCE=1
 constants SPAR_MAP_END=1 SPAR_MAP_AMBIGUOUS=2 SPAR_MAP_FAR=4
-call spar_fluid_create int member|member|value| name|char|in|[] fluid|fluid|out|
 call spar_fluid_get_member int fluid|fluid|value| member|member|out|
 call spar_fluid_get_name text fluid|fluid|value|
-call spar_fluid_destroy none fluid|fluid|out|
-call spar_fluid_set_motion_nodes int fluid|fluid|value| n|int64_t|value| x|double|in|[n][3]
+call spar_fluid_set_motion_stations int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
 call spar_fluid_set_motion_weights int fluid|fluid|value| n|int64_t|value| w|double|in|[n]
 call spar_fluid_get_motion_weights int fluid|fluid|value| w|double|out|[n]
 call spar_fluid_fade_motion int fluid|fluid|value| within|double|value| beyond|double|value| n|int64_t|value| distance|double|in|[n] held|int|in|[n]
-call spar_fluid_set_force_nodes int fluid|fluid|value| n|int64_t|value| x|double|in|[n][3]
-call spar_fluid_set_stations int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
-call spar_fluid_set_motion_stations int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
 call spar_fluid_set_layout int fluid|fluid|value| which|int|value| node|int64_t|value| component|int64_t|value|
 call spar_fluid_get_layout int fluid|fluid|value| which|int|value| node|int64_t|out| component|int64_t|out|
 call spar_fluid_set_projection int fluid|fluid|value| method|int|value| max_distance|double|value|
 call spar_fluid_get_projection int fluid|fluid|value| method|int|out| max_distance|double|out|
 call spar_fluid_set_interpolation int fluid|fluid|value| kind|int|value|
 call spar_fluid_get_interpolation int fluid|fluid|value| kind|int|out|
-call spar_fluid_map int fluid|fluid|value|
 call spar_fluid_get_count int fluid|fluid|value| which|int|value| n|int64_t|out|
 constants SPAR_KIND_STATIONS=1 SPAR_KIND_SHARED=2 SPAR_KIND_WEIGHTS=4 SPAR_KIND_FORCES=8
 call spar_fluid_get_kind int fluid|fluid|value| which|int|value| kind|int|out|
@@ -180,9 +199,7 @@ call spar_fluid_get_flag_count int fluid|fluid|value| which|int|value| flag|int|
 call spar_fluid_get_map int fluid|fluid|value| which|int|value| xi|double|out|[n] distance|double|out|[n] flags|int|out|[n]
 call spar_fluid_get_feet int fluid|fluid|value| which|int|value| x_map|double|out|[n][3] q_map|double|out|[n][4] con|double|out|[n][3]
 call spar_fluid_get_basis int fluid|fluid|value| which|int|value| first_node|int64_t|out|[n] phi|double|out|[n][P]
-call spar_fluid_pull_motion int fluid|fluid|value| theta|double|value| x|double|out|[n][3] v|double|out|[n][3]
 call spar_fluid_pull_sections int fluid|fluid|value| theta|double|value| q|double|out|[n][4] omega|double|out|[n][3] accel|double|out|[n][3]
-call spar_fluid_pull_poses int fluid|fluid|value| theta|double|value| x|double|out|[n][3] q|double|out|[n][4] v|double|out|[n][3] omega|double|out|[n][3] accel|double|out|[n][3] alpha|double|out|[n][3]
 call spar_fluid_get_travel int fluid|fluid|value| largest|double|out| node|int64_t|out|
 call spar_fluid_pull_force_places int fluid|fluid|value| theta|double|value| x|double|out|[n][3] v|double|out|[n][3] q|double|out|[n][4]
 call spar_fluid_get_positions int fluid|fluid|value| which|int|value| x|double|out|[n][3] v|double|out|[n][3] q|double|out|[n][4] foot|double|out|[n][3]
@@ -191,9 +208,7 @@ call spar_fluid_pull_matrices int fluid|fluid|value| theta|double|value| convent
 call spar_fluid_check_matrices int fluid|fluid|value| convention|int|value| matrix|double|in|[n][9]
 call spar_fluid_pull_forces int fluid|fluid|value| theta|double|value| force|double|out|[n][3]
 call spar_fluid_get_forces int fluid|fluid|value| force|double|out|[n][3]
-call spar_fluid_push_forces int fluid|fluid|value| force|double|in|[n][3] moment|double|in|[n][3]
 call spar_fluid_push_forces_at int fluid|fluid|value| theta|double|value| force|double|in|[n][3] moment|double|in|[n][3]
-call spar_fluid_fail int fluid|fluid|value| status|int|value| message|char|in|[]
 call spar_fluid_set_states int fluid|fluid|value| width|int64_t|value|
 call spar_fluid_get_states int fluid|fluid|value| width|int64_t|out| dt|double|out|
 call spar_fluid_pull_states int fluid|fluid|value| width|int64_t|value| states|double|out|[n][width]
@@ -206,24 +221,9 @@ constants SPAR_AUDIT_FORCE=0 SPAR_AUDIT_MOMENT=1 SPAR_AUDIT_POWER=2 SPAR_AUDIT_F
 call spar_fluid_get_audit int fluid|fluid|value| capacity|int64_t|value| audit|double|out|[SPAR_AUDIT_COUNT]
 call spar_fluid_sum_loads int fluid|fluid|value| point|double|in|[3] force|double|out|[3] moment|double|out|[3]
 call spar_fluid_check_loads int fluid|fluid|value| point|double|in|[3] force|double|in|[3] moment|double|in|[3] rtol|double|value|
-call spar_step_begin int session|session|value| dt|double|value|
-call spar_step_solve int session|session|value|
-call spar_step_check int session|session|value| done|int|out|
-call spar_step_accept int session|session|value|
-call spar_step_reject int session|session|value|
-call spar_step int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
-call spar_session_set_tolerance int session|session|value| drift|double|value| rtol|double|value|
-call spar_session_get_tolerance int session|session|value| drift|double|out| rtol|double|out|
-constants SPAR_PACE_RATIO=0 SPAR_PACE_NEXT_DT=1 SPAR_PACE_REJECT=2 SPAR_PACE_REJECTED=3 SPAR_PACE_COUNT=4
-call spar_session_get_step_control int session|session|value| capacity|int64_t|value| pace|double|out|[SPAR_PACE_COUNT]
-call spar_step_adaptive int session|session|value| dt|double|out| before|before_step|callback| solve|fluid_solver|callback| context|context|value| taken|double|out|
 call spar_member_estimate_error int member|member|value| step|double|out| nodes|double|out|
-call spar_member_get_iterations int member|member|value| iterations|int64_t|out| left|double|out|
-call spar_session_solve_initial int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
-call spar_step_begin_initial int session|session|value| dt|double|value|
-call spar_session_solve_static int session|session|value| load_steps|int|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
-call spar_session_save int session|session|value| path|char|in|[]
-call spar_session_load int session|session|value| path|char|in|[]
+call spar_member_learn_added_mass int member|member|value| n|int64_t|value| eta|double|in|[n]
+call spar_member_get_learned_added_mass int member|member|value| used|int|out| spread|double|out| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] mass|double|out|[capacity][36]
 constants SPAR_TRY_MOTION=0 SPAR_TRY_REACTION=1 SPAR_TRY_LOAD=2 SPAR_TRY_SECONDS=3 SPAR_TRY_SOLUTIONS=4 SPAR_TRY_COUNT=5
 call spar_session_set_progress int session|session|value| progress|progress|callback| context|context|value|
 call spar_session_try int session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| compare|int|value| capacity|int64_t|value| report|double|out|[SPAR_TRY_COUNT]

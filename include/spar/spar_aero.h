@@ -13,7 +13,7 @@
 #ifndef SPAR_AERO_H
 #define SPAR_AERO_H
 
-#include <spar/spar.h>
+#include <spar/spar_analysis.h>
 
 #ifdef __cplusplus
 extern "C" {

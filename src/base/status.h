@@ -2,7 +2,7 @@
 #ifndef SPARI_STATUS_H
 #define SPARI_STATUS_H
 
-#include <spar/spar.h>
+#include <spar/spar_analysis.h>
 #include <stddef.h>
 
 #if defined(__GNUC__)

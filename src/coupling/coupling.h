@@ -5,7 +5,7 @@
 
 #include "schemes.h"
 
-#include <spar/spar.h>
+#include <spar/spar_coupling.h>
 
 typedef struct spari_coupling {
     int64_t n; /* six per node of every member */

@@ -16,7 +16,7 @@
 #ifndef SPARI_SCHEMES_H
 #define SPARI_SCHEMES_H
 
-#include <spar/spar.h>
+#include <spar/spar_coupling.h>
 
 typedef struct spari_accelerator spari_accelerator;
 

@@ -3,7 +3,7 @@
 
 #include "../math/rotation.h"
 
-#include <spar/spar.h>
+#include <spar/spar_structure.h>
 #include <string.h>
 
 int spari_kinematics_free_axis(int free) {

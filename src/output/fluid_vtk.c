@@ -3,6 +3,7 @@
 #include "../base/status.h"
 #include "../math/rotation.h"
 #include "vtk.h"
+#include <spar/spar_coupling.h>
 #include <spar/spar_output.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -6,6 +6,7 @@
 #include "vtk.h"
 #include <math.h>
 #include <spar/spar_output.h>
+#include <spar/spar_structure.h>
 #include <stdlib.h>
 #include <string.h>
 

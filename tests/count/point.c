@@ -6,6 +6,7 @@
 #include "watch.h"
 #include <math.h>
 #include <spar/spar.h>
+#include <spar/spar_coupling.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

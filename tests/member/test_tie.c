@@ -11,7 +11,7 @@
 #include "member/joint_kinematics.h"
 
 #include <math.h>
-#include <spar/spar.h>
+#include <spar/spar_structure.h>
 #include <stdlib.h>
 #include <string.h>
 

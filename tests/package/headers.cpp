@@ -1,5 +1,9 @@
 // The headers in C++: they compile, and the functions link.
 #include <spar/spar.h>
+#include <spar/spar_structure.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_analysis.h>
+#include <spar/spar_all.h>
 #include <spar/spar_aero.h>
 #include <spar/spar_output.h>
 #ifdef SPAR_TEST_MPI

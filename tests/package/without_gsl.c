@@ -3,6 +3,7 @@
 #include <math.h>
 #include <spar/spar.h>
 #include <spar/spar_aero.h>
+#include <spar/spar_structure.h>
 #include <stdio.h>
 
 #define PI 3.14159265358979323846

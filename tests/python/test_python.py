@@ -375,14 +375,14 @@ class Edges(unittest.TestCase):
             line.link_set_spring(10.0, 0.0, 1.0, 1)
             s.step(0.1)
 
-    def test_within(self):
+    def test_adaptive(self):
         """A step to a tolerance takes dt and gives it back: the next one, and the one that was taken."""
         with spar.Session() as s:
             s.set_gravity([0, 0, -9.81])
             body(s)
             s.set_tolerance(1.0, 0.1)
             before = []
-            dt, taken = s.step_within(0.25, lambda session, t, h: before.append((t, h)))
+            dt, taken = s.step_adaptive(0.25, lambda session, t, h: before.append((t, h)))
             self.assertEqual(before[-1], (0.0, taken))
             self.assertTrue(taken <= 0.25 and dt > 0)
             self.assertEqual(s.get_time()[0], taken)

@@ -14,6 +14,9 @@
 #include <cmocka.h>
 
 #include <spar/spar.h>
+#include <spar/spar_analysis.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_structure.h>
 
 int spread_run(const struct CMUnitTest *tests, size_t count, CMFixtureFunction setup, CMFixtureFunction teardown);
 int spread_session_create(spar_session **session);

@@ -2,6 +2,10 @@
 #include "flows.h"
 
 #include <math.h>
+#include <spar/spar.h>
+#include <spar/spar_analysis.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_structure.h>
 #include <stdlib.h>
 #include <string.h>
 

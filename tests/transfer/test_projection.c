@@ -5,7 +5,7 @@
 #include "transfer/projection.h"
 #include <cmocka.h>
 #include <math.h>
-#include <spar/spar.h>
+#include <spar/spar_coupling.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,9 @@
 #include "spar_aerodyn.h"
 #include "adi.h"
 #include <math.h>
+#include <spar/spar.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_structure.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>

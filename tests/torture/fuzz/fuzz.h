@@ -8,7 +8,10 @@
 
 #include <spar/spar.h>
 #include <spar/spar_aero.h>
+#include <spar/spar_analysis.h>
+#include <spar/spar_coupling.h>
 #include <spar/spar_output.h>
+#include <spar/spar_structure.h>
 
 #include <stddef.h>
 #include <stdint.h>

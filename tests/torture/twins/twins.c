@@ -7,6 +7,9 @@
 
      twins [--scenes n] [--seed s] [--keep] [--one]     one: the seed is that of a scene that was told */
 #include <spar/spar.h>
+#include <spar/spar_analysis.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_structure.h>
 
 #include <inttypes.h>
 #include <math.h>
