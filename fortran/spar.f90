@@ -59,9 +59,9 @@ module spar
   integer, parameter, public :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
       SPAR_ERR_NUMERIC = 4, SPAR_ERR_MAPPING = 5, SPAR_ERR_COMM = 6, SPAR_ERR_PEER = 7, SPAR_ERR_IO = 8, &
       SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10, SPAR_ERR_LIMIT = 11
-  integer, parameter, public :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
   integer, parameter, public :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, SPAR_COUPLING_AITKEN = 2, &
       SPAR_COUPLING_IQN_ILS = 3
+  integer, parameter, public :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
   integer, parameter, public :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, SPAR_ROOT_DRIVEN = 3
   integer, parameter, public :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
   integer, parameter, public :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
@@ -129,6 +129,11 @@ module spar
     type(log_record), pointer :: log => null()
     type(progress_record), pointer :: progress => null()
   contains
+    procedure, private :: session_step_begin, session_step_begin_single_1
+    generic :: step_begin => session_step_begin, session_step_begin_single_1
+    procedure :: step_solve => session_step_solve
+    procedure :: step_accept => session_step_accept
+    procedure :: step_reject => session_step_reject
     procedure, private :: session_set_gravity, session_set_gravity_single_1
     generic :: set_gravity => session_set_gravity, session_set_gravity_single_1
     procedure, private :: session_get_gravity, session_get_gravity_single_1
@@ -139,11 +144,6 @@ module spar
     generic :: get_coupling => session_get_coupling, session_get_coupling_single_1, session_get_coupling_single_2
     procedure, private :: session_get_time, session_get_time_single_1
     generic :: get_time => session_get_time, session_get_time_single_1
-    procedure, private :: session_step_begin, session_step_begin_single_1
-    generic :: step_begin => session_step_begin, session_step_begin_single_1
-    procedure :: step_solve => session_step_solve
-    procedure :: step_accept => session_step_accept
-    procedure :: step_reject => session_step_reject
     procedure :: save => session_save
     procedure :: load => session_load
     procedure, private :: session_set_integrator, session_set_integrator_single_1
@@ -281,29 +281,29 @@ module spar
     procedure :: get_elements => member_get_elements
     procedure, private :: member_set_nodes, member_set_nodes_single_1
     generic :: set_nodes => member_set_nodes, member_set_nodes_single_1
+    procedure :: set_quadrature => member_set_quadrature
+    procedure :: get_quadrature => member_get_quadrature
     procedure, private :: member_set_masses, member_set_masses_single_1
     generic :: set_masses => member_set_masses, member_set_masses_single_1
     procedure, private :: member_set_foundation, member_set_foundation_single_1
     generic :: set_foundation => member_set_foundation, member_set_foundation_single_1
     procedure, private :: member_set_pretension, member_set_pretension_single_1
     generic :: set_pretension => member_set_pretension, member_set_pretension_single_1
-    procedure :: set_quadrature => member_set_quadrature
-    procedure :: get_quadrature => member_get_quadrature
     procedure, private :: member_set_damping, member_set_damping_single_1
     generic :: set_damping => member_set_damping, member_set_damping_single_1
+    procedure, private :: member_get_damping, member_get_damping_single_1
+    generic :: get_damping => member_get_damping, member_get_damping_single_1
     procedure, private :: member_set_mass_damping, member_set_mass_damping_single_1
     generic :: set_mass_damping => member_set_mass_damping, member_set_mass_damping_single_1
     procedure, private :: member_get_mass_damping, member_get_mass_damping_single_1
     generic :: get_mass_damping => member_get_mass_damping, member_get_mass_damping_single_1
-    procedure, private :: member_get_damping, member_get_damping_single_1
-    generic :: get_damping => member_get_damping, member_get_damping_single_1
+    procedure :: get_fidelity => member_get_fidelity
+    procedure :: set_effects => member_set_effects
+    procedure :: get_effects => member_get_effects
     procedure, private :: member_get_placement, member_get_placement_single_1, member_get_placement_single_2
     generic :: get_placement => member_get_placement, member_get_placement_single_1, member_get_placement_single_2
     procedure :: get_root => member_get_root
     procedure :: get_external => member_get_external
-    procedure :: get_fidelity => member_get_fidelity
-    procedure :: set_effects => member_set_effects
-    procedure :: get_effects => member_get_effects
     procedure, private :: member_set_line_load, member_set_line_load_single_1
     generic :: set_line_load => member_set_line_load, member_set_line_load_single_1
     procedure, private :: member_get_reaction, member_get_reaction_single_1
@@ -409,6 +409,11 @@ module spar
     integer(c_int64_t) :: elements = 1 ! of the member
     character(:), allocatable :: name
   contains
+    procedure, private :: fluid_pull_motion, fluid_pull_motion_single_1, fluid_pull_motion_single_2, &
+        fluid_pull_motion_single_3, fluid_pull_motion_single_4, fluid_pull_motion_single_5
+    generic :: pull_motion => fluid_pull_motion, fluid_pull_motion_single_1, fluid_pull_motion_single_2, &
+        fluid_pull_motion_single_3, fluid_pull_motion_single_4, fluid_pull_motion_single_5
+    procedure :: fail => fluid_fail
     procedure, private :: fluid_set_motion_nodes, fluid_set_motion_nodes_single_1
     generic :: set_motion_nodes => fluid_set_motion_nodes, fluid_set_motion_nodes_single_1
     procedure, private :: fluid_set_force_nodes, fluid_set_force_nodes_single_1
@@ -416,10 +421,6 @@ module spar
     procedure, private :: fluid_set_stations, fluid_set_stations_single_1
     generic :: set_stations => fluid_set_stations, fluid_set_stations_single_1
     procedure :: map => fluid_map
-    procedure, private :: fluid_pull_motion, fluid_pull_motion_single_1, fluid_pull_motion_single_2, &
-        fluid_pull_motion_single_3, fluid_pull_motion_single_4, fluid_pull_motion_single_5
-    generic :: pull_motion => fluid_pull_motion, fluid_pull_motion_single_1, fluid_pull_motion_single_2, &
-        fluid_pull_motion_single_3, fluid_pull_motion_single_4, fluid_pull_motion_single_5
     procedure, private :: fluid_pull_poses, fluid_pull_poses_single_1, fluid_pull_poses_single_2, &
         fluid_pull_poses_single_3, fluid_pull_poses_single_4, fluid_pull_poses_single_5, fluid_pull_poses_single_6, &
         fluid_pull_poses_single_7, fluid_pull_poses_single_8, fluid_pull_poses_single_9, fluid_pull_poses_single_10, &
@@ -428,7 +429,6 @@ module spar
         fluid_pull_poses_single_3, fluid_pull_poses_single_4, fluid_pull_poses_single_5, fluid_pull_poses_single_6, &
         fluid_pull_poses_single_7, fluid_pull_poses_single_8, fluid_pull_poses_single_9, fluid_pull_poses_single_10, &
         fluid_pull_poses_single_11, fluid_pull_poses_single_12, fluid_pull_poses_single_13
-    procedure :: fail => fluid_fail
     procedure, private :: fluid_set_motion_stations, fluid_set_motion_stations_single_1
     generic :: set_motion_stations => fluid_set_motion_stations, fluid_set_motion_stations_single_1
     procedure, private :: fluid_get_motion_weights, fluid_get_motion_weights_single_1
@@ -2446,6 +2446,39 @@ contains
 
   ! Written by cmake/make-bindings.sh.
 
+  subroutine session_step_begin(self, dt, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_double), intent(in) :: dt
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_begin(self%handle, dt), self%handle, stat, errmsg)
+  end subroutine session_step_begin
+
+  subroutine session_step_solve(self, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_solve(self%handle), self%handle, stat, errmsg)
+  end subroutine session_step_solve
+
+  subroutine session_step_accept(self, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_accept(self%handle), self%handle, stat, errmsg)
+  end subroutine session_step_accept
+
+  subroutine session_step_reject(self, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_step_reject(self%handle), self%handle, stat, errmsg)
+  end subroutine session_step_reject
+
   subroutine session_set_gravity(self, g, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: g(3)
@@ -2504,39 +2537,6 @@ contains
     call hand(status, c_iteration, iteration)
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_time
-
-  subroutine session_step_begin(self, dt, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_double), intent(in) :: dt
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_begin(self%handle, dt), self%handle, stat, errmsg)
-  end subroutine session_step_begin
-
-  subroutine session_step_solve(self, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_solve(self%handle), self%handle, stat, errmsg)
-  end subroutine session_step_solve
-
-  subroutine session_step_accept(self, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_accept(self%handle), self%handle, stat, errmsg)
-  end subroutine session_step_accept
-
-  subroutine session_step_reject(self, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_step_reject(self%handle), self%handle, stat, errmsg)
-  end subroutine session_step_reject
 
   subroutine session_save(self, path, stat, errmsg)
     class(spar_session), intent(in) :: self
@@ -3005,6 +3005,28 @@ contains
     call finish(spar_beam_set_nodes(self%handle, size(x, 2, kind=c_int64_t), x, q), self%session, stat, errmsg)
   end subroutine member_set_nodes
 
+  subroutine member_set_quadrature(self, rule, points, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: rule, points
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_set_quadrature(self%handle, to_c(rule), to_c(points)), self%session, stat, errmsg)
+  end subroutine member_set_quadrature
+
+  subroutine member_get_quadrature(self, rule, points, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout), optional :: rule, points
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_rule, c_points
+
+    status = spar_beam_get_quadrature(self%handle, c_rule, c_points)
+    call hand(status, c_rule, rule)
+    call hand(status, c_points, points)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_quadrature
+
   subroutine member_set_masses(self, eta, mass, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:), mass(:,:,:)
@@ -3052,28 +3074,6 @@ contains
         errmsg)
   end subroutine member_set_pretension
 
-  subroutine member_set_quadrature(self, rule, points, stat, errmsg)
-    class(spar_member), intent(inout) :: self
-    integer, intent(in) :: rule, points
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_beam_set_quadrature(self%handle, to_c(rule), to_c(points)), self%session, stat, errmsg)
-  end subroutine member_set_quadrature
-
-  subroutine member_get_quadrature(self, rule, points, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout), optional :: rule, points
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_rule, c_points
-
-    status = spar_beam_get_quadrature(self%handle, c_rule, c_points)
-    call hand(status, c_rule, rule)
-    call hand(status, c_points, points)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_quadrature
-
   subroutine member_set_damping(self, mu, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in) :: mu(6)
@@ -3082,6 +3082,15 @@ contains
 
     call finish(spar_beam_set_damping(self%handle, mu), self%session, stat, errmsg)
   end subroutine member_set_damping
+
+  subroutine member_get_damping(self, mu, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(inout) :: mu(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_get_damping(self%handle, mu), self%session, stat, errmsg)
+  end subroutine member_get_damping
 
   subroutine member_set_mass_damping(self, alpha, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -3100,48 +3109,6 @@ contains
 
     call finish(spar_beam_get_mass_damping(self%handle, alpha), self%session, stat, errmsg)
   end subroutine member_get_mass_damping
-
-  subroutine member_get_damping(self, mu, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), intent(inout) :: mu(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_beam_get_damping(self%handle, mu), self%session, stat, errmsg)
-  end subroutine member_get_damping
-
-  subroutine member_get_placement(self, x, q, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_double), intent(inout), optional :: x(3), q(4)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_member_get_placement(self%handle, x, q), self%session, stat, errmsg)
-  end subroutine member_get_placement
-
-  subroutine member_get_root(self, kind, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout) :: kind
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_kind
-
-    status = spar_member_get_root(self%handle, c_kind)
-    call hand(status, c_kind, kind)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_root
-
-  subroutine member_get_external(self, on, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    logical, intent(inout) :: on
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_on
-
-    status = spar_member_get_external(self%handle, c_on)
-    if (status == SPAR_OK) on = c_on /= 0
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_external
 
   subroutine member_get_fidelity(self, kind, modes, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -3176,6 +3143,39 @@ contains
     call hand(status, c_effects, effects)
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_effects
+
+  subroutine member_get_placement(self, x, q, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(inout), optional :: x(3), q(4)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_get_placement(self%handle, x, q), self%session, stat, errmsg)
+  end subroutine member_get_placement
+
+  subroutine member_get_root(self, kind, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout) :: kind
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_kind
+
+    status = spar_member_get_root(self%handle, c_kind)
+    call hand(status, c_kind, kind)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_root
+
+  subroutine member_get_external(self, on, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    logical, intent(inout) :: on
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_on
+
+    status = spar_member_get_external(self%handle, c_on)
+    if (status == SPAR_OK) on = c_on /= 0
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_external
 
   subroutine member_set_line_load(self, kind, eta, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -3411,6 +3411,40 @@ contains
 
   ! Written by cmake/make-bindings.sh.
 
+  subroutine fluid_pull_motion(self, theta, x, v, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    real(c_double), intent(in) :: theta
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: n
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
+    if (status /= SPAR_OK) then
+      call finish(status, self%session, stat, errmsg)
+      return
+    end if
+    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
+    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
+    if (allocated(fault)) then
+      call refuse('fluid%pull_motion', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_fluid_pull_motion(self%handle, theta, x, v), self%session, stat, errmsg)
+  end subroutine fluid_pull_motion
+
+  subroutine fluid_fail(self, status, message, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: status
+    character(*), intent(in) :: message
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_fail(self%handle, to_c(status), c_text(message)), self%session, stat, errmsg)
+  end subroutine fluid_fail
+
   subroutine fluid_set_motion_nodes(self, x, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: x(:,:)
@@ -3466,30 +3500,6 @@ contains
     call finish(spar_fluid_map(self%handle), self%session, stat, errmsg)
   end subroutine fluid_map
 
-  subroutine fluid_pull_motion(self, theta, x, v, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
-    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
-    if (allocated(fault)) then
-      call refuse('fluid%pull_motion', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_motion(self%handle, theta, x, v), self%session, stat, errmsg)
-  end subroutine fluid_pull_motion
-
   subroutine fluid_pull_poses(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
@@ -3517,16 +3527,6 @@ contains
     end if
     call finish(spar_fluid_pull_poses(self%handle, theta, x, q, v, omega, accel, alpha), self%session, stat, errmsg)
   end subroutine fluid_pull_poses
-
-  subroutine fluid_fail(self, status, message, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(in) :: status
-    character(*), intent(in) :: message
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_fail(self%handle, to_c(status), c_text(message)), self%session, stat, errmsg)
-  end subroutine fluid_fail
 
   subroutine fluid_set_motion_stations(self, xi, offset, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
@@ -5929,6 +5929,15 @@ contains
     call take(c_table, table)
   end subroutine aero_report_effects_32_single_3
 
+  subroutine session_step_begin_single_1(self, dt, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    real(c_float), intent(in) :: dt
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call session_step_begin(self, dt=real(dt, c_double), stat=stat, errmsg=errmsg)
+  end subroutine session_step_begin_single_1
+
   subroutine session_set_gravity_single_1(self, g, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_float), intent(in) :: g(3)
@@ -6011,15 +6020,6 @@ contains
     call session_get_time(self, t=c_t, step=step, iteration=iteration, stat=stat, errmsg=errmsg)
     call take(c_t, t)
   end subroutine session_get_time_single_1
-
-  subroutine session_step_begin_single_1(self, dt, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_float), intent(in) :: dt
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call session_step_begin(self, dt=real(dt, c_double), stat=stat, errmsg=errmsg)
-  end subroutine session_step_begin_single_1
 
   subroutine session_set_integrator_single_1(self, rho_inf, substeps, stat, errmsg)
     class(spar_session), intent(inout) :: self
@@ -6516,6 +6516,18 @@ contains
     call member_set_damping(self, mu=real(mu, c_double), stat=stat, errmsg=errmsg)
   end subroutine member_set_damping_single_1
 
+  subroutine member_get_damping_single_1(self, mu, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_float), intent(inout) :: mu(6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_mu(:)
+
+    allocate (c_mu(ubound(mu, 1, c_int64_t)), source=untouched)
+    call member_get_damping(self, mu=c_mu, stat=stat, errmsg=errmsg)
+    call take(c_mu, mu)
+  end subroutine member_get_damping_single_1
+
   subroutine member_set_mass_damping_single_1(self, alpha, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_float), intent(in) :: alpha
@@ -6536,18 +6548,6 @@ contains
     call member_get_mass_damping(self, alpha=c_alpha, stat=stat, errmsg=errmsg)
     call take(c_alpha, alpha)
   end subroutine member_get_mass_damping_single_1
-
-  subroutine member_get_damping_single_1(self, mu, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    real(c_float), intent(inout) :: mu(6)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_mu(:)
-
-    allocate (c_mu(ubound(mu, 1, c_int64_t)), source=untouched)
-    call member_get_damping(self, mu=c_mu, stat=stat, errmsg=errmsg)
-    call take(c_mu, mu)
-  end subroutine member_get_damping_single_1
 
   subroutine member_get_placement_single_1(self, x, q, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -6863,36 +6863,6 @@ contains
     call take(c_energy, energy)
   end subroutine joint_get_energy_single_1
 
-  subroutine fluid_set_motion_nodes_single_1(self, x, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    real(c_float), intent(in) :: x(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call fluid_set_motion_nodes(self, x=real(x, c_double), stat=stat, errmsg=errmsg)
-  end subroutine fluid_set_motion_nodes_single_1
-
-  subroutine fluid_set_force_nodes_single_1(self, x, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    real(c_float), intent(in) :: x(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call fluid_set_force_nodes(self, x=real(x, c_double), stat=stat, errmsg=errmsg)
-  end subroutine fluid_set_force_nodes_single_1
-
-  subroutine fluid_set_stations_single_1(self, xi, offset, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    real(c_float), intent(in) :: xi(:)
-    real(c_float), intent(in), optional :: offset(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_offset(:,:)
-
-    if (present(offset)) allocate (c_offset, source=real(offset, c_double))
-    call fluid_set_stations(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
-  end subroutine fluid_set_stations_single_1
-
   subroutine fluid_pull_motion_single_1(self, theta, x, v, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_float), intent(in) :: theta
@@ -6949,6 +6919,36 @@ contains
     if (present(no_x)) return
     call fluid_pull_motion_f32(self, theta=real(theta, c_double), v=v, stat=stat, errmsg=errmsg)
   end subroutine fluid_pull_motion_single_5
+
+  subroutine fluid_set_motion_nodes_single_1(self, x, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: x(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_set_motion_nodes(self, x=real(x, c_double), stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_motion_nodes_single_1
+
+  subroutine fluid_set_force_nodes_single_1(self, x, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: x(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call fluid_set_force_nodes(self, x=real(x, c_double), stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_force_nodes_single_1
+
+  subroutine fluid_set_stations_single_1(self, xi, offset, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    real(c_float), intent(in) :: xi(:)
+    real(c_float), intent(in), optional :: offset(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_offset(:,:)
+
+    if (present(offset)) allocate (c_offset, source=real(offset, c_double))
+    call fluid_set_stations(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
+  end subroutine fluid_set_stations_single_1
 
   subroutine fluid_pull_poses_single_1(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self

@@ -15,6 +15,12 @@ module spar_calls
 
   interface
     ! spar.h
+    function spar_session_message(session) bind(c) result(text)
+      import :: c_ptr
+      type(c_ptr), value :: session
+      type(c_ptr) :: text
+    end function spar_session_message
+
     function spar_status_text(status) bind(c) result(text)
       import :: c_int, c_ptr
       integer(c_int), value :: status
@@ -50,19 +56,70 @@ module spar_calls
       type(c_ptr), intent(inout), optional :: session
     end subroutine spar_session_destroy
 
-    function spar_session_message(session) bind(c) result(text)
-      import :: c_ptr
+    function spar_step_begin(session, dt) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
       type(c_ptr), value :: session
-      type(c_ptr) :: text
-    end function spar_session_message
-
-    function spar_session_set_log(session, log, context) bind(c) result(status)
-      import :: c_funptr, c_int, c_ptr
-      type(c_ptr), value :: session
-      type(c_funptr), value :: log
-      type(c_ptr), value :: context
+      real(c_double), value :: dt
       integer(c_int) :: status
-    end function spar_session_set_log
+    end function spar_step_begin
+
+    function spar_step_solve(session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int) :: status
+    end function spar_step_solve
+
+    function spar_step_check(session, done) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), intent(inout), optional :: done
+      integer(c_int) :: status
+    end function spar_step_check
+
+    function spar_step_accept(session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int) :: status
+    end function spar_step_accept
+
+    function spar_step_reject(session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int) :: status
+    end function spar_step_reject
+
+    function spar_fluid_pull_motion(fluid, theta, x, v) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), value :: theta
+      real(c_double), intent(inout), optional :: x(*), v(*)
+      integer(c_int) :: status
+    end function spar_fluid_pull_motion
+
+    function spar_fluid_push_forces(fluid, force, moment) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      real(c_double), intent(in), optional :: force(*), moment(*)
+      integer(c_int) :: status
+    end function spar_fluid_push_forces
+
+    function spar_fluid_fail(fluid, status, message) bind(c) result(answer)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: status
+      character(kind=c_char), intent(in), optional :: message(*)
+      integer(c_int) :: answer
+    end function spar_fluid_fail
+
+    function spar_step(session, dt, solve, context, iterations) bind(c) result(status)
+      import :: c_double, c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      real(c_double), value :: dt
+      type(c_funptr), value :: solve
+      type(c_ptr), value :: context
+      integer(c_int), intent(inout), optional :: iterations
+      integer(c_int) :: status
+    end function spar_step
 
     function spar_session_set_gravity(session, g) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -104,6 +161,14 @@ module spar_calls
       integer(c_int), intent(inout), optional :: iteration
       integer(c_int) :: status
     end function spar_session_get_time
+
+    function spar_session_set_log(session, log, context) bind(c) result(status)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      type(c_funptr), value :: log
+      type(c_ptr), value :: context
+      integer(c_int) :: status
+    end function spar_session_set_log
 
     function spar_point_create(session, name, x, q, member) bind(c) result(status)
       import :: c_char, c_double, c_int, c_ptr
@@ -276,14 +341,6 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_map
 
-    function spar_fluid_pull_motion(fluid, theta, x, v) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      real(c_double), value :: theta
-      real(c_double), intent(inout), optional :: x(*), v(*)
-      integer(c_int) :: status
-    end function spar_fluid_pull_motion
-
     function spar_fluid_pull_poses(fluid, theta, x, q, v, omega, accel, alpha) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
@@ -291,63 +348,6 @@ module spar_calls
       real(c_double), intent(inout), optional :: x(*), q(*), v(*), omega(*), accel(*), alpha(*)
       integer(c_int) :: status
     end function spar_fluid_pull_poses
-
-    function spar_fluid_push_forces(fluid, force, moment) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      real(c_double), intent(in), optional :: force(*), moment(*)
-      integer(c_int) :: status
-    end function spar_fluid_push_forces
-
-    function spar_fluid_fail(fluid, status, message) bind(c) result(answer)
-      import :: c_char, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int), value :: status
-      character(kind=c_char), intent(in), optional :: message(*)
-      integer(c_int) :: answer
-    end function spar_fluid_fail
-
-    function spar_step_begin(session, dt) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: dt
-      integer(c_int) :: status
-    end function spar_step_begin
-
-    function spar_step_solve(session) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int) :: status
-    end function spar_step_solve
-
-    function spar_step_check(session, done) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int), intent(inout), optional :: done
-      integer(c_int) :: status
-    end function spar_step_check
-
-    function spar_step_accept(session) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int) :: status
-    end function spar_step_accept
-
-    function spar_step_reject(session) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: session
-      integer(c_int) :: status
-    end function spar_step_reject
-
-    function spar_step(session, dt, solve, context, iterations) bind(c) result(status)
-      import :: c_double, c_funptr, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: dt
-      type(c_funptr), value :: solve
-      type(c_ptr), value :: context
-      integer(c_int), intent(inout), optional :: iterations
-      integer(c_int) :: status
-    end function spar_step
 
     function spar_session_save(session, path) bind(c) result(status)
       import :: c_char, c_int, c_ptr
@@ -378,6 +378,27 @@ module spar_calls
       real(c_double), intent(in), optional :: x(*), q(*)
       integer(c_int) :: status
     end function spar_beam_set_nodes
+
+    function spar_beam_set_quadrature(beam, rule, points) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int), value :: rule, points
+      integer(c_int) :: status
+    end function spar_beam_set_quadrature
+
+    function spar_beam_get_quadrature(beam, rule, points) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int), intent(inout), optional :: rule, points
+      integer(c_int) :: status
+    end function spar_beam_get_quadrature
+
+    function spar_beam_read_beamdyn(beam, primary_path, blade_path) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: beam
+      character(kind=c_char), intent(in), optional :: primary_path(*), blade_path(*)
+      integer(c_int) :: status
+    end function spar_beam_read_beamdyn
 
     function spar_beam_set_masses(beam, n, eta, mass) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
@@ -430,26 +451,19 @@ module spar_calls
       integer(c_int) :: status
     end function spar_beam_get_pretension
 
-    function spar_beam_set_quadrature(beam, rule, points) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: beam
-      integer(c_int), value :: rule, points
-      integer(c_int) :: status
-    end function spar_beam_set_quadrature
-
-    function spar_beam_get_quadrature(beam, rule, points) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: beam
-      integer(c_int), intent(inout), optional :: rule, points
-      integer(c_int) :: status
-    end function spar_beam_get_quadrature
-
     function spar_beam_set_damping(beam, mu) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: beam
       real(c_double), intent(in), optional :: mu(6)
       integer(c_int) :: status
     end function spar_beam_set_damping
+
+    function spar_beam_get_damping(beam, mu) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: beam
+      real(c_double), intent(inout), optional :: mu(6)
+      integer(c_int) :: status
+    end function spar_beam_get_damping
 
     function spar_beam_set_mass_damping(beam, alpha) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -465,19 +479,35 @@ module spar_calls
       integer(c_int) :: status
     end function spar_beam_get_mass_damping
 
-    function spar_beam_get_damping(beam, mu) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: beam
-      real(c_double), intent(inout), optional :: mu(6)
+    function spar_member_set_fidelity(member, kind, modes) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), value :: kind
+      integer(c_int64_t), value :: modes
       integer(c_int) :: status
-    end function spar_beam_get_damping
+    end function spar_member_set_fidelity
 
-    function spar_beam_read_beamdyn(beam, primary_path, blade_path) bind(c) result(status)
-      import :: c_char, c_int, c_ptr
-      type(c_ptr), value :: beam
-      character(kind=c_char), intent(in), optional :: primary_path(*), blade_path(*)
+    function spar_member_get_fidelity(member, kind, modes) bind(c) result(status)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: kind
+      integer(c_int64_t), intent(inout), optional :: modes
       integer(c_int) :: status
-    end function spar_beam_read_beamdyn
+    end function spar_member_get_fidelity
+
+    function spar_member_set_effects(member, effects) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), value :: effects
+      integer(c_int) :: status
+    end function spar_member_set_effects
+
+    function spar_member_get_effects(member, effects) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: effects
+      integer(c_int) :: status
+    end function spar_member_get_effects
 
     function spar_member_get_placement(member, x, q) bind(c) result(status)
       import :: c_double, c_int, c_ptr
@@ -512,36 +542,6 @@ module spar_calls
       type(c_ptr), value :: member
       type(c_ptr) :: text
     end function spar_member_get_name
-
-    function spar_member_set_fidelity(member, kind, modes) bind(c) result(status)
-      import :: c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int), value :: kind
-      integer(c_int64_t), value :: modes
-      integer(c_int) :: status
-    end function spar_member_set_fidelity
-
-    function spar_member_get_fidelity(member, kind, modes) bind(c) result(status)
-      import :: c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int), intent(inout), optional :: kind
-      integer(c_int64_t), intent(inout), optional :: modes
-      integer(c_int) :: status
-    end function spar_member_get_fidelity
-
-    function spar_member_set_effects(member, effects) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int), value :: effects
-      integer(c_int) :: status
-    end function spar_member_set_effects
-
-    function spar_member_get_effects(member, effects) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: member
-      integer(c_int), intent(inout), optional :: effects
-      integer(c_int) :: status
-    end function spar_member_get_effects
 
     function spar_beam_set_line_load(beam, kind, n, eta, load) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
@@ -1639,9 +1639,9 @@ module spar_c
   integer(c_int), parameter :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
       SPAR_ERR_NUMERIC = 4, SPAR_ERR_MAPPING = 5, SPAR_ERR_COMM = 6, SPAR_ERR_PEER = 7, SPAR_ERR_IO = 8, &
       SPAR_ERR_UNSUPPORTED = 9, SPAR_ERR_USER = 10, SPAR_ERR_LIMIT = 11
-  integer(c_int), parameter :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
   integer(c_int), parameter :: SPAR_COUPLING_EXPLICIT = 0, SPAR_COUPLING_FIXED_POINT = 1, SPAR_COUPLING_AITKEN = 2, &
       SPAR_COUPLING_IQN_ILS = 3
+  integer(c_int), parameter :: SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2
   integer(c_int), parameter :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, SPAR_ROOT_DRIVEN = 3
   integer(c_int), parameter :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
   integer(c_int), parameter :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1

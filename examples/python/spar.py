@@ -37,29 +37,37 @@ import numpy
 # the interface, as cmake/interface.awk reads it {
 TABLE = """
 constants SPAR_OK=0 SPAR_ERR_ARGUMENT=1 SPAR_ERR_STATE=2 SPAR_ERR_MEMORY=3 SPAR_ERR_NUMERIC=4 SPAR_ERR_MAPPING=5 SPAR_ERR_COMM=6 SPAR_ERR_PEER=7 SPAR_ERR_IO=8 SPAR_ERR_UNSUPPORTED=9 SPAR_ERR_USER=10 SPAR_ERR_LIMIT=11
+call spar_session_message text session|session|value|
 call spar_status_text text status|int|value|
 call spar_version text
 call spar_has int feature|char|in|[]
 call spar_session_create int session|session|out|
 call spar_session_create_fcomm int comm|int|value| session|session|out|
 call spar_session_destroy none session|session|out|
-call spar_session_message text session|session|value|
-constants SPAR_LOG_ERROR=0 SPAR_LOG_WARNING=1 SPAR_LOG_INFO=2
-call spar_session_set_log int session|session|value| log|log|callback| context|context|value|
+call spar_step_begin int session|session|value| dt|double|value|
+call spar_step_solve int session|session|value|
+call spar_step_check int session|session|value| done|int|out|
+call spar_step_accept int session|session|value|
+call spar_step_reject int session|session|value|
+call spar_fluid_pull_motion int fluid|fluid|value| theta|double|value| x|double|out|[n][3] v|double|out|[n][3]
+call spar_fluid_push_forces int fluid|fluid|value| force|double|in|[n][3] moment|double|in|[n][3]
+call spar_fluid_fail int fluid|fluid|value| status|int|value| message|char|in|[]
+call spar_step int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
 call spar_session_set_gravity int session|session|value| g|double|in|[3]
 call spar_session_get_gravity int session|session|value| g|double|out|[3]
 constants SPAR_COUPLING_EXPLICIT=0 SPAR_COUPLING_FIXED_POINT=1 SPAR_COUPLING_AITKEN=2 SPAR_COUPLING_IQN_ILS=3
 call spar_session_set_coupling int session|session|value| scheme|int|value| atol|double|value| rtol|double|value| max_iterations|int|value|
 call spar_session_get_coupling int session|session|value| scheme|int|out| atol|double|out| rtol|double|out| max_iterations|int|out|
 call spar_session_get_time int session|session|value| t|double|out| step|int64_t|out| iteration|int|out|
-constants SPAR_ROOT_FREE=0 SPAR_ROOT_FIXED=1 SPAR_ROOT_PINNED=2 SPAR_ROOT_DRIVEN=3
-constants SPAR_LOAD_DEAD=0 SPAR_LOAD_FOLLOWER=1
+constants SPAR_LOG_ERROR=0 SPAR_LOG_WARNING=1 SPAR_LOG_INFO=2
+call spar_session_set_log int session|session|value| log|log|callback| context|context|value|
 call spar_point_create int session|session|value| name|char|in|[] x|double|in|[3] q|double|in|[4] member|member|out|
 call spar_rigid_create int session|session|value| name|char|in|[] x|double|in|[3] q|double|in|[4] mass|double|in|[36] member|member|out|
 call spar_beam_create int session|session|value| name|char|in|[] elements|int|value| nodes_per_element|int|value| member|member|out|
 call spar_beam_set_axis int beam|member|value| n|int64_t|value| eta|double|in|[n] xyz|double|in|[n][3] twist|double|in|[n]
 call spar_beam_set_sections int beam|member|value| n|int64_t|value| eta|double|in|[n] stiffness|double|in|[n][36] mass|double|in|[n][36]
 call spar_member_set_placement int member|member|value| x|double|in|[3] q|double|in|[4]
+constants SPAR_ROOT_FREE=0 SPAR_ROOT_FIXED=1 SPAR_ROOT_PINNED=2 SPAR_ROOT_DRIVEN=3
 call spar_member_set_root int member|member|value| kind|int|value|
 call spar_member_set_external int member|member|value| on|int|value|
 call spar_member_set_initial_velocity int member|member|value| x0|double|in|[3] v0|double|in|[3] omega|double|in|[3]
@@ -69,6 +77,7 @@ call spar_member_get_reference int member|member|value| x|double|out|[n][3] q|do
 call spar_member_get_motion int member|member|value| q|double|out|[n][7] v|double|out|[n][6] a|double|out|[n][6]
 call spar_member_set_motion int member|member|value| q|double|in|[n][7] v|double|in|[n][6] a|double|in|[n][6]
 call spar_member_drive int member|member|value| q|double|in|[7] v|double|in|[6] a|double|in|[6]
+constants SPAR_LOAD_DEAD=0 SPAR_LOAD_FOLLOWER=1
 call spar_member_set_load int member|member|value| node|int64_t|value| kind|int|value| load|double|in|[6]
 call spar_member_get_loads int member|member|value| load|double|out|[n][6]
 constants SPAR_NODES_MOTION=0 SPAR_NODES_FORCE=1
@@ -78,45 +87,36 @@ call spar_fluid_set_motion_nodes int fluid|fluid|value| n|int64_t|value| x|doubl
 call spar_fluid_set_force_nodes int fluid|fluid|value| n|int64_t|value| x|double|in|[n][3]
 call spar_fluid_set_stations int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
 call spar_fluid_map int fluid|fluid|value|
-call spar_fluid_pull_motion int fluid|fluid|value| theta|double|value| x|double|out|[n][3] v|double|out|[n][3]
 call spar_fluid_pull_poses int fluid|fluid|value| theta|double|value| x|double|out|[n][3] q|double|out|[n][4] v|double|out|[n][3] omega|double|out|[n][3] accel|double|out|[n][3] alpha|double|out|[n][3]
-call spar_fluid_push_forces int fluid|fluid|value| force|double|in|[n][3] moment|double|in|[n][3]
-call spar_fluid_fail int fluid|fluid|value| status|int|value| message|char|in|[]
-call spar_step_begin int session|session|value| dt|double|value|
-call spar_step_solve int session|session|value|
-call spar_step_check int session|session|value| done|int|out|
-call spar_step_accept int session|session|value|
-call spar_step_reject int session|session|value|
-call spar_step int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
 call spar_session_save int session|session|value| path|char|in|[]
 call spar_session_load int session|session|value| path|char|in|[]
-constants SPAR_QUADRATURE_GAUSS=0 SPAR_QUADRATURE_LOBATTO=1 SPAR_QUADRATURE_SECTIONS=2
 call spar_beam_get_elements int beam|member|value| elements|int|out| nodes_per_element|int|out|
 call spar_beam_set_nodes int beam|member|value| n|int64_t|value| x|double|in|[n][3] q|double|in|[n][4]
+constants SPAR_QUADRATURE_GAUSS=0 SPAR_QUADRATURE_LOBATTO=1 SPAR_QUADRATURE_SECTIONS=2
+call spar_beam_set_quadrature int beam|member|value| rule|int|value| points|int|value|
+call spar_beam_get_quadrature int beam|member|value| rule|int|out| points|int|out|
+call spar_beam_read_beamdyn int beam|member|value| primary_path|char|in|[] blade_path|char|in|[]
 call spar_beam_set_masses int beam|member|value| n|int64_t|value| eta|double|in|[n] mass|double|in|[n][36]
 call spar_beam_get_masses int beam|member|value| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] mass|double|out|[capacity][36]
 call spar_beam_set_foundation int beam|member|value| n|int64_t|value| eta|double|in|[n] stiffness|double|in|[n][3]
 call spar_beam_get_foundation int beam|member|value| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] stiffness|double|out|[capacity][3]
 call spar_beam_set_pretension int beam|member|value| n|int64_t|value| eta|double|in|[n] force|double|in|[n][6]
 call spar_beam_get_pretension int beam|member|value| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] force|double|out|[capacity][6]
-call spar_beam_set_quadrature int beam|member|value| rule|int|value| points|int|value|
-call spar_beam_get_quadrature int beam|member|value| rule|int|out| points|int|out|
 call spar_beam_set_damping int beam|member|value| mu|double|in|[6]
+call spar_beam_get_damping int beam|member|value| mu|double|out|[6]
 call spar_beam_set_mass_damping int beam|member|value| alpha|double|value|
 call spar_beam_get_mass_damping int beam|member|value| alpha|double|out|
-call spar_beam_get_damping int beam|member|value| mu|double|out|[6]
-call spar_beam_read_beamdyn int beam|member|value| primary_path|char|in|[] blade_path|char|in|[]
-call spar_member_get_placement int member|member|value| x|double|out|[3] q|double|out|[4]
-call spar_member_get_root int member|member|value| kind|int|out|
-call spar_member_get_external int member|member|value| on|int|out|
-call spar_member_get_session int member|member|value| session|session|out|
-call spar_member_get_name text member|member|value|
 constants SPAR_FIDELITY_PRESCRIBED=0 SPAR_FIDELITY_RIGID=1 SPAR_FIDELITY_LINEAR=2 SPAR_FIDELITY_MODAL=3 SPAR_FIDELITY_EXACT=4
 call spar_member_set_fidelity int member|member|value| kind|int|value| modes|int64_t|value|
 call spar_member_get_fidelity int member|member|value| kind|int|out| modes|int64_t|out|
 constants SPAR_EFFECT_INERTIA=1 SPAR_EFFECT_GYROSCOPIC=2 SPAR_EFFECT_GRAVITY=4 SPAR_EFFECT_DAMPING=8 SPAR_EFFECT_FLUID_MOMENT=32 SPAR_EFFECT_FLUID_HISTORY=64 SPAR_EFFECT_WORK=128 SPAR_EFFECT_DEFAULT=256 SPAR_EFFECT_MASSES=512 SPAR_EFFECT_FOUNDATION=1024 SPAR_EFFECT_PRETENSION=2048
 call spar_member_set_effects int member|member|value| effects|int|value|
 call spar_member_get_effects int member|member|value| effects|int|out|
+call spar_member_get_placement int member|member|value| x|double|out|[3] q|double|out|[4]
+call spar_member_get_root int member|member|value| kind|int|out|
+call spar_member_get_external int member|member|value| on|int|out|
+call spar_member_get_session int member|member|value| session|session|out|
+call spar_member_get_name text member|member|value|
 call spar_beam_set_line_load int beam|member|value| kind|int|value| n|int64_t|value| eta|double|in|[n] load|double|in|[n][6]
 call spar_member_get_reaction int member|member|value| load|double|out|[6]
 call spar_beam_evaluate int beam|member|value| n|int64_t|value| eta|double|in|[n] strain|double|out|[n][6] force|double|out|[n][6] x|double|out|[n][3] q|double|out|[n][4]
