@@ -117,8 +117,9 @@ static int make_system(spari_assembly *a) {
         return SPAR_OK;
     }
     for (int i = 0; i < a->components; i++) {
-        a->component[i].row = a->component[i].member->row->component;
-        SPARI_TRY(a->component[i].row->make(a->component + i));
+        const spari_component_row *row = a->component[i].row = a->component[i].member->row->component;
+        SPARI_TRY(row->make ? row->make(a->component + i) : SPAR_OK);
+        row->attach(a->component + i);
     }
     SPARI_TRY(spari_system_find_tree(a));
     for (int i = 0; i < a->constraints; i++) {

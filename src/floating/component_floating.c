@@ -12,14 +12,13 @@
 #include <math.h>
 #include <string.h>
 
-static int make_frame(spari_component *p) {
+static void attach_frame(spari_component *p) {
     p->frame = p->member->solution;
     spari_floating_root *c = p->frame->floating_root;
     p->solver = c->root;
     p->condensed = c->condensed;
     p->end = c->order;
     p->force = c->force;
-    return SPAR_OK;
 }
 
 static const double *rotation_of_frame(const spari_component *p, int node) {
@@ -172,6 +171,7 @@ static void keep_rates_of_frame(spari_component *p, int back) {
 
 static int predict_frame(spari_component *p, spari_guess stays) {
     spari_frame *f = p->frame;
+    p->moved_in_step = 0;
     spari_solver *s = p->solver;
     double *x = f->dx + f->constrained;
     int n = f->n - f->constrained;
@@ -240,12 +240,6 @@ static int frame_serves(const spari_component *p) {
     const spari_frame *f = p->frame;
     return f->factored && spari_alpha_close(p->scheme.cm, f->tangent_cm) &&
            spari_alpha_close(p->scheme.cv, f->tangent_cv);
-}
-
-static int frame_is_solved(const spari_component *p) {
-    const spari_frame *f = p->frame;
-    return !f->floats && spari_carriage_is_linear(f, p->member) && f->tangent_cm == p->scheme.cm &&
-           f->tangent_cv == p->scheme.cv && memcmp(f->tangent_turn, f->turn, sizeof f->turn) == 0;
 }
 
 static void see_rotation_of_frame(const spari_component *p) {
@@ -319,7 +313,7 @@ static void correct_frame(spari_component *p, double cut) {
         s->dx[k] *= cut;
     }
     if (f->floats) {
-        (void)spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, INFINITY, s->increment, s->dx);
+        (void)spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, NULL, INFINITY, s->increment, s->dx);
     }
     spari_scheme_correct(&p->scheme, cut, f->n - f->constrained, f->dx + f->constrained, f->to.y + f->constrained,
                          deformation_rates(f, &f->to));
@@ -334,6 +328,49 @@ static double way_of_frame(const spari_component *p) {
     }
     double root = f->floats ? spari_alpha_size(p->solver, p->solver->increment) : 0;
     return fmax(root + p->stage.ends.carried, size_of_deformation(p, step));
+}
+
+/* ---- an iteration alone ---- */
+
+static int solve_frame(spari_component *p) {
+    double none[6] = {0};
+    if (reduce_frame(p, none)) {
+        return 1;
+    }
+    expand_frame(p, none);
+    return 0;
+}
+
+/* Whether one correction with that tangent solves the equations: they are linear, and it is their own. */
+static int frame_is_solved(const spari_component *p) {
+    const spari_frame *f = p->frame;
+    return !f->floats && spari_carriage_is_linear(f, p->member) && f->tangent_cm == p->scheme.cm &&
+           f->tangent_cv == p->scheme.cv && memcmp(f->tangent_turn, f->turn, sizeof f->turn) == 0;
+}
+
+static double advance_frame(spari_component *p, double longest, double *way) {
+    *way = 0;
+    if (frame_is_solved(p)) {
+        correct_frame(p, 1);
+        return 0;
+    }
+    double size = correction_of_frame(p);
+    correct_frame(p, size > longest ? longest / size : 1);
+    *way = p->moved_in_step = p->moved_in_step > 0 ? p->moved_in_step : way_of_frame(p);
+    return size;
+}
+
+/* The tangent serves while the equations stay. */
+static void end_solution_of_frame(spari_component *p, int iterations, int fresh) {
+    (void)p, (void)iterations, (void)fresh;
+}
+
+static int tangent_of_frame_after(spari_component *p) {
+    if (frame_serves(p)) {
+        return 0;
+    }
+    (void)balance_frame(p);
+    return tangent_of_frame(p);
 }
 
 static void clear_frame(spari_component *p) {
@@ -599,7 +636,7 @@ static void end_rest_of_frame(spari_component *p) {
 }
 
 const spari_component_row spari_component_floating = {
-    .make = make_frame,
+    .attach = attach_frame,
     .take = take_frame,
     .begin = begin_floating_component,
     .enter = enter_frame,
@@ -612,12 +649,15 @@ const spari_component_row spari_component_floating = {
     .noise = noise_of_frame,
     .tangent = tangent_of_frame,
     .serves = frame_serves,
-    .solved = frame_is_solved,
     .reduce = reduce_frame,
     .expand = expand_frame,
     .correction_size = correction_of_frame,
     .correct = correct_frame,
     .way = way_of_frame,
+    .solve = solve_frame,
+    .advance = advance_frame,
+    .end_solution = end_solution_of_frame,
+    .tangent_after = tangent_of_frame_after,
     .clear = clear_frame,
     .shift_rates = shift_rates_of_frame,
     .take_more = take_more_of_frame,

@@ -194,35 +194,13 @@ static int modal_check(const spar_member *m) {
 
 /* ---- the rest of the rows ---- */
 
-/* It alone, as a component. */
-static spari_component frame_component(spar_member *m) {
-    spari_component p = {.member = m, .row = &spari_component_floating};
-    (void)p.row->make(&p);
-    return p;
-}
-
-static int frame_advance(spar_member *m, double dt) {
-    spari_component p = frame_component(m);
-    SPARI_TRY(spari_component_advance(&p, dt));
-    spari_frame_publish(m);
-    return SPAR_OK;
-}
-
-static int frame_balance(spar_member *m, double dt) {
-    spari_component p = frame_component(m);
-    SPARI_TRY(spari_component_balance(&p, dt));
-    spari_frame_publish(m);
-    return SPAR_OK;
-}
-
 static int frame_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
     const spari_frame *f = m->solution;
     (void)load_steps, (void)onward; /* the equations are linear */
     SPARI_REQUIRE(m->session, f->constrained == 6, SPAR_ERR_STATE,
                   "member '%s': a linear member cannot have a root that is free to rotate; fix or drive its root",
                   m->name);
-    spari_component p = frame_component(m);
-    int failed = spari_component_static(&p, fluid) || spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 ||
+    int failed = spari_component_static(m, fluid) || spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 ||
                  spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0;
     SPARI_REQUIRE(m->session, !failed, SPAR_ERR_NUMERIC,
                   "member '%s': the linear member has no equilibrium under these loads; the state is unchanged",
@@ -233,11 +211,6 @@ static int frame_rest(spar_member *m, const double *fluid, int load_steps, int o
 static int64_t frame_unknowns(const spar_member *m) {
     const spari_frame *f = m->solution;
     return f->n - spari_member_constrained(m);
-}
-
-static int frame_response(spar_member *m, const double *load, double *motion) {
-    spari_component p = frame_component(m);
-    return spari_component_response(&p, load, motion);
 }
 
 static void frame_effort(const spar_member *m, spari_effort *e) {
@@ -277,8 +250,8 @@ static int frame_renew_joints(spar_member *m) {
 /* What the two rows share. */
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .create = frame_create, .free = frame_free,                    \
-    .remass = spari_frame_remass, .restart = spari_frame_restart, .advance = frame_advance, .balance = frame_balance,  \
-    .response = frame_response, .felt = spari_frame_felt, .accept = spari_frame_accept, .begin = spari_frame_begin,    \
+    .remass = spari_frame_remass, .restart = spari_frame_restart, .advance = spari_component_advance, .balance = spari_component_balance,  \
+    .response = spari_component_response, .felt = spari_frame_felt, .accept = spari_frame_accept, .begin = spari_frame_begin,    \
     .reject = spari_frame_reject, .effort = frame_effort, .rest = frame_rest,                                          \
     .reaction_size = spari_reaction_of_whole_size, .reaction = spari_reaction_of_whole, .energy = spari_frame_energy,  \
     .unknowns = frame_unknowns, .problem = spari_frame_problem, .shape = spari_frame_shape,                            \

@@ -62,20 +62,6 @@ static void exact_publish(spar_member *m) {
     spari_member_publish(m, s->to.q, s->to.v, s->to.a, &m->after);
 }
 
-static int exact_advance(spar_member *m, double dt) {
-    exact_take_loads(m);
-    SPARI_TRY(spari_solver_advance(m->solution, m, dt));
-    exact_publish(m);
-    return SPAR_OK;
-}
-
-static int exact_balance(spar_member *m, double dt) {
-    exact_take_loads(m);
-    SPARI_TRY(spari_solver_balance(m->solution, m, dt));
-    exact_publish(m);
-    return SPAR_OK;
-}
-
 static void exact_begin(spar_member *m) {
     spari_solver_begin(m->solution);
 }
@@ -103,16 +89,6 @@ static void exact_show_more(spar_member *m, const double *x, double *motion) {
 static int exact_felt(spar_member *m, double *load) {
     spari_member_even_loads(m, load);
     return SPAR_OK;
-}
-
-static int exact_response(spar_member *m, const double *load, double *motion) {
-    spari_solver *s = m->solution;
-    exact_take_more(m, load, s->r);
-    if (spari_solver_response(s, m, s->r, s->dx)) {
-        return 1;
-    }
-    exact_show_more(m, s->dx, motion);
-    return 0;
 }
 
 static void exact_take_rest(spar_member *m, const double *fluid) {
@@ -247,9 +223,9 @@ const spari_fidelity spari_fidelity_exact = {
     .renew = exact_renew,
     .remass = exact_remass,
     .restart = exact_restart,
-    .advance = exact_advance,
-    .balance = exact_balance,
-    .response = exact_response,
+    .advance = spari_component_advance,
+    .balance = spari_component_balance,
+    .response = spari_component_response,
     .felt = exact_felt,
     .begin = exact_begin,
     .accept = exact_accept,

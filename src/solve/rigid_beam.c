@@ -155,27 +155,22 @@ static void loads_on_root(const spar_member *m, const double *fluid, double left
 enum { PASSES = 20 };
 
 static int rigid_advance(spar_member *m, double dt) {
-    spari_rigid_beam *b = m->solution;
-    spari_solver *s = b->solver;
+    const spari_rigid_beam *b = m->solution;
+    const spari_solver *s = b->solver;
     double before[7], *q = s->begin.q, change = 1;
-    memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    loads_on_root(m, m->load.history[0], 1, m->now.q, s->steps.load0, b->offset_loads.begin);
     for (int pass = 0; pass < PASSES && change >= 1e-13; pass++) {
         memcpy(before, q, sizeof before);
         if (m->load.applied) {
             const spari_pose last = spari_pose_of(q, s->to.v, s->to.a);
             spari_rigid_nodes_move(m, &last, &m->after);
         }
-        loads_on_root(m, m->load.used, 0, m->after.q, s->steps.load1, b->offset_loads.end);
-        SPARI_TRY(spari_solver_advance(s, m, dt));
+        SPARI_TRY(spari_component_advance(m, dt));
         q = s->to.q;
         change = 0;
         for (int k = 0; k < 7 && m->load.applied; k++) {
             change = fmax(change, fabs(q[k] - before[k]));
         }
     }
-    const spari_pose root = spari_pose_of(q, s->to.v, s->to.a);
-    spari_rigid_nodes_move(m, &root, &m->after);
     return SPAR_OK;
 }
 
@@ -203,17 +198,6 @@ static void rigid_take_more(spar_member *m, const double *load, double *sum) {
 
 static void rigid_show_more(spar_member *m, const double *root, double *motion) {
     spari_rigid_nodes_displace(m, root, motion);
-}
-
-static int rigid_response(spar_member *m, const double *load, double *motion) {
-    const spari_rigid_beam *b = m->solution;
-    double sum[6], root[6];
-    rigid_take_more(m, load, sum);
-    if (spari_solver_response(b->solver, m, sum, root)) {
-        return 1;
-    }
-    rigid_show_more(m, root, motion);
-    return 0;
 }
 
 /* The same force and moment on the root, without its reaction, from equal forces and equal moments on all nodes. */
@@ -277,13 +261,6 @@ static void rigid_publish(spar_member *m) {
     const spari_solver *s = solver_of(m);
     const spari_pose root = spari_pose_of(s->to.q, s->to.v, s->to.a);
     spari_rigid_nodes_move(m, &root, &m->after);
-}
-
-static int rigid_balance(spar_member *m, double dt) {
-    rigid_take_loads(m);
-    SPARI_TRY(spari_solver_balance(solver_of(m), m, dt));
-    rigid_publish(m);
-    return SPAR_OK;
 }
 
 /* ---- energy and modes ---- */
@@ -398,8 +375,8 @@ const spari_fidelity spari_fidelity_rigid = {
     .remass = rigid_remass,
     .restart = rigid_restart,
     .advance = rigid_advance,
-    .balance = rigid_balance,
-    .response = rigid_response,
+    .balance = spari_component_balance,
+    .response = spari_component_response,
     .felt = rigid_felt,
     .felt_here = 1,
     .begin = rigid_begin,

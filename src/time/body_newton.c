@@ -197,13 +197,6 @@ void spari_alpha_rotate_forth(const spari_solver *s, double *dx) {
     spari_solver_spread(s, rotate_span_forth, &t);
 }
 
-static int solve_turned(const spari_solver *s, const double *q, const double *r, double *dx) {
-    (void)spari_alpha_rotate_back(s, q, r, dx);
-    int singular = spari_linear_solve(s->linear, dx);
-    spari_alpha_rotate_forth(s, dx);
-    return singular;
-}
-
 /* T := R T R^T */
 static void rotation_matrix(const double q[4], double T[9]) {
     for (int side = 0; side < 2; side++) {
@@ -278,16 +271,8 @@ static void advance_span(void *context, int64_t from, int64_t to) {
     t->s->most_by[from / SPARI_SPAN] = size_of_span(t, by);
 }
 
-/* Sizes of a correction and of the resulting increments: translations relative to the member's length, rotations in
-   radians. */
-typedef struct corrected {
-    double by, way;
-} corrected;
-
-/* x -= correction, shortened to `longest`, rotations through the inverse tangent operator. rotation: rotates the
-   correction forward first; NULL: none. */
-static corrected correct_turned(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
-                                double *rotation, double longest, double *x, double *dx) {
+spari_corrected spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c,
+                                    spari_ends *e, double *rotation, double longest, double *x, double *dx) {
     double R[9], largest;
     alpha_nodes t = {.s = s, .work = alpha_work_on(s, c, e, x)};
     t.work.dx = dx, t.work.rotation = rotation, t.work.R = e->root ? R : NULL;
@@ -297,19 +282,14 @@ static corrected correct_turned(const spari_solver *s, const spar_member *member
     if (longest == INFINITY && !c->still) {
         spari_solver_spread(s, advance_span, &t);
         spari_root_show(s, member, e);
-        return (corrected){spari_solver_largest(s, s->most_by), spari_solver_most(s)};
+        return (spari_corrected){spari_solver_largest(s, s->most_by), spari_solver_most(s)};
     }
     spari_solver_spread(s, take_increments, &t);
     largest = spari_solver_most(s);
     t.work.cut = largest > longest ? longest / largest : 1;
     spari_solver_spread(s, correct_span, &t);
     spari_root_show(s, member, e);
-    return (corrected){largest, spari_solver_most(s)};
-}
-
-double spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
-                           double longest, double *x, double *dx) {
-    return correct_turned(s, member, c, e, NULL, longest, x, dx).by;
+    return (spari_corrected){largest, spari_solver_most(s)};
 }
 
 /* A position depends on the increment and, in the term of Magnus' series, on the velocity of its node. The increment
@@ -340,29 +320,6 @@ double spari_alpha_size(const spari_solver *s, double *x) {
     return spari_solver_most(s);
 }
 
-/* A tangent is reused as long as a solution takes no more iterations than this. Beyond, a new tangent is formed for
-   the next solution if it pays. A tangent costs about as much as PRICE iterations. The mean cost of a solution, with
-   the cost of the tangent shared by the solutions it served, has its minimum where a solution first costs more than
-   the mean. If new tangents contract no better than old ones, the mean never falls so far. */
-enum { PATIENCE = 5, PRICE = 10 };
-
-/* If Newton stops earlier (newton_stop.h), a solution takes fewer iterations, hardly so for the sake of a coupling. */
-static int patience(const spar_session *s) {
-    return s->newton.strict || isfinite(s->newton.share) ? PATIENCE : PATIENCE - 2;
-}
-
-/* Whether the tangent is reused after a solution of so many iterations. fresh: it was formed in this solution. */
-static int serves_on(spari_solver *s, int most, int iterations, int fresh) {
-    if (fresh) { /* of the iterations the first few may have been without it */
-        s->served = 1;
-        s->spent = PRICE + (iterations < most ? iterations : most);
-        return 1;
-    }
-    s->served++;
-    s->spent += iterations;
-    return iterations <= most || iterations * s->served <= s->spent;
-}
-
 int spari_alpha_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to) {
     const double *v = c->still && !s->body->D ? NULL : to->v;
     return spari_solver_factor(s, member, to->q, v, c->still ? NULL : to->a, 1, c->cm, c->cv, s->tinv);
@@ -373,106 +330,10 @@ int spari_alpha_close(double x, double kept) {
     return fabs(x - kept) <= 0.01 * fabs(kept);
 }
 
-/* A substep of one member, as newton.h has it. */
-typedef struct alpha_step {
-    spari_solver *s;
-    const spar_member *member;
-    const spari_scheme *c;
-    const spari_pose *root;
-    const double *rotation;
-    spari_ends *e;
-    double *x;
-} alpha_step;
-
-static int guess_alone(void *self, spari_guess stays) {
-    const alpha_step *t = self;
-    if (t->c->still) {
-        spari_alpha_carry(t->s, t->member, t->c, t->root, t->rotation, t->e, t->x);
-        return stays != SPARI_KEEP_SHAPE;
-    }
-    return spari_alpha_predict(t->s, t->member, t->c, stays, t->e, t->x);
-}
-
-static int tangent_serves_alone(const alpha_step *t) {
-    const spari_solver *s = t->s;
-    return s->factored && spari_alpha_close(t->c->cm, s->tangent_cm) && spari_alpha_close(t->c->cv, s->tangent_cv);
-}
-
-static int begin_alone(void *self, int kept) {
-    const alpha_step *t = self;
-    t->s->factored = kept && tangent_serves_alone(t);
-    spari_anderson_begin(t->s->anderson);
-    spari_alpha_impose_root(t->member, t->root, t->e, t->x); /* no correction moves it */
-    return t->s->factored;
-}
-
-static const char *iterate_alone(void *self, double longest, spari_iterate *it) {
-    const alpha_step *t = self;
-    spari_solver *s = t->s;
-    if (t->c->still) { /* places come with rates of their own */
-        spari_alpha_impose_root(t->member, t->root, t->e, t->x);
-    }
-    const double *q = t->e->seen.q;
-    double scale = spari_alpha_balance(s, t->member, t->c, &t->e->seen, s->r);
-    double noise = spari_alpha_rotate_back(s, q, s->r, s->dx);
-    if (!isfinite(scale) || !isfinite(noise)) {
-        return "met values that are not finite";
-    }
-    if (!s->factored) {
-        spari_alpha_operators(s, t->c, t->e, t->x);
-        if (spari_alpha_tangent(s, t->member, t->c, &t->e->seen)) {
-            return "found a singular tangent";
-        }
-        (void)spari_alpha_rotate_back(s, q, s->r, s->dx); /* its axes are these */
-        spari_anderson_begin(s->anderson);
-    }
-    if (spari_linear_solve(s->linear, s->dx)) {
-        return "found a singular tangent";
-    }
-    spari_anderson_step(s->anderson, s->body->pool ? *s->body->pool : NULL, s->body->lanes, s->body->length, s->dx);
-    corrected size = correct_turned(s, t->member, t->c, t->e, s->rotation, longest, t->x, s->dx);
-    s->newton++;
-    it->correction = size.by;
-    it->tolerance = spari_newton_tolerance(t->member, t->c, size.way + t->e->carried);
-    it->rounded = noise <= 16 * DBL_EPSILON * scale;
-    it->small = it->correction < 1e-11 || noise <= 64 * DBL_EPSILON * s->body->stiffest;
-    return NULL;
-}
-
-static void renew_alone(void *self) {
-    const alpha_step *t = self;
-    t->s->factored = 0;
-}
-
-static void end_alone(void *self, int iterations, int fresh) {
-    const alpha_step *t = self;
-    spari_alpha_impose_root(t->member, t->root, t->e, t->x);
-    t->s->factored = t->s->factored && serves_on(t->s, patience(t->member->session), iterations, fresh);
-    if (!t->s->factored) { /* for an answer (spari_solver_response) */
-        spari_alpha_operators(t->s, t->c, t->e, t->x);
-    }
-}
-
-/* The state at the end of a substep. */
-static int newton(const alpha_step *t) {
-    static const spari_newton how = {INFINITY, 1e-6, guess_alone, begin_alone, iterate_alone, renew_alone, end_alone};
-    const spar_session *session = t->member->session;
-    alpha_step step = *t;
-    int iterations = 0;
-    const char *wrong = spari_newton_solve(&how, &step, tangent_serves_alone(t), session->newton.max,
-                                           spari_newton_stop_begin(session, &t->s->trace), &iterations);
-    SPARI_REQUIRE(t->member->session, !wrong, SPAR_ERR_NUMERIC,
-                  "member '%s': Newton %s (%d iterations in several attempts, each of %d at most) in the step from t = "
-                  "%g; use a smaller dt, more substeps or a smaller rho_inf, or check the loads",
-                  t->member->name, wrong, iterations, session->newton.max, session->clock.time);
-    return SPAR_OK;
-}
-
-/* Forces less loads at t^0 with the accelerations a, and the power that damping takes. */
-void spari_alpha_unbalance(void *self, const spar_member *member, const double *a, double *r) {
-    spari_solver *s = self;
+/* Forces less loads at t^0, and the power that damping takes. */
+void spari_alpha_unbalance(spari_solver *s, const spar_member *member, double *r) {
     const spari_state *b = &s->begin;
-    spari_body_residual(s->body, b->q, b->v, a, 1, r, s->body->D ? &s->power_begin : NULL);
+    spari_body_residual(s->body, b->q, b->v, b->a, 1, r, s->body->D ? &s->power_begin : NULL);
     if (spari_solver_has_applied(s, member)) {
         spari_applied_residual(member, b->q, 1, r);
     }
@@ -483,106 +344,5 @@ void spari_alpha_unbalance(void *self, const spar_member *member, const double *
     for (int i = 0; i < 6 * s->n; i++) {
         r[i] -= s->steps.load0[i];
     }
-}
-
-static int start(spari_solver *s, const spar_member *member, const spari_scheme *c) {
-    spari_state *b = &s->begin;
-    int n = s->n, end = spari_member_constrained(member);
-    if (member->root != SPAR_ROOT_DRIVEN) {
-        memset(b->a, 0, (size_t)end * sizeof *b->a);
-        memset(b->v, 0, (size_t)end * sizeof *b->v);
-    }
-    int singular = spari_solver_factor(s, member, b->q, NULL, NULL, 0, c->cm, 0, NULL) ||
-                   spari_scheme_start(c, s->linear, end, 6 * n, spari_alpha_unbalance, s, member, s->r, b->a);
-    s->factored = 0;
-    SPARI_REQUIRE(member->session, !singular, SPAR_ERR_NUMERIC,
-                  "member '%s': its mass and stiffness together are singular at the start; give mass or rotary inertia "
-                  "in every direction of free motion",
-                  member->name);
-    spari_stage_remember(s, member, c);
-    s->steps.started = 1;
-    return SPAR_OK;
-}
-
-/* A member by itself, in a step. */
-typedef struct alpha_run {
-    spari_solver *s;
-    spar_member *member;
-    spari_stage stage;
-} alpha_run;
-
-static void enter_alone(void *self, const spari_part *part) {
-    const alpha_run *t = self;
-    (void)part;
-    spari_stage_enter(t->s);
-}
-
-static double rotation_rate_alone(const void *self) {
-    const alpha_run *t = self;
-    return spari_stage_rotation_rate(t->s, t->member);
-}
-
-static int solve_alone(void *self, const spari_scheme *c, const spari_part *part) {
-    alpha_run *t = self;
-    spari_stage *g = &t->stage;
-    spari_solver *s = t->s;
-    SPARI_TRY(spari_stage_begin(s, t->member, c, part, g));
-    int status = newton(&(alpha_step){s, t->member, c, &g->root, g->rotation, &g->ends, s->increment});
-    s->factored = s->factored && status == SPAR_OK;
-    return status;
-}
-
-static int finish_alone(void *self, const spari_scheme *c, const spari_part *part) {
-    alpha_run *t = self;
-    (void)part;
-    spari_stage_end(t->s, t->member, c, &t->stage);
-    return SPAR_OK;
-}
-
-int spari_solver_response(spari_solver *s, const spar_member *member, double *load, double *motion) {
-    spari_scheme c = spari_scheme_last(member, s->body->D != NULL, &s->steps.solved);
-    if (!s->factored && spari_alpha_tangent(s, member, &c, &s->to)) {
-        return 1;
-    }
-    memset(load, 0, (size_t)spari_member_constrained(member) * sizeof *load);
-    return solve_turned(s, s->to.q, load, motion);
-}
-
-static int gains_alone(void *self, const spari_part *part) {
-    alpha_run *t = self;
-    double gain, size;
-    if (spari_stage_is_near(t->s, t->member, part->dt * (part->to - part->from))) {
-        return 0;
-    }
-    spari_stage_energy(t->s, t->member, part, &gain, &size);
-    return gain > SPARI_GAIN * size;
-}
-
-static void name_alone(const void *self, char *text, int size) {
-    const alpha_run *t = self;
-    (void)snprintf(text, (size_t)size, "member '%s'", t->member->name);
-}
-
-int spari_solver_advance(spari_solver *s, spar_member *member, double dt) {
-    static const spari_stepper how = {enter_alone,  rotation_rate_alone, solve_alone,
-                                      finish_alone, gains_alone,         name_alone};
-    const spari_scheme c = spari_scheme_of(member, s->body->D != NULL, dt / member->session->integrator.substeps);
-    alpha_run t = {.s = s, .member = member};
-    if (!s->steps.started && !c.still) {
-        SPARI_TRY(start(s, member, &c));
-    }
-    s->steps.solved = s->steps.begin;
-    spari_solver_poison(s);
-    spari_stage_start(s, member, &t.stage);
-    return spari_scheme_run(&how, &t, &c, &member->state.cuts, &s->steps.solved, member->session, dt);
-}
-
-int spari_solver_balance(spari_solver *s, spar_member *member, double dt) {
-    const spari_scheme c = spari_scheme_of(member, 0, dt / member->session->integrator.substeps);
-    spari_stage at;
-    if (!s->steps.started && !c.still) {
-        SPARI_TRY(start(s, member, &c));
-    }
-    spari_stage_start(s, member, &at);
-    return SPAR_OK;
+    memset(r, 0, (size_t)spari_member_constrained(member) * sizeof *r);
 }

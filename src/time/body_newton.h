@@ -19,8 +19,8 @@ double spari_alpha_balance(spari_solver *s, const spar_member *member, const spa
                            double *r);
 /* Fills the solver's tinv. */
 void spari_alpha_operators(const spari_solver *s, const spari_scheme *c, const spari_ends *e, const double *x);
-/* Forces less loads at t^0 with the accelerations a. self: the solver. */
-void spari_alpha_unbalance(void *self, const spar_member *member, const double *a, double *r);
+/* r := forces less loads at t^0, without the constrained unknowns. */
+void spari_alpha_unbalance(spari_solver *s, const spar_member *member, double *r);
 /* Forms and factors the tangent. 0 or 1. */
 int spari_alpha_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to);
 /* rotate_back: finds the rotation of the nodes, now at q, since the reused tangent was formed, and rotates the
@@ -28,9 +28,15 @@ int spari_alpha_tangent(spari_solver *s, const spar_member *member, const spari_
    rotate_forth: rotates the corrections back to the present axes. */
 double spari_alpha_rotate_back(const spari_solver *s, const double *q, const double *r, double *dx);
 void spari_alpha_rotate_forth(const spari_solver *s, double *dx);
-/* x -= the correction dx, in global axes, shortened to `longest`. Returns its size. */
-double spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c, spari_ends *e,
-                           double longest, double *x, double *dx);
+/* Sizes of a correction and of the resulting increments: translations relative to the member's length, rotations in
+   radians. */
+typedef struct spari_corrected {
+    double by, way;
+} spari_corrected;
+/* x -= the correction dx, in global axes, shortened to `longest`, rotations through the inverse tangent operator.
+   rotation: rotates the correction forth first; NULL: not. */
+spari_corrected spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c,
+                                    spari_ends *e, double *rotation, double longest, double *x, double *dx);
 /* Subtracts the corrections, times v, a and b, from velocities, accelerations and algorithmic accelerations at the
    end. Positions stay. */
 void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double v, double a,

@@ -67,15 +67,6 @@ void spari_solver_free(spari_solver *solver);
 spari_state spari_state_in(double *block, int n);
 /* begin.q, v, a have been set anew. */
 void spari_solver_restart(spari_solver *solver);
-/* From t^n to t^n + dt in the session's substeps, under steps.load0 and load1; leaves t^n alone, writes `to` and
-   member->dissipated_step. */
-int spari_solver_advance(spari_solver *solver, spar_member *member, double dt);
-/* Accelerations at t^0 under steps.load0, for steps dt; `to` is the state there. */
-int spari_solver_balance(spari_solver *solver, spar_member *member, double dt);
-/* After that: the motion [n][6] that a small additional load [n][6] at the end causes, displacements and rotations,
-   to first order and over the last substep. load is overwritten. One back-substitution; a tangent is formed only if
-   there is none. Returns 0, or 1 (singular). */
-int spari_solver_response(spari_solver *solver, const spar_member *member, double *load, double *motion);
 /* A step begins. It is accepted: t^{n+1} becomes t^n. It is rejected: the tangent is again the one that it began with.
  */
 void spari_solver_begin(spari_solver *solver);

@@ -13,8 +13,10 @@ struct spari_component;
 
 /* Operations on a component. */
 typedef struct spari_component_row {
-    /* Allocates the ends. The member and its solver exist already. Returns 0 or SPAR_ERR_MEMORY. */
+    /* make: allocates the ends; the member and its solver exist already; returns 0 or SPAR_ERR_MEMORY. NULL: nothing is
+       to be allocated. attach: finds the solver and the ends. */
     int (*make)(struct spari_component *p);
+    void (*attach)(struct spari_component *p);
 
     /* Takes the loads and coefficients of a step with substeps h. Returns whether the accelerations at t^0 are
        known. */
@@ -35,14 +37,12 @@ typedef struct spari_component_row {
     /* Computes the residual (forces less loads) of the latest iterate. The residual at the ends goes to p->force, to
        which constraints add. Returns the size that rounding errors are relative to. */
     double (*balance)(struct spari_component *p);
-    /* The largest residual force; NaN if one of them is not finite. */
+    /* The largest residual force; not finite if one of them is not. */
     double (*noise)(const struct spari_component *p);
     /* Forms and factors the tangent at that iterate and condenses it to the ends. Returns 0 or 1 (singular). */
     int (*tangent)(struct spari_component *p);
     /* Whether the reused tangent can serve this step. */
     int (*serves)(const struct spari_component *p);
-    /* Whether one correction with that tangent solves the equations: they are linear, and it is their own. NULL: no. */
-    int (*solved)(const struct spari_component *p);
     /* What is left of the forces at the ends, x [6 ends], global axes. 0 or 1. */
     int (*reduce)(struct spari_component *p, double *x);
     /* Computes the corrections of all unknowns from those of the ends. */
@@ -52,14 +52,22 @@ typedef struct spari_component_row {
     void (*correct)(struct spari_component *p, double cut);
     /* The size of the motion in the step. */
     double (*way)(const struct spari_component *p);
+    /* An iteration of a component without ends. solve: the corrections from the latest residual, after `noise`; returns
+       0 or 1. advance: subtracts them, shortened to `longest`; returns their size before, and the size of the motion in
+       the step; 0: the solution is exact. end_solution: Newton has converged in so many iterations, with a tangent
+       formed in this attempt if `fresh`; 0: it has failed. */
+    int (*solve)(struct spari_component *p);
+    double (*advance)(struct spari_component *p, double longest, double *way);
+    void (*end_solution)(struct spari_component *p, int iterations, int fresh);
     /* Sets the result of reduce for zero residual forces: none at the ends. */
     void (*clear)(struct spari_component *p);
     /* Subtracts the corrections, times v, a and b, from the velocities, accelerations and algorithmic accelerations
        at the end. */
     void (*shift_rates)(struct spari_component *p, double v, double a, double b);
 
-    /* After the step. take_more: the residual becomes a small additional load [nodes][6] on the nodes. show_more:
+    /* After the step. tangent_after: forms the tangent at its end if none is there; returns 0 or 1. take_more: the residual becomes a small additional load [nodes][6] on the nodes. show_more:
        the corrections as a motion [nodes][6] of the nodes, displacements and small rotations, global axes. */
+    int (*tangent_after)(struct spari_component *p);
     void (*take_more)(struct spari_component *p, const double *load);
     void (*show_more)(struct spari_component *p, double *motion);
     /* Restores the end of a step that was read from a file. */
@@ -107,22 +115,20 @@ typedef struct spari_component {
     spari_scheme alpha, scheme; /* of a substep, and of the stage under way */
     spari_stage stage;
     const spari_rotating_frame *rotating; /* equilibrium in a frame that turns; NULL: at rest */
+    double moved_in_step;     /* of a component without ends: the motion of the stage; 0: not known */
     double correction_size,
         allowed;             /* of the latest correction: its size, and the remaining correction that is allowed */
     int moved, owner_before; /* during creation: the rank that had the member before, and the solution of this rank */
     void *solution_before;
 } spari_component;
 
-/* A component without ends, in time and at rest: what it finds is for `publish` of the member's row. */
-/* From t^n to t^n + dt in the session's substeps; leaves t^n alone. */
-int spari_component_advance(spari_component *p, double dt);
-/* Accelerations at t^0, for steps dt. */
-int spari_component_balance(spari_component *p, double dt);
-/* After a step: what a little more load [nodes][6] adds to the motion [nodes][6]. 0, or 1: there is no answer. */
-int spari_component_response(spari_component *p, const double *load, double *motion);
+/* Operations of the table of fidelities, for a member that no joint ties. */
+int spari_component_advance(spar_member *member, double dt);
+int spari_component_balance(spar_member *member, double dt);
+int spari_component_response(spar_member *member, const double *load, double *motion);
 /* Equilibrium under dead and `fluid` loads [nodes][6], in the frame of a root that is driven steadily. 0, or 1: there
    is none. */
-int spari_component_static(spari_component *p, const double *fluid);
+int spari_component_static(spar_member *member, const double *fluid);
 
 /* The nodes of a member's unknowns that joints hold, in increasing order (node has room for two a joint); how many. */
 int spari_component_joint_nodes(const spar_member *member, int *node);

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { START_PASSES = 4, SPAN = 4096 };
+enum { SPAN = 4096 };
 
 spari_scheme spari_scheme_of(const spar_member *member, int damped, double h) {
     double rho = member->session->integrator.rho_inf;
@@ -344,19 +344,4 @@ void spari_scheme_correct(const spari_scheme *c, double cut, int n, const double
         to.a[k] += cm * step;
         to.b[k] += cb * step;
     }
-}
-
-int spari_scheme_start(const spari_scheme *c, spari_linear *A, int constrained, int n, spari_forces unbalance,
-                       void *self, const spar_member *m, double *r, double *a) {
-    for (int pass = 0; pass < START_PASSES; pass++) {
-        unbalance(self, m, a, r);
-        memset(r, 0, (size_t)constrained * sizeof *r);
-        if (spari_linear_solve(A, r)) {
-            return 1;
-        }
-        for (int i = constrained; i < n; i++) {
-            a[i] -= c->cm * r[i];
-        }
-    }
-    return 0;
 }

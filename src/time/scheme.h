@@ -148,15 +148,4 @@ void spari_scheme_correct(const spari_scheme *c, double cut, int n, const double
 /* After a substep, for the energy that damping takes: *before is the power at its beginning, becomes `power`. */
 void spari_scheme_dissipate(spar_member *member, const spari_scheme *c, double *before, double power);
 
-/* A vector of the unknowns, of accelerations y or of the state, into r. */
-typedef void (*spari_forces)(void *self, const spar_member *m, const double *y, double *r);
-
-/* Accelerations at t^0: those of the initial rigid-body field, and what the balance of forces there asks beyond them,
-   through M + K / cm, factored in A, instead of M: parts that are stiff or light against this step (or have no mass at
-   all) would start with accelerations that the step cannot follow. Each refinement solves for what is left; with
-   z = omega^2 / cm a mode keeps 1 - (z / (1 + z))^4 of its acceleration. unbalance: inertia and internal forces less
-   loads of the accelerations a. The first `held` of the n unknowns keep theirs. 0, or 1 when A is singular. */
-int spari_scheme_start(const spari_scheme *c, spari_linear *A, int constrained, int n, spari_forces unbalance,
-                       void *self, const spar_member *m, double *r, double *a);
-
 #endif

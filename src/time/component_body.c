@@ -4,11 +4,9 @@
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/joint.h"
-#include "../time/body_newton.h"
-#include "../time/component.h"
-#include "../time/driven_root.h"
-#include "../time/fidelity.h"
-#include "../time/offset_loads.h"
+#include "body_newton.h"
+#include "component.h"
+#include "fidelity.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -45,15 +43,19 @@ int spari_component_joint_count(const spar_member *m) {
     return count;
 }
 
-static int make_nodes(spari_component *p) {
+static void attach_nodes(spari_component *p) {
     spari_solver *s = p->solver = p->member->row->solver(p->member);
+    p->condensed = s->condensed;
+    p->end = s->condensed ? s->condensed->node : NULL;
+    p->force = s->r;
+}
+
+static int make_nodes(spari_component *p) {
+    spari_solver *s = p->member->row->solver(p->member);
     int *node = spari_zalloc(spari_component_joint_count(p->member) + 1, sizeof *node);
     spari_condensed_free(s->condensed);
     s->condensed = node ? spari_condensed_create(spari_component_joint_nodes(p->member, node), node, 6 * s->n) : NULL;
     free(node);
-    p->condensed = s->condensed;
-    p->end = s->condensed ? s->condensed->node : NULL;
-    p->force = s->r;
     return s->condensed ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
@@ -110,6 +112,7 @@ static void keep_rates_of_nodes(spari_component *p, int back) {
 
 static int predict_nodes(spari_component *p, spari_guess stays) {
     double *x = p->solver->increment;
+    spari_anderson_begin(p->solver->anderson);
     if (p->scheme.still) {
         spari_alpha_carry(p->solver, p->member, &p->scheme, &p->stage.root, p->stage.rotation, &p->stage.ends, x);
         return stays != SPARI_KEEP_SHAPE;
@@ -123,21 +126,20 @@ static double balance_nodes(spari_component *p) {
     return spari_alpha_balance(s, p->member, &p->scheme, &p->stage.ends.seen, s->r);
 }
 
-static double noise_of_nodes(const spari_component *p) {
+static double rotate_back(const spari_component *p) {
     const spari_solver *s = p->solver;
-    double most = 0, poison = 0;
-    for (int k = 0; k < 6 * s->n; k++) {
-        double size = fabs(s->r[k]);
-        most = size > most ? size : most;
-        poison += 0 * size;
-    }
-    return most + poison;
+    return spari_alpha_rotate_back(s, p->state->q, s->r, s->dx);
 }
 
 static int tangent_of_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     spari_alpha_operators(s, &p->scheme, &p->stage.ends, s->increment);
-    return spari_alpha_tangent(s, p->member, &p->scheme, &p->stage.ends.seen);
+    if (spari_alpha_tangent(s, p->member, &p->scheme, &p->stage.ends.seen)) {
+        return 1;
+    }
+    (void)rotate_back(p); /* the axes of the tangent are new */
+    spari_anderson_begin(s->anderson);
+    return 0;
 }
 
 static int nodes_serve(const spari_component *p) {
@@ -148,7 +150,10 @@ static int nodes_serve(const spari_component *p) {
 
 static int reduce_nodes(spari_component *p, double *x) {
     spari_solver *s = p->solver;
-    (void)spari_alpha_rotate_back(s, p->state->q, s->r, s->dx);
+    (void)rotate_back(p);
+    if (!p->condensed) {
+        return spari_linear_solve(s->linear, s->dx);
+    }
     if (spari_condensed_reduce(p->condensed, s->linear, s->dx)) {
         return 1;
     }
@@ -163,14 +168,16 @@ static int reduce_nodes(spari_component *p, double *x) {
 
 static void expand_nodes(spari_component *p, double *x) {
     spari_solver *s = p->solver;
-    for (int e = 0; e < p->condensed->ends; e++) {
+    for (int e = 0; p->condensed && e < p->condensed->ends; e++) {
         const double *rotation = rotation_of_node(p, p->condensed->node[e]);
         double *own = s->dx + 6 * p->condensed->node[e];
         for (int k = 0; k < 6; k += 3) {
             spari_rotate_back(rotation, x + 6 * e + k, own + k);
         }
     }
-    spari_condensed_expand(p->condensed, s->dx);
+    if (p->condensed) {
+        spari_condensed_expand(p->condensed, s->dx);
+    }
     spari_alpha_rotate_forth(s, s->dx);
 }
 
@@ -183,8 +190,65 @@ static void correct_nodes(spari_component *p, double cut) {
     for (int k = 0; k < 6 * s->n && cut < 1; k++) {
         s->dx[k] *= cut;
     }
-    (void)spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, INFINITY, s->increment, s->dx);
+    (void)spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, NULL, INFINITY, s->increment, s->dx);
     s->newton++;
+}
+
+/* ---- an iteration alone ---- */
+
+static int solve_nodes(spari_component *p) {
+    const spari_solver *s = p->solver;
+    if (spari_linear_solve(s->linear, s->dx)) {
+        return 1;
+    }
+    spari_anderson_step(s->anderson, s->body->pool ? *s->body->pool : NULL, s->body->lanes, s->body->length, s->dx);
+    return 0;
+}
+
+static double advance_nodes(spari_component *p, double longest, double *way) {
+    spari_solver *s = p->solver;
+    const spari_corrected size =
+        spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, s->rotation, longest, s->increment, s->dx);
+    s->newton++;
+    *way = size.way + p->stage.ends.carried;
+    return size.by;
+}
+
+/* A tangent is reused as long as a solution takes no more iterations than this. Beyond, a new tangent is formed for
+   the next solution if it pays. A tangent costs about as much as PRICE iterations. The mean cost of a solution, with
+   the cost of the tangent shared by the solutions it served, has its minimum where a solution first costs more than
+   the mean. If new tangents contract no better than old ones, the mean never falls so far. */
+enum { PATIENCE = 5, PRICE = 10 };
+
+/* Whether the tangent is reused after a solution of so many iterations. fresh: it was formed in this solution. If
+   Newton stops earlier (newton_stop.h), a solution takes fewer iterations, hardly so for the sake of a coupling. */
+static int serves_on(spari_solver *s, const spar_session *session, int iterations, int fresh) {
+    int patience = session->newton.strict || isfinite(session->newton.share) ? PATIENCE : PATIENCE - 2;
+    if (fresh) { /* of the iterations the first few may have been without it */
+        s->served = 1;
+        s->spent = PRICE + (iterations < patience ? iterations : patience);
+        return 1;
+    }
+    s->served++;
+    s->spent += iterations;
+    return iterations <= patience || iterations * s->served <= s->spent;
+}
+
+static void end_solution_of_nodes(spari_component *p, int iterations, int fresh) {
+    spari_solver *s = p->solver;
+    if (iterations == 0) {
+        s->factored = 0;
+        return;
+    }
+    spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, s->increment);
+    s->factored = serves_on(s, p->member->session, iterations, fresh);
+    if (!s->factored) { /* for a response */
+        spari_alpha_operators(s, &p->scheme, &p->stage.ends, s->increment);
+    }
+}
+
+static int tangent_after_step(spari_component *p) {
+    return p->solver->factored ? 0 : spari_alpha_tangent(p->solver, p->member, &p->scheme, &p->solver->to);
 }
 
 static double way_of_nodes(const spari_component *p) {
@@ -193,7 +257,7 @@ static double way_of_nodes(const spari_component *p) {
 
 static void clear_nodes(spari_component *p) {
     spari_solver *s = p->solver;
-    (void)spari_alpha_rotate_back(s, p->state->q, s->r, s->dx); /* for the turns */
+    (void)rotate_back(p); /* for the rotations */
     memset(s->dx, 0, (size_t)(6 * s->n) * sizeof *s->dx);
 }
 
@@ -241,7 +305,7 @@ static int start_nodes(spari_component *p) {
 }
 
 static void unbalance_nodes(spari_component *p) {
-    spari_alpha_unbalance(p->solver, p->member, p->solver->begin.a, p->solver->r);
+    spari_alpha_unbalance(p->solver, p->member, p->solver->r);
 }
 
 static void correct_start_of_nodes(spari_component *p) {
@@ -255,6 +319,7 @@ static void end_start_of_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     spari_stage_remember(s, p->member, &p->scheme);
     s->steps.started = 1;
+    s->factored = 0;
 }
 
 /* ---- at rest ---- */
@@ -348,6 +413,7 @@ static void end_rest_of_nodes(spari_component *p) {
 
 const spari_component_row spari_component_body = {
     .make = make_nodes,
+    .attach = attach_nodes,
     .take = begin_loads_of_nodes,
     .begin = begin_nodes,
     .enter = enter_nodes,
@@ -357,7 +423,7 @@ const spari_component_row spari_component_body = {
     .keep_rates = keep_rates_of_nodes,
     .predict = predict_nodes,
     .balance = balance_nodes,
-    .noise = noise_of_nodes,
+    .noise = rotate_back,
     .tangent = tangent_of_nodes,
     .serves = nodes_serve,
     .reduce = reduce_nodes,
@@ -365,6 +431,10 @@ const spari_component_row spari_component_body = {
     .correction_size = correction_of_nodes,
     .correct = correct_nodes,
     .way = way_of_nodes,
+    .solve = solve_nodes,
+    .advance = advance_nodes,
+    .end_solution = end_solution_of_nodes,
+    .tangent_after = tangent_after_step,
     .clear = clear_nodes,
     .shift_rates = shift_rates_of_nodes,
     .take_more = take_more_of_nodes,
