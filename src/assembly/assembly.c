@@ -15,6 +15,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+void spari_assembly_name(const spari_assembly *a, char *text, int size) {
+    if (a->constraints == 0) {
+        (void)snprintf(text, (size_t)size, "member '%s'", a->component[0].member->name);
+    } else {
+        (void)snprintf(text, (size_t)size, "the members connected by joint '%s'", a->constraint[0].joint->name);
+    }
+}
+
+int spari_assembly_solve(spari_assembly *a, double cv) {
+    return a->constraints == 0 ? spari_component_solve(a->component) : spari_system_solve(a, cv);
+}
+
+enum { NAME = 160 };
+
 /* ---- one substep ---- */
 
 /* Whether any component has starting values of this kind; the others keep their velocities then. */
@@ -64,15 +78,6 @@ static int form(spari_assembly *a) {
     return 0;
 }
 
-/* Subtracts the part `cut` of the multipliers' corrections. */
-static void correct_loads(spari_assembly *a, double cut) {
-    for (int i = 0; i < a->constraints; i++) {
-        for (int k = 0; k < 6; k++) {
-            a->constraint[i].joint->after.load[k] -= cut * a->constraint[i].correction[k];
-        }
-    }
-}
-
 /* Subtracts the corrections, all shortened by the same factor. Returns their size before. */
 static double correct(spari_assembly *a, double longest) {
     double largest = 0;
@@ -84,7 +89,7 @@ static double correct(spari_assembly *a, double longest) {
     for (int i = 0; i < a->components; i++) {
         a->component[i].row->correct(a->component + i, cut);
     }
-    correct_loads(a, cut);
+    spari_constraints_correct_loads(a, cut);
     return largest;
 }
 
@@ -112,7 +117,7 @@ static int correct_rates(spari_assembly *a, double cut, double *size) {
         *size = fmax(*size, a->component[i].row->correction_size(a->component + i));
         a->component[i].row->shift_rates(a->component + i, cut * c->rate, cut * c->cm, cut * c->cb);
     }
-    correct_loads(a, cut);
+    spari_constraints_correct_loads(a, cut);
     return 0;
 }
 
@@ -256,11 +261,8 @@ static int project(spari_assembly *a, double s, double dt) {
         if (worst <= 8 * DBL_EPSILON * size) {
             return 0;
         }
-        if (spari_system_close_gaps(a, a->component[0].scheme.cv)) {
+        if (spari_system_shift_rates(a, a->component[0].scheme.cv, 1, 0)) {
             return 1;
-        }
-        for (int i = 0; i < a->components; i++) {
-            a->component[i].row->shift_rates(a->component + i, 1, 0, 0);
         }
     }
     return 0;
@@ -328,18 +330,21 @@ static const char *walk_drives(spari_assembly *a, double s, double dt, const cha
 
 /* The states at the end of a substep. */
 static int newton_all(spari_assembly *a, double s, double dt) {
-    int iterations = 0;
-    const char *wrong = attempts_of(a, s, dt, &iterations);
-    if (wrong && !a->violent && !a->component[0].scheme.still) {
+    int iterations = 0, alone = a->constraints == 0;
+    char name[NAME];
+    const char *wrong = alone ? spari_component_newton(a->component, &iterations) : attempts_of(a, s, dt, &iterations);
+    if (wrong && !alone && !a->violent && !a->component[0].scheme.still) {
         a->violent = 1;
         wrong = attempts_of(a, s, dt, &iterations);
     }
     wrong = wrong ? walk_drives(a, s, dt, wrong, &iterations) : NULL;
-    SPARI_REQUIRE(
-        a->session, !wrong, SPAR_ERR_NUMERIC,
-        "the members connected by joint '%s': Newton %s (%d iterations in several attempts, each of %d at "
-        "most) in the step from t = %g; use a smaller dt, more substeps or a smaller rho_inf, or check the loads",
-        a->constraint[0].joint->name, wrong, iterations, a->session->newton.max, a->session->clock.time);
+    if (wrong) {
+        spari_assembly_name(a, name, sizeof name);
+        return spari_fail(a->session, SPAR_ERR_NUMERIC,
+                          "%s: Newton %s (%d iterations in several attempts, each of %d at most) in the step from t = "
+                          "%g; use a smaller dt, more substeps or a smaller rho_inf, or check the loads",
+                          name, wrong, iterations, a->session->newton.max, a->session->clock.time);
+    }
     return SPAR_OK;
 }
 
@@ -376,13 +381,7 @@ static int shift_for_alpha(spari_assembly *a, double cv, double time) {
         }
         l->joint->after = found;
     }
-    if (spari_system_close_gaps(a, cv)) {
-        return 1;
-    }
-    for (int i = 0; i < a->components; i++) {
-        a->component[i].row->shift_rates(a->component + i, 1, 0, 0);
-    }
-    return 0;
+    return spari_system_shift_rates(a, cv, 1, 0);
 }
 
 /* ---- the start ---- */
@@ -396,13 +395,10 @@ static void start_residual(spari_assembly *a, double cm) {
     }
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
-        double drift[6], rate[6];
         spari_constraint_find(l, 0, 0, 1);
-        spari_kinematics_drift(&l->joint->kinematics, &l->pose[0], &l->pose[1], l->v, drift);
-        spari_constraint_times(l->B, l->a, rate);
+        spari_constraint_set_acceleration_gaps(l);
         for (int k = 0; k < 6; k++) {
-            double asked = l->joint->driven >> k & 1 ? l->drive.acceleration[k] : 0;
-            l->gap[k] = spari_constraint_holds(l, k) ? (rate[k] + drift[k] - asked) / cm : 0;
+            l->gap[k] /= cm;
         }
     }
     spari_constraints_add_forces(a);
@@ -421,9 +417,13 @@ static void begin_drive(spari_constraint *l) {
     l->drive = j->drive[0];
 }
 
-/* Finds consistent accelerations of the components and loads of the joints at t^0: the start of body_newton.c, with
-   the joints. */
+/* Finds consistent accelerations of the components and loads of the joints at t^0: those of the initial rigid-body
+   field, and what the balance of forces requires beyond them, through M + K / cm instead of M. Parts that are stiff or
+   light against this step (or have no mass at all) would start with accelerations that the step cannot follow. Each
+   refinement solves for the remaining part. With z = omega^2 / cm a mode keeps 1 - (z / (1 + z))^4 of its
+   acceleration. */
 static int start_all(spari_assembly *a) {
+    char name[NAME];
     double cm = a->component[0].scheme.cm;
     int singular = 0;
     for (int i = 0; i < a->components; i++) { /* all of them: constraints look at their states */
@@ -437,11 +437,11 @@ static int start_all(spari_assembly *a) {
     singular = singular || project(a, 0, 0);
     for (int k = 0; k <= START_REFINEMENTS && !singular; k++) {
         start_residual(a, cm);
-        singular = spari_system_solve(a, 0);
+        singular = spari_assembly_solve(a, 0);
         for (int i = 0; i < a->components && !singular; i++) {
             a->component[i].row->correct_start(a->component + i);
         }
-        correct_loads(a, 1);
+        spari_constraints_correct_loads(a, 1);
     }
     for (int i = 0; i < a->components && !singular; i++) {
         a->component[i].row->end_start(a->component + i);
@@ -456,10 +456,11 @@ static int start_all(spari_assembly *a) {
         }
     }
     a->factored = 0;
+    spari_assembly_name(a, name, sizeof name);
     SPARI_REQUIRE(a->session, !singular, SPAR_ERR_NUMERIC,
-                  "the members connected by joint '%s': their mass and stiffness are singular at the start; give mass "
-                  "or rotary inertia in every direction of free motion",
-                  a->constraint[0].joint->name);
+                  "%s: mass and stiffness together are singular at the start; give mass or rotary inertia in every "
+                  "direction of free motion",
+                  name);
     for (int i = 0; i < a->constraints; i++) {
         spari_joint_balance(a->constraint[i].joint);
     }
@@ -496,6 +497,10 @@ static int fail_singular(const spari_assembly *a) {
    loads would be of first order only, because h^2 (1/2 - beta) b^n + h^2 beta b^{n+1} would have to make up for the
    whole local error of the positions. */
 static int publish_all(spari_assembly *a, double dt) {
+    if (a->constraints == 0) {
+        a->component[0].member->row->publish(a->component[0].member);
+        return SPAR_OK;
+    }
     int moves = !a->component[0].scheme.still;
     for (int i = 0; i < a->components; i++) {
         a->component[i].row->keep_rates(a->component + i, 0);
@@ -552,7 +557,7 @@ static void begin_constraints(spari_assembly *a) {
 }
 
 /* Joints whose nodes all have prescribed motion: their springs. */
-static void look_at_constraints(spari_assembly *a, double dt) {
+void spari_assembly_look(spari_assembly *a, double dt) {
     begin_constraints(a);
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint_find(a->constraint + i, 1, dt, 1);
@@ -652,8 +657,7 @@ static int gains_of_all(void *self, const spari_part *part) {
 }
 
 static void name_all(const void *self, char *text, int size) {
-    const spari_assembly *a = self;
-    (void)snprintf(text, (size_t)size, "the members connected by joint '%s'", a->constraint[0].joint->name);
+    spari_assembly_name(self, text, size);
 }
 
 static void enter_all(void *self, const spari_part *part) {
@@ -672,7 +676,8 @@ static double rotation_rate_of_all(const void *self) {
     double most = 0;
     for (int i = 0; i < a->components; i++) {
         const spari_component *p = a->component + i;
-        most = fmax(most, spari_stage_rotation_rate(p->solver, p->member));
+        int given = p->frame && !p->member->floats; /* the root does not rotate freely */
+        most = fmax(most, given ? 0 : spari_stage_rotation_rate(p->solver, p->member));
     }
     return most;
 }
@@ -699,7 +704,7 @@ static int stage_of_all(void *self, const spari_scheme *c, const spari_part *par
     }
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
-        if (c->rule == SPARI_TRAPEZOIDAL && !(part->from > 0) && !part->again) {
+        if (c->rule == SPARI_TRAPEZOIDAL && !(part->from > 0) && !part->again && a->constraints > 0) {
             p->row->take_velocities(p);
         }
         SPARI_TRY(p->row->stage(p, part));
@@ -733,7 +738,7 @@ int spari_assembly_advance(spari_assembly *a, double dt, int responses) {
         return SPAR_OK;
     }
     if (a->components == 0) {
-        look_at_constraints(a, dt);
+        spari_assembly_look(a, dt);
         return SPAR_OK;
     }
     SPARI_TRY(begin_step(a, dt));
@@ -761,7 +766,37 @@ int spari_assembly_advance(spari_assembly *a, double dt, int responses) {
     return SPAR_OK;
 }
 
+int spari_lone_balance(spar_member *m, double dt) {
+    spari_component p = spari_component_of(m);
+    spari_assembly a = spari_assembly_of_one(&p);
+    return spari_assembly_balance(&a, dt);
+}
+
+static int advance_once(spar_member *m, double dt) {
+    spari_component p = spari_component_of(m);
+    spari_assembly a = spari_assembly_of_one(&p);
+    return spari_assembly_advance(&a, dt, 0);
+}
+
+int spari_lone_advance(spar_member *m, double dt) {
+    return m->row->repeat ? m->row->repeat(m, dt, advance_once) : advance_once(m, dt);
+}
+
 /* ---- its answer ---- */
+
+int spari_lone_response(spar_member *m, const double *load, double *motion) {
+    spari_component p = spari_component_of(m);
+    p.row->look_back(&p);
+    if (p.row->tangent_after(&p)) {
+        return 1;
+    }
+    p.row->take_more(&p, load);
+    if (spari_component_solve(&p)) {
+        return 1;
+    }
+    p.row->show_more(&p, motion);
+    return 0;
+}
 
 /* Where a member's own begin among those of all. */
 static double *stacked_of(const spar_member *member, double *stacked) {

@@ -73,6 +73,12 @@ int spari_assembly_static(spari_assembly *assembly, const double *(*fluid)(const
 void spari_assembly_begin(spari_assembly *assembly);
 void spari_assembly_accept(spari_assembly *assembly);
 void spari_assembly_reject(spari_assembly *assembly);
+/* The same of a member that no joint connects, which is an assembly of one. Step, accelerations at t^0, response to a
+   load [nodes][6], equilibrium under dead loads and `fluid`. */
+int spari_lone_advance(spar_member *member, double dt);
+int spari_lone_balance(spar_member *member, double dt);
+int spari_lone_response(spar_member *member, const double *load, double *motion);
+int spari_lone_static(spar_member *member, const double *(*fluid)(const spar_member *), int load_steps, int onward);
 /* The added mass of a member has changed. */
 void spari_assembly_forget(spari_assembly *assembly);
 /* The motion at t^{n+1} becomes the motion at the present time. */

@@ -47,15 +47,10 @@ void spari_constraint_times(double B[6][12], const double v[12], double rate[6])
     }
 }
 
-/* Change of the rates of a step with its coordinates; at one moment (dt 0) they are not tied. */
-static double speed_of_step(const spari_constraint *l, double dt) {
-    const spari_component *p = l->component[0] ? l->component[0] : l->component[1];
-    return p && dt > 0 ? p->scheme.rate : INFINITY;
-}
-
 void spari_constraint_find(spari_constraint *l, double s, double dt, double factor) {
     spar_joint *j = l->joint;
     spari_relative *r = &j->after;
+    const spari_component *p = l->component[0] ? l->component[0] : l->component[1];
     double near[6];
     memcpy(near, r->z, sizeof near);
     r->found = 1;
@@ -64,13 +59,25 @@ void spari_constraint_find(spari_constraint *l, double s, double dt, double fact
     spari_kinematics_motion(&j->kinematics, &l->pose[0], &l->pose[1], r->z, l->B);
     spari_joint_count_turns(j, near, r->z);
     spari_constraint_times(l->B, l->v, r->rate);
-    l->springs = spari_joint_spring(j, r->z, r->rate, speed_of_step(l, dt), factor, r->load);
+    double rate = p && dt > 0 ? p->scheme.rate : INFINITY; /* of the coordinates in a step; none at one moment */
+    l->springs = spari_joint_spring(j, r->z, r->rate, rate, factor, r->load);
 }
 
 double spari_constraint_gap(const spari_constraint *l, int k) {
     const spar_joint *j = l->joint;
     double target = j->driven >> k & 1 ? l->drive.z[k] : j->kinematics.line ? j->length : 0;
     return j->after.z[k] - target;
+}
+
+void spari_constraint_set_acceleration_gaps(spari_constraint *l) {
+    const spar_joint *j = l->joint;
+    double drift[6], rate[6];
+    spari_kinematics_drift(&j->kinematics, &l->pose[0], &l->pose[1], l->v, drift);
+    spari_constraint_times(l->B, l->a, rate);
+    for (int k = 0; k < 6; k++) {
+        double asked = j->driven >> k & 1 ? l->drive.acceleration[k] : 0;
+        l->gap[k] = spari_constraint_holds(l, k) ? rate[k] + drift[k] - asked : 0;
+    }
 }
 
 double spari_constraint_rate_gap(const spari_constraint *l, int k) {
@@ -125,6 +132,14 @@ void spari_constraint_rotate_dampers(spari_constraint *l, const double w[3]) {
         double d = (given >> p & 1) || (given >> q & 1) ? 0 : j->damping[pq];
         for (int i = 0; i < 144 && d != 0; i++) {
             l->joint_tangent[i / 12][i % 12] -= d * l->B[p][i / 12] * R[q][i % 12];
+        }
+    }
+}
+
+void spari_constraints_correct_loads(spari_assembly *a, double cut) {
+    for (int i = 0; i < a->constraints; i++) {
+        for (int k = 0; k < 6; k++) {
+            a->constraint[i].joint->after.load[k] -= cut * a->constraint[i].correction[k];
         }
     }
 }

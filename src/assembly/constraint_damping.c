@@ -24,15 +24,9 @@ static void find_ringing(spari_assembly *a, double s, double dt) {
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
         const spari_relative found = l->joint->after;
-        double drift[6], rate[6];
         spari_constraint_find(l, s, dt, 1);
         l->joint->after = found;
-        spari_kinematics_drift(&l->joint->kinematics, &l->pose[0], &l->pose[1], l->v, drift);
-        spari_constraint_times(l->B, l->a, rate);
-        for (int k = 0; k < 6; k++) {
-            double asked = l->joint->driven >> k & 1 ? l->drive.acceleration[k] : 0;
-            l->gap[k] = spari_constraint_holds(l, k) ? rate[k] + drift[k] - asked : 0;
-        }
+        spari_constraint_set_acceleration_gaps(l);
     }
 }
 
@@ -43,12 +37,6 @@ int spari_system_damp_constraints(spari_assembly *a, double s, double dt) {
         return 0;
     }
     find_ringing(a, s, dt);
-    if (spari_system_close_gaps(a, c->cv)) {
-        return 1;
-    }
-    for (int i = 0; i < a->components; i++) { /* violent: velocities are on the constraints */
-        a->component[i].row->shift_rates(a->component + i, a->violent ? 0 : 0.25 * (1 - r) * (1 - r) * c->h, 1 - r * r,
-                                         0);
-    }
-    return 0;
+    /* violent: velocities are on the constraints */
+    return spari_system_shift_rates(a, c->cv, a->violent ? 0 : 0.25 * (1 - r) * (1 - r) * c->h, 1 - r * r);
 }

@@ -19,10 +19,6 @@ typedef struct prescribed_motion {
     double x[3], v[6], a[3];
 } prescribed_motion;
 
-static int is_rotating(const prescribed_motion *t) {
-    return spari_norm(t->v + 3) > 0 || spari_norm(t->a) > 0;
-}
-
 static prescribed_motion prescribed_by(const spar_member *m, const char *kind, const spari_motion *motion,
                                        int64_t node) {
     prescribed_motion t = {.kind = kind, .name = m->name};
@@ -76,7 +72,7 @@ static int refuse_rotations(const spari_assembly *a, const prescribed_motion *on
 /* Sets the rotation from a motion, or compares the two. Nodes at rest may carry rotating parts, as the ground does;
    members on roots at rest may not. */
 static int meet_motion(spari_assembly *a, const prescribed_motion *t, int carries, prescribed_motion *first) {
-    if (!is_rotating(t) && (carries || !a->rotates)) {
+    if (!(spari_norm(t->v + 3) > 0 || spari_norm(t->a) > 0) && (carries || !a->rotates)) {
         return SPAR_OK;
     }
     if (!a->rotates) {

@@ -1,16 +1,24 @@
-/* Static equilibrium of an assembly: Newton with exact tangents, in load steps that are halved where Newton fails.
+/* Static equilibrium by Newton with exact tangents, in load steps that are halved where Newton fails.
 
-   If the loads stabilise a motion that no stiffness holds (a body that hangs on a hinge), the tangent is singular
-   until the joints' loads are known. Newton also goes to any equilibrium, even with a body upside down. In these
-   cases a stiffness is added to every motion (a shift), large enough that the system is that of a minimum, which the
-   count of its eigenvalues shows (Levenberg and Marquardt, with the inertia of the KKT system as in interior-point
-   methods; Nocedal and Wright, Numerical Optimization (2006), theorem 16.3). The iteration then goes downhill, and
-   the shift is 0 at its end. */
+   A member without joints: from a stable state on, the equilibria under growing dead forces form a path. On this path
+   the tangent, the second derivative of a potential, is positive definite up to a limit or bifurcation point. A load
+   step is halved if it ends beyond such a point, or if its iterations pass a tangent of negative determinant (a jump to
+   another branch). If it cannot be halved any more, the point has been found. Moments about fixed axes and follower
+   loads have no potential, and their paths are not watched: for example, only symmetry keeps a beam rolled up by a
+   moment in its plane.
+
+   An assembly: if the loads stabilise a motion that no stiffness holds (a body that hangs on a hinge), the tangent is
+   singular until the joints' loads are known. Newton also goes to any equilibrium, even with a body upside down. In
+   these cases a stiffness is added to every motion (a shift), large enough that the system is that of a minimum, which
+   the count of its eigenvalues shows (Levenberg and Marquardt, with the inertia of the KKT system as in interior-point
+   methods; Nocedal and Wright, Numerical Optimization (2006), theorem 16.3). The iteration then goes downhill, and the
+   shift is 0 at its end. */
 #include "assembly.h"
 
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
+#include "../time/fidelity.h"
 #include "rotation_check.h"
 #include "system.h"
 
@@ -20,10 +28,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { REST_ITERATIONS = 60, REST_HALVINGS = 14 };
+enum { ITERATIONS = 60, HALVINGS = 14 };
 
 /* A system whose smallest pivot is below this part of its largest stiffness is singular apart from rounding. */
 static const double loose = 1e-13;
+
+/* Result of a load step: an equilibrium, or none. LOOSE: a motion is not constrained. UNSTABLE: the equilibrium does
+   not last, or the path to it passes a limit or bifurcation point. LONG: it needs too many load steps. */
+typedef enum outcome { FOUND, FAILED, LOOSE, UNSTABLE, LONG } outcome;
+
+/* An equilibrium to be found. */
+typedef struct rest {
+    spari_assembly *a;
+    const double *(*fluid)(const spar_member *);
+    int potential;      /* the loads have one: the stability of an equilibrium can be told */
+    spari_linear *path; /* the tangent of a member without joints, if its path is watched */
+    int on_path;        /* the last point is on the path */
+    char motion[240];   /* that is not constrained or unstable */
+} rest;
 
 /* Residual at the load factor f, and gaps with driven motions at the same part of their way. */
 static double balance_at_rest(spari_assembly *a, double f, double *noise) {
@@ -59,11 +81,11 @@ static int solve_at_rest(spari_assembly *a, double f) {
         }
     }
     spari_system_keep_joint_tangents(a);
-    return spari_system_solve(a, 0);
+    return spari_assembly_solve(a, 0);
 }
 
 /* Subtracts the corrections, shortened. Returns their size before. */
-static double shift_parts(spari_assembly *a, double longest, double *cut) {
+static double correct_at_rest(spari_assembly *a, double longest, double *cut) {
     double largest = 0;
     for (int i = 0; i < a->components; i++) {
         largest = fmax(largest, a->component[i].row->correction_size(a->component + i));
@@ -72,35 +94,24 @@ static double shift_parts(spari_assembly *a, double longest, double *cut) {
     for (int i = 0; i < a->components; i++) {
         a->component[i].row->shift(a->component + i, *cut);
     }
-    for (int i = 0; i < a->constraints; i++) {
-        for (int k = 0; k < 6; k++) {
-            a->constraint[i].joint->after.load[k] -= *cut * a->constraint[i].correction[k];
-        }
-    }
+    spari_constraints_correct_loads(a, *cut);
     return largest;
 }
 
-/* The largest correction of a joint's load. */
-static double change_of_loads(const spari_assembly *a) {
-    double largest = 0;
-    for (int i = 0; i < a->constraints; i++) {
+/* Whether an iteration with a correction of that size may be the last one. Joints' loads change the stiffness of the
+   motions they connect, and a tangent with the former loads does not contain this. */
+static int may_end(const spari_assembly *a, int it, double scale, double size) {
+    double change = 0;
+    for (int i = 0; i < a->constraints && it < 3; i++) {
         for (int k = 0; k < 6; k++) {
-            largest = fmax(largest, fabs(a->constraint[i].correction[k]));
+            change = fmax(change, fabs(a->constraint[i].correction[k]));
         }
     }
-    return largest;
+    return a->constraints == 0 || (change <= 1e-6 * scale && size < 1e-7);
 }
 
-/* Whether an iteration without motion is the last one. Joints' loads change the stiffness of the motions they
-   connect, and a tangent with the former loads does not contain this. */
-static int loads_stand(const spari_assembly *a, int it, double scale) {
-    return it >= 3 || change_of_loads(a) <= 1e-6 * scale;
-}
-
-typedef enum rest { FOUND, FAILED, LOOSE, UNSTABLE } rest;
-
-/* Whether all forces have a potential: no follower loads, no moments about fixed axes, no rotation. */
-static int has_potential(const spari_assembly *a, const double *(*fluid)(const spar_member *)) {
+/* Whether all loads have a potential: no follower loads, no moments about fixed axes. */
+static int has_potential_loads(const spari_assembly *a, const double *(*fluid)(const spar_member *)) {
     for (int i = 0; i < a->components; i++) {
         const spar_member *m = a->component[i].member;
         const double *other = fluid(m);
@@ -113,15 +124,15 @@ static int has_potential(const spari_assembly *a, const double *(*fluid)(const s
             return 0;
         }
     }
-    return !a->rotates;
+    return 1;
 }
 
 /* Solves for the corrections with the smallest shift that makes the system that of a minimum: 0, or one of a
    sequence that grows by a factor of 4. *kept: the last shift that was not 0. Returns the fault of the system
    without a shift. */
-static rest solve_downhill(spari_assembly *a, double f, double *kept) {
+static outcome solve_downhill(spari_assembly *a, double f, double *kept) {
     enum { SHIFTS = 30 };
-    rest why = FOUND;
+    outcome why = FOUND;
     a->shift = 0;
     if (solve_at_rest(a, f) || spari_system_weakest_pivot(a) < loose) {
         why = LOOSE;
@@ -140,14 +151,14 @@ static rest solve_downhill(spari_assembly *a, double f, double *kept) {
     return why;
 }
 
-/* Finds a stable equilibrium at the load factor f from the states `to`, always downhill. LOOSE: a motion is not
-   constrained there. UNSTABLE: the equilibrium found is unstable. */
-static rest find_downhill(spari_assembly *a, double f) {
-    enum { ITERATIONS = 400 };
+/* Finds a stable equilibrium at the load factor f from the states `to`, always downhill. LOOSE: a motion is
+   not constrained there. UNSTABLE: the equilibrium found is unstable. */
+static outcome find_downhill(spari_assembly *a, double f) {
+    enum { DOWNHILL = 400 };
     const double longest = 0.3;
     double last = 0, kept = 0;
-    rest why = FOUND;
-    for (int it = 0; it < ITERATIONS && why != FAILED; it++) {
+    outcome why = FOUND;
+    for (int it = 0; it < DOWNHILL && why != FAILED; it++) {
         double noise, cut, scale = balance_at_rest(a, f, &noise);
         if (!isfinite(scale)) {
             return FAILED;
@@ -159,7 +170,7 @@ static rest find_downhill(spari_assembly *a, double f) {
         if (why == FAILED) {
             break;
         }
-        double largest = shift_parts(a, longest, &cut);
+        double largest = correct_at_rest(a, longest, &cut);
         int small = cut == 1 && it >= 3 && (largest < 1e-9 || (largest < 1e-7 && last > 0 && largest > 0.5 * last));
         if (small) {
             return why;
@@ -169,39 +180,57 @@ static rest find_downhill(spari_assembly *a, double f) {
     return FAILED;
 }
 
-/* Whether the equilibrium is a maximum or a saddle, apart from motions without stiffness. */
-static int is_unstable(spari_assembly *a, double f) {
+/* ---- a load step ---- */
+
+/* Whether the equilibrium lasts: not a maximum or a saddle, apart from motions without stiffness. */
+static outcome judge(const rest *t, double f) {
+    spari_assembly *a = t->a;
+    if (t->path) {
+        return a->component[0].row->definite_rest(a->component, f) == 0 ? UNSTABLE : FOUND;
+    }
+    if (!t->potential || a->constraints == 0) {
+        return FOUND;
+    }
     spari_blocks_watch(a->system, 1);
     int singular = solve_at_rest(a, f);
     spari_blocks_watch(a->system, 0);
-    return !singular && spari_system_weakest_pivot(a) >= loose && spari_system_count_negative(a) > 0;
+    int unstable = !singular && spari_system_weakest_pivot(a) >= loose && spari_system_count_negative(a) > 0;
+    return unstable ? UNSTABLE : FOUND;
 }
 
-/* Equilibrium at the factor f from the states `to`. */
-static rest find_rest_at(spari_assembly *a, double f) {
+/* By Newton from the present state. */
+static outcome find_nearby(const rest *t, double f) {
+    const double longest = 0.8; /* a correction rotates no node by more (rad), and moves it by no more of the length */
+    spari_assembly *a = t->a;
     double last = 0;
     a->shift = 0;
-    for (int it = 0; it < REST_ITERATIONS; it++) {
+    for (int it = 0; it < ITERATIONS; it++) {
         double noise, cut, scale = balance_at_rest(a, f, &noise);
         if (!isfinite(scale)) {
             return FAILED;
         }
-        if (solve_at_rest(a, f) || spari_system_weakest_pivot(a) < loose) {
+        int singular = solve_at_rest(a, f);
+        if (a->constraints > 0 && (singular || spari_system_weakest_pivot(a) < loose)) {
             return LOOSE;
         }
-        double largest = shift_parts(a, 0.8, &cut);
-        if (cut == 1 && loads_stand(a, it, scale) &&
-            (largest < 1e-9 || (noise <= 16 * DBL_EPSILON * scale && largest < 1e-7) ||
-             (largest < 1e-7 && last > 0 && largest > 0.5 * last))) {
-            return a->potential && is_unstable(a, f) ? UNSTABLE : FOUND;
+        if (singular || (t->path && t->on_path && spari_linear_sign(t->path) < 0)) {
+            return singular ? FAILED : UNSTABLE;
         }
-        last = largest;
+        double size = correct_at_rest(a, longest, &cut);
+        /* quadratic: a correction of 1e-8 leaves 1e-16; or the balance is as good as rounding lets it be */
+        int found = size < 1e-9 || noise <= 16 * DBL_EPSILON * scale || (size < 1e-7 && last > 0 && size > 0.5 * last);
+        if (found && cut == 1 && may_end(a, it, scale, size)) {
+            return judge(t, f);
+        }
+        last = size;
     }
     return FAILED;
 }
 
 /* The states and multipliers of the last point found. */
-static void keep_point(spari_assembly *a, int back) {
+static void keep_point(rest *t, int back) {
+    spari_assembly *a = t->a;
+    t->on_path = 1;
     for (int i = 0; i < a->components; i++) {
         a->component[i].row->keep_positions(a->component + i, back);
     }
@@ -211,61 +240,69 @@ static void keep_point(spari_assembly *a, int back) {
     }
 }
 
-/* Passes the loads to the components' solvers. onward: these keep their states, else they go to t^n. */
-static void begin_rest(spari_assembly *a, const double *(*fluid)(const spar_member *), int onward) {
-    for (int i = 0; i < a->components; i++) {
-        a->component[i].rotating = a->rotates ? &a->rotating : NULL;
-        a->component[i].row->rest(a->component + i, fluid(a->component[i].member), onward);
+/* By Newton, and in an assembly downhill where that finds nothing that lasts. first: no point has been found yet. */
+static outcome find_point(rest *t, double f, int first) {
+    spari_assembly *a = t->a;
+    outcome found = find_nearby(t, f), why = found;
+    if (a->constraints == 0) {
+        return found;
     }
-    for (int i = 0; i < a->constraints && !onward; i++) {
-        a->constraint[i].joint->after = a->constraint[i].joint->now;
-    }
-    keep_point(a, 0);
-}
-
-/* Why the load steps ended, and the motion that is not constrained or unstable. */
-typedef struct rest_end {
-    rest why;
-    char motion[240];
-} rest_end;
-
-/* One load step: by Newton, and downhill where that finds nothing that lasts. */
-static rest find_point(spari_assembly *a, double f, int first, rest_end *end) {
-    rest found = find_rest_at(a, f), why = found;
     if (found == LOOSE || found == UNSTABLE) {
-        spari_system_name_free(a, end->motion, sizeof end->motion);
+        spari_system_name_free(a, t->motion, sizeof t->motion);
     }
     if ((found == LOOSE && first) || found == UNSTABLE) {
-        keep_point(a, 1);
+        keep_point(t, 1);
         spari_blocks_watch(a->system, 1);
         found = find_downhill(a, f);
         spari_blocks_watch(a->system, 0);
         a->shift = 0;
-        if (found == LOOSE || found == UNSTABLE) { /* where it has come to rest, that motion is the one */
+        if (found == LOOSE || found == UNSTABLE) { /* where it has come to rest */
             why = found;
-            spari_system_name_free(a, end->motion, sizeof end->motion);
+            spari_system_name_free(a, t->motion, sizeof t->motion);
         }
     }
-    end->why = found == FOUND ? FOUND : why;
-    return end->why;
+    return found == FOUND ? found : why;
 }
 
-/* Load steps from 0 to the full load. Keeps the last point. Returns the part of the load that was reached. */
-static double follow_loads(spari_assembly *a, int load_steps, rest_end *end) {
+/* ---- the load steps ---- */
+
+/* Begins from the last shapes (onward), else from t^n. The path begins there if the state is in equilibrium without
+   loads. */
+static void begin_rest(rest *t, int onward) {
+    spari_assembly *a = t->a;
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].rotating = a->rotates ? &a->rotating : NULL;
+        a->component[i].row->rest(a->component + i, t->fluid(a->component[i].member), onward);
+    }
+    for (int i = 0; i < a->constraints && !onward; i++) {
+        a->constraint[i].joint->after = a->constraint[i].joint->now;
+    }
+    t->motion[0] = 0;
+    keep_point(t, 0);
+    if (t->path) {
+        double noise;
+        t->on_path = isfinite(balance_at_rest(a, 0, &noise)) && noise <= 1e-9 * a->component[0].solver->body->stiffest;
+    }
+}
+
+/* Keeps the last point. Returns the part of the load that was reached. */
+static double follow_loads(rest *t, int load_steps, outcome *why) {
     double done = 0, step = 1.0 / load_steps;
-    int halvings = 0;
-    for (int attempts = 0; done < 1 && halvings <= REST_HALVINGS && attempts < load_steps + SPARI_STATIC_MORE;
-         attempts++) {
+    int halvings = 0, left = load_steps + SPARI_STATIC_MORE;
+    while (done < 1 && halvings <= HALVINGS) {
+        if (left-- == 0) {
+            *why = LONG;
+            break;
+        }
         double f = done + step > 1 - 1e-12 ? 1 : done + step;
-        rest found = find_point(a, f, done == 0, end);
-        if (found == FOUND) {
+        *why = find_point(t, f, done == 0);
+        keep_point(t, *why != FOUND);
+        if (*why == FOUND) {
             done = f;
-            keep_point(a, 0);
             continue;
         }
-        keep_point(a, 1);
         step *= 0.5;
-        halvings += found == LOOSE && done == 0 ? REST_HALVINGS : 1;
+        halvings += *why == LOOSE && done == 0 ? HALVINGS : 1;
     }
     return done;
 }
@@ -277,50 +314,76 @@ static void give_up_rest(spari_assembly *a) {
     spari_assembly_discard(a);
 }
 
+/* The largest rotation between neighbouring nodes, rad; 0 of linear members. */
+static double largest_bend(const spari_component *p) {
+    double largest = 0;
+    for (int i = 1; i < p->solver->n; i++) {
+        double rotation[4], psi[3];
+        spari_quat_between(p->solver->to.q + 7 * i - 4, p->solver->to.q + 7 * i + 3, rotation);
+        spari_quat_log(rotation, psi);
+        largest = fmax(largest, spari_norm(psi));
+    }
+    return largest;
+}
+
+/* With a larger rotation between nodes, the shape between them is not determined: a circle of 5 turns on 24 nodes
+   (2.1 rad) is accurate to 5e-4, one of 7 turns (3 rad) is another curve. If Newton has failed, 1 rad suffices for
+   this message: 10 nodes of an element fail at 1.7 rad. */
+static const double most_bend = 2.2, suspect_bend = 1;
+
+static void say_why_alone(const rest *t, outcome why, char *text, size_t size) {
+    double bend = largest_bend(t->a->component);
+    (void)snprintf(text, size, ": a limit point, or a member free to move as a rigid body; apply smaller loads");
+    if (why == UNSTABLE) {
+        (void)snprintf(text, size,
+                       ": a limit or bifurcation point, where the stiffness is not positive definite; apply smaller "
+                       "loads, or run time steps");
+    } else if (bend > suspect_bend) {
+        (void)snprintf(text, size,
+                       ": neighbouring nodes are rotated by %.2g rad relative to each other, more than the elements "
+                       "resolve; give the beam more nodes or elements",
+                       bend);
+    }
+}
+
 /* No equilibrium was found: restores everything. */
-static int refuse_rest(spari_assembly *a, double done, const rest_end *end) {
-    const char *motion = end->motion[0] ? end->motion : "some motion";
-    char text[500] = "; use more load_steps";
-    if (end->why == LOOSE) {
+static int refuse_rest(const rest *t, double done, outcome why) {
+    const char *motion = t->motion[0] ? t->motion : "some motion";
+    char text[500] = "; use more load_steps", name[160];
+    if (t->a->constraints == 0 && why != LONG) {
+        say_why_alone(t, why, text, sizeof text);
+    } else if (why == LOOSE) {
         (void)snprintf(text, sizeof text, ": %s is not constrained; constrain it by a joint or a spring", motion);
-    } else if (end->why == UNSTABLE) {
+    } else if (why == UNSTABLE) {
         (void)snprintf(text, sizeof text,
                        ": the equilibrium is unstable in %s; start slightly away from it to find a stable one, or "
                        "constrain that motion by a joint or a spring",
                        motion);
     }
-    give_up_rest(a);
-    return spari_fail(a->session, SPAR_ERR_NUMERIC,
-                      "the members connected by joint '%s': no %sequilibrium found beyond %.6g of the loads%s; "
-                      "the state is unchanged",
-                      a->constraint[0].joint->name, end->why == UNSTABLE ? "stable " : "", done, text);
+    give_up_rest(t->a);
+    spari_assembly_name(t->a, name, sizeof name);
+    return spari_fail(t->a->session, SPAR_ERR_NUMERIC,
+                      "%s: no %sequilibrium found beyond %.6g of the loads%s; the state is unchanged", name,
+                      why == UNSTABLE ? "stable " : "", done, text);
 }
 
-/* Joints whose nodes all have prescribed motion: their springs. */
-static int look_at_rest(spari_assembly *a) {
-    for (int i = 0; i < a->constraints; i++) {
-        spar_joint *j = a->constraint[i].joint;
-        j->after = j->now;
-        spari_constraint_find(a->constraint + i, 1, 1, 1);
+static int find_equilibrium_of(rest *t, int load_steps, int onward) {
+    spari_assembly *a = t->a;
+    outcome why = FAILED;
+    double done = 0;
+    t->potential = !a->rotates && has_potential_loads(a, t->fluid);
+    if (onward) {
+        begin_rest(t, 1);
+        done = follow_loads(t, 1, &why);
     }
-    return SPAR_OK;
-}
-
-static int find_equilibrium_of(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps,
-                               int onward) {
-    rest_end end = {FAILED, ""};
-    a->potential = has_potential(a, fluid);
-    begin_rest(a, fluid, onward);
-    double done = onward ? follow_loads(a, 1, &end) : 0;
     if (done < 1) {
-        begin_rest(a, fluid, 0);
-        end = (rest_end){FAILED, ""};
-        done = follow_loads(a, load_steps, &end);
+        begin_rest(t, 0);
+        done = follow_loads(t, load_steps, &why);
     }
     a->factored = 0;
     spari_snapshot_close(&a->before);
     if (done < 1) {
-        return refuse_rest(a, done, &end);
+        return refuse_rest(t, done, why);
     }
     for (int i = 0; i < a->components; i++) {
         a->component[i].row->end_rest(a->component + i);
@@ -332,11 +395,15 @@ static int find_equilibrium_of(spari_assembly *a, const double *(*fluid)(const s
 }
 
 int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps, int onward) {
-    if (!a->here || a->components == 0) {
-        return a->here ? look_at_rest(a) : SPAR_OK;
+    if (!a->here) {
+        return SPAR_OK;
+    }
+    if (a->components == 0) {
+        spari_assembly_look(a, 1);
+        return SPAR_OK;
     }
     int status = spari_rotation_check_begin(a);
-    status = status == SPAR_OK ? find_equilibrium_of(a, fluid, load_steps, onward) : status;
+    status = status == SPAR_OK ? find_equilibrium_of(&(rest){.a = a, .fluid = fluid}, load_steps, onward) : status;
     if (status == SPAR_OK && a->rotates) {
         status = spari_rotation_check_joints(a);
         if (status != SPAR_OK) {
@@ -346,6 +413,62 @@ int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_m
     spari_rotation_check_end(a);
     return status;
 }
+
+/* ---- of one member ---- */
+
+/* An equilibrium of the nodes need not be one of the beam. */
+static void warn_of_bend(const spari_component *p) {
+    const spar_member *m = p->member;
+    char text[SPARI_MESSAGE_SIZE];
+    double bend = m->session->callbacks.log ? largest_bend(p) : 0;
+    if (bend > most_bend) {
+        (void)snprintf(text, sizeof text,
+                       "static equilibrium of '%s': neighbouring nodes are rotated by %.2g rad relative to each other, "
+                       "more than the elements resolve; the result may be wrong; give the beam more nodes or elements",
+                       m->name, bend);
+        spari_log(m->session, SPAR_LOG_WARNING, text);
+    }
+}
+
+/* A root that is driven steadily: the equilibrium is one in its frame. */
+static void rotate_with_root(spari_assembly *a, const spar_member *m) {
+    a->rotates = m->root == SPAR_ROOT_DRIVEN && spari_steady_rotation_of(m, m->now.v, m->now.a, &a->rotating.rotation);
+    for (int k = 0; k < 3; k++) {
+        a->rotating.centre[k] = m->xr[k] + m->now.q[k];
+    }
+}
+
+int spari_lone_static(spar_member *m, const double *(*fluid)(const spar_member *), int load_steps, int onward) {
+    const int64_t P = m->mesh.per_element;
+    spari_component p = spari_component_of(m);
+    spari_assembly a = spari_assembly_of_one(&p);
+    rest t = {.a = &a, .fluid = fluid};
+    int linear = p.frame != NULL;
+    SPARI_REQUIRE(m->session, !linear || spari_member_constrained(m) == 6, SPAR_ERR_STATE,
+                  "member '%s': a linear member cannot have a root that is free to rotate; fix or drive its root",
+                  m->name);
+    a.rotating.mass = spari_zalloc(36 * P * P, sizeof(double));
+    rotate_with_root(&a, m);
+    t.path = !linear && m->root != SPAR_ROOT_PINNED && has_potential_loads(&a, fluid) ? p.solver->linear : NULL;
+    if (!a.rotating.mass || (t.path && spari_linear_watch(t.path))) {
+        free(a.rotating.mass);
+        return spari_fail(m->session, SPAR_ERR_MEMORY, "member '%s': no memory for its equilibrium", m->name);
+    }
+    int status = find_equilibrium_of(&t, linear ? 1 : load_steps, !linear && onward);
+    spari_linear_unwatch(p.solver->linear);
+    free(a.rotating.mass);
+    SPARI_TRY(status);
+    if (spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 || spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0) {
+        p.row->discard_rest(&p);
+        return spari_fail(m->session, SPAR_ERR_NUMERIC,
+                          "member '%s': its equilibrium is not finite; check its loads and the motion of its root",
+                          m->name);
+    }
+    warn_of_bend(&p);
+    return SPAR_OK;
+}
+
+/* ---- what has been found ---- */
 
 void spari_assembly_commit_state(spari_assembly *a) {
     for (int i = 0; i < a->constraints; i++) {

@@ -673,6 +673,19 @@ int spari_system_close_gaps(spari_assembly *a, double cv) {
     return solve_reduced(a, cv);
 }
 
+int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acceleration) {
+    if (a->constraints == 0) {
+        return 0;
+    }
+    if (spari_system_close_gaps(a, cv)) {
+        return 1;
+    }
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->shift_rates(a->component + i, v, acceleration, 0);
+    }
+    return 0;
+}
+
 double spari_system_weakest_pivot(const spari_assembly *a) {
     return spari_blocks_least_pivot(a->system) / a->scale;
 }

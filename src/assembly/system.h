@@ -84,7 +84,6 @@ struct spari_assembly {
     double cv, moved; /* and the motion of the components since; only within a solution */
     double scale;     /* its largest stiffness */
     double penalty;   /* of constraints that close loops, by their scale */
-    int potential;    /* its loads have a potential; at rest */
     double shift;     /* additional stiffness of every motion of a cluster, N/m; at rest */
     spari_blocks *system;
     double *x, *y; /* [interfaces][6] */
@@ -101,6 +100,8 @@ void spari_constraint_times(double B[6][12], const double v[12], double rate[6])
 /* The error of constrained motion k, and of its rate. */
 double spari_constraint_gap(const spari_constraint *l, int k);
 double spari_constraint_rate_gap(const spari_constraint *l, int k);
+/* Sets the gaps to the errors of the accelerations. */
+void spari_constraint_set_acceleration_gaps(spari_constraint *l);
 /* The side that is the ground or has prescribed motion; -1: none. */
 int spari_constraint_fixed_side(const spari_constraint *l);
 /* Adds the dampers to joint_tangent where the other side rotates steadily with w: there velocities depend on
@@ -108,6 +109,18 @@ int spari_constraint_fixed_side(const spari_constraint *l);
 void spari_constraint_rotate_dampers(spari_constraint *l, const double w[3]);
 /* Subtracts the constraints' forces from the components' residuals; constrained unknowns get none. */
 void spari_constraints_add_forces(spari_assembly *a);
+/* A member without joints is solved as an assembly of one component and no constraint. */
+static inline spari_assembly spari_assembly_of_one(spari_component *p) {
+    return (spari_assembly){.session = p->member->session, .here = 1, .components = 1, .component = p};
+}
+/* "member 'x'", or the members connected by a joint. */
+void spari_assembly_name(const spari_assembly *a, char *text, int size);
+/* Motions and springs of joints whose nodes all have prescribed motion, at the end of a step dt. */
+void spari_assembly_look(spari_assembly *a, double dt);
+/* As spari_system_solve, or the component's own solution where there are no constraints. */
+int spari_assembly_solve(spari_assembly *a, double cv);
+/* Subtracts the part `cut` of the multipliers' corrections. */
+void spari_constraints_correct_loads(spari_assembly *a, double cut);
 /* The smallest pivot of the system factored last, relative to the largest stiffness. */
 double spari_system_weakest_pivot(const spari_assembly *a);
 /* The number of negative eigenvalues of that system, apart from those of its multipliers, if the system counts them
@@ -124,6 +137,9 @@ void spari_system_keep_joint_tangents(spari_assembly *a);
 int spari_system_solve(spari_assembly *a, double cv);
 /* The same for the gaps alone, without forces. */
 int spari_system_close_gaps(spari_assembly *a, double cv);
+/* The same for the rates at the end: shifts velocities by v, and accelerations by `acceleration`, times the
+   corrections. Without constraints it does nothing. */
+int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acceleration);
 /* Constraint damping: damps oscillations along the constraints at the end of a substep, at the part s of the step
    dt. Returns 0 or 1. */
 int spari_system_damp_constraints(spari_assembly *a, double s, double dt);

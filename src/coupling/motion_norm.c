@@ -38,7 +38,7 @@ static int respond_stacked(const spari_norm_loads *c, spar_member *m, double uni
     if (m->assembly) {
         return 0;
     }
-    if (m->row->response(m, load, out + at)) {
+    if (spari_lone_response(m, load, out + at)) {
         return 1;
     }
     for (int64_t i = 0; i < n; i++) {
@@ -112,7 +112,7 @@ int spari_motion_norm(spar_session *s, const spari_norm_loads *c, double *residu
     int rank = spari_comm_rank(s->ranks.comm), singular = 0, k = 0;
     memset(c->image, 0, (size_t)(images + 1) * sizeof *c->image);
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next, k++) {
-        if (m->owner == rank && m->row->response) {
+        if (m->owner == rank && m->row->component) {
             singular = singular || respond_stacked(c, m, c->unit[k], at, c->g, c->x, response) ||
                        respond_stacked(c, m, c->unit[k], at, c->g, NULL, whole) ||
                        (c->shift && respond_stacked(c, m, c->unit[k], at, c->g, c->shift, bare));
@@ -148,7 +148,7 @@ int spari_motion_norm_images(spar_session *s, const spari_norm_loads *c, int64_t
     int64_t at = 0;
     memset(image, 0, (size_t)(count * c->n + 1) * sizeof *image);
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next, k++) {
-        for (int64_t j = 0; j < count && m->owner == rank && m->row->response; j++) {
+        for (int64_t j = 0; j < count && m->owner == rank && m->row->component; j++) {
             const double *x = loads + j * c->n;
             if (!is_zero(x + at, 6 * m->nodes) && respond_stacked(c, m, c->unit[k], at, x, NULL, image + j * c->n)) {
                 image[0] = NAN; /* cannot happen after spari_motion_norm succeeded */
@@ -202,14 +202,14 @@ static int respond_to_miss(spar_session *s, double *image, double *workspace) {
     int rank = spari_comm_rank(s->ranks.comm), singular = 0;
     double *at = image;
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next) {
-        if (m->owner != rank || !m->row->response) {
+        if (m->owner != rank || !m->row->component) {
             continue;
         }
         double *miss = m->assembly ? at : workspace; /* replaced later by the response of connected members */
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
             miss[i] = m->load.pushed[i] - m->load.used[i];
         }
-        singular = (!m->assembly && m->row->response(m, workspace, at)) || singular;
+        singular = (!m->assembly && spari_lone_response(m, workspace, at)) || singular;
     }
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         singular = spari_assembly_response(a, 1, 0, image) || singular;

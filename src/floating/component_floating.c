@@ -3,10 +3,10 @@
 #include "../algebra/cblas.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
-#include "../time/body_newton.h"
 #include "../time/component.h"
 #include "../time/driven_root.h"
 #include "../time/fidelity.h"
+#include "../time/substep_motion.h"
 #include "floating_root.h"
 
 #include <math.h>

@@ -194,20 +194,6 @@ static int modal_check(const spar_member *m) {
 
 /* ---- the rest of the rows ---- */
 
-static int frame_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
-    const spari_frame *f = m->solution;
-    (void)load_steps, (void)onward; /* the equations are linear */
-    SPARI_REQUIRE(m->session, f->constrained == 6, SPAR_ERR_STATE,
-                  "member '%s': a linear member cannot have a root that is free to rotate; fix or drive its root",
-                  m->name);
-    int failed = spari_component_static(m, fluid) || spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 ||
-                 spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0;
-    SPARI_REQUIRE(m->session, !failed, SPAR_ERR_NUMERIC,
-                  "member '%s': the linear member has no equilibrium under these loads; the state is unchanged",
-                  m->name);
-    return SPAR_OK;
-}
-
 static int64_t frame_unknowns(const spar_member *m) {
     const spari_frame *f = m->solution;
     return f->n - spari_member_constrained(m);
@@ -250,9 +236,8 @@ static int frame_renew_joints(spar_member *m) {
 /* What the two rows share. */
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .create = frame_create, .free = frame_free,                    \
-    .remass = spari_frame_remass, .restart = spari_frame_restart, .advance = spari_component_advance, .balance = spari_component_balance,  \
-    .response = spari_component_response, .felt = spari_frame_felt, .accept = spari_frame_accept, .begin = spari_frame_begin,    \
-    .reject = spari_frame_reject, .effort = frame_effort, .rest = frame_rest,                                          \
+    .remass = spari_frame_remass, .restart = spari_frame_restart, .felt = spari_frame_felt,                            \
+    .accept = spari_frame_accept, .begin = spari_frame_begin, .reject = spari_frame_reject, .effort = frame_effort,    \
     .reaction_size = spari_reaction_of_whole_size, .reaction = spari_reaction_of_whole, .energy = spari_frame_energy,  \
     .unknowns = frame_unknowns, .problem = spari_frame_problem, .shape = spari_frame_shape,                            \
     .linearise = spari_frame_linearise, .state_size = spari_frame_state_size, .save = spari_frame_save,                \

@@ -74,8 +74,8 @@ static int balance_members(spar_session *s) {
         spari_member_again(m);
     }
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
-        int own = !m->assembly && m->row->balance && spari_fidelity_is_here(m);
-        status = own ? m->row->balance(m, s->clock.dt) : SPAR_OK;
+        int own = !m->assembly && m->row->component && spari_fidelity_is_here(m);
+        status = own ? spari_lone_balance(m, s->clock.dt) : SPAR_OK;
     }
     for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
         status = spari_assembly_balance(a, s->clock.dt);

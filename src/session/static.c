@@ -28,7 +28,7 @@ static int check_held(const spar_member *m, const char *call) {
                   call, m->name);
     int loose = !spari_member_has_joints(m) &&
                 (m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C));
-    SPARI_REQUIRE(s, !loose || !m->row->rest, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, !loose || !spari_fidelity_has_rest(m), SPAR_ERR_STATE,
                   "%s: '%s' is free to move as a rigid body; fix, pin or drive its root", call, m->name);
     return SPAR_OK;
 }
@@ -41,7 +41,7 @@ static int check_member_static(const spar_member *m, const char *call, int load_
                   "%s: '%s': a step is in progress; accept or reject it first", call, m->name);
     SPARI_REQUIRE(s, load_steps >= 1 && load_steps <= SPARI_STATIC_MOST, SPAR_ERR_ARGUMENT,
                   "%s: '%s': %d load steps; give 1 to %d", call, m->name, load_steps, SPARI_STATIC_MOST);
-    SPARI_REQUIRE(s, m->row->rest, SPAR_ERR_UNSUPPORTED,
+    SPARI_REQUIRE(s, spari_fidelity_has_rest(m), SPAR_ERR_UNSUPPORTED,
                   "%s: spar does not solve '%s', which is a point or an external member", call, m->name);
     SPARI_TRY(check_held(m, call));
     return s->clock.started ? SPAR_OK : spari_session_pushes(s, call);
@@ -70,14 +70,19 @@ static int solve_assembly_static(spari_assembly *a, const double *(*fluid)(const
 }
 
 /* Solves the motion `after` of a member, on its owner. */
-static int solve_member_static(spar_member *m, const double *fluid, int load_steps, int onward) {
+static int solve_member_static(spar_member *m, const double *(*fluid)(const spar_member *), int load_steps,
+                               int onward) {
     if (m->assembly) {
-        return solve_assembly_static(m->assembly, pushed, load_steps, onward, m->session);
+        return solve_assembly_static(m->assembly, fluid, load_steps, onward, m->session);
     }
-    if (!m->row->rest || !spari_fidelity_is_here(m)) {
+    if (!spari_fidelity_has_rest(m) || !spari_fidelity_is_here(m)) {
         return SPAR_OK;
     }
-    SPARI_TRY(m->row->rest(m, fluid, load_steps, onward));
+    if (m->row->rest) {
+        m->row->rest(m);
+    } else {
+        SPARI_TRY(spari_lone_static(m, fluid, load_steps, onward));
+    }
     return spari_member_check_rotations(m);
 }
 
@@ -167,7 +172,7 @@ static int find_rest(spar_member *m, int load_steps) {
             }
         }
     }
-    return spari_session_share_motion(s, solve_member_static(m, m->load.pushed, load_steps, 0));
+    return spari_session_share_motion(s, solve_member_static(m, pushed, load_steps, 0));
 }
 
 /* Accepts the equilibrium as the state at t^n, or restores everything. */
@@ -292,7 +297,7 @@ static void discard_static(spar_session *s, const double *saved_state) {
 static int solve_all(spar_session *s, int load_steps, int onward) {
     int status = SPAR_OK;
     for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
-        status = m->assembly ? SPAR_OK : solve_member_static(m, m->load.used, load_steps, onward);
+        status = m->assembly ? SPAR_OK : solve_member_static(m, used, load_steps, onward);
     }
     for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
         status = solve_assembly_static(a, used, load_steps, onward, s);

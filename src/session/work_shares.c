@@ -43,12 +43,12 @@ static int solve_unit(spar_session *s, spar_member *m, spari_assembly *a) {
     if (a) {
         return spari_assembly_advance(a, s->clock.dt, spari_coupling_weighs(s));
     }
-    SPARI_TRY(m->row->advance(m, s->clock.dt));
+    SPARI_TRY(m->row->component ? spari_lone_advance(m, s->clock.dt) : m->row->advance(m, s->clock.dt));
     return m->row->moves ? check_motion(m) : SPAR_OK;
 }
 
 static int is_unit(const spar_member *m) {
-    return !m->assembly && m->row->advance && spari_fidelity_is_here(m);
+    return !m->assembly && (m->row->component || m->row->advance) && spari_fidelity_is_here(m);
 }
 
 /* Members with prescribed motion come first, because assemblies read it. */

@@ -34,13 +34,6 @@ static void exact_renew(spar_member *m) {
     s->factored = 0;
 }
 
-static void exact_remass(spar_member *m) {
-    spari_solver *s = m->solution;
-    if (s) {
-        s->factored = 0;
-    }
-}
-
 static void exact_restart(spar_member *m) {
     spari_solver *s = m->solution;
     spari_member_to_unique(m, 7, m->now.q, s->begin.q);
@@ -60,22 +53,6 @@ static void exact_take_loads(spar_member *m) {
 static void exact_publish(spar_member *m) {
     const spari_solver *s = m->solution;
     spari_member_publish(m, s->to.q, s->to.v, s->to.a, &m->after);
-}
-
-static void exact_begin(spar_member *m) {
-    spari_solver_begin(m->solution);
-}
-
-static void exact_accept(spar_member *m) {
-    spari_solver_accept(m->solution);
-}
-
-static void exact_reject(spar_member *m) {
-    spari_solver_reject(m->solution);
-}
-
-static void exact_effort(const spar_member *m, spari_effort *effort) {
-    spari_solver_effort(m->solution, effort);
 }
 
 static void exact_take_more(spar_member *m, const double *load, double *r) {
@@ -98,13 +75,6 @@ static void exact_take_rest(spar_member *m, const double *fluid) {
     for (int i = 0; i < 6 * s->n; i++) {
         s->steps.load[i] += s->r[i];
     }
-}
-
-static int exact_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
-    exact_take_rest(m, fluid);
-    SPARI_TRY(spari_solver_static(m->solution, m, load_steps, onward));
-    exact_publish(m);
-    return SPAR_OK;
 }
 
 /* ---- modes ---- */
@@ -195,24 +165,6 @@ static void exact_shape(const spar_member *m, const double *x, double *workspace
     spari_member_from_unique(m, 6, workspace, nodes);
 }
 
-/* ---- save and load ---- */
-
-static int64_t exact_state_size(const spar_member *m) {
-    return spari_solver_state_size(m->solution);
-}
-
-static void exact_save(const spar_member *m, double *state) {
-    spari_solver_save(m->solution, state);
-}
-
-static int exact_is_state(const spar_member *m, const double *state, int64_t count) {
-    return spari_solver_is_state(m->solution, state, count);
-}
-
-static void exact_load(spar_member *m, const double *state) {
-    spari_solver_load(m->solution, state);
-}
-
 const spari_fidelity spari_fidelity_exact = {
     .moves = 1,
     .solved = 1,
@@ -221,17 +173,8 @@ const spari_fidelity spari_fidelity_exact = {
     .create = exact_create,
     .free = exact_free,
     .renew = exact_renew,
-    .remass = exact_remass,
     .restart = exact_restart,
-    .advance = spari_component_advance,
-    .balance = spari_component_balance,
-    .response = spari_component_response,
     .felt = exact_felt,
-    .begin = exact_begin,
-    .accept = exact_accept,
-    .reject = exact_reject,
-    .effort = exact_effort,
-    .rest = exact_rest,
     .reaction_size = spari_reaction_at_root_size,
     .reaction = spari_reaction_at_root,
     .energy = spari_energy_of_body,
@@ -239,15 +182,11 @@ const spari_fidelity spari_fidelity_exact = {
     .problem = exact_problem,
     .shape = exact_shape,
     .linearise = exact_linearise,
-    .component = &spari_component_body,
+    SPARI_BODY_ROW,
     .solver = exact_solver,
     .take_loads = exact_take_loads,
     .take_rest = exact_take_rest,
     .take_more = exact_take_more,
     .show_more = exact_show_more,
     .publish = exact_publish,
-    .state_size = exact_state_size,
-    .save = exact_save,
-    .is_state = exact_is_state,
-    .load = exact_load,
 };

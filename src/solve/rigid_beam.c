@@ -111,13 +111,6 @@ static void sum_on_root(const spar_member *m, const double *load, double sum[6],
     }
 }
 
-static void rigid_remass(spar_member *m) {
-    const spari_rigid_beam *b = m->solution;
-    if (b->solver) {
-        b->solver->factored = 0;
-    }
-}
-
 static void rigid_restart(spar_member *m) {
     const spari_rigid_beam *b = m->solution;
     spari_solver *s = b->solver;
@@ -154,7 +147,7 @@ static void loads_on_root(const spar_member *m, const double *fluid, double left
 /* Follower loads are evaluated at the motion of the last pass. A few passes converge. */
 enum { PASSES = 20 };
 
-static int rigid_advance(spar_member *m, double dt) {
+static int rigid_repeat(spar_member *m, double dt, int (*advance)(spar_member *m, double dt)) {
     const spari_rigid_beam *b = m->solution;
     const spari_solver *s = b->solver;
     double before[7], *q = s->begin.q, change = 1;
@@ -164,7 +157,7 @@ static int rigid_advance(spar_member *m, double dt) {
             const spari_pose last = spari_pose_of(q, s->to.v, s->to.a);
             spari_rigid_nodes_move(m, &last, &m->after);
         }
-        SPARI_TRY(spari_component_advance(m, dt));
+        SPARI_TRY(advance(m, dt));
         q = s->to.q;
         change = 0;
         for (int k = 0; k < 7 && m->load.applied; k++) {
@@ -220,24 +213,9 @@ static int rigid_felt(spar_member *m, double *load) {
     return SPAR_OK;
 }
 
-static void rigid_begin(spar_member *m) {
-    const spari_rigid_beam *b = m->solution;
-    spari_solver_begin(b->solver);
-}
-
-static void rigid_accept(spar_member *m) {
-    const spari_rigid_beam *b = m->solution;
-    spari_solver_accept(b->solver);
-}
-
-static void rigid_reject(spar_member *m) {
-    const spari_rigid_beam *b = m->solution;
-    spari_solver_reject(b->solver);
-}
-
 /* ---- tied by joints ---- */
 
-static spari_solver *solver_of(const spar_member *m) {
+static spari_solver *rigid_solver(const spar_member *m) {
     const spari_rigid_beam *b = m->solution;
     return b->solver;
 }
@@ -258,7 +236,7 @@ static void rigid_take_rest(spar_member *m, const double *fluid) {
 }
 
 static void rigid_publish(spar_member *m) {
-    const spari_solver *s = solver_of(m);
+    const spari_solver *s = rigid_solver(m);
     const spari_pose root = spari_pose_of(s->to.q, s->to.v, s->to.a);
     spari_rigid_nodes_move(m, &root, &m->after);
 }
@@ -341,28 +319,6 @@ static void rigid_shape(const spar_member *m, const double *x, double *workspace
     spari_rigid_nodes_displace(m, workspace, nodes);
 }
 
-/* ---- save and load ---- */
-
-static void rigid_effort(const spar_member *m, spari_effort *effort) {
-    spari_solver_effort(solver_of(m), effort);
-}
-
-static int64_t rigid_state_size(const spar_member *m) {
-    return spari_solver_state_size(solver_of(m));
-}
-
-static void rigid_save(const spar_member *m, double *state) {
-    spari_solver_save(solver_of(m), state);
-}
-
-static int rigid_is_state(const spar_member *m, const double *state, int64_t count) {
-    return spari_solver_is_state(solver_of(m), state, count);
-}
-
-static void rigid_load(spar_member *m, const double *state) {
-    spari_solver_load(solver_of(m), state);
-}
-
 const spari_fidelity spari_fidelity_rigid = {
     .moves = 1,
     .solved = 1,
@@ -372,17 +328,10 @@ const spari_fidelity spari_fidelity_rigid = {
     .effects = rigid_effects,
     .create = rigid_create,
     .free = rigid_free,
-    .remass = rigid_remass,
     .restart = rigid_restart,
-    .advance = rigid_advance,
-    .balance = spari_component_balance,
-    .response = spari_component_response,
+    .repeat = rigid_repeat,
     .felt = rigid_felt,
     .felt_here = 1,
-    .begin = rigid_begin,
-    .accept = rigid_accept,
-    .reject = rigid_reject,
-    .effort = rigid_effort,
     .rest = spari_rigid_nodes_rest,
     .reaction_size = spari_reaction_of_whole_size,
     .reaction = spari_reaction_of_whole,
@@ -391,15 +340,11 @@ const spari_fidelity spari_fidelity_rigid = {
     .problem = rigid_problem,
     .shape = rigid_shape,
     .linearise = rigid_linearise,
-    .component = &spari_component_body,
-    .solver = solver_of,
+    SPARI_BODY_ROW,
+    .solver = rigid_solver,
     .take_loads = rigid_take_loads,
     .take_rest = rigid_take_rest,
     .take_more = rigid_take_more,
     .show_more = rigid_show_more,
     .publish = rigid_publish,
-    .state_size = rigid_state_size,
-    .save = rigid_save,
-    .is_state = rigid_is_state,
-    .load = rigid_load,
 };

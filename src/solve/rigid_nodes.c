@@ -41,14 +41,12 @@ void spari_rigid_nodes_displace(const spar_member *m, const double root[6], doub
     }
 }
 
-int spari_rigid_nodes_rest(spar_member *m, const double *fluid, int load_steps, int onward) {
+void spari_rigid_nodes_rest(spar_member *m) {
     const double none[6] = {0};
     spari_pose root = spari_pose_of(m->now.q, none, none);
-    (void)fluid, (void)load_steps, (void)onward; /* whatever the loads, the root does not yield */
     if (m->root == SPAR_ROOT_DRIVEN && (spari_norm(m->now.v + 3) > 0 || spari_norm(m->now.a) > 0)) {
         memcpy(root.v, m->now.v, sizeof root.v); /* turning steadily, as the members that are solved for */
         memcpy(root.a, m->now.a, 3 * sizeof *root.a);
     }
     spari_rigid_nodes_move(m, &root, &m->after);
-    return SPAR_OK;
 }

@@ -10,6 +10,6 @@ void spari_rigid_nodes_move(const spar_member *member, const spari_pose *root, s
 void spari_rigid_nodes_displace(const spar_member *member, const double root[6], double *nodes);
 /* The operation `rest` of their fidelities: the nodes stay where they are, at rest or in steady rotation with a
    driven root. */
-int spari_rigid_nodes_rest(spar_member *member, const double *fluid, int load_steps, int onward);
+void spari_rigid_nodes_rest(spar_member *member);
 
 #endif

@@ -168,82 +168,70 @@ void spari_solver_accept(spari_solver *s) {
     s->power_begin = s->power;
 }
 
-/* What the tangents of elements are asked of. */
+/* What the tangents of elements are formed of. */
 typedef struct tangent_state {
     const spari_solver *s;
     const spar_member *member;
-    const double *q, *v, *a, *tinv;
-    double factor, cm, cv;
+    const spari_tangent_at *at;
 } tangent_state;
 
 static void add_tangents(const spari_body *body, int tile, int from, int to, void *context) {
-    const tangent_state *t = context;
-    const spar_member *m = t->member;
+    const tangent_state *state = context;
+    const spari_tangent_at *t = state->at;
+    const spari_solver *s = state->s;
+    const spar_member *m = state->member;
     (void)tile;
     for (int e = from; e < to; e++) {
-        spari_body_tangent(body, e, t->q, t->v, t->a, t->factor, t->cm, t->cv, t->tinv, body->matrix);
-        if (spari_solver_has_applied(t->s, m) && t->factor != 0) {
+        if (t->rotation) {
+            spari_steady_rotation_tangent(body, t->rotation, e, t->q, t->v, t->a, t->factor, body->matrix, t->mass);
+        } else {
+            spari_body_tangent(body, e, t->q, t->v, t->a, t->factor, t->cm, t->cv, t->tinv, body->matrix);
+        }
+        if (spari_solver_has_applied(s, m) && t->factor != 0) {
             spari_applied_tangent(m, e, t->q, t->factor, body->matrix);
         }
-        if (t->s->offset_loads && t->factor != 0) {
-            spari_offset_loads_tangent(t->s->offset_loads, t->q + 3, body->matrix);
+        if (s->offset_loads && t->factor != 0) {
+            spari_offset_loads_tangent(s->offset_loads, t->q + 3, body->matrix);
         }
         if (t->tinv && m->added) { /* it belongs to the balance of a step, not to what begins one */
             spari_added_tangent(m, e, t->cm, t->tinv, body->matrix);
         }
-        spari_linear_add(t->s->linear, e, body->matrix);
+        spari_linear_add(s->linear, e, body->matrix);
     }
 }
 
-/* Factors what has been formed at the state q. */
-static int factor_formed(spari_solver *s, const spar_member *member, const double *q, double cm, double cv) {
+/* With the columns of the interface nodes apart, and the root condition. */
+void spari_solver_form(spari_solver *s, const spar_member *member, const spari_tangent_at *at) {
+    tangent_state t = {s, member, at};
     int end = spari_member_constrained(member);
+    keep_factors(s);
+    s->factored = 0;
+    spari_linear_zero(s->linear);
+    if (at->rotation) { /* `mass` is there once */
+        add_tangents(s->body, 0, 0, s->body->elements, &t);
+    } else {
+        spari_body_sweep(s->body, add_tangents, &t);
+    }
     if (s->condensed) {
         spari_condensed_take(s->condensed, s->linear, end);
     }
     for (int i = 0; i < end; i++) {
         spari_linear_fix(s->linear, i);
     }
+}
+
+int spari_solver_factor(spari_solver *s, const spar_member *member, const spari_tangent_at *at) {
+    spari_solver_form(s, member, at);
     s->factors++;
     if (spari_linear_factor(s->linear) || (s->condensed && spari_condensed_form(s->condensed, s->linear))) {
         return 1;
     }
     s->factored = 1;
-    s->tangent_cm = cm, s->tangent_cv = cv;
+    s->tangent_cm = at->cm, s->tangent_cv = at->cv;
     for (int i = 0; i < s->n; i++) {
-        memcpy(s->tangent_q + 4 * i, q + 7 * i + 3, 4 * sizeof *q);
+        memcpy(s->tangent_q + 4 * i, at->q + 7 * i + 3, 4 * sizeof *at->q);
     }
     return 0;
-}
-
-int spari_solver_factor(spari_solver *s, const spar_member *member, const double *q, const double *v, const double *a,
-                        double factor, double cm, double cv, const double *tinv) {
-    tangent_state t = {
-        .s = s, .member = member, .q = q, .v = v, .a = a, .tinv = tinv, .factor = factor, .cm = cm, .cv = cv};
-    keep_factors(s);
-    s->factored = 0;
-    spari_linear_zero(s->linear);
-    spari_body_sweep(s->body, add_tangents, &t);
-    return factor_formed(s, member, q, cm, cv);
-}
-
-int spari_solver_factor_rotating(spari_solver *s, const spar_member *member, const spari_steady_rotation *rotation,
-                                 const double *q, const double *v, const double *a, double factor, double *mass) {
-    const spari_body *body = s->body;
-    keep_factors(s);
-    s->factored = 0;
-    spari_linear_zero(s->linear);
-    for (int e = 0; e < body->elements; e++) {
-        spari_steady_rotation_tangent(body, rotation, e, q, v, a, factor, body->matrix, mass);
-        if (spari_solver_has_applied(s, member)) {
-            spari_applied_tangent(member, e, q, factor, body->matrix);
-        }
-        if (s->offset_loads) {
-            spari_offset_loads_tangent(s->offset_loads, q + 3, body->matrix);
-        }
-        spari_linear_add(s->linear, e, body->matrix);
-    }
-    return factor_formed(s, member, q, 0, 0);
 }
 
 void spari_solver_effort(const spari_solver *s, spari_effort *e) {

@@ -74,10 +74,6 @@ void spari_solver_accept(spari_solver *solver);
 void spari_solver_reject(spari_solver *solver);
 /* q [n][7] less the correction dx [n][6], shortened by `cut` */
 void spari_static_shift(int n, double cut, const double *dx, double *q);
-/* Equilibrium under steps.load, line loads and gravity; leaves t^n alone, writes `to`. onward: from the shape that
-   the last call found, if that leads there; else from t^n. */
-int spari_solver_static(spari_solver *solver, const spar_member *member, int load_steps, int onward);
-
 /* Its effort so far. */
 void spari_solver_effort(const spari_solver *solver, spari_effort *effort);
 
@@ -112,14 +108,16 @@ static inline double spari_solver_largest(const spari_solver *solver, const doub
 static inline double spari_solver_most(const spari_solver *solver) {
     return spari_solver_largest(solver, solver->most);
 }
-/* Forms and factors the tangent at state q, v, a. */
-int spari_solver_factor(spari_solver *solver, const spar_member *member, const double *q, const double *v,
-                        const double *a, double factor, double cm, double cv, const double *tinv);
-/* The same for equilibrium in a rotating frame, with the loads at that factor. mass: workspace for an element's
-   matrix. */
-struct spari_steady_rotation;
-int spari_solver_factor_rotating(spari_solver *solver, const spar_member *member,
-                                 const struct spari_steady_rotation *rotation, const double *q, const double *v,
-                                 const double *a, double factor, double *mass);
+/* The state of a tangent, the load factor, and its coefficients. */
+typedef struct spari_tangent_at {
+    const double *q, *v, *a, *tinv;
+    double factor, cm, cv;
+    const struct spari_steady_rotation *rotation; /* equilibrium in a rotating frame; NULL: else */
+    double *mass;                                 /* with it: workspace for the matrix of an element */
+} spari_tangent_at;
+/* Forms the tangent. */
+void spari_solver_form(spari_solver *solver, const spar_member *member, const spari_tangent_at *at);
+/* Forms and factors it. Returns 0 or 1 (singular). */
+int spari_solver_factor(spari_solver *solver, const spar_member *member, const spari_tangent_at *at);
 
 #endif

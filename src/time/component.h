@@ -65,8 +65,9 @@ typedef struct spari_component_row {
        at the end. */
     void (*shift_rates)(struct spari_component *p, double v, double a, double b);
 
-    /* After the step. tangent_after: forms the tangent at its end if none is there; returns 0 or 1. take_more: the residual becomes a small additional load [nodes][6] on the nodes. show_more:
-       the corrections as a motion [nodes][6] of the nodes, displacements and small rotations, global axes. */
+    /* After the step. tangent_after: forms the tangent at its end if none is there; returns 0 or 1. take_more: the
+       residual becomes a small additional load [nodes][6] on the nodes. show_more: the corrections as a motion
+       [nodes][6] of the nodes, displacements and small rotations, global axes. */
     int (*tangent_after)(struct spari_component *p);
     void (*take_more)(struct spari_component *p, const double *load);
     void (*show_more)(struct spari_component *p, double *motion);
@@ -89,6 +90,8 @@ typedef struct spari_component_row {
     void (*rest)(struct spari_component *p, const double *fluid, int onward);
     double (*balance_rest)(struct spari_component *p, double f);
     int (*tangent_rest)(struct spari_component *p, double f);
+    /* Whether the tangent at rest is positive definite: as spari_linear_definite. NULL: not known. */
+    int (*definite_rest)(struct spari_component *p, double f);
     void (*shift)(struct spari_component *p, double cut);
     void (*keep_positions)(struct spari_component *p, int back);
     void (*discard_rest)(struct spari_component *p);
@@ -115,20 +118,36 @@ typedef struct spari_component {
     spari_scheme alpha, scheme; /* of a substep, and of the stage under way */
     spari_stage stage;
     const spari_rotating_frame *rotating; /* equilibrium in a frame that turns; NULL: at rest */
-    double moved_in_step;     /* of a component without ends: the motion of the stage; 0: not known */
+    double moved_in_step;                 /* of a component without ends: the motion of the stage; 0: not known */
     double correction_size,
         allowed;             /* of the latest correction: its size, and the remaining correction that is allowed */
     int moved, owner_before; /* during creation: the rank that had the member before, and the solution of this rank */
     void *solution_before;
 } spari_component;
 
-/* Operations of the table of fidelities, for a member that no joint ties. */
-int spari_component_advance(spar_member *member, double dt);
-int spari_component_balance(spar_member *member, double dt);
-int spari_component_response(spar_member *member, const double *load, double *motion);
-/* Equilibrium under dead and `fluid` loads [nodes][6], in the frame of a root that is driven steadily. 0, or 1: there
-   is none. */
-int spari_component_static(spar_member *member, const double *fluid);
+/* Operations of the table of fidelities for members that spari_component_body serves. */
+void spari_body_remass(spar_member *member);
+void spari_body_begin(spar_member *member);
+void spari_body_accept(spar_member *member);
+void spari_body_reject(spar_member *member);
+void spari_body_effort(const spar_member *member, spari_effort *effort);
+int64_t spari_body_state_size(const spar_member *member);
+void spari_body_save(const spar_member *member, double *state);
+int spari_body_is_state(const spar_member *member, const double *state, int64_t count);
+void spari_body_load(spar_member *member, const double *state);
+#define SPARI_BODY_ROW                                                                                                 \
+    .component = &spari_component_body, .remass = spari_body_remass, .begin = spari_body_begin,                        \
+    .accept = spari_body_accept, .reject = spari_body_reject, .effort = spari_body_effort,                             \
+    .state_size = spari_body_state_size, .save = spari_body_save, .is_state = spari_body_is_state,                     \
+    .load = spari_body_load
+
+/* A member that no joint ties, as a component. */
+spari_component spari_component_of(spar_member *member);
+/* Its corrections from the latest residual, with the latest tangent: of accelerations at t^0, of a response, or of an
+   equilibrium. Returns 0 or 1. */
+int spari_component_solve(spari_component *p);
+/* Its motion at the end of a stage. Returns NULL, or the reason of a failure. */
+const char *spari_component_newton(spari_component *p, int *iterations);
 
 /* The nodes of a member's unknowns that joints hold, in increasing order (node has room for two a joint); how many. */
 int spari_component_joint_nodes(const spar_member *member, int *node);

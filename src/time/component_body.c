@@ -2,11 +2,13 @@
    component.h. */
 #include "../base/session.h"
 #include "../math/rotation.h"
+#include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "../member/joint.h"
-#include "body_newton.h"
 #include "component.h"
 #include "fidelity.h"
+#include "node_kinematics.h"
+#include "substep_motion.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -120,21 +122,83 @@ static int predict_nodes(spari_component *p, spari_guess stays) {
     return spari_alpha_predict(p->solver, p->member, &p->scheme, stays, &p->stage.ends, x);
 }
 
-static double balance_nodes(spari_component *p) {
-    spari_solver *s = p->solver;
-    spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, s->increment);
-    return spari_alpha_balance(s, p->member, &p->scheme, &p->stage.ends.seen, s->r);
+static void subtract_loads(void *context, int64_t from, int64_t to) {
+    const spari_solver *s = context;
+    for (int64_t i = 6 * from; i < 6 * to; i++) {
+        s->r[i] -= s->steps.load[i];
+    }
 }
 
-static double rotate_back(const spari_component *p) {
+static double balance_nodes(spari_component *p) {
+    spari_solver *s = p->solver;
+    const spari_body *body = s->body;
+    const spari_state *at = &p->stage.ends.seen;
+    const int still = p->scheme.still;
+    spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, s->increment);
+    double scale =
+        spari_body_residual(body, at->q, still && !body->D ? NULL : at->v, still ? NULL : at->a, 1, s->r, &s->power);
+    spari_solver_spread(s, subtract_loads, s);
+    if (spari_solver_has_applied(s, p->member)) {
+        scale = fmax(scale, spari_applied_residual(p->member, at->q, 1, s->r));
+    }
+    if (s->offset_loads) {
+        spari_offset_loads_residual(s->offset_loads, at->q + 3, s->r + 3);
+    }
+    if (p->member->added) {
+        scale = fmax(scale, spari_added_times(p->member, SPARI_UNKNOWNS, SPARI_UNKNOWNS, at->a, 1, s->r));
+    }
+    memset(s->r, 0, (size_t)spari_member_constrained(p->member) * sizeof *s->r);
+    return scale;
+}
+
+/* Forces and corrections in the axes of the tangent. */
+typedef struct node_rotation {
+    const spari_solver *s;
+    spari_node_work work;
+} node_rotation;
+
+static void rotate_span_back(void *context, int64_t from, int64_t to) {
+    const node_rotation *t = context;
+    t->s->most[from / SPARI_SPAN] = spari_nodes_rotate_back(&t->work, from, to);
+}
+
+static void rotate_span_forth(void *context, int64_t from, int64_t to) {
+    const node_rotation *t = context;
+    spari_nodes_rotate_forth(&t->work, from, to);
+}
+
+static node_rotation rotation_since_tangent(const spari_component *p) {
     const spari_solver *s = p->solver;
-    return spari_alpha_rotate_back(s, p->state->q, s->r, s->dx);
+    return (node_rotation){s,
+                           {.lanes = s->body->lanes,
+                            .dx = s->dx,
+                            .kept = s->tangent_q,
+                            .q = p->state->q,
+                            .r = s->r,
+                            .rotation = s->rotation}};
+}
+
+/* The reused tangent was formed when the nodes had other rotations: forces are rotated back node by node, and the
+   corrections forth, as if each node had carried its part of the tangent along. For a rigid rotation of the member this
+   is exact; for a beam that oscillates and bends it makes one tangent last some forty times longer than in fixed axes.
+   Returns the largest force, infinite if one is not finite. */
+static double rotate_back(const spari_component *p) {
+    node_rotation t = rotation_since_tangent(p);
+    spari_solver_spread(p->solver, rotate_span_back, &t);
+    return spari_solver_most(p->solver);
+}
+
+static int form_tangent(const spari_component *p, const spari_state *at) {
+    spari_solver *s = p->solver;
+    const spari_scheme *c = &p->scheme;
+    const double *v = c->still && !s->body->D ? NULL : at->v, *a = c->still ? NULL : at->a;
+    return spari_solver_factor(s, p->member, &(spari_tangent_at){at->q, v, a, s->tinv, 1, c->cm, c->cv, NULL, NULL});
 }
 
 static int tangent_of_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     spari_alpha_operators(s, &p->scheme, &p->stage.ends, s->increment);
-    if (spari_alpha_tangent(s, p->member, &p->scheme, &p->stage.ends.seen)) {
+    if (form_tangent(p, &p->stage.ends.seen)) {
         return 1;
     }
     (void)rotate_back(p); /* the axes of the tangent are new */
@@ -178,7 +242,8 @@ static void expand_nodes(spari_component *p, double *x) {
     if (p->condensed) {
         spari_condensed_expand(p->condensed, s->dx);
     }
-    spari_alpha_rotate_forth(s, s->dx);
+    node_rotation t = rotation_since_tangent(p);
+    spari_solver_spread(s, rotate_span_forth, &t);
 }
 
 static double correction_of_nodes(const spari_component *p) {
@@ -248,7 +313,7 @@ static void end_solution_of_nodes(spari_component *p, int iterations, int fresh)
 }
 
 static int tangent_after_step(spari_component *p) {
-    return p->solver->factored ? 0 : spari_alpha_tangent(p->solver, p->member, &p->scheme, &p->solver->to);
+    return p->solver->factored ? 0 : form_tangent(p, &p->solver->to);
 }
 
 static double way_of_nodes(const spari_component *p) {
@@ -301,11 +366,25 @@ static int start_nodes(spari_component *p) {
     }
     p->state = &s->begin;
     p->stage.ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
-    return spari_solver_factor(s, p->member, s->begin.q, NULL, NULL, 0, p->scheme.cm, 0, NULL);
+    return spari_solver_factor(s, p->member, &(spari_tangent_at){.q = s->begin.q, .cm = p->scheme.cm});
 }
 
+/* At t^0; and the power that damping takes. */
 static void unbalance_nodes(spari_component *p) {
-    spari_alpha_unbalance(p->solver, p->member, p->solver->r);
+    spari_solver *s = p->solver;
+    const spari_state *b = &s->begin;
+    spari_body_residual(s->body, b->q, b->v, b->a, 1, s->r, s->body->D ? &s->power_begin : NULL);
+    if (spari_solver_has_applied(s, p->member)) {
+        spari_applied_residual(p->member, b->q, 1, s->r);
+    }
+    if (s->offset_loads) {
+        spari_offset_loads_at(s->offset_loads, 0);
+        spari_offset_loads_residual(s->offset_loads, b->q + 3, s->r + 3);
+    }
+    for (int i = 0; i < 6 * s->n; i++) {
+        s->r[i] -= s->steps.load0[i];
+    }
+    memset(s->r, 0, (size_t)spari_member_constrained(p->member) * sizeof *s->r);
 }
 
 static void correct_start_of_nodes(spari_component *p) {
@@ -370,23 +449,52 @@ static double balance_nodes_at_rest(spari_component *p, double f) {
         spari_offset_loads_at(s->offset_loads, f);
         spari_offset_loads_residual(s->offset_loads, s->to.q + 3, s->r + 3);
     }
+    memset(s->r, 0, (size_t)spari_member_constrained(p->member) * sizeof *s->r);
     return scale;
 }
 
-static int tangent_of_nodes_at_rest(spari_component *p, double f) {
-    spari_solver *s = p->solver;
-    const spari_body body = spari_body_in_part(s->body, f), *whole = s->body;
-    int singular;
-    s->body = &body;
+static spari_tangent_at tangent_at_rest(const spari_component *p, double f, spari_steady_rotation *rotation) {
+    const spari_solver *s = p->solver;
+    spari_tangent_at t = {.q = s->to.q, .factor = f};
     if (rotates_with_mass(p)) {
-        const spari_steady_rotation rotation = spari_steady_rotation_part(&p->rotating->rotation, f);
-        singular =
-            spari_solver_factor_rotating(s, p->member, &rotation, s->to.q, s->to.v, s->to.a, f, p->rotating->mass);
-    } else {
-        singular = spari_solver_factor(s, p->member, s->to.q, NULL, NULL, f, 0, 0, NULL);
+        *rotation = spari_steady_rotation_part(&p->rotating->rotation, f);
+        t.v = s->to.v, t.a = s->to.a;
+        t.rotation = rotation, t.mass = p->rotating->mass;
     }
-    s->body = whole;
+    return t;
+}
+
+static int tangent_of_nodes_at_rest(spari_component *p, double f) {
+    const spari_body body = spari_body_in_part(p->solver->body, f), *whole = p->solver->body;
+    spari_steady_rotation rotation;
+    const spari_tangent_at t = tangent_at_rest(p, f, &rotation);
+    p->solver->body = &body;
+    int singular = spari_solver_factor(p->solver, p->member, &t);
+    p->solver->body = whole;
     return singular;
+}
+
+static int definite_at_rest(spari_component *p, double f) {
+    const spari_body body = spari_body_in_part(p->solver->body, f), *whole = p->solver->body;
+    spari_steady_rotation rotation;
+    const spari_tangent_at t = tangent_at_rest(p, f, &rotation);
+    p->solver->body = &body;
+    spari_solver_form(p->solver, p->member, &t);
+    p->solver->body = whole;
+    return spari_linear_definite(p->solver->linear);
+}
+
+void spari_static_shift(int n, double cut, const double *dx, double *q) {
+    for (int i = 0; i < n; i++) {
+        double rotation[3], p[4];
+        for (int k = 0; k < 3; k++) {
+            q[7 * i + k] -= cut * dx[6 * i + k];
+            rotation[k] = -cut * dx[6 * i + 3 + k];
+        }
+        spari_quat_exp(rotation, p);
+        spari_quat_mul(p, q + 7 * i + 3, q + 7 * i + 3);
+        spari_quat_normalise(q + 7 * i + 3);
+    }
 }
 
 static void shift_nodes(spari_component *p, double cut) {
@@ -400,6 +508,7 @@ static void keep_positions_of_nodes(spari_component *p, int back) {
 
 static void discard_rest_of_nodes(spari_component *p) {
     spari_solver *s = p->solver;
+    spari_snapshot_close(&s->before);
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof(double));
     s->factored = 0;
 }
@@ -408,6 +517,7 @@ static void end_rest_of_nodes(spari_component *p) {
     keep_positions_of_nodes(p, 1);
     rotate_nodes(p, 1);
     p->solver->factored = 0;
+    spari_snapshot_close(&p->solver->before);
     p->member->row->publish(p->member);
 }
 
@@ -447,9 +557,55 @@ const spari_component_row spari_component_body = {
     .rest = rest_nodes,
     .balance_rest = balance_nodes_at_rest,
     .tangent_rest = tangent_of_nodes_at_rest,
+    .definite_rest = definite_at_rest,
     .shift = shift_nodes,
     .keep_positions = keep_positions_of_nodes,
     .discard_rest = discard_rest_of_nodes,
     .end_rest = end_rest_of_nodes,
     .rotation = rotation_of_node,
 };
+
+/* ---- operations of the table of fidelities ---- */
+
+static spari_solver *solver_of(const spar_member *m) {
+    return m->row->solver(m);
+}
+
+void spari_body_remass(spar_member *m) {
+    spari_solver *s = solver_of(m);
+    if (s) {
+        s->factored = 0;
+    }
+}
+
+void spari_body_begin(spar_member *m) {
+    spari_solver_begin(solver_of(m));
+}
+
+void spari_body_accept(spar_member *m) {
+    spari_solver_accept(solver_of(m));
+}
+
+void spari_body_reject(spar_member *m) {
+    spari_solver_reject(solver_of(m));
+}
+
+void spari_body_effort(const spar_member *m, spari_effort *effort) {
+    spari_solver_effort(solver_of(m), effort);
+}
+
+int64_t spari_body_state_size(const spar_member *m) {
+    return spari_solver_state_size(solver_of(m));
+}
+
+void spari_body_save(const spar_member *m, double *state) {
+    spari_solver_save(solver_of(m), state);
+}
+
+int spari_body_is_state(const spar_member *m, const double *state, int64_t count) {
+    return spari_solver_is_state(solver_of(m), state, count);
+}
+
+void spari_body_load(spar_member *m, const double *state) {
+    spari_solver_load(solver_of(m), state);
+}

@@ -37,16 +37,11 @@ typedef struct spari_fidelity {
 
     /* the motion at t^n has been set */
     void (*restart)(spar_member *m);
-    /* advances from t^n to t^n + dt in the session's substeps, under dead loads, load.history[0] and load.used;
-       reads t^n, writes m->after and m->dissipated_step */
+    /* members without `component`: finds m->after; reads t^n */
     int (*advance)(spar_member *m, double dt);
-    /* finds accelerations at t^0 under dead loads and load.history[0], for steps dt; writes m->after, which is t^0
-       with them. NULL: the host gives them */
-    int (*balance)(spar_member *m, double dt);
-    /* after a step: the motion [nodes][6] that a small additional load [nodes][6] causes, displacements and small
-       rotations, global axes, to first order and over the last substep. Returns 0, or 1: there is no response. NULL:
-       loads cause no motion */
-    int (*response)(spar_member *m, const double *load, double *motion);
+    /* repeats `advance`, a solution under the loads at the last motion, until the loads that depend on the motion
+       stay; NULL: once is enough */
+    int (*repeat)(spar_member *m, double dt, int (*advance)(spar_member *m, double dt));
     /* replaces load [nodes][6] by the part of it that moves the member: without the part that the root holds, that
        cancels between the ends of two elements, or that a rigid body or modes do not represent. Returns 0 or
        SPAR_ERR_MEMORY. NULL: all loads move the member. felt_here: only the rank that finds the motion can call it;
@@ -60,9 +55,8 @@ typedef struct spari_fidelity {
     void (*reject)(spar_member *m);
     /* the effort since the member was made; NULL: negligible */
     void (*effort)(const spar_member *m, spari_effort *effort);
-    /* finds the equilibrium under dead and `fluid` loads [nodes][6], line loads and gravity; reads t^n, writes
-       m->after. onward: from the shape of the last call if this succeeds, else from t^n. NULL: there is none */
-    int (*rest)(spar_member *m, const double *fluid, int load_steps, int onward);
+    /* its equilibrium, where that is the same under all loads */
+    void (*rest)(spar_member *m);
 
     /* every rank: the reaction of the root in m->after (NULL: none), with a workspace of so many doubles, which
        suffices for follower and line loads that a host may give later */
@@ -82,10 +76,10 @@ typedef struct spari_fidelity {
        in the frame of the member's own root, which rotates differently */
     int (*linearise)(const spar_member *m, const double w[3], struct spari_pencil *to);
 
-    /* For members in an assembly (assembly.h). component: its operations (component.h); NULL: joints cannot connect
-       it. publish: writes the motion found into m->after. For members whose unknowns are motions of nodes, on the
-       owner: solver; take_loads: passes the loads of a step to it; take_rest: passes dead and `fluid` loads for an
-       equilibrium. */
+    /* For members that are solved (assembly.h). component: the operations (component.h); NULL: the motion is given, and
+       joints do not move       it. publish: writes the motion found into m->after. For members whose unknowns are
+       motions of nodes, on the owner: solver; take_loads: passes the loads of a step to it; take_rest: passes dead and
+       `fluid` loads for an equilibrium. */
     const struct spari_component_row *component;
     /* every rank: renew_joints: joints have changed; renews m->solution if it depends on them (NULL: it does not).
        end_of: the component's number of a node of the unknowns (NULL: the same). */
@@ -130,6 +124,10 @@ int spari_fidelity_check(const spar_member *member);
 /* Whether this rank finds the motion of a committed member. */
 static inline int spari_fidelity_is_here(const spar_member *member) {
     return !member->row->solved || member->owner == spari_comm_rank(member->session->ranks.comm);
+}
+/* Whether spar finds its static equilibrium. */
+static inline int spari_fidelity_has_rest(const spar_member *member) {
+    return member->row->component || member->row->rest;
 }
 /* Number of doubles in the state of a committed member on this rank; 0: none. */
 static inline int64_t spari_fidelity_state_size(const spar_member *member) {

@@ -56,8 +56,9 @@ static void lose_jump(const spari_solver *solver, const spar_member *m, double h
     spari_solver_spread(solver, lose_of_nodes, &t);
 }
 
-spari_ends spari_root_ends(const spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_pose *root,
-                           double ratio, spari_state *from, spari_state *to) {
+/* The ends [from, to] of a substep of a root. ratio: of the algorithmic accelerations, see spari_scheme_stretch. */
+static spari_ends ends_of_root(const spari_solver *s, const spar_member *m, const spari_scheme *c,
+                               const spari_pose *root, double ratio, spari_state *from, spari_state *to) {
     spari_ends e = {*from, *to, *to, NULL, 0};
     if (m->root == SPAR_ROOT_DRIVEN && s->own[0].q && !c->still) {
         const spari_pose before = spari_pose_of(from->q, from->v, from->a);
@@ -328,7 +329,7 @@ int spari_stage_root(spari_solver *s, const spar_member *m, const spari_scheme *
                       "member '%s': no memory for the new step size", m->name);
     }
     g->ends = rigid ? ends_from_rigid(s, m, c, g)
-                    : spari_root_ends(s, m, c, &g->root, c->rule == SPARI_ALPHA ? part->ratio : 1, &s->from, &s->to);
+                    : ends_of_root(s, m, c, &g->root, c->rule == SPARI_ALPHA ? part->ratio : 1, &s->from, &s->to);
     if (c->rule == SPARI_BACKWARD) {
         size_t size = (size_t)(6 * s->n) * sizeof(double);
         memcpy(s->stage_v, g->ends.to.v, size);

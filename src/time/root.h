@@ -14,9 +14,6 @@ typedef struct spari_ends {
     double carried; /* how far the reference moves the member: rotation, and displacement relative to its length */
 } spari_ends;
 
-/* The ends [from, to] of a substep of a root. ratio: of the algorithmic accelerations, see spari_scheme_stretch. */
-spari_ends spari_root_ends(const spari_solver *solver, const spar_member *member, const spari_scheme *scheme,
-                           const spari_pose *root, double ratio, spari_state *from, spari_state *to);
 /* A stage of a substep of a member whose unknowns are the motions of nodes. */
 typedef struct spari_stage {
     spari_ends ends;

@@ -210,18 +210,13 @@ static int try_to_stay(const spari_stepper *how, void *self, const spari_scheme 
 
 enum { PARTS = 1024 };
 
-/* The node of the tree of halvings that begins at `at` and covers `size` parts. */
-static unsigned node_of(int at, int size) {
-    return (unsigned)(PARTS / size + at / size);
-}
-
 /* One substep of the session, halved where necessary. */
 static int run_substep(const spari_stepper *how, void *self, const spari_scheme *whole, spari_cuts *cuts,
                        spari_pattern *pattern, const spar_session *session, double dt, double from, double to) {
     int at = 0, size = PARTS, again = 0;
     double tried = 0;
     while (at < PARTS) {
-        const unsigned node = node_of(at, size);
+        const unsigned node = (unsigned)(PARTS / size + at / size); /* of the tree of halvings */
         if (size > 1 && cuts->given_up[node / 32] >> node % 32 & 1) {
             size /= 2;
             continue;

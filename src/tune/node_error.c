@@ -60,7 +60,7 @@ static int correct_shape(const spar_member *m, spari_solver *s, const finer *f, 
         s->r[i] -= f->load[i];
     }
     memset(s->r, 0, (size_t)spari_member_constrained(m) * sizeof *s->r);
-    if (spari_solver_factor(s, m, f->q, f->v, f->a, 1, cm, 0, NULL)) {
+    if (spari_solver_factor(s, m, &(spari_tangent_at){.q = f->q, .v = f->v, .a = f->a, .factor = 1, .cm = cm})) {
         return 1;
     }
     memcpy(s->dx, s->r, (size_t)(6 * s->n) * sizeof *s->dx);

@@ -1,7 +1,6 @@
-/* The steps of a generalised-alpha solution of one member. A member alone (body_newton.c) and an assembly
-   (assembly.c) combine them. */
-#ifndef SPARI_BODY_NEWTON_H
-#define SPARI_BODY_NEWTON_H
+/* The motion of the nodes in a substep of generalised-alpha or TR-BDF2: starting values, corrections, rates. */
+#ifndef SPARI_SUBSTEP_MOTION_H
+#define SPARI_SUBSTEP_MOTION_H
 
 #include "root.h"
 
@@ -14,20 +13,8 @@ void spari_alpha_carry(const spari_solver *s, const spar_member *member, const s
                        const double rotation[4], const spari_ends *e, double *x);
 /* Prescribes the root: a driven root takes its prescribed pose, a fixed root stays. */
 void spari_alpha_impose_root(const spar_member *member, const spari_pose *root, const spari_ends *e, double *x);
-/* r := forces less loads, without the constrained unknowns. Returns the size that rounding errors are relative to. */
-double spari_alpha_balance(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *at,
-                           double *r);
 /* Fills the solver's tinv. */
 void spari_alpha_operators(const spari_solver *s, const spari_scheme *c, const spari_ends *e, const double *x);
-/* r := forces less loads at t^0, without the constrained unknowns. */
-void spari_alpha_unbalance(spari_solver *s, const spar_member *member, double *r);
-/* Forms and factors the tangent. 0 or 1. */
-int spari_alpha_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to);
-/* rotate_back: finds the rotation of the nodes, now at q, since the reused tangent was formed, and rotates the
-   forces r back into the axes of that tangent. Returns the largest force, infinite if one is not finite.
-   rotate_forth: rotates the corrections back to the present axes. */
-double spari_alpha_rotate_back(const spari_solver *s, const double *q, const double *r, double *dx);
-void spari_alpha_rotate_forth(const spari_solver *s, double *dx);
 /* Sizes of a correction and of the resulting increments: translations relative to the member's length, rotations in
    radians. */
 typedef struct spari_corrected {

@@ -1,19 +1,11 @@
 /* Generalised-alpha on R^3 x SO(3): Bruls, Cardona & Arnold, Mechanism and Machine Theory 48 (2012), with rotations
    composed from the left (spatial rates): q^{n+1} = exp(psi) q^n. With a driven root, in the axes of the root. */
-#include "body_newton.h"
+#include "substep_motion.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
-#include "../member/added_mass.h"
-#include "../member/applied.h"
-#include "body_solver.h"
-#include "newton.h"
-#include "newton_stop.h"
 #include "node_kinematics.h"
 #include "root.h"
 
-#include <float.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- one substep ---- */
@@ -26,15 +18,17 @@ typedef struct alpha_nodes {
     int shifted;
 } alpha_nodes;
 
-static spari_node_work alpha_work(const spari_solver *s) {
-    return (spari_node_work){.lanes = s->body->lanes, .dx = s->dx, .kept = s->tangent_q, .cut = 1};
-}
-
-/* The same of a substep's increments. */
+/* Of a substep's increments. */
 static spari_node_work alpha_work_on(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double *x) {
-    spari_node_work work = alpha_work(s);
-    work.c = c, work.from = &e->from, work.to = &e->to, work.x = x, work.stage = s->stage_v;
-    return work;
+    return (spari_node_work){.lanes = s->body->lanes,
+                             .c = c,
+                             .from = &e->from,
+                             .to = &e->to,
+                             .x = x,
+                             .dx = s->dx,
+                             .stage = s->stage_v,
+                             .kept = s->tangent_q,
+                             .cut = 1};
 }
 
 static double size_of_span(const alpha_nodes *t, spari_node_size size) {
@@ -139,62 +133,6 @@ void spari_alpha_impose_root(const spar_member *member, const spari_pose *root, 
     }
     spari_quat_between(from->q + 3, to->q + 3, p);
     spari_quat_log(p, x + 3);
-}
-
-static void less_loads(void *context, int64_t from, int64_t to) {
-    const alpha_nodes *t = context;
-    const double *load = t->s->steps.load;
-    double *r = t->work.x;
-    for (int64_t i = 6 * from; i < 6 * to; i++) {
-        r[i] -= load[i];
-    }
-}
-
-/* Forces less loads, without the constrained unknowns. Returns the size that rounding errors are relative to. */
-double spari_alpha_balance(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *at,
-                           double *r) {
-    const spari_body *body = s->body;
-    double scale =
-        spari_body_residual(body, at->q, c->still && !body->D ? NULL : at->v, c->still ? NULL : at->a, 1, r, &s->power);
-    spari_solver_spread(s, less_loads, &(alpha_nodes){.s = s, .work = {.x = r}});
-    if (spari_solver_has_applied(s, member)) {
-        scale = fmax(scale, spari_applied_residual(member, at->q, 1, r));
-    }
-    if (s->offset_loads) {
-        spari_offset_loads_residual(s->offset_loads, at->q + 3, r + 3);
-    }
-    if (member->added) {
-        scale = fmax(scale, spari_added_times(member, SPARI_UNKNOWNS, SPARI_UNKNOWNS, at->a, 1, r));
-    }
-    memset(r, 0, (size_t)spari_member_constrained(member) * sizeof *r);
-    return scale;
-}
-
-static void rotate_span_back(void *context, int64_t from, int64_t to) {
-    const alpha_nodes *t = context;
-    t->s->most[from / SPARI_SPAN] = spari_nodes_rotate_back(&t->work, from, to);
-}
-
-static void rotate_span_forth(void *context, int64_t from, int64_t to) {
-    const alpha_nodes *t = context;
-    spari_nodes_rotate_forth(&t->work, from, to);
-}
-
-/* Solves with the reused tangent. It was formed when the nodes were turned otherwise: forces are turned back node by
-   node, and the corrections turned forth, as if each node had carried its part of the tangent along. For a rigid turn
-   of the member that is exact; for a beam that oscillates and bends it makes one tangent last some forty times longer
-   than in fixed axes. */
-double spari_alpha_rotate_back(const spari_solver *s, const double *q, const double *r, double *dx) {
-    alpha_nodes t = {.s = s, .work = alpha_work(s)};
-    t.work.q = q, t.work.r = r, t.work.dx = dx, t.work.rotation = s->rotation;
-    spari_solver_spread(s, rotate_span_back, &t);
-    return spari_solver_most(s);
-}
-
-void spari_alpha_rotate_forth(const spari_solver *s, double *dx) {
-    alpha_nodes t = {.s = s, .work = alpha_work(s)};
-    t.work.dx = dx, t.work.rotation = s->rotation;
-    spari_solver_spread(s, rotate_span_forth, &t);
 }
 
 /* T := R T R^T */
@@ -320,29 +258,7 @@ double spari_alpha_size(const spari_solver *s, double *x) {
     return spari_solver_most(s);
 }
 
-int spari_alpha_tangent(spari_solver *s, const spar_member *member, const spari_scheme *c, const spari_state *to) {
-    const double *v = c->still && !s->body->D ? NULL : to->v;
-    return spari_solver_factor(s, member, to->q, v, c->still ? NULL : to->a, 1, c->cm, c->cv, s->tinv);
-}
-
 /* A tangent of a slightly other dt contracts as fast (hosts' steps differ in their last bits, or by per mille). */
 int spari_alpha_close(double x, double kept) {
     return fabs(x - kept) <= 0.01 * fabs(kept);
-}
-
-/* Forces less loads at t^0, and the power that damping takes. */
-void spari_alpha_unbalance(spari_solver *s, const spar_member *member, double *r) {
-    const spari_state *b = &s->begin;
-    spari_body_residual(s->body, b->q, b->v, b->a, 1, r, s->body->D ? &s->power_begin : NULL);
-    if (spari_solver_has_applied(s, member)) {
-        spari_applied_residual(member, b->q, 1, r);
-    }
-    if (s->offset_loads) {
-        spari_offset_loads_at(s->offset_loads, 0);
-        spari_offset_loads_residual(s->offset_loads, b->q + 3, r + 3);
-    }
-    for (int i = 0; i < 6 * s->n; i++) {
-        r[i] -= s->steps.load0[i];
-    }
-    memset(r, 0, (size_t)spari_member_constrained(member) * sizeof *r);
 }
