@@ -248,7 +248,7 @@ SPAR_API int spar_rigid_create(spar_session *session, const char *name, const do
 /* Creates a geometrically exact (Simo-Reissner) beam of Legendre spectral elements. It needs a line and sections before
    the commit. Default root condition: fixed.
      name: in
-     elements: in, >= 1
+     elements: in, 1 to 1000000
      nodes_per_element: in, 2 to 24; the commit warns if a beam with fewer than 5 would lock
      member: out
    Nodes are the Gauss-Lobatto-Legendre points, numbered from 0, element by element. At an element boundary two nodes

@@ -23,12 +23,10 @@ extern "C" {
    SPAR_ERR_MEMORY: all is as before. */
 SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps);
 SPAR_API int spar_session_get_integrator(const spar_session *session, double *rho_inf, int *substeps);
-/* When Newton's iteration has converged: what is left of the increments, by the contraction that is seen, is below
-   atol + rtol times their scale (lengths by the member's, rotations by 1). In steps of exact and rigid members and of
-   those that joints tie that is so only after this call, or with the option newton.stop = strict: by default Newton
-   ends as soon as what it leaves does not count beside the error of the step and what the coupling is iterated to
-   (docs/accuracy.md), never before 1e-7 of the scale; strict is for comparisons to the last digits. Statics always take
-   these tolerances.
+/* Tolerances of Newton's iteration. It stops when the estimated remaining correction is below atol + rtol times its
+   scale: lengths relative to the member's length, rotations to 1. Static solutions always use these tolerances. Steps
+   use them alone if the option newton.stop is strict. By default (balanced) a step's iteration may stop earlier, when
+   its error is negligible compared with the time-step error and the coupling tolerance (docs/accuracy.md).
      atol, rtol: in, >= 0; defaults 1e-15, 1e-12
      max_iterations: in, >= 1, past which the answer is SPAR_ERR_NUMERIC; default 50 */
 SPAR_API int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations);
@@ -53,12 +51,11 @@ SPAR_API int spar_session_get_predictor(const spar_session *session, int *order)
 SPAR_API int spar_session_set_relaxation(spar_session *session, double omega);
 SPAR_API int spar_session_get_relaxation(const spar_session *session, double *omega);
 /* All other settings, by name and text. key, value: in.
-     newton.stop            tied (default) | strict: where Newton's iteration of a step ends: tied, when what it leaves
-                            is a thousandth of the error of the step, by (E1) of docs/theory.md in the steps before, as
-                            a change of velocities that lasts, and of what the coupling is iterated to, by the
-                            motion; within 1e-7 and rtol of the increments. Strict at atol and rtol: the first step, at
-                            rest, without inertia. Strict: always there. spar_session_set_newton makes it strict.
-                            spar_member_get_iterations tells what is left
+     newton.stop            balanced (default) | strict: where Newton's iteration of a step stops. Strict: at the
+                            tolerances of spar_session_set_newton, for bitwise comparison of runs. Balanced: when its
+                            error is a thousandth of the time-step error, (E4) of docs/theory.md, and of the coupling
+                            tolerance, between rtol and 1e-7 of the increments. Where the time-step error is unknown
+                            (first step, at rest, without inertia) balanced is strict
      coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations
      coupling.patience      1 to 1000000, default 3: with coupling.unconverged = accept, so many steps on end that have
                             not converged are an error all the same; each is told to the log
@@ -271,7 +268,7 @@ SPAR_API int spar_step_adaptive(spar_session *session, double *dt, spar_before_s
 /* on: in, 1: nodal loads come out the same to the last bit however many ranks there are, however the fluid nodes are
    spread over them and over fluids, in whatever order they are given and whatever vectors the processor has; 0
    (default): to rounding. A run that is saved and goes on with other ranks stays the same too, if it is on in both. It
-   has to be on when forces are pushed; with up to 2^31 force nodes of a member, rounding to the nearest, and what the
+   has to be on when forces are pushed; with up to 2^28 force nodes of a member, rounding to the nearest, and what the
    host pushes for a node independent of the ranks. What it costs: docs/accuracy.md. */
 SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
 SPAR_API int spar_session_get_reproducible(const spar_session *session, int *on);

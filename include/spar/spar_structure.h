@@ -31,7 +31,7 @@ enum { SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_S
 /* Integration along an element. Default: SECTIONS if there are more than two stations, else GAUSS with as many
    points as nodes. The commit refuses a rule that is too coarse for the element.
      rule: in, SPAR_QUADRATURE_*; SECTIONS has Gauss points in each piece between stations
-     points: in, per element or piece, 1 (Lobatto 2) to 512 */
+     points: in, per element or piece, 1 (Lobatto 2) to 512; 0: as many as needed */
 SPAR_API int spar_beam_set_quadrature(spar_member *beam, int rule, int points);
 /* rule: out, the rule in use, NULL: not wanted
    points: out, as set; 0: not set; then GAUSS has as many as nodes, SECTIONS as many as the pieces need; NULL: not

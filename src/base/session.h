@@ -58,8 +58,8 @@ typedef struct spari_newton_settings {
     double atol;
     double rtol;
     int max;
-    int strict;   /* option newton.stop = tied (default) | strict */
-    double share; /* with newton.stop = tied: relative acceleration error that Newton may leave, from the coupling
+    int strict;   /* option newton.stop = balanced (default) | strict */
+    double share; /* with newton.stop = balanced: relative acceleration error that Newton may leave, from the coupling
                      tolerance; infinite: no limit */
 } spari_newton_settings;
 

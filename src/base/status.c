@@ -29,11 +29,12 @@ static const struct {
 #undef SPARI_ROW
 };
 
+int spari_is_status(int status) {
+    return status >= 0 && (size_t)status < sizeof table / sizeof table[0] && table[status].code == status;
+}
+
 const char *spar_status_text(int status) {
-    if (status < 0 || (size_t)status >= sizeof table / sizeof table[0] || table[status].code != status) {
-        return "unknown status";
-    }
-    return table[status].text;
+    return spari_is_status(status) ? table[status].text : "unknown status";
 }
 
 const char *spar_version(void) {

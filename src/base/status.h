@@ -34,6 +34,9 @@ enum { SPARI_MESSAGE_SIZE = 1024 };
         }                                                                                                              \
     } while (0)
 
+/* Whether it is SPAR_OK or a SPAR_ERR_*. */
+int spari_is_status(int status);
+
 /* Index of the first entry of x[n] that is not finite, or -1. */
 int64_t spari_first_nonfinite(const double *x, int64_t n);
 

@@ -220,7 +220,7 @@ static void note_refusal(spar_fluid *fluid, int status, const char *why) {
 
 int spar_fluid_fail(spar_fluid *fluid, int status, const char *message) {
     SPARI_FLUID_HANDLE(fluid);
-    SPARI_FLUID_REQUIRE(fluid, status > SPAR_OK && status <= SPAR_ERR_USER, SPAR_ERR_ARGUMENT,
+    SPARI_FLUID_REQUIRE(fluid, status != SPAR_OK && spari_is_status(status), SPAR_ERR_ARGUMENT,
                         "the status is %d; give a SPAR_ERR_*", status);
     SPARI_FLUID_REQUIRE(fluid, message && message[0], SPAR_ERR_ARGUMENT,
                         "the message is missing; give a text that describes the failure");

@@ -252,9 +252,10 @@ int spar_beam_set_quadrature(spar_member *beam, int rule, int points) {
     SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_REQUIRE(beam->session, rule >= SPAR_QUADRATURE_GAUSS && rule <= SPAR_QUADRATURE_SECTIONS, SPAR_ERR_ARGUMENT,
                   "%s: '%s': quadrature rule %d is not known; see SPAR_QUADRATURE_*", __func__, beam->name, rule);
-    SPARI_REQUIRE(beam->session, points >= (rule == SPAR_QUADRATURE_LOBATTO ? 2 : 1) && points <= 512,
-                  SPAR_ERR_ARGUMENT, "%s: '%s': %d quadrature points; give 1 (Lobatto 2) to 512", __func__, beam->name,
-                  points);
+    SPARI_REQUIRE(beam->session, points == 0 || (points >= (rule == SPAR_QUADRATURE_LOBATTO ? 2 : 1) && points <= 512),
+                  SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %d quadrature points; give 1 (Lobatto 2) to 512, or 0 for as many as the element needs",
+                  __func__, beam->name, points);
     beam->beam->rule = rule;
     beam->beam->points = points;
     return SPAR_OK;

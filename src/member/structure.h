@@ -109,7 +109,7 @@ typedef struct spari_member_state {
 typedef struct spari_accuracy {
     double step_error;   /* with a tolerance: error of the last step, m */
     double speed;        /* with a tolerance: largest speed so far, m/s */
-    double jerk;         /* option newton.stop = tied: rate of change of the acceleration in the last steps, relative to
+    double jerk;         /* option newton.stop = balanced: rate of change of the acceleration in the last steps, relative to
                             the length, 1/s^3 (time/newton_stop.h); 0: unknown */
     double acceleration; /* likewise: acceleration, relative to the length, 1/s^2 */
 } spari_accuracy;

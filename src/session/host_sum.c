@@ -7,8 +7,8 @@
 #include <string.h>
 
 static int check_sum(spar_session *s, const char *call, int status, int64_t n, const double *x) {
-    SPARI_REQUIRE(s, status >= SPAR_OK && status <= SPAR_ERR_USER, SPAR_ERR_ARGUMENT,
-                  "%s: the status is %d; give SPAR_OK or a SPAR_ERR_*", call, status);
+    SPARI_REQUIRE(s, spari_is_status(status), SPAR_ERR_ARGUMENT, "%s: the status is %d; give SPAR_OK or a SPAR_ERR_*",
+                  call, status);
     SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT, "%s: %lld numbers; give 0 to 2^40", call,
                   (long long)n);
     SPARI_REQUIRE(s, x || n == 0, SPAR_ERR_ARGUMENT, "%s: the numbers are NULL", call);

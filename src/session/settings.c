@@ -80,7 +80,7 @@ static const spari_setting settings[] = {
     REAL(TOLERANCE, "tolerance", "rtol", tolerance.rtol, 0, 1, "a number from 0 to 1", 0, SPARI_AGREED),
     WHOLE(GOAL, "goal", "goals", advice.goals, 1, 31, "at least one SPAR_GOAL_*, combined with or", SPAR_GOAL_MOTION,
           SPARI_AGREED),
-    OPTION_WORD("newton.stop", newton.strict, "tied", "strict", SPARI_AGREED | SPARI_VARIED),
+    OPTION_WORD("newton.stop", newton.strict, "balanced", "strict", SPARI_AGREED | SPARI_VARIED),
     OPTION_WORD("coupling.unconverged", coupling.accept_unconverged, "error", "accept", SPARI_AGREED),
     OPTION_WHOLE("coupling.patience", coupling.patience, 1, 1000000, "a whole number from 1 to 1000000", 3,
                  SPARI_AGREED),
@@ -113,14 +113,15 @@ static const spari_setting settings[] = {
 };
 enum { SETTINGS = sizeof settings / sizeof *settings };
 
+/* A value that is the same as before changes nothing: the coupling's memory stays. */
 static void store(spar_session *s, const spari_setting *of, double x) {
     void *field = (char *)s + of->field;
+    s->coupling.stale |= of->flags & SPARI_OF_COUPLING && spari_setting_value(s, of) != x;
     if (of->kind == SPARI_IS_REAL) {
         *(double *)field = x;
     } else {
         *(int *)field = (int)x;
     }
-    s->coupling.stale |= of->flags & SPARI_OF_COUPLING ? 1 : 0;
 }
 
 static int is_allowed(const spari_setting *of, double x) {
@@ -270,9 +271,7 @@ int spar_session_get_integrator(const spar_session *session, double *rho_inf, in
 }
 
 int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations) {
-    SPARI_TRY(set(session, __func__, NEWTON, (const double[]){atol, rtol, max_iterations}));
-    session->newton.strict = 1;
-    return SPAR_OK;
+    return set(session, __func__, NEWTON, (const double[]){atol, rtol, max_iterations});
 }
 
 int spar_session_get_newton(const spar_session *session, double *atol, double *rtol, int *max_iterations) {

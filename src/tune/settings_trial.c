@@ -191,7 +191,7 @@ static const char *describe_plan(const spari_advisor *d, const spari_plan *p, ch
         at += snprintf(text + at, size - (size_t)at, " %.0e", p->rtol);
     }
     at += snprintf(text + at, size - (size_t)at, ", predictor %d, Newton ", p->predictor);
-    at += snprintf(text + at, size - (size_t)at, p->strict ? "%.0e" : "tied", p->newton);
+    at += snprintf(text + at, size - (size_t)at, p->strict ? "%.0e" : "balanced", p->newton);
     for (int g = 0; g < d->groups && (size_t)at + 80 < size; g++) {
         const spari_shape *b = &p->group[g];
         at += snprintf(text + at, size - (size_t)at, ", %s", spari_fidelity_name(b->fidelity));

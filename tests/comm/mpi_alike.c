@@ -233,6 +233,11 @@ static void sums(void **state) {
                                                                          : SPAR_OK);
     assert_true(size == 1 || strstr(spar_session_message(c.session), "-1 nodes"));
     assert_true(x[0] == sum[0]);
+    for (int failed = SPAR_ERR_ARGUMENT; failed <= SPAR_ERR_LIMIT; failed++) { /* each status can be handed on */
+        int status = spar_session_sum(c.session, last ? failed : SPAR_OK, 1, x);
+        assert_int_equal(status, last ? failed : size > 1 ? SPAR_ERR_PEER : SPAR_OK);
+        assert_true(x[0] == sum[0]);
+    }
     differs(&c, spar_session_sum(c.session, SPAR_OK, last ? 2 : 3, x), "n");
     spar_session_destroy(&c.session);
 }

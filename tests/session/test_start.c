@@ -524,7 +524,7 @@ static void saved_before_the_first_step(void **state) {
         static double seen[2][ALL];
         for (int loaded = 0; loaded < 2; loaded++) {
             wet_arm w;
-            wet_arm_create(&w, substeps, k / 2 % 2 ? "tied" : "strict");
+            wet_arm_create(&w, substeps, k / 2 % 2 ? "balanced" : "strict");
             if (!loaded || again) { /* another start is forgotten */
                 OK(w.session, spar_session_solve_initial(w.session, loaded ? 0.02 : 0.01, arm_fluid, &w, NULL));
             }
@@ -557,11 +557,11 @@ static void saved_within_the_first_step(void **state) {
         static double seen[2][ALL];
         wet_arm w, other;
         int done = 0;
-        wet_arm_create(&w, 1 + k % 2, "tied");
+        wet_arm_create(&w, 1 + k % 2, "balanced");
         OK(w.session, spar_session_solve_initial(w.session, 0.01, arm_fluid, &w, NULL));
         first_step(&w, k / 2, path);
         OK(w.session, spar_member_get_motion(w.arm, seen[0], seen[0] + 7 * ARM_NODES, seen[0] + 13 * ARM_NODES));
-        wet_arm_create(&other, 1 + k % 2, "tied");
+        wet_arm_create(&other, 1 + k % 2, "balanced");
         OK(other.session, spar_session_load(other.session, path));
         if (k / 2 == 1) {
             OK(other.session, arm_fluid(other.session, 0, 0.01, 0, &other));

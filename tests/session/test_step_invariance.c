@@ -145,7 +145,7 @@ static void rejected_steps_leave_no_bit(void **state) {
     (void)state;
     static double plain[STEPS][LARGE], other[STEPS][LARGE];
     static const int schemes[] = {SPAR_COUPLING_AITKEN, SPAR_COUPLING_IQN_ILS}, times[] = {1, 2, 7};
-    static const char *const stops[] = {"strict", "tied"};
+    static const char *const stops[] = {"strict", "balanced"};
     for (int k = 0; k < 4; k++) {
         run_rejecting(schemes[k / 2], stops[k % 2], 0, plain);
         for (int t = 0; t < 3; t++) {
@@ -241,7 +241,7 @@ static void pulls_and_pushes_may_repeat(void **state) {
     unsigned random = 12345;
     for (int r = 0; r < 2; r++) {
         world w;
-        create(&w, SPAR_COUPLING_IQN_ILS, "tied", 0);
+        create(&w, SPAR_COUPLING_IQN_ILS, "balanced", 0);
         for (int k = 0; k < STEPS; k++) {
             double dt = length_of(k), f[3 * PUSHED], wrong[3 * PUSHED], x[3 * PUSHED];
             OK(w.s, spar_step_begin(w.s, dt));

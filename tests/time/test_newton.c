@@ -1,6 +1,6 @@
-/* Where Newton's iteration of a step ends: tied to the error of the step and to its coupling (option newton.stop), runs
-   are those of strict ones to a small part of what dt leaves, in the long run too, and take fewer iterations. The
-   oracle is the strict run, and one with half its dt: their distance is the error of dt (3/4 of it). */
+/* Where Newton's iteration of a step ends: balanced with the error of the step and to its coupling (option
+   newton.stop), runs are those of strict ones to a small part of what dt leaves, in the long run too, and take fewer
+   iterations. The oracle is the strict run, and one with half its dt: their distance is the error of dt (3/4 of it). */
 #include "scene.h"
 
 #include "time/body_solver.h"
@@ -89,14 +89,14 @@ static flown fly(int beam, double dt, int64_t steps, double rho, int strict) {
 static void test_body_keeps_what_it_has(void **state) {
     (void)state;
     for (double rho = 0.9; rho < 1.05; rho += 0.1) {
-        flown strict = fly(0, 0.02, 100000, rho, 1), tied = fly(0, 0.02, 100000, rho, 0);
+        flown strict = fly(0, 0.02, 100000, rho, 1), balanced = fly(0, 0.02, 100000, rho, 0);
         print_message("body: energy %.3e, strict %.3e; turns' momentum %.3e, strict %.3e; iterations %.2f of %.2f\n",
-                      tied.energy, strict.energy, tied.momentum_of_turns, strict.momentum_of_turns, tied.newton,
-                      strict.newton);
-        assert_true(tied.energy <= 1.1 * strict.energy);
-        assert_true(tied.momentum_of_turns <= 1.1 * strict.momentum_of_turns);
-        NEAR(tied.momentum, 0, 1e-12);
-        assert_true(tied.newton < 0.8 * strict.newton);
+                      balanced.energy, strict.energy, balanced.momentum_of_turns, strict.momentum_of_turns,
+                      balanced.newton, strict.newton);
+        assert_true(balanced.energy <= 1.1 * strict.energy);
+        assert_true(balanced.momentum_of_turns <= 1.1 * strict.momentum_of_turns);
+        NEAR(balanced.momentum, 0, 1e-12);
+        assert_true(balanced.newton < 0.8 * strict.newton);
     }
 }
 
@@ -107,13 +107,14 @@ static void test_beam_swings_alike(void **state) {
     const struct { double dt, rho; } run[] = {{5e-3, 1}, {5e-3, 0.9}, {2e-3, 0.9}};
     for (size_t k = 0; k < sizeof run / sizeof *run; k++) {
         double dt = run[k].dt, rho = run[k].rho;
-        flown strict = fly(1, dt, 4000, rho, 1), tied = fly(1, dt, 4000, rho, 0), half = fly(1, dt / 2, 8000, rho, 1);
-        double off = farthest(&strict, &tied), error = farthest(&strict, &half);
+        flown strict = fly(1, dt, 4000, rho, 1), balanced = fly(1, dt, 4000, rho, 0),
+              half = fly(1, dt / 2, 8000, rho, 1);
+        double off = farthest(&strict, &balanced), error = farthest(&strict, &half);
         print_message("box: %.1e of the error; energy %.3e, strict %.3e; iterations %.2f of %.2f\n", off / error,
-                      tied.energy, strict.energy, tied.newton, strict.newton);
+                      balanced.energy, strict.energy, balanced.newton, strict.newton);
         assert_true(off <= 0.01 * error);
-        NEAR(tied.energy, strict.energy, 0.05 * strict.energy);
-        assert_true(tied.newton < 0.7 * strict.newton);
+        NEAR(balanced.energy, strict.energy, 0.05 * strict.energy);
+        assert_true(balanced.newton < 0.7 * strict.newton);
     }
 }
 
@@ -199,13 +200,13 @@ static void drop(double dt, int64_t steps, int strict, double place[3]) {
 
 static void test_what_comes_at_once(void **state) {
     (void)state;
-    double strict[3], tied[3], half[3];
-    hit(0.01, 60, 1, strict), hit(0.01, 60, 0, tied), hit(0.005, 120, 1, half);
-    print_message("hit: %.1e of the error\n", from(strict, tied, 3) / from(strict, half, 3));
-    assert_true(from(strict, tied, 3) <= 0.01 * from(strict, half, 3));
-    drop(0.01, 120, 1, strict), drop(0.01, 120, 0, tied), drop(0.005, 240, 1, half);
-    print_message("dropped: %.1e of the error\n", from(strict, tied, 3) / from(strict, half, 3));
-    assert_true(from(strict, tied, 3) <= 0.01 * from(strict, half, 3));
+    double strict[3], balanced[3], half[3];
+    hit(0.01, 60, 1, strict), hit(0.01, 60, 0, balanced), hit(0.005, 120, 1, half);
+    print_message("hit: %.1e of the error\n", from(strict, balanced, 3) / from(strict, half, 3));
+    assert_true(from(strict, balanced, 3) <= 0.01 * from(strict, half, 3));
+    drop(0.01, 120, 1, strict), drop(0.01, 120, 0, balanced), drop(0.005, 240, 1, half);
+    print_message("dropped: %.1e of the error\n", from(strict, balanced, 3) / from(strict, half, 3));
+    assert_true(from(strict, balanced, 3) <= 0.01 * from(strict, half, 3));
 }
 
 /* ---- corrections that are mixed ---- */
@@ -322,7 +323,7 @@ static void test_getter(void **state) {
     OK(s, spar_member_get_iterations(p, NULL, NULL));
     OK(s, spar_member_get_iterations(p, &taken, &left));
     assert_true(taken == 0 && left == 0);
-    REFUSED(s, SPAR_ERR_ARGUMENT, "give tied or strict", spar_session_set_option(s, "newton.stop", "loose"));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "give balanced or strict", spar_session_set_option(s, "newton.stop", "loose"));
     spar_session_destroy(&s);
 }
 

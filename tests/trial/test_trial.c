@@ -886,7 +886,7 @@ static int idle(spar_session *s, double t, double dt, int iteration, void *conte
    is no reference run. "A peer failed" is one of them, also where there is no other rank. */
 static void test_loads_that_are_not_there(void **state) {
     (void)state;
-    for (int why = SPAR_ERR_ARGUMENT; why <= SPAR_ERR_USER; why++) {
+    for (int why = SPAR_ERR_ARGUMENT; why <= SPAR_ERR_LIMIT; why++) {
         double K[36], M[36], advice[SPAR_ADVICE_COUNT], report[SPAR_TRY_COUNT];
         spar_fluid *f = NULL;
         spar_session *s = scene_session();

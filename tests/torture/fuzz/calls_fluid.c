@@ -165,7 +165,7 @@ void do_spar_fluid_get_name(call *c) {
 
 void do_spar_fluid_fail(call *c) {
     live_fluid *f = arg_fluid(c);
-    int status = odd(c) ? 0 : 1 + below(c, SPAR_ERR_USER);
+    int status = odd(c) ? 0 : 1 + below(c, SPAR_ERR_LIMIT);
     const char *message = arg_name(c, "why");
     RUN(c, spar_fluid_fail(f->f, status, message));
 }

@@ -250,7 +250,7 @@ void do_spar_session_set_option(call *c) {
                                             {"1", "3", "1000000"},
                                             {"off", "on", "on"},
                                             {"acceleration", "velocity", "velocity"},
-                                            {"tied", "strict", "tied"}};
+                                            {"balanced", "strict", "balanced"}};
     static const char *const strange[] = {"",   "nan",   "inf",    "-1", "1e999",  "1,5",  "0x10",  " 1",   "1 ",
                                           "%s", "10001", "1e-400", "-0", "accept", "keep", "1e300", "10000"};
     live_session *l = arg_session(c);

@@ -260,7 +260,7 @@ static void go(host *h, int steps) {
 
 static void settings(spar_session *s) {
     static const double g[3] = {0, 0, -2};
-    static const char *const option[][2] = {{"newton.stop", "tied"},
+    static const char *const option[][2] = {{"newton.stop", "balanced"},
                                             {"coupling.unconverged", "accept"},
                                             {"coupling.patience", "100"},
                                             {"coupling.norm", "motion"},

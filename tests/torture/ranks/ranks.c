@@ -763,7 +763,7 @@ static const struct setting {
     {"omega", NULL, NULL, NULL},
     {"drift of spar_session_set_tolerance", NULL, NULL, NULL},
     {"goals of spar_session_set_goal", NULL, NULL, NULL},
-    {"newton.stop", "newton.stop", "strict", "tied"},
+    {"newton.stop", "newton.stop", "strict", "balanced"},
     {"coupling.unconverged", "coupling.unconverged", "accept", "error"},
     {"coupling.patience", "coupling.patience", "9", "3"},
     {"coupling.norm", "coupling.norm", "loads", "motion"},
@@ -799,11 +799,8 @@ static int apply_number(spar_session *s, int k, int other) {
     case 5:
     case 6:
     case 7:
-        if (spar_session_set_newton(s, other && k == 5 ? 1e-14 : 1e-15, other && k == 6 ? 1e-11 : 1e-12,
-                                    other && k == 7 ? 40 : 50) != SPAR_OK) {
-            return SPAR_ERR_ARGUMENT;
-        }
-        return spar_session_set_option(s, "newton.stop", "tied");
+        return spar_session_set_newton(s, other && k == 5 ? 1e-14 : 1e-15, other && k == 6 ? 1e-11 : 1e-12,
+                                       other && k == 7 ? 40 : 50);
     case 8:
         return spar_session_set_predictor(s, other ? 0 : 1);
     case 13:
