@@ -167,7 +167,7 @@ static int glide(spar_session *s, double t, double dt, int iteration, void *cont
 /* At 25 m/s and 2 degrees, or half a degree more or less */
 static int build_wing(scene_run *r) {
     const double alpha[3] = {-0.5, 0, 0.5}, cl[3] = {-pi, 0, pi}, zero[3] = {0}, cd[3] = {0.01, 0.01, 0.01};
-    double C[36], M[36], xi[WING_STRIPS], offset[3 * WING_STRIPS] = {0};
+    double C[36], M[36], along[WING_STRIPS], offset[3 * WING_STRIPS] = {0};
     double angle = (2 + 0.5 * sin(r->knobs.phase)) * pi / 180;
     spar_polar *polar = NULL;
     air *b = take_air(r);
@@ -180,12 +180,12 @@ static int build_wing(scene_run *r) {
     b->density = 0.0889, b->n = WING_STRIPS;
     r->solve = glide;
     for (int i = 0; i < WING_STRIPS; i++) { /* aerodynamic centre a quarter chord ahead of the elastic axis */
-        xi[i] = (2 * i + 1.0) / WING_STRIPS - 1;
+        along[i] = (i + 0.5) / WING_STRIPS;
         offset[3 * i + 1] = -0.25;
         b->inflow[3 * i + 1] = 25 * cos(angle), b->inflow[3 * i + 2] = -25 * sin(angle);
     }
     TRY(spar_fluid_create(r->member, "strips", &r->fluid));
-    TRY(spar_fluid_set_stations(r->fluid, WING_STRIPS, xi, offset));
+    TRY(spar_fluid_set_stations(r->fluid, WING_STRIPS, along, offset));
     TRY(spar_fluid_set_interpolation(r->fluid, r->knobs.consistent));
     TRY(spar_fluid_map(r->fluid));
     TRY(spar_aero_create(1, &r->fluid, &b->aero));

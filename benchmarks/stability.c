@@ -116,18 +116,18 @@ static void describe_wing(wing *w, double angle) {
 
 static void begin_wing(wing *w, const wing_data *of, double speed, double angle) {
     const double pi = 3.14159265358979323846, alpha[2] = {-0.5, 0.5}, cl[2] = {-pi, pi}, cd[2] = {0, 0};
-    double xi[STRIPS], offset[STRIPS][3] = {{0}};
+    double along[STRIPS], offset[STRIPS][3] = {{0}};
     *w = (wing){.of = of};
     MUST(NULL, spar_session_create(&w->s));
     MUST(w->s, spar_session_set_coupling(w->s, SPAR_COUPLING_IQN_ILS, 0, 1e-9, 60));
     describe_wing(w, angle);
     MUST(w->s, spar_fluid_create(w->beam, "air", &w->air));
     for (int i = 0; i < STRIPS; i++) {
-        xi[i] = -1 + 2.0 * i / (STRIPS - 1);
+        along[i] = 1.0 * i / (STRIPS - 1);
         offset[i][1] = (-0.25 - of->axis) * of->chord;
         w->wind[i][1] = speed;
     }
-    MUST(w->s, spar_fluid_set_stations(w->air, STRIPS, xi, offset[0]));
+    MUST(w->s, spar_fluid_set_stations(w->air, STRIPS, along, offset[0]));
     MUST(w->s, spar_fluid_map(w->air));
     MUST(w->s, spar_polar_create(2, alpha, cl, cd, NULL, &w->polar));
     MUST(w->s, spar_aero_create(1, &w->air, &w->aero));

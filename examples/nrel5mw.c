@@ -605,13 +605,13 @@ int nrel5mw_create_sections(nrel5mw *data, const nrel5mw_rotor *rotor, int blade
     if (!work) {
         return FAIL(data, SPAR_ERR_MEMORY, "sections: no memory");
     }
-    double *xi = work, *x_map = xi + n, *q_map = x_map + 3 * n, *offset = q_map + 4 * n;
+    double *eta = work, *x_map = eta + n, *q_map = x_map + 3 * n, *offset = q_map + 4 * n;
     for (int64_t i = 0; i < n; i++) {
-        xi[i] = 2 * data->span[i] / data->length - 1;
+        eta[i] = data->span[i] / data->length;
     }
     int status = spar_fluid_create(member, name, fluid);
     if (status == SPAR_OK) { /* once on the line itself, to learn the frames there */
-        status = spar_fluid_set_stations(*fluid, n, xi, NULL);
+        status = spar_fluid_set_stations(*fluid, n, eta, NULL);
     }
     if (status == SPAR_OK) {
         status = spar_fluid_map(*fluid);
@@ -621,7 +621,7 @@ int nrel5mw_create_sections(nrel5mw *data, const nrel5mw_rotor *rotor, int blade
     }
     if (status == SPAR_OK) {
         fit_sections(data, rotor, blade, x_map, q_map, offset, twist);
-        status = spar_fluid_set_stations(*fluid, n, xi, offset);
+        status = spar_fluid_set_stations(*fluid, n, eta, offset);
     }
     if (status == SPAR_OK) {
         status = spar_fluid_map(*fluid);

@@ -400,14 +400,14 @@ contains
   subroutine make_sections(k, root, r)
     integer, intent(in) :: k
     real(dp), intent(in) :: root(3), r(3,3)
-    real(dp) :: xi(ns), foot(3,ns), q(4,ns), offset(3,ns), own(3,3), arm(3)
+    real(dp) :: eta(ns), foot(3,ns), q(4,ns), offset(3,ns), own(3,3), arm(3)
     character(12) :: name
     integer :: i
 
     write (name, '(a,i0)') 'sections', blade_of(k)
-    xi = 2 * span(1:ns) / length - 1
+    eta = span(1:ns) / length
     call fluid(k)%create(blade(blade_of(k)), name)
-    call fluid(k)%set_stations(xi)
+    call fluid(k)%set_stations(eta)
     call fluid(k)%map()
     call fluid(k)%get_feet(SPAR_NODES_MOTION, foot, q)
     do i = 1, ns
@@ -416,7 +416,7 @@ contains
       offset(:,i) = matmul(arm, own)
       extra_twist(i) = aero_twist(i) + atan2(dot_product(own(:,2), r(:,3)), dot_product(own(:,2), r(:,2)))
     end do
-    call fluid(k)%set_stations(xi, offset)
+    call fluid(k)%set_stations(eta, offset)
     call fluid(k)%map()
     call fluid(k)%get_feet(SPAR_NODES_MOTION, foot, con=offset)
     foot = foot + offset

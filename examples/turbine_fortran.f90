@@ -215,14 +215,14 @@ contains
   subroutine make_sections(b, root, r)
     integer, intent(in) :: b
     real(dp), intent(in) :: root(3), r(3,3)
-    real(dp) :: xi(ns), foot(3,ns), q(4,ns), offset(3,ns), own(3,3), arm(3)
+    real(dp) :: eta(ns), foot(3,ns), q(4,ns), offset(3,ns), own(3,3), arm(3)
     character(12) :: name
     integer :: i
 
     write (name, '(a,i0)') 'sections', b
-    xi = 2 * span(1:ns) / length - 1
+    eta = span(1:ns) / length
     call sections(b)%create(blade(b), name)
-    call sections(b)%set_stations(xi)
+    call sections(b)%set_stations(eta)
     call sections(b)%map()
     call sections(b)%get_feet(SPAR_NODES_MOTION, foot, q)
     do i = 1, ns
@@ -231,7 +231,7 @@ contains
       offset(:,i) = matmul(arm, own)
       extra_twist(i) = aero_twist(i) + atan2(dot_product(own(:,2), r(:,3)), dot_product(own(:,2), r(:,2)))
     end do
-    call sections(b)%set_stations(xi, offset)
+    call sections(b)%set_stations(eta, offset)
     call sections(b)%map()
   end subroutine make_sections
 

@@ -2001,10 +2001,10 @@ contains
     call narrow(status, long, n, 'fluid%get_count', self%session, stat, errmsg)
   end subroutine fluid_get_count_32
 
-  subroutine fluid_get_map(self, which, xi, distance, flags, stat, errmsg)
+  subroutine fluid_get_map(self, which, eta, distance, flags, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
-    real(c_double), contiguous, intent(inout), optional :: xi(:), distance(:)
+    real(c_double), contiguous, intent(inout), optional :: eta(:), distance(:)
     integer, intent(inout), optional :: flags(:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
@@ -2018,7 +2018,7 @@ contains
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(xi)) call need(fault, 'xi', shape(xi, kind=c_int64_t), [n])
+    if (present(eta)) call need(fault, 'eta', shape(eta, kind=c_int64_t), [n])
     if (present(distance)) call need(fault, 'distance', shape(distance, kind=c_int64_t), [n])
     if (present(flags)) call need(fault, 'flags', shape(flags, kind=c_int64_t), [n])
     if (allocated(fault)) then
@@ -2026,7 +2026,7 @@ contains
       return
     end if
     if (present(flags)) allocate (c_flags(n), source=0_c_int)
-    status = spar_fluid_get_map(self%handle, to_c(which), xi, distance, c_flags)
+    status = spar_fluid_get_map(self%handle, to_c(which), eta, distance, c_flags)
     if (status == SPAR_OK .and. present(flags)) flags(:n) = c_flags
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_map
@@ -3475,21 +3475,22 @@ contains
     call finish(spar_fluid_set_force_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
   end subroutine fluid_set_force_nodes
 
-  subroutine fluid_set_stations(self, xi, offset, stat, errmsg)
+  subroutine fluid_set_stations(self, eta, offset, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: xi(:)
+    real(c_double), contiguous, intent(in) :: eta(:)
     real(c_double), contiguous, intent(in), optional :: offset(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    if (present(offset)) call need(fault, 'offset', shape(offset, kind=c_int64_t), [3_c_int64_t, size(xi, &
+    if (present(offset)) call need(fault, 'offset', shape(offset, kind=c_int64_t), [3_c_int64_t, size(eta, &
         kind=c_int64_t)])
     if (allocated(fault)) then
       call refuse('fluid%set_stations', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_set_stations(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, stat, errmsg)
+    call finish(spar_fluid_set_stations(self%handle, size(eta, kind=c_int64_t), eta, offset), self%session, stat, &
+        errmsg)
   end subroutine fluid_set_stations
 
   subroutine fluid_map(self, stat, errmsg)
@@ -3528,21 +3529,21 @@ contains
     call finish(spar_fluid_pull_poses(self%handle, theta, x, q, v, omega, accel, alpha), self%session, stat, errmsg)
   end subroutine fluid_pull_poses
 
-  subroutine fluid_set_motion_stations(self, xi, offset, stat, errmsg)
+  subroutine fluid_set_motion_stations(self, eta, offset, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: xi(:)
+    real(c_double), contiguous, intent(in) :: eta(:)
     real(c_double), contiguous, intent(in), optional :: offset(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     character(:), allocatable :: fault
 
-    if (present(offset)) call need(fault, 'offset', shape(offset, kind=c_int64_t), [3_c_int64_t, size(xi, &
+    if (present(offset)) call need(fault, 'offset', shape(offset, kind=c_int64_t), [3_c_int64_t, size(eta, &
         kind=c_int64_t)])
     if (allocated(fault)) then
       call refuse('fluid%set_motion_stations', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_set_motion_stations(self%handle, size(xi, kind=c_int64_t), xi, offset), self%session, &
+    call finish(spar_fluid_set_motion_stations(self%handle, size(eta, kind=c_int64_t), eta, offset), self%session, &
         stat, errmsg)
   end subroutine fluid_set_motion_stations
 
@@ -5534,28 +5535,28 @@ contains
         stat=stat, errmsg=errmsg)
   end subroutine fluid_read_aerodyn_single_2
 
-  subroutine fluid_get_map_single_1(self, which, xi, distance, flags, stat, errmsg)
+  subroutine fluid_get_map_single_1(self, which, eta, distance, flags, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
-    real(c_float), intent(inout) :: xi(:)
+    real(c_float), intent(inout) :: eta(:)
     real(c_float), intent(inout), optional :: distance(:)
     integer, intent(inout), optional :: flags(:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_xi(:)
+    real(c_double), allocatable :: c_eta(:)
     real(c_double), allocatable :: c_distance(:)
 
-    allocate (c_xi(ubound(xi, 1, c_int64_t)), source=untouched)
+    allocate (c_eta(ubound(eta, 1, c_int64_t)), source=untouched)
     if (present(distance)) allocate (c_distance(ubound(distance, 1, c_int64_t)), source=untouched)
-    call fluid_get_map(self, which=which, xi=c_xi, distance=c_distance, flags=flags, stat=stat, errmsg=errmsg)
-    call take(c_xi, xi)
+    call fluid_get_map(self, which=which, eta=c_eta, distance=c_distance, flags=flags, stat=stat, errmsg=errmsg)
+    call take(c_eta, eta)
     call take(c_distance, distance)
   end subroutine fluid_get_map_single_1
 
-  subroutine fluid_get_map_single_2(self, which, no_xi, distance, flags, stat, errmsg)
+  subroutine fluid_get_map_single_2(self, which, no_eta, distance, flags, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
-    type(absent), intent(in), optional :: no_xi
+    type(absent), intent(in), optional :: no_eta
     real(c_float), intent(inout) :: distance(:)
     integer, intent(inout), optional :: flags(:)
     integer, intent(out), optional :: stat
@@ -5563,7 +5564,7 @@ contains
     real(c_double), allocatable :: c_distance(:)
 
     allocate (c_distance(ubound(distance, 1, c_int64_t)), source=untouched)
-    if (present(no_xi)) return
+    if (present(no_eta)) return
     call fluid_get_map(self, which=which, distance=c_distance, flags=flags, stat=stat, errmsg=errmsg)
     call take(c_distance, distance)
   end subroutine fluid_get_map_single_2
@@ -6938,16 +6939,16 @@ contains
     call fluid_set_force_nodes(self, x=real(x, c_double), stat=stat, errmsg=errmsg)
   end subroutine fluid_set_force_nodes_single_1
 
-  subroutine fluid_set_stations_single_1(self, xi, offset, stat, errmsg)
+  subroutine fluid_set_stations_single_1(self, eta, offset, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
-    real(c_float), intent(in) :: xi(:)
+    real(c_float), intent(in) :: eta(:)
     real(c_float), intent(in), optional :: offset(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_offset(:,:)
 
     if (present(offset)) allocate (c_offset, source=real(offset, c_double))
-    call fluid_set_stations(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
+    call fluid_set_stations(self, eta=real(eta, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
   end subroutine fluid_set_stations_single_1
 
   subroutine fluid_pull_poses_single_1(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
@@ -7289,16 +7290,16 @@ contains
     call take(c_alpha, alpha)
   end subroutine fluid_pull_poses_single_13
 
-  subroutine fluid_set_motion_stations_single_1(self, xi, offset, stat, errmsg)
+  subroutine fluid_set_motion_stations_single_1(self, eta, offset, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
-    real(c_float), intent(in) :: xi(:)
+    real(c_float), intent(in) :: eta(:)
     real(c_float), intent(in), optional :: offset(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_offset(:,:)
 
     if (present(offset)) allocate (c_offset, source=real(offset, c_double))
-    call fluid_set_motion_stations(self, xi=real(xi, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
+    call fluid_set_motion_stations(self, eta=real(eta, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
   end subroutine fluid_set_motion_stations_single_1
 
   subroutine fluid_get_motion_weights_single_1(self, w, stat, errmsg)

@@ -327,11 +327,11 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_set_force_nodes
 
-    function spar_fluid_set_stations(fluid, n, xi, offset) bind(c) result(status)
+    function spar_fluid_set_stations(fluid, n, eta, offset) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid
       integer(c_int64_t), value :: n
-      real(c_double), intent(in), optional :: xi(*), offset(*)
+      real(c_double), intent(in), optional :: eta(*), offset(*)
       integer(c_int) :: status
     end function spar_fluid_set_stations
 
@@ -985,11 +985,11 @@ module spar_calls
       type(c_ptr) :: text
     end function spar_fluid_get_name
 
-    function spar_fluid_set_motion_stations(fluid, n, xi, offset) bind(c) result(status)
+    function spar_fluid_set_motion_stations(fluid, n, eta, offset) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid
       integer(c_int64_t), value :: n
-      real(c_double), intent(in), optional :: xi(*), offset(*)
+      real(c_double), intent(in), optional :: eta(*), offset(*)
       integer(c_int) :: status
     end function spar_fluid_set_motion_stations
 
@@ -1088,11 +1088,11 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_get_flag_count
 
-    function spar_fluid_get_map(fluid, which, xi, distance, flags) bind(c) result(status)
+    function spar_fluid_get_map(fluid, which, eta, distance, flags) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
       integer(c_int), value :: which
-      real(c_double), intent(inout), optional :: xi(*), distance(*)
+      real(c_double), intent(inout), optional :: eta(*), distance(*)
       integer(c_int), intent(inout), optional :: flags(*)
       integer(c_int) :: status
     end function spar_fluid_get_map

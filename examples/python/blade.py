@@ -42,7 +42,7 @@ def gust(rpm, seconds=8.0, dt=0.02):
         s.set_coupling(spar.COUPLING_IQN_ILS, 1e-3, 1e-6, 30)
         blade = blade_of(s, omega)
         fluid = blade.fluid_create('strips')
-        fluid.set_stations(numpy.linspace(-1, 1, 31))
+        fluid.set_stations(numpy.linspace(0, 1, 31))
         fluid.map()
         strip = LENGTH / 30
 

@@ -85,7 +85,7 @@ call spar_fluid_create int member|member|value| name|char|in|[] fluid|fluid|out|
 call spar_fluid_destroy none fluid|fluid|out|
 call spar_fluid_set_motion_nodes int fluid|fluid|value| n|int64_t|value| x|double|in|[n][3]
 call spar_fluid_set_force_nodes int fluid|fluid|value| n|int64_t|value| x|double|in|[n][3]
-call spar_fluid_set_stations int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
+call spar_fluid_set_stations int fluid|fluid|value| n|int64_t|value| eta|double|in|[n] offset|double|in|[n][3]
 call spar_fluid_map int fluid|fluid|value|
 call spar_fluid_pull_poses int fluid|fluid|value| theta|double|value| x|double|out|[n][3] q|double|out|[n][4] v|double|out|[n][3] omega|double|out|[n][3] accel|double|out|[n][3] alpha|double|out|[n][3]
 call spar_session_save int session|session|value| path|char|in|[]
@@ -182,7 +182,7 @@ constants SPAR_INTERPOLATE_NODAL=0 SPAR_INTERPOLATE_CONSISTENT=1
 constants SPAR_MAP_END=1 SPAR_MAP_AMBIGUOUS=2 SPAR_MAP_FAR=4
 call spar_fluid_get_member int fluid|fluid|value| member|member|out|
 call spar_fluid_get_name text fluid|fluid|value|
-call spar_fluid_set_motion_stations int fluid|fluid|value| n|int64_t|value| xi|double|in|[n] offset|double|in|[n][3]
+call spar_fluid_set_motion_stations int fluid|fluid|value| n|int64_t|value| eta|double|in|[n] offset|double|in|[n][3]
 call spar_fluid_set_motion_weights int fluid|fluid|value| n|int64_t|value| w|double|in|[n]
 call spar_fluid_get_motion_weights int fluid|fluid|value| w|double|out|[n]
 call spar_fluid_fade_motion int fluid|fluid|value| within|double|value| beyond|double|value| n|int64_t|value| distance|double|in|[n] held|int|in|[n]
@@ -196,7 +196,7 @@ call spar_fluid_get_count int fluid|fluid|value| which|int|value| n|int64_t|out|
 constants SPAR_KIND_STATIONS=1 SPAR_KIND_SHARED=2 SPAR_KIND_WEIGHTS=4 SPAR_KIND_FORCES=8
 call spar_fluid_get_kind int fluid|fluid|value| which|int|value| kind|int|out|
 call spar_fluid_get_flag_count int fluid|fluid|value| which|int|value| flag|int|value| n|int64_t|out|
-call spar_fluid_get_map int fluid|fluid|value| which|int|value| xi|double|out|[n] distance|double|out|[n] flags|int|out|[n]
+call spar_fluid_get_map int fluid|fluid|value| which|int|value| eta|double|out|[n] distance|double|out|[n] flags|int|out|[n]
 call spar_fluid_get_feet int fluid|fluid|value| which|int|value| x_map|double|out|[n][3] q_map|double|out|[n][4] con|double|out|[n][3]
 call spar_fluid_get_basis int fluid|fluid|value| which|int|value| first_node|int64_t|out|[n] phi|double|out|[n][P]
 call spar_fluid_pull_sections int fluid|fluid|value| theta|double|value| q|double|out|[n][4] omega|double|out|[n][3] accel|double|out|[n][3]

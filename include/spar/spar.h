@@ -376,13 +376,14 @@ SPAR_API int spar_fluid_set_motion_nodes(spar_fluid *fluid, int64_t n, const dou
      n: in
      x[n][3]: in, position in the reference configuration, m */
 SPAR_API int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x);
-/* Stations of a blade element model, in place of nodes: motion nodes and force nodes at given positions of the
-   line. Their forces are kept for spar_fluid_pull_forces unless the member's effects leave out
-   SPAR_EFFECT_FLUID_HISTORY. Map afterwards.
+/* Sets nodes by their coordinate along the line, for blade element models. Each node is a motion node and a force node
+   at once. The fluid keeps the node forces, unless spar_member_set_effects has switched SPAR_EFFECT_FLUID_HISTORY off.
+   Call spar_fluid_map afterwards.
      n: in
-     xi[n]: in, in [-1,1] over the whole beam
-     offset[n][3]: in, m, from the line to the node in the section frame, NULL: 0 */
-SPAR_API int spar_fluid_set_stations(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
+     eta[n]: in, in [0,1], 0 at the root and 1 at the tip; a point or rigid body ignores it
+     offset[n][3]: in, m, from the line to the node in the section frame (x tangent, y, z), NULL: 0
+   Local. SPAR_ERR_ARGUMENT: eta lies outside [0,1]. */
+SPAR_API int spar_fluid_set_stations(spar_fluid *fluid, int64_t n, const double *eta, const double *offset);
 /* Finds the nearest point of the reference line for every node of the sets that are new. The member must be committed.
    Of equally near points the first along the line is taken. Nodes of a point or rigid body are mapped to its node.
    SPAR_ERR_MAPPING: a node is too far (spar_fluid_set_projection); the nodes stay unmapped. */

@@ -325,19 +325,22 @@ enum {
 /* Flags of a mapped node. */
 enum {
     SPAR_MAP_END = 1,       /* it lies beyond an end of the line, which is its foot */
-    SPAR_MAP_AMBIGUOUS = 2, /* two places are equally near: smallest xi taken */
+    SPAR_MAP_AMBIGUOUS = 2, /* two places are equally near: smallest eta taken */
     SPAR_MAP_FAR = 4        /* farther than max_distance */
 };
 /* member: out, that the fluid was created for. */
 SPAR_API int spar_fluid_get_member(const spar_fluid *fluid, spar_member **member);
 /* The name it was created with, as long as it lives; "" of NULL. */
 SPAR_API const char *spar_fluid_get_name(const spar_fluid *fluid);
-/* Motion nodes alone as sections, beside force nodes at other places: those of spar_fluid_set_stations, which stay
-   where they are with the forces that are kept, or of spar_fluid_set_force_nodes. For actuator lines whose velocities
-   are sampled at fewer or other sections than forces are spread from (AMR-Wind), or at three quarters of the chord.
-   Forces are pushed to, and pulled at (spar_fluid_pull_forces, spar_fluid_pull_force_places), the force nodes; all
-   other pulls are at the motion nodes. To be mapped. n, xi[n]: in, as above; offset[n][3]: in, as above, NULL: 0. */
-SPAR_API int spar_fluid_set_motion_stations(spar_fluid *fluid, int64_t n, const double *xi, const double *offset);
+/* Sets the motion nodes alone by their coordinate along the line. The force nodes stay: those of
+   spar_fluid_set_force_nodes, or of spar_fluid_set_stations with the forces that are kept. For actuator lines that
+   sample velocities at fewer or other stations than they spread forces from (AMR-Wind), or at three quarters of the
+   chord. Call spar_fluid_map afterwards.
+     n: in
+     eta[n]: in, in [0,1], as of spar_fluid_set_stations
+     offset[n][3]: in, m, as of spar_fluid_set_stations, NULL: 0
+   Local. SPAR_ERR_ARGUMENT: eta lies outside [0,1]. */
+SPAR_API int spar_fluid_set_motion_stations(spar_fluid *fluid, int64_t n, const double *eta, const double *offset);
 /* How much of the section's motion each motion node takes, so that a fluid's whole mesh can move with the structure,
    a function of its motion alone, without memory or solution: 1 on the wetted surface, less with the distance, 0 where
    the mesh is held. A node with reference place X that the section takes to x, at v and acceleration a, is pulled at
@@ -399,11 +402,13 @@ enum {
 SPAR_API int spar_fluid_get_kind(const spar_fluid *fluid, int which, int *kind);
 /* flag: in, one SPAR_MAP_*; n: out, how many mapped nodes of the set bear it. */
 SPAR_API int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int64_t *n);
-/* Where the nodes are mapped to. Each NULL: not wanted.
-     xi[n]: out, of the foot, over the whole beam
-     distance[n]: out, m
-     flags[n]: out, SPAR_MAP_* or-ed */
-SPAR_API int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *distance, int *flags);
+/* The nearest point of each node on the line, as spar_fluid_map has found it.
+     which: in, SPAR_NODES_*
+     eta[n]: out, of the nearest point, in [0,1]; 0.5 on a point or rigid body, NULL: not wanted
+     distance[n]: out, m, from the nearest point to the node, NULL: not wanted
+     flags[n]: out, SPAR_MAP_* or-ed, NULL: not wanted
+   Local. SPAR_ERR_STATE: the nodes are not mapped. */
+SPAR_API int spar_fluid_get_map(const spar_fluid *fluid, int which, double *eta, double *distance, int *flags);
 /* The feet. Each NULL: not wanted.
      x_map[n][3]: out, foot in the reference configuration, m
      q_map[n][4]: out, its section frame

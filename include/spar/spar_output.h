@@ -26,7 +26,7 @@ extern "C" {
    reaction_force, _moment. */
 SPAR_API int spar_member_write_vtk(const spar_member *member, const char *path);
 /* This rank's nodes of a mapped fluid where they are now, each joined to its foot on the line by a connector, so that a
-   wrong map is seen at once. At every node velocity, section_x, _y, _z (the turned axes of the line at the foot), xi,
+   wrong map is seen at once. At every node velocity, section_x, _y, _z (the turned axes of the line at the foot), eta,
    distance and flags (SPAR_MAP_*) of the map. Sections are also joined by a line in the order given, and have force, as
    pushed last. Where one set does not serve both, the motion nodes come first, then the force nodes: set is 0 and 1,
    and force (0 at motion nodes) is there if node forces are kept (SPAR_EFFECT_FLUID_HISTORY). After the nodes come

@@ -93,15 +93,15 @@ static void place_centres(const spari_blade *blade, int64_t n, const double *spa
     }
 }
 
-/* Nearest points of the positions on the member's line, by a temporary fluid: xi, and lever arms in the section
+/* Nearest points of the positions on the member's line, by a temporary fluid: eta, and lever arms in the section
    frames, which replace x. work [7 n] */
-static int find_feet(spar_member *member, const char *name, int64_t n, double *x, double *xi, double *work) {
+static int find_feet(spar_member *member, const char *name, int64_t n, double *x, double *eta, double *work) {
     spar_fluid *fluid = NULL;
     double *q = work, *arm = work + 4 * n;
     SPARI_TRY(spar_fluid_create(member, name, &fluid));
     int status = spar_fluid_set_motion_nodes(fluid, n, x);
     status = status == SPAR_OK ? spar_fluid_map(fluid) : status;
-    status = status == SPAR_OK ? spar_fluid_get_map(fluid, SPAR_NODES_MOTION, xi, NULL, NULL) : status;
+    status = status == SPAR_OK ? spar_fluid_get_map(fluid, SPAR_NODES_MOTION, eta, NULL, NULL) : status;
     status = status == SPAR_OK ? spar_fluid_get_feet(fluid, SPAR_NODES_MOTION, NULL, q, arm) : status;
     spar_fluid_destroy(&fluid);
     for (int64_t k = 0; k < n && status == SPAR_OK; k++) {

@@ -107,11 +107,11 @@ void spari_fluid_frame(const spar_fluid *fluid, const spari_node_set *set, int64
 
 /* Element and local coordinate of a coordinate along the whole line; an element boundary belongs to the lower
    element. */
-static int locate(const spar_member *m, double xi, double *local) {
-    double eta = 0.5 * (xi + 1) * m->mesh.elements;
-    int e = (int)ceil(eta) - 1;
+static int locate(const spar_member *m, double eta, double *local) {
+    double along = eta * m->mesh.elements;
+    int e = (int)ceil(along) - 1;
     e = e < 0 ? 0 : e > m->mesh.elements - 1 ? m->mesh.elements - 1 : e;
-    *local = m->mesh.per_element > 1 ? 2 * (eta - e) - 1 : 0;
+    *local = m->mesh.per_element > 1 ? 2 * (along - e) - 1 : 0;
     return e;
 }
 
@@ -138,7 +138,7 @@ static int alloc_points_found(points_found *f, int64_t n) {
 static void points_of_sections(const spar_fluid *fluid, const spari_node_set *set, points_found *f) {
     for (int64_t j = 0; j < set->n; j++) {
         double x[3], q[4];
-        f->element[j] = locate(fluid->member, set->xi[j], &f->xi[j]);
+        f->element[j] = locate(fluid->member, set->eta[j], &f->xi[j]);
         spari_fluid_reference(fluid, f->element[j], f->xi[j], x, q);
         spari_rotate(q, set->x + 3 * j, f->con + 3 * j);
     }
@@ -339,18 +339,19 @@ int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int6
     return SPAR_OK;
 }
 
-int spar_fluid_get_map(const spar_fluid *fluid, int which, double *xi, double *distance, int *flags) {
+int spar_fluid_get_map(const spar_fluid *fluid, int which, double *eta, double *distance, int *flags) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, which, __func__, &s));
-    int64_t n = s && (xi || distance || flags) ? s->n : 0; /* without an array the question is whether there is a map */
+    int64_t n =
+        s && (eta || distance || flags) ? s->n : 0; /* without an array the question is whether there is a map */
     for (int64_t p = 0; p < n; p++) {
         int64_t j = spari_nodes_node(s, p);
         double con[3] = {s->con[0][p], s->con[1][p], s->con[2][p]};
-        if (xi) {
-            xi[j] = spari_member_xi(fluid->member, spari_nodes_element(s, p), spari_nodes_xi(s, p));
+        if (eta) {
+            eta[j] = spari_member_eta(fluid->member, spari_nodes_element(s, p), spari_nodes_xi(s, p));
         }
         if (distance) {
             distance[j] = spari_norm(con);

@@ -52,7 +52,7 @@ int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid)
 
 void spari_node_set_clear(spari_node_set *set) {
     free(set->x);
-    free(set->xi);
+    free(set->eta);
     free(set->frame);
     free(set->weight);
     free(set->home);
@@ -311,39 +311,40 @@ int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x) {
 }
 
 /* Copies the host's sections, to be mapped later; the fluid is not changed. */
-static int copy_sections(const spar_fluid *fluid, int64_t n, const double *xi, const double *offset,
+static int copy_sections(const spar_fluid *fluid, int64_t n, const double *eta, const double *offset,
                          spari_node_set *set, const char *caller) {
     SPARI_TRY(spari_fluid_check_idle(fluid, caller));
-    if (n < 0 || n > SPARI_MOST || (n > 0 && !xi)) {
+    if (n < 0 || n > SPARI_MOST || (n > 0 && !eta)) {
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
                                   "%lld sections%s; give 0 to 2^40, and n coordinates", (long long)n,
-                                  xi ? "" : " without coordinates");
+                                  eta ? "" : " without coordinates");
     }
     for (int64_t j = 0; j < n; j++) {
-        if (!(xi[j] >= -1 && xi[j] <= 1)) {
+        if (!(eta[j] >= 0 && eta[j] <= 1)) {
             return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
-                                      "section %lld: xi = %g lies outside [-1,1]; xi = 2 eta - 1 over the whole beam",
-                                      (long long)j, xi[j]);
+                                      "section %lld: eta = %g lies outside [0,1]; give eta, which is 0 at the root "
+                                      "and 1 at the tip",
+                                      (long long)j, eta[j]);
         }
     }
     if (offset) {
         SPARI_TRY(spari_fluid_check_values(fluid, caller, "offset of section", offset, n, 3));
     }
-    double *copy = spari_copy(offset, 3 * n), *at = spari_copy(xi, n);
+    double *copy = spari_copy(offset, 3 * n), *at = spari_copy(eta, n);
     if (!copy || !at) {
         free(copy);
         free(at);
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for %lld sections", (long long)n);
     }
-    *set = (spari_node_set){.pending = 1, .sections = 1, .n = n, .x = copy, .xi = at};
+    *set = (spari_node_set){.pending = 1, .sections = 1, .n = n, .x = copy, .eta = at};
     return SPAR_OK;
 }
 
-int spar_fluid_set_stations(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
+int spar_fluid_set_stations(spar_fluid *fluid, int64_t n, const double *eta, const double *offset) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     spari_node_set made;
-    SPARI_TRY(copy_sections(fluid, n, xi, offset, &made, __func__));
+    SPARI_TRY(copy_sections(fluid, n, eta, offset, &made, __func__));
     for (int which = 0; which < 2; which++) {
         spari_node_set_clear(&fluid->set[which]);
         fluid->layout[which] = (spari_layout){0, 0};
@@ -353,11 +354,11 @@ int spar_fluid_set_stations(spar_fluid *fluid, int64_t n, const double *xi, cons
     return SPAR_OK;
 }
 
-int spar_fluid_set_motion_stations(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
+int spar_fluid_set_motion_stations(spar_fluid *fluid, int64_t n, const double *eta, const double *offset) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     spari_node_set made;
-    SPARI_TRY(copy_sections(fluid, n, xi, offset, &made, __func__));
+    SPARI_TRY(copy_sections(fluid, n, eta, offset, &made, __func__));
     empty_set(fluid, SPAR_NODES_MOTION);
     fluid->set[SPAR_NODES_MOTION] = made;
     return SPAR_OK;

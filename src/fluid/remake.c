@@ -24,8 +24,8 @@ static int unmap(const spar_fluid *old, int which, spari_node_set *set) {
         return set->x ? SPAR_OK : no_memory_for_trial(old);
     }
     set->x = spari_zalloc(3 * s->n, sizeof *set->x);
-    set->xi = spari_zalloc(s->n, sizeof *set->xi);
-    if (!set->x || !set->xi) {
+    set->eta = spari_zalloc(s->n, sizeof *set->eta);
+    if (!set->x || !set->eta) {
         return no_memory_for_trial(old);
     }
     for (int64_t p = 0; p < s->n; p++) {
@@ -33,7 +33,7 @@ static int unmap(const spar_fluid *old, int which, spari_node_set *set) {
         double nearest[3], q[4], con[3] = {s->con[0][p], s->con[1][p], s->con[2][p]};
         spari_fluid_frame(old, from, p, nearest, q);
         spari_rotate_back(q, con, set->x + 3 * j);
-        set->xi[j] = fmin(fmax(spari_member_xi(old->member, spari_nodes_element(s, p), spari_nodes_xi(s, p)), -1), 1);
+        set->eta[j] = fmin(fmax(spari_member_eta(old->member, spari_nodes_element(s, p), spari_nodes_xi(s, p)), 0), 1);
     }
     return SPAR_OK;
 }
@@ -241,7 +241,7 @@ static void drop_own(spar_fluid *f, const spar_fluid *old) {
     if (f->set[0].nodes != old->set[0].nodes || f->set[1].nodes != old->set[1].nodes) {
         for (int which = 0; which < 2; which++) {
             free(f->set[which].x);
-            free(f->set[which].xi);
+            free(f->set[which].eta);
             free(f->set[which].frame);
             free(f->set[which].weight);
             free(f->set[which].home);

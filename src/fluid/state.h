@@ -17,7 +17,7 @@ typedef struct spari_node_set {
     int sections; /* given by coordinate, not by position */
     int64_t n;
     double *x;          /* [n][3]: positions, or offsets in the section frame; while pending */
-    double *xi;         /* [n]: sections only; while pending */
+    double *eta;        /* [n]: sections only; while pending */
     spari_nodes *nodes; /* after the map */
     double *frame;      /* [n][4]: frames that sections keep when the line gets other nodes; NULL: the line's frames */
     double *weight, *home; /* [n], [n][3]: motion weight and reference position; NULL: full motion */

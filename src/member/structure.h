@@ -236,8 +236,10 @@ static inline int spari_member_is_linear_in_place(const spar_member *member) {
 static inline int spari_member_constrained(const spar_member *member) {
     return member->root == SPAR_ROOT_FREE ? 0 : member->root == SPAR_ROOT_PINNED ? 3 : 6;
 }
-/* Coordinate along the whole line of element and local xi, and back (an element boundary belongs to the lower
-   element). */
+/* Coordinates along the whole line of element and local xi: eta in [0,1], and xi in [-1,1]. */
+static inline double spari_member_eta(const spar_member *member, int element, double local) {
+    return ((double)element + 0.5 * (1.0 + local)) / (double)member->mesh.elements;
+}
 static inline double spari_member_xi(const spar_member *member, int element, double local) {
     return 2.0 * ((double)element + 0.5 * (1.0 + local)) / (double)member->mesh.elements - 1.0;
 }

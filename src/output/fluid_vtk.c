@@ -11,12 +11,12 @@
 
 /* Columns of the table of points, each field [points][components] at table + column * points. Nodes come first, then
    their nearest points in the same order. */
-enum { X, V = 3, AXES = 6, FORCE = 15, SET = 18, XI = 19, DISTANCE = 20, FLAGS = 21, COLUMNS = 22 };
+enum { X, V = 3, AXES = 6, FORCE = 15, SET = 18, ETA = 19, DISTANCE = 20, FLAGS = 21, COLUMNS = 22 };
 static const struct {
     const char *name;
     int column, components;
 } field_of[] = {{"velocity", V, 3},         {"section_x", AXES, 3}, {"section_y", AXES + 3, 3},
-                {"section_z", AXES + 6, 3}, {"set", SET, 1},        {"xi", XI, 1},
+                {"section_z", AXES + 6, 3}, {"set", SET, 1},        {"eta", ETA, 1},
                 {"distance", DISTANCE, 1},  {"flags", FLAGS, 1},    {"force", FORCE, 3}};
 enum { FIELDS = sizeof field_of / sizeof field_of[0] };
 
@@ -37,8 +37,8 @@ static double *at(const sketch *s, int column, int components, int64_t point) {
 static int fill_set(const spar_fluid *fluid, int which, int64_t first, const sketch *s) {
     static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     SPARI_TRY(spar_fluid_get_positions(fluid, which, at(s, X, 3, first), at(s, V, 3, first), s->q + 4 * first,
-                                    at(s, X, 3, s->n + first)));
-    SPARI_TRY(spar_fluid_get_map(fluid, which, at(s, XI, 1, first), at(s, DISTANCE, 1, first), s->flags + first));
+                                       at(s, X, 3, s->n + first)));
+    SPARI_TRY(spar_fluid_get_map(fluid, which, at(s, ETA, 1, first), at(s, DISTANCE, 1, first), s->flags + first));
     if (s->kind[which] & SPAR_KIND_FORCES) {
         SPARI_TRY(spar_fluid_get_forces(fluid, at(s, FORCE, 3, first)));
     }

@@ -476,17 +476,17 @@ static void test_mapped_anew(void **state) {
     for (int k = 0; k < 2; k++) {
         scene s;
         int done;
-        double *xi = calloc((size_t)count[k] + 1, sizeof *xi);
+        double *eta = calloc((size_t)count[k] + 1, sizeof *eta);
         begin(&s, 8.0, 9.16);
         build(&s, 0, 1);
-        OK(s.session, spar_fluid_set_stations(s.fluid[0], count[k], xi, NULL));
+        OK(s.session, spar_fluid_set_stations(s.fluid[0], count[k], eta, NULL));
         OK(s.session, spar_fluid_map(s.fluid[0]));
         OK(s.session, spar_step_begin(s.session, 0.05));
         OK(s.session, spar_step_solve(s.session));
         REFUSED(s.session, SPAR_ERR_STATE, "make a new one", spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0));
         REFUSED(s.session, SPAR_ERR_STATE, "make a new one", spar_step_check(s.session, &done));
         OK(s.session, spar_step_reject(s.session));
-        free(xi);
+        free(eta);
         end(&s);
     }
 }
@@ -494,14 +494,14 @@ static void test_mapped_anew(void **state) {
 /* Motion sections that are given anew and not mapped: refused, and the last solution stays, to the bit. */
 static void test_motion_sections_not_mapped(void **state) {
     (void)state;
-    static const double xi[N] = {0};
+    static const double eta[N] = {0};
     double before[3][N] = {{0}}, after[3][N] = {{0}};
     scene s;
     begin(&s, 8.0, 9.16);
     build(&s, 0, 1);
     OK(s.session, spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0));
     OK(s.session, spar_aero_get_sections(s.aero, before[0], NULL, NULL, NULL, NULL));
-    OK(s.session, spar_fluid_set_motion_stations(s.fluid[0], N, xi, NULL));
+    OK(s.session, spar_fluid_set_motion_stations(s.fluid[0], N, eta, NULL));
     s.wind[0][0] += 1;
     REFUSED(s.session, SPAR_ERR_STATE, "not mapped", spar_aero_solve(s.aero, 1.225, s.wind[0], 1.0));
     OK(s.session, spar_aero_get_sections(s.aero, after[0], NULL, NULL, NULL, NULL));
@@ -517,7 +517,7 @@ static void test_wing(void **state) {
     (void)state;
     double x[3] = {0, 0, 0}, q[4] = {1, 0, 0, 0}, alpha[] = {-PI, 0.0, PI}, cl[] = {0.8, 0.8, 0.8},
            cd[] = {0.0, 0.0, 0.0}, cm[] = {-0.1, -0.1, -0.1};
-    double offset[3][3] = {{0, 0, 0}, {1, 0, 0}, {4, 0, 0}}, xi[3] = {0, 0, 0},
+    double offset[3][3] = {{0, 0, 0}, {1, 0, 0}, {4, 0, 0}}, eta[3] = {0, 0, 0},
            wind[3][3] = {{0, 20, 0}, {0, 20, 0}, {0, 20, 0}};
     double force[3][3], moment[3][3], f = 0.5 * 1.2 * 400.0 * 0.8, m = -0.1 * 0.5 * 1.2 * 400.0,
                                       share[3] = {0.5, 2.0, 1.5};
@@ -530,7 +530,7 @@ static void test_wing(void **state) {
     OK(session, spar_point_create(session, "wing", x, q, &body));
     OK(session, spar_member_commit(body));
     OK(session, spar_fluid_create(body, "air", &fluid));
-    OK(session, spar_fluid_set_stations(fluid, 3, xi, offset[0]));
+    OK(session, spar_fluid_set_stations(fluid, 3, eta, offset[0]));
     OK(session, spar_fluid_map(fluid));
     OK(session, spar_aero_create(1, &fluid, &aero));
     OK(session, spar_polar_create(3, alpha, cl, cd, cm, &polar));

@@ -29,7 +29,7 @@ static int solve(spar_session *s, double t, double step, int iteration, void *co
 
 static void build(scene *c, const double *cm) {
     const double alpha[2] = {-pi, pi}, lift[2] = {cl, cl}, drag[2] = {cd, cd};
-    double K[36], M[36], xi[N];
+    double K[36], M[36], eta[N];
     *c = (scene){.s = scene_session()};
     scene_diagonal(K, 1e6, 1e6, 1e6, 1e4, 1e4, 1e4);
     scene_diagonal(M, 1, 1, 1, 2e-3, 1e-3, 1e-3);
@@ -37,10 +37,10 @@ static void build(scene *c, const double *cm) {
     OK(c->s, spar_member_commit(c->wing));
     OK(c->s, spar_fluid_create(c->wing, "air", &c->fluid));
     for (int i = 0; i < N; i++) {
-        xi[i] = -1 + 2.0 * i / (N - 1);
+        eta[i] = 1.0 * i / (N - 1);
         c->wind[i][1] = U;
     }
-    OK(c->s, spar_fluid_set_stations(c->fluid, N, xi, NULL));
+    OK(c->s, spar_fluid_set_stations(c->fluid, N, eta, NULL));
     OK(c->s, spar_fluid_map(c->fluid));
     OK(c->s, spar_polar_create(2, alpha, lift, drag, cm, &c->polar));
     OK(c->s, spar_aero_create(1, &c->fluid, &c->aero));

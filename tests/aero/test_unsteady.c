@@ -98,7 +98,7 @@ typedef struct wing_scene {
 
 /* A wing of 2 m along x that follows its root, in a wind along y; suction side -z, nose up about +x. */
 static void build(wing_scene *c, spar_polar *polar, int effects) {
-    double K[36], M[36], xi[N];
+    double K[36], M[36], eta[N];
     *c = (wing_scene){.s = scene_session(), .polar = polar};
     scene_diagonal(K, 1e6, 1e6, 1e6, 1e4, 1e4, 1e4);
     scene_diagonal(M, 1, 1, 1, 2e-3, 1e-3, 1e-3);
@@ -108,10 +108,10 @@ static void build(wing_scene *c, spar_polar *polar, int effects) {
     OK(c->s, spar_member_commit(c->wing));
     OK(c->s, spar_fluid_create(c->wing, "air", &c->fluid));
     for (int i = 0; i < N; i++) {
-        xi[i] = -1 + 2.0 * i / (N - 1);
+        eta[i] = 1.0 * i / (N - 1);
         c->wind[i][1] = U;
     }
-    OK(c->s, spar_fluid_set_stations(c->fluid, N, xi, NULL));
+    OK(c->s, spar_fluid_set_stations(c->fluid, N, eta, NULL));
     OK(c->s, spar_fluid_map(c->fluid));
     OK(c->s, spar_aero_create(1, &c->fluid, &c->aero));
     for (int i = 0; i < N; i++) {
@@ -147,7 +147,7 @@ static void drive(wing_scene *c, double w, double complex h0, double complex p0,
         p[k] = creal(cpow(I * w, k) * p0 * e);
     }
     OK(c->s, spar_member_drive(c->wing, (double[7]){0, 0, h[0], cos(p[0] / 2), sin(p[0] / 2), 0, 0},
-                                    (double[6]){0, 0, h[1], p[1], 0, 0}, (double[6]){0, 0, h[2], p[2], 0, 0}));
+                               (double[6]){0, 0, h[1], p[1], 0, 0}, (double[6]){0, 0, h[2], p[2], 0, 0}));
 }
 
 /* Amplitudes of lift and moment per length of the wing that heaves and pitches, over the last quarter turn. */
@@ -370,7 +370,7 @@ static void test_pitch_step(void **state) {
 enum { EVERY = SPAR_AERO_DRAG | SPAR_AERO_STALL | SPAR_AERO_UNSTEADY };
 
 static void build_flexible(wing_scene *c, spar_polar *polar, int effects) {
-    double K[36], M[36], xi[N];
+    double K[36], M[36], eta[N];
     *c = (wing_scene){.s = scene_session(), .polar = polar};
     scene_diagonal(K, 1e6, 1e6, 1e6, 400, 2000, 2e4);
     scene_diagonal(M, 4, 4, 4, 0.3, 0.1, 0.2);
@@ -379,9 +379,9 @@ static void build_flexible(wing_scene *c, spar_polar *polar, int effects) {
     OK(c->s, spar_session_set_coupling(c->s, SPAR_COUPLING_FIXED_POINT, 1e-12, 1e-12, 50));
     OK(c->s, spar_fluid_create(c->wing, "air", &c->fluid));
     for (int i = 0; i < N; i++) {
-        xi[i] = -1 + 2.0 * i / (N - 1);
+        eta[i] = 1.0 * i / (N - 1);
     }
-    OK(c->s, spar_fluid_set_stations(c->fluid, N, xi, NULL));
+    OK(c->s, spar_fluid_set_stations(c->fluid, N, eta, NULL));
     OK(c->s, spar_fluid_map(c->fluid));
     OK(c->s, spar_aero_create(1, &c->fluid, &c->aero));
     pitch(c, 0);

@@ -138,7 +138,7 @@ typedef struct scene {
 
 static void build(scene *c) {
     const double alpha[2] = {-pi, pi}, lift[2] = {cl, cl}, drag[2] = {cd, cd};
-    double xi[N] = {0}, offset[N][3] = {{0}};
+    double eta[N] = {0}, offset[N][3] = {{0}};
     *c = (scene){.s = scene_session()};
     OK(c->s, spar_point_create(c->s, "wing", NULL, NULL, &c->point));
     OK(c->s, spar_member_commit(c->point));
@@ -147,7 +147,7 @@ static void build(scene *c) {
         offset[i][0] = 2.0 * i / (N - 1);
         c->wind[i][1] = U;
     }
-    OK(c->s, spar_fluid_set_stations(c->fluid, N, xi, offset[0]));
+    OK(c->s, spar_fluid_set_stations(c->fluid, N, eta, offset[0]));
     OK(c->s, spar_fluid_map(c->fluid));
     OK(c->s, spar_polar_create(2, alpha, lift, drag, NULL, &c->polar));
     OK(c->s, spar_aero_create(1, &c->fluid, &c->aero));

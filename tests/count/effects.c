@@ -254,7 +254,7 @@ static void make_aero(scene *s) {
     enum { ROWS = 73 };
     static const double hub[3] = {0, 0, 0}, axis[3] = {1, 0, 0}, ground[3] = {5, 0, -90}, sky[3] = {0, 0, 1},
                         top[3] = {5, 0, 0};
-    double alpha[ROWS], cl[ROWS], cd[ROWS], cm[ROWS], xi[SECTIONS] = {0}, offset[SECTIONS][3] = {{0}};
+    double alpha[ROWS], cl[ROWS], cd[ROWS], cm[ROWS], eta[SECTIONS] = {0}, offset[SECTIONS][3] = {{0}};
     for (int i = 0; i < ROWS; i++) {
         alpha[i] = 3.14159265358979 * (i - 36) / 36.0;
         cl[i] = 1.2 * sin(2 * alpha[i]), cd[i] = 0.01 + sin(alpha[i]) * sin(alpha[i]), cm[i] = -0.1 * sin(alpha[i]);
@@ -265,7 +265,7 @@ static void make_aero(scene *s) {
     }
     for (int b = 0; b < BLADES; b++) {
         MUST(spar_fluid_create(s->member[b], "blade", &s->fluid[b]));
-        MUST(spar_fluid_set_stations(s->fluid[b], SECTIONS, xi, offset[0]));
+        MUST(spar_fluid_set_stations(s->fluid[b], SECTIONS, eta, offset[0]));
         MUST(spar_fluid_map(s->fluid[b]));
     }
     MUST(spar_polar_create(ROWS, alpha, cl, cd, s->is.cm ? cm : NULL, &s->polar));

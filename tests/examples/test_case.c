@@ -726,12 +726,12 @@ static int blow_by_hand(spar_session *s, double t, double dt, int iteration, voi
 static const double wing_chord[3] = {1, .8, .5};
 
 static void air_by_hand(spar_session *s, spar_member *wing, by_hand *h) {
-    const double xi[3] = {-1, 0, 1}, offset[9] = {0, 0, 0, 0, .1, .02, 0, 0, 0}, twist[3] = {.05, 0, -.05};
+    const double eta[3] = {0, 0.5, 1}, offset[9] = {0, 0, 0, 0, .1, .02, 0, 0, 0}, twist[3] = {.05, 0, -.05};
     const double alpha[2] = {-.5, .5}, cl[2] = {-2.5, 2.5}, cd[2] = {.1, .1}, cm[2] = {0, -.05};
     spar_fluid *fluid = NULL;
     spar_polar *polar = NULL;
     OK(s, spar_fluid_create(wing, "air", &fluid));
-    OK(s, spar_fluid_set_stations(fluid, 3, xi, offset));
+    OK(s, spar_fluid_set_stations(fluid, 3, eta, offset));
     OK(s, spar_fluid_map(fluid));
     OK(s, spar_aero_create(1, &fluid, &h->aero));
     OK(NULL, spar_polar_create(2, alpha, cl, cd, cm, &polar));
@@ -751,8 +751,8 @@ static spar_case *air_by_text(spar_session *s) {
     assert_true(fputs("# alpha cl cd cm\n-0.5 -2.5 0.1 0\n0.5 2.5 0.1 -.05\n", file) >= 0);
     assert_int_equal(fclose(file), 0);
     (void)snprintf(text, sizeof text,
-                   "%s[aero air]\nblades wing\nsection -1 1 .05 test_case_polar.txt\n"
-                   "section 0 .8 0 test_case_polar.txt 0.1 0.02\nsection 1 .5 -.05 test_case_polar.txt\n"
+                   "%s[aero air]\nblades wing\nsection 0 1 .05 test_case_polar.txt\n"
+                   "section .5 .8 0 test_case_polar.txt 0.1 0.02\nsection 1 .5 -.05 test_case_polar.txt\n"
                    "density 1.2\nwind 0 30 -3\nshear log 0 0 -9 0 0 2 10 .03\ntower 1 3 -9 1 3 5 .7 .5\n"
                    "effects drag shear tower unsteady\n",
                    wing_text);

@@ -262,7 +262,7 @@ static void life_of_layouts(void **state) {
     (void)state;
     pair p;
     int64_t node, component;
-    const double xi[2] = {0, 1};
+    const double eta[2] = {0, 1};
     pair_begin(&p, 2);
     spar_session *s = p.session;
     for (int which = 0; which < 2; which++) {
@@ -283,7 +283,7 @@ static void life_of_layouts(void **state) {
     assert_true(node == 3 && component == 1);
     OK(s, spar_fluid_get_layout(p.other, SPAR_NODES_FORCE, NULL, &component));
     assert_true(component == N);
-    OK(s, spar_fluid_set_stations(p.other, 2, xi, NULL));
+    OK(s, spar_fluid_set_stations(p.other, 2, eta, NULL));
     OK(s, spar_fluid_get_layout(p.other, SPAR_NODES_FORCE, &node, NULL));
     assert_true(node == 3);
     OK(s, spar_fluid_map(p.other));
@@ -295,7 +295,7 @@ static void life_of_layouts(void **state) {
     OK(s, spar_fluid_set_layout(p.other, SPAR_NODES_MOTION, 4, 1));
     const double wind[2][3] = {{5, 0, 0}, {5, 0, 0}};
     spar_polar *polar = NULL;
-    OK(s, spar_polar_create(2, xi, xi, xi, NULL, &polar));
+    OK(s, spar_polar_create(2, eta, eta, eta, NULL, &polar));
     for (int i = 0; i < 2; i++) {
         OK(s, spar_aero_set_section(aero, i, 1, 0, polar));
     }

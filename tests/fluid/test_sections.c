@@ -13,7 +13,7 @@
 
 enum { N = 7, M = 4, MOST = 32 };
 
-static const double force_xi[N] = {-1, -0.8, -0.3, 0, 0.25, 0.7, 1}, motion_xi[M] = {-0.95, -0.1, 0.4, 0.9};
+static const double force_eta[N] = {0, 0.1, 0.35, 0.5, 0.625, 0.85, 1}, motion_eta[M] = {0.025, 0.45, 0.7, 0.95};
 static const double force_offset[N][3] = {{0, 0.1, 0}, {0, -0.2, 0.1},   {0.1, 0, 0}, {0, 0, 0},
                                           {0, 0.5, 0}, {0, 0.3, -0.125}, {0, 0.25, 0}};
 static const double motion_offset[M][3] = {{0, 0.6, 0.2}, {0, -0.2, 0.1}, {0, 0, 0.3}, {0.1, 0.2, 0.3}};
@@ -62,9 +62,9 @@ static void move(const blade *b, double t) {
 static spar_fluid *line(const blade *b, const char *name, int apart) {
     spar_fluid *f = NULL;
     OK(b->session, spar_fluid_create(b->beam, name, &f));
-    OK(b->session, spar_fluid_set_stations(f, N, force_xi, force_offset[0]));
+    OK(b->session, spar_fluid_set_stations(f, N, force_eta, force_offset[0]));
     if (apart) {
-        OK(b->session, spar_fluid_set_motion_stations(f, M, motion_xi, motion_offset[0]));
+        OK(b->session, spar_fluid_set_motion_stations(f, M, motion_eta, motion_offset[0]));
     }
     OK(b->session, spar_fluid_map(f));
     return f;
@@ -87,7 +87,7 @@ static void same_places_same_bits(void **state) {
     blade b;
     blade_begin(&b, 0);
     spar_fluid *f[2] = {line(&b, "shared", 0), line(&b, "apart", 0)};
-    OK(b.session, spar_fluid_set_motion_stations(f[1], N, force_xi, force_offset[0]));
+    OK(b.session, spar_fluid_set_motion_stations(f[1], N, force_eta, force_offset[0]));
     OK(b.session, spar_fluid_map(f[1]));
     for (int k = 0; k < 3; k++) {
         OK(b.session, spar_step_begin(b.session, 0.1));
@@ -129,7 +129,7 @@ static void either_set_is_where_asked(void **state) {
     spar_fluid *both = line(&b, "apart", 1), *motion = NULL, *force = line(&b, "forces", 0),
                *unpulled = line(&b, "unpulled", 0);
     OK(b.session, spar_fluid_create(b.beam, "motion", &motion));
-    OK(b.session, spar_fluid_set_stations(motion, M, motion_xi, motion_offset[0]));
+    OK(b.session, spar_fluid_set_stations(motion, M, motion_eta, motion_offset[0]));
     OK(b.session, spar_fluid_map(motion));
     OK(b.session, spar_fluid_get_kind(both, SPAR_NODES_MOTION, &kind[0]));
     OK(b.session, spar_fluid_get_kind(both, SPAR_NODES_FORCE, &kind[1]));
@@ -224,7 +224,7 @@ static void force_sections_stay(void **state) {
     some_forces(force, 2);
     OK(b.session, spar_fluid_push_forces(f, force[0], NULL));
     OK(b.session, spar_fluid_get_positions(f, SPAR_NODES_FORCE, x[0][0], NULL, NULL, NULL));
-    OK(b.session, spar_fluid_set_motion_stations(f, M, motion_xi, NULL));
+    OK(b.session, spar_fluid_set_motion_stations(f, M, motion_eta, NULL));
     OK(b.session, spar_fluid_get_kind(f, SPAR_NODES_FORCE, &kind));
     assert_int_equal(kind, SPAR_KIND_STATIONS | SPAR_KIND_FORCES);
     REFUSED(b.session, SPAR_ERR_STATE, "spar_fluid_map", spar_fluid_pull_motion(f, 1, x[1][0], NULL));
@@ -237,12 +237,12 @@ static void force_sections_stay(void **state) {
     assert_memory_equal(x[0], x[1], sizeof x[0]);
     OK(b.session, spar_fluid_get_forces(f, got[0]));
     assert_memory_equal(got, force, sizeof got);
-    OK(b.session, spar_fluid_set_stations(f, N, force_xi, NULL)); /* both again */
+    OK(b.session, spar_fluid_set_stations(f, N, force_eta, NULL)); /* both again */
     OK(b.session, spar_fluid_get_kind(f, SPAR_NODES_MOTION, &kind));
     assert_true(kind & SPAR_KIND_SHARED);
     OK(b.session, spar_fluid_create(b.beam, "loose", &loose));
     OK(b.session, spar_fluid_set_force_nodes(loose, N, x[0][0]));
-    OK(b.session, spar_fluid_set_motion_stations(loose, M, motion_xi, NULL));
+    OK(b.session, spar_fluid_set_motion_stations(loose, M, motion_eta, NULL));
     OK(b.session, spar_fluid_map(loose));
     OK(b.session, spar_fluid_get_kind(loose, SPAR_NODES_FORCE, &kind));
     assert_int_equal(kind, 0);
@@ -342,9 +342,9 @@ static void control_points_of_their_own(void **state) {
         blade_begin(&b, 1);
         spar_fluid *f = NULL;
         OK(b.session, spar_fluid_create(b.beam, "line", &f));
-        OK(b.session, spar_fluid_set_stations(f, N, force_xi, NULL));
+        OK(b.session, spar_fluid_set_stations(f, N, force_eta, NULL));
         if (k == 0) {
-            OK(b.session, spar_fluid_set_motion_stations(f, N, force_xi, behind[0]));
+            OK(b.session, spar_fluid_set_motion_stations(f, N, force_eta, behind[0]));
         }
         OK(b.session, spar_fluid_map(f));
         OK(b.session, spar_aero_create(1, &f, &aero));
@@ -378,7 +378,7 @@ static void control_points_of_their_own(void **state) {
         }
         assert_true(spari_norm(want) > 100);
         if (k == 0) { /* another number of them is none of sections */
-            OK(b.session, spar_fluid_set_motion_stations(f, M, motion_xi, NULL));
+            OK(b.session, spar_fluid_set_motion_stations(f, M, motion_eta, NULL));
             OK(b.session, spar_fluid_map(f));
             REFUSED(b.session, SPAR_ERR_STATE, "make a new one", spar_aero_solve(aero, 1.2, wind[0], 1));
         }
@@ -398,25 +398,29 @@ static void control_points_of_their_own(void **state) {
 static void bad_sections_are_refused(void **state) {
     (void)state;
     blade b;
-    const double beyond[2] = {0, 1.5}, xi[2] = {0, 0.5}, offset[2][3] = {{0, 0, 0}, {0, NAN, 0}};
+    const double beyond[2] = {0, 1.5}, from_minus_one[2] = {-1, 1}, eta[2] = {0, 0.5},
+                 offset[2][3] = {{0, 0, 0}, {0, NAN, 0}};
     double x[N][3], before[N][3];
     int kind;
     blade_begin(&b, 0);
     spar_session *s = b.session;
     spar_fluid *f = line(&b, "line", 1);
     OK(s, spar_fluid_pull_motion(f, 1, before[0], NULL));
-    assert_int_equal(spar_fluid_set_motion_stations(NULL, 2, xi, NULL), SPAR_ERR_ARGUMENT);
-    REFUSED(s, SPAR_ERR_ARGUMENT, "-1 sections", spar_fluid_set_motion_stations(f, -1, xi, NULL));
+    assert_int_equal(spar_fluid_set_motion_stations(NULL, 2, eta, NULL), SPAR_ERR_ARGUMENT);
+    REFUSED(s, SPAR_ERR_ARGUMENT, "-1 sections", spar_fluid_set_motion_stations(f, -1, eta, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "without coordinates", spar_fluid_set_motion_stations(f, 2, NULL, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "section 1", spar_fluid_set_motion_stations(f, 2, beyond, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "section 1", spar_fluid_set_motion_stations(f, 2, xi, offset[0]));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "section 1: eta = 1.5 lies outside [0,1]",
+            spar_fluid_set_motion_stations(f, 2, beyond, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "section 0: eta = -1 lies outside [0,1]",
+            spar_fluid_set_stations(f, 2, from_minus_one, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "section 1", spar_fluid_set_motion_stations(f, 2, eta, offset[0]));
     REFUSED(s, SPAR_ERR_ARGUMENT, "theta", spar_fluid_pull_force_places(f, 1.5, x[0], NULL, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "set 2", spar_fluid_get_positions(f, 2, x[0], NULL, NULL, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "set -1", spar_fluid_get_kind(f, -1, &kind));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_get_kind(f, 0, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_get_forces(f, NULL));
     OK(s, spar_step_begin(s, 0.1));
-    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_fluid_set_motion_stations(f, 2, xi, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_fluid_set_motion_stations(f, 2, eta, NULL));
     OK(s, spar_step_reject(s));
     OK(s, spar_fluid_pull_motion(f, 1, x[0], NULL));
     assert_memory_equal(x, before, M * sizeof x[0]);

@@ -478,7 +478,7 @@ static void fades_from_the_line(void **state) {
 static void bad_weights_are_refused(void **state) {
     (void)state;
     static motion a;
-    const double bad[] = {NAN, -1e-9, 1.0000001, INFINITY, -INFINITY}, xi[2] = {0, 1};
+    const double bad[] = {NAN, -1e-9, 1.0000001, INFINITY, -INFINITY}, eta[2] = {0, 1};
     double q[N][4], matrix[N][9], got[N], turn[N][3];
     mesh m;
     mesh_begin(&m, 2, SPAR_INTERPOLATE_NODAL);
@@ -515,7 +515,7 @@ static void bad_weights_are_refused(void **state) {
     OK(s, spar_step_reject(s));
     OK(s, spar_fluid_get_motion_weights(m.weighted, got));
     assert_memory_equal(got, m.w, sizeof got);
-    OK(s, spar_fluid_set_stations(m.plain, 2, xi, NULL));
+    OK(s, spar_fluid_set_stations(m.plain, 2, eta, NULL));
     REFUSED(s, SPAR_ERR_STATE, "sections", spar_fluid_set_motion_weights(m.plain, 2, m.w));
     REFUSED(s, SPAR_ERR_STATE, "sections", spar_fluid_fade_motion(m.plain, 0, 1, 2, NULL, NULL));
     spar_member *raw;
@@ -524,7 +524,7 @@ static void bad_weights_are_refused(void **state) {
     OK(s, spar_fluid_create(raw, "on it", &f));
     OK(s, spar_fluid_set_motion_nodes(f, 2, m.X[0]));
     REFUSED(s, SPAR_ERR_STATE, "commit", spar_fluid_fade_motion(f, 0, 1, 2, NULL, NULL));
-    OK(s, spar_fluid_fade_motion(f, 0, 1, 2, xi, NULL));
+    OK(s, spar_fluid_fade_motion(f, 0, 1, 2, eta, NULL));
     mesh_end(&m);
 }
 

@@ -328,7 +328,7 @@ contains
     call check(all(abs(x(3,:) - [1, 2, 4]) < 1e-15_c_double), 'forces as kept')
     call session%step_reject()
     call fluid%set_motion_weights()
-    call fluid%set_motion_stations([-1, 1] * 1.0_c_double)
+    call fluid%set_motion_stations([0, 1] * 1.0_c_double)
     call fluid%get_kind(SPAR_NODES_MOTION, kind)
     call check(kind == SPAR_KIND_STATIONS, 'motion nodes as sections')
   end subroutine moved_mesh

@@ -289,7 +289,7 @@ contains
     type(spar_fluid) :: fluid
     type(spar_aero) :: aero
     type(spar_fluid) :: no_fluids(0)
-    real(c_double) :: x(3,0), q(4,0), xi(0), inflow(3,5,0), loads(6,1), thrust
+    real(c_double) :: x(3,0), q(4,0), nowhere(0), inflow(3,5,0), loads(6,1), thrust
     integer(c_int) :: n
     logical :: done
 
@@ -310,7 +310,7 @@ contains
     call session%step_accept()
     call body%get_loads(loads)
     call check(all(same(loads, 0)), 'no nodes, no loads')
-    call fluid%set_stations(xi, x)
+    call fluid%set_stations(nowhere, x)
     call fluid%map()
     call aero%create(no_fluids)
     call aero%solve(1.0_c_double, inflow, 1.0_c_double)
@@ -390,7 +390,7 @@ contains
     call check(stat == SPAR_OK .and. same(loads(2,8), 1) .and. same(sum(abs(loads)), 1), &
         'a load on the last node is in the last column')
     call fluid%create(beam, 'fluid')
-    call fluid%set_stations([-0.5_c_double, 0.5_c_double])
+    call fluid%set_stations([0.25_c_double, 0.75_c_double])
     call fluid%map()
     call fluid%get_basis(SPAR_NODES_FORCE, first, phi)
     call check(all(first == [1, 5]), 'the elements begin at nodes 1 and 5')
@@ -419,7 +419,7 @@ contains
     call beam%set_sections([0.0_c_double], stiffness)
     call beam%commit()
     call fluids(1)%create(beam, 'sections')
-    call fluids(1)%set_stations([-1.0_c_double, 1.0_c_double])
+    call fluids(1)%set_stations([0.0_c_double, 1.0_c_double])
     call fluids(1)%map()
     call polar%create([-3.0_c_double, 3.0_c_double], [0.0_c_double, 0.0_c_double], [2.0_c_double, 2.0_c_double])
     call aero%create(fluids)

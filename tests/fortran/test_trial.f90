@@ -321,7 +321,7 @@ contains
         reshape(diagonal([1d0, 1d0, 1d0, 2d-3, 1d-3, 1d-3]), [6, 6, 1]))
     call beam%commit()
     call fluid(1)%create(beam, 'air')
-    call fluid(1)%set_stations([-1.0_c_double, 1.0_c_double])
+    call fluid(1)%set_stations([0.0_c_double, 1.0_c_double])
     call fluid(1)%map()
     call polar%create([-half_turn, half_turn], [0.3_c_double, 0.3_c_double], [0.4_c_double, 0.4_c_double])
     call aero%create(fluid)

@@ -435,7 +435,7 @@ static void fin_create(fin *f, const fin_case *c) {
                         w[5] = {0.23692688505618909, 0.47862867049936647, 0.56888888888888889, 0.47862867049936647,
                                 0.23692688505618909};
     const double eta[2] = {0, 1};
-    double K[36], M[36], A[72] = {0}, xi[STRIPS];
+    double K[36], M[36], A[72] = {0}, along[STRIPS];
     memset(f, 0, sizeof *f);
     f->session = scene_session();
     f->ratio = c->ratio, f->gust = 2;
@@ -451,11 +451,11 @@ static void fin_create(fin *f, const fin_case *c) {
     OK(f->session, spar_member_set_added_mass(f->beam, c->guess > 0 ? 2 : 0, eta, A));
     OK(f->session, spar_member_commit(f->beam));
     for (int k = 0; k < STRIPS; k++) {
-        xi[k] = 0.5 * (gauss[k % 5] + (k < 5 ? -1 : 1));
+        along[k] = 0.25 * (gauss[k % 5] + (k < 5 ? 1 : 3));
         f->weight[k] = w[k % 5];
     }
     OK(f->session, spar_fluid_create(f->beam, "strips", &f->fluid));
-    OK(f->session, spar_fluid_set_stations(f->fluid, STRIPS, xi, NULL));
+    OK(f->session, spar_fluid_set_stations(f->fluid, STRIPS, along, NULL));
     OK(f->session, spar_fluid_map(f->fluid));
     OK(f->session, spar_session_set_integrator(f->session, 0.9, c->substeps > 0 ? c->substeps : 1));
     OK(f->session, spar_session_set_predictor(f->session, c->order));

@@ -47,7 +47,7 @@ static int is_frame(int fidelity) {
 /* guess: times the fluid's mass; by_tip: the beam hangs on the body by its last node, not by its root */
 static void arms_create_by(arms *m, double mass, double guess, int fidelity, int by_tip) {
     static const double x[3] = {1, 0, 0}, q[4] = {1, 0, 0, 0}, c[3] = {0, 0, 0}, J[3] = {0.1, 0.2, 0.2},
-                        xi[ARM_NODES] = {-0.8, 0, 0.8}, about[4] = {0, 0, 0, 1}, outer[3] = {3, 0, 0},
+                        along[ARM_NODES] = {0.1, 0.5, 0.9}, about[4] = {0, 0, 0, 1}, outer[3] = {3, 0, 0},
                         ground[3] = {0, 0, 0}, eta[2] = {0, 1};
     double M[36], K[36], A[36];
     spar_joint *joint;
@@ -79,7 +79,7 @@ static void arms_create_by(arms *m, double mass, double guess, int fidelity, int
     OK(s, spar_fluid_set_force_nodes(m->fluid[0], 1, x));
     OK(s, spar_fluid_map(m->fluid[0]));
     OK(s, spar_fluid_create(m->beam, "on beam", &m->fluid[1]));
-    OK(s, spar_fluid_set_stations(m->fluid[1], ARM_NODES, xi, NULL));
+    OK(s, spar_fluid_set_stations(m->fluid[1], ARM_NODES, along, NULL));
     OK(s, spar_fluid_map(m->fluid[1]));
     double rough = is_frame(fidelity) ? 100 : 1;
     OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 1e-12 * rough, 1e-11 * rough, 300));
@@ -314,7 +314,7 @@ static int mast_fluid(spar_session *s, double t, double dt, int iteration, void 
 }
 
 static void mast_create(mast *m, double mass, double guess, int fidelity) {
-    static const double xi[ARM_NODES] = {-0.8, 0, 0.8}, eta[1] = {0};
+    static const double along[ARM_NODES] = {0.1, 0.5, 0.9}, eta[1] = {0};
     double K[36], M[36], A[36];
     spar_session *s = m->session = scene_session();
     m->mass = mass;
@@ -326,7 +326,7 @@ static void mast_create(mast *m, double mass, double guess, int fidelity) {
     OK(s, spar_member_set_added_mass(m->beam, 1, eta, A));
     OK(s, spar_member_commit(m->beam));
     OK(s, spar_fluid_create(m->beam, "strips", &m->fluid));
-    OK(s, spar_fluid_set_stations(m->fluid, ARM_NODES, xi, NULL));
+    OK(s, spar_fluid_set_stations(m->fluid, ARM_NODES, along, NULL));
     OK(s, spar_fluid_map(m->fluid));
     double rough = is_frame(fidelity) ? 100 : 1;
     OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 1e-12 * rough, 1e-11 * rough, 300));
@@ -386,7 +386,7 @@ static int swing_fluid(spar_session *s, double t, double dt, int iteration, void
 }
 
 static void swing_create(mast *m, double mass, double guess, int fidelity, int by_tip) {
-    static const double xi[ARM_NODES] = {-0.8, 0, 0.8}, eta[1] = {0}, start[2][3] = {{0, 0, 0}, {2, 0, 0}},
+    static const double along[ARM_NODES] = {0.1, 0.5, 0.9}, eta[1] = {0}, start[2][3] = {{0, 0, 0}, {2, 0, 0}},
                         ahead[2][4] = {{1, 0, 0, 0}, {0, 0, 0, 1}}, down[3] = {0, -30, 0}, x[3] = {0, 0, 0};
     double K[36], M[36], A[36];
     const double first[3 * ARM_NODES] = {0, 1, 0, 0, 2, 0, 0, 3, 0};
@@ -407,7 +407,7 @@ static void swing_create(mast *m, double mass, double guess, int fidelity, int b
     OK(s, spar_joint_create(s, "hinge", m->beam, by_tip ? 5 : 0, NULL, 0, SPAR_FREE_RZ, &hinge));
     OK(s, spar_joint_set_frame(hinge, x, ahead[0]));
     OK(s, spar_fluid_create(m->beam, "strips", &m->fluid));
-    OK(s, spar_fluid_set_stations(m->fluid, ARM_NODES, xi, NULL));
+    OK(s, spar_fluid_set_stations(m->fluid, ARM_NODES, along, NULL));
     OK(s, spar_fluid_map(m->fluid));
     OK(s, spar_fluid_push_forces(m->fluid, first, NULL));
     double rough = is_frame(fidelity) && by_tip ? 4e3 : 1;

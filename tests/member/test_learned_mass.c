@@ -263,7 +263,7 @@ static void fin_create(fin *f, const fin_case *c) {
                         w[5] = {0.23692688505618909, 0.47862867049936647, 0.56888888888888889, 0.47862867049936647,
                                 0.23692688505618909},
                         eta[2] = {0, 1};
-    double K[36], M[36], xi[STRIPS], place[3 * STRIPS] = {0};
+    double K[36], M[36], place[3 * STRIPS] = {0};
     memset(f, 0, sizeof *f);
     f->session = scene_session();
     f->ratio = c->ratio, f->taper = c->taper, f->gust = c->gust, f->by_velocity = c->by_velocity;
@@ -278,12 +278,11 @@ static void fin_create(fin *f, const fin_case *c) {
     OK(f->session, spar_member_learn_added_mass(f->beam, c->learn, eta));
     OK(f->session, spar_member_commit(f->beam));
     for (int k = 0; k < STRIPS; k++) {
-        xi[k] = 0.5 * (gauss[k % 5] + (k < 5 ? -1 : 1));
-        f->weight[k] = w[k % 5], f->eta[k] = 0.5 * (1 + xi[k]);
+        f->weight[k] = w[k % 5], f->eta[k] = 0.25 * (gauss[k % 5] + (k < 5 ? 1 : 3));
         place[3 * k] = 4 * f->eta[k];
     }
     OK(f->session, spar_fluid_create(f->beam, "strips", &f->fluid));
-    OK(f->session, spar_fluid_set_stations(f->fluid, STRIPS, xi, NULL));
+    OK(f->session, spar_fluid_set_stations(f->fluid, STRIPS, f->eta, NULL));
     OK(f->session, spar_fluid_set_motion_nodes(f->fluid, STRIPS, place));
     OK(f->session, spar_fluid_map(f->fluid));
     OK(f->session, spar_session_set_integrator(f->session, 0.9, 1));

@@ -424,12 +424,12 @@ static void test_fluids(void **state) {
     (void)state;
     moved m;
     spar_fluid *sections = NULL, *mesh = NULL, *none = NULL;
-    const double xi[3] = {-1, 0.2, 1}, offset[9] = {0, 0.1, 0, 0, 0.2, 0, 0, 0.3, 0};
+    const double eta[3] = {0, 0.6, 1}, offset[9] = {0, 0.1, 0, 0, 0.2, 0, 0, 0.3, 0};
     const double nodes[6] = {1, -2, 4, 2, -2, 3}, force[9] = {1, 2, 3, 4, 5, 6, 7, 8, 9};
     double x[9], v[9];
     move(&m);
     OK(m.session, spar_fluid_create(m.beam, "sections", &sections));
-    OK(m.session, spar_fluid_set_stations(sections, 3, xi, offset));
+    OK(m.session, spar_fluid_set_stations(sections, 3, eta, offset));
     assert_int_equal(spar_fluid_write_vtk(sections, "output_fluid.vtp"), SPAR_ERR_STATE);
     OK(m.session, spar_fluid_map(sections));
     OK(m.session, spar_fluid_push_forces(sections, force, NULL));
@@ -444,7 +444,7 @@ static void test_fluids(void **state) {
         NEAR(at[9 + i], m.x[i] + m.q[i], 1e-14);
         NEAR(at[15 + i], m.x[3 * (NODES - 1) + i] + m.q[7 * (NODES - 1) + i], 1e-14);
         NEAR(numbers(d, "PointData", "distance", 1, 6)[i], offset[3 * i + 1], 1e-15);
-        NEAR(numbers(d, "PointData", "xi", 1, 6)[i], xi[i], 1e-15);
+        NEAR(numbers(d, "PointData", "eta", 1, 6)[i], eta[i], 1e-15);
         assert_true(numbers(d, "PointData", "set", 1, 6)[3 + i] == 2);
     }
     /* the row of sections, then a connector each from node to foot */

@@ -150,7 +150,7 @@ class Values(unittest.TestCase):
             blade.set_root(spar.ROOT_FIXED)
             blade.commit()
             sections = blade.fluid_create('sections')
-            sections.set_stations([-1, 1])
+            sections.set_stations([0, 1])
             sections.map()
             aero = spar.Aero([sections])
             polar = spar.Polar([-3, 3], [1.2, 1.2], [0, 0])
@@ -312,7 +312,7 @@ class Edges(unittest.TestCase):
         beam.set_sections([0], [numpy.eye(6) * 1e6], [numpy.eye(6)])
         beam.commit()
         sections = beam.fluid_create('sections')
-        sections.set_stations([-1, 1])
+        sections.set_stations([0, 1])
         sections.map()
         aero = spar.Aero([sections])
         s.close()
@@ -409,7 +409,7 @@ class Every(unittest.TestCase):
         member, fluid = body(s)
         beam = cantilever(s)
         blade = beam.fluid_create('blade')
-        blade.set_stations([-1, 1])
+        blade.set_stations([0, 1])
         blade.map()
         joint = s.joint_create('joint', member, 0, None, 0, 63)
         line = s.link_create('line', member, 0, [0, 0, 0], None, 0, [0, 0, 1])
@@ -432,7 +432,7 @@ class Every(unittest.TestCase):
             n = 2 if n is None or (n == 0 and call.python_name.startswith('set_')) else n
             shape = [d if isinstance(d, int) else {'blades': 1, 'width': 2}.get(d, n) for d in p.dims]
             value = numpy.zeros(shape, int if p.type.startswith('int') else float)
-            if p.name in ('eta', 'span', 'xi'):
+            if p.name in ('eta', 'span'):
                 value[...] = numpy.linspace(0, 1, value.size)
             elif p.dims[-1] == 36:
                 value[...] = numpy.eye(6).ravel()

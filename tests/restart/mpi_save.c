@@ -28,7 +28,7 @@ enum { KEPT, PLACES, SECTIONS };
 static void create(run *r, spar_session *s, int first, int ranks, int nodes, int kind) {
     double K[36], M[36];
     *r = (run){.session = s, .n = (int64_t)nodes * ranks};
-    double *x = calloc((size_t)(3 * r->n) + 1, sizeof *x), *xi = calloc((size_t)r->n + 1, sizeof *xi);
+    double *x = calloc((size_t)(3 * r->n) + 1, sizeof *x), *eta = calloc((size_t)r->n + 1, sizeof *eta);
     scene_box(K, M);
     r->beam = scene_beam(s, "beam", 1, 4, 10, K, M);
     OK(s, spar_member_set_effects(r->beam, SPAR_EFFECT_DEFAULT | (kind == KEPT ? SPAR_EFFECT_FLUID_HISTORY : 0)));
@@ -38,11 +38,11 @@ static void create(run *r, spar_session *s, int first, int ranks, int nodes, int
     for (int64_t i = 0; i < r->n; i++) {
         x[3 * i] = 10.0 * (double)(first * nodes + i) / (nodes * size);
         x[3 * i + 1] = 0.1;
-        xi[i] = 0.2 * x[3 * i] - 1;
+        eta[i] = 0.1 * x[3 * i];
     }
     OK(s, spar_fluid_create(r->beam, "nodes", &r->fluid));
     if (kind == SECTIONS) {
-        OK(s, spar_fluid_set_stations(r->fluid, r->n, xi, NULL));
+        OK(s, spar_fluid_set_stations(r->fluid, r->n, eta, NULL));
     } else {
         OK(s, spar_fluid_set_motion_nodes(r->fluid, r->n, x));
         OK(s, spar_fluid_set_force_nodes(r->fluid, r->n, x));
@@ -50,7 +50,7 @@ static void create(run *r, spar_session *s, int first, int ranks, int nodes, int
     OK(s, spar_fluid_map(r->fluid));
     OK(s, spar_fluid_set_states(r->fluid, kind == KEPT ? STATES : 0));
     free(x);
-    free(xi);
+    free(eta);
 }
 
 static spar_session *on_all(void) {

@@ -28,8 +28,8 @@ typedef struct wing {
     spar_member *beam;
     spar_fluid *strips;
     int n, calls;
-    double xi[MOST_STRIPS], weight[MOST_STRIPS]; /* weight: length of the strip */
-    double lambda, alpha0, theta;                /* theta: where in the step the fluid looks */
+    double eta[MOST_STRIPS], weight[MOST_STRIPS]; /* weight: length of the strip */
+    double lambda, alpha0, theta;                 /* theta: where in the step the fluid looks */
 } wing;
 
 static const double wing_span = 3, wing_gj = 2;
@@ -47,12 +47,12 @@ static void wing_create(wing *w, int elements, int nodes, double lambda_l, int s
     spari_gauss(POINTS, xi, weight);
     for (int e = 0; e < elements; e++) {
         for (int k = 0; k < POINTS; k++, w->n++) {
-            w->xi[w->n] = (2 * e + 1 + xi[k]) / elements - 1;
+            w->eta[w->n] = (e + 0.5 * (1 + xi[k])) / elements;
             w->weight[w->n] = weight[k] * wing_span / (2 * elements);
         }
     }
     OK(w->session, spar_fluid_create(w->beam, "strips", &w->strips));
-    OK(w->session, spar_fluid_set_stations(w->strips, w->n, w->xi, NULL));
+    OK(w->session, spar_fluid_set_stations(w->strips, w->n, w->eta, NULL));
     OK(w->session, spar_fluid_map(w->strips));
     OK(w->session, spar_session_set_coupling(w->session, scheme, 0, 1e-12, 500));
     OK(w->session, spar_session_set_log(w->session, listen, NULL));
@@ -94,7 +94,7 @@ static void test_twist_of_a_wing(void **state) {
     OK(w.session, spar_session_solve_static(w.session, 1, wing_fluid, &w, NULL));
     OK(w.session, spar_fluid_pull_sections(w.strips, 1, q[0], NULL, NULL));
     for (int i = 0; i < w.n; i++) {
-        NEAR(2 * atan2(q[i][1], q[i][0]), wing_twist(&w, wing_span * (1 + w.xi[i]) / 2), 1e-7 * wing_twist(&w, 3));
+        NEAR(2 * atan2(q[i][1], q[i][0]), wing_twist(&w, wing_span * w.eta[i]), 1e-7 * wing_twist(&w, 3));
     }
     NEAR(wing_tip(&w), wing_twist(&w, wing_span), 1e-11 * wing_twist(&w, wing_span));
     assert_string_equal(warned, "");

@@ -373,12 +373,12 @@ int spread_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x) {
     return set_nodes(fluid, SPAR_NODES_FORCE, n, x, 3, NULL, set_force);
 }
 
-int spread_set_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
-    return set_nodes(fluid, 2, n, xi, 1, offset, spar_fluid_set_stations);
+int spread_set_sections(spar_fluid *fluid, int64_t n, const double *eta, const double *offset) {
+    return set_nodes(fluid, 2, n, eta, 1, offset, spar_fluid_set_stations);
 }
 
-int spread_set_motion_sections(spar_fluid *fluid, int64_t n, const double *xi, const double *offset) {
-    return set_nodes(fluid, SPAR_NODES_MOTION, n, xi, 1, offset, spar_fluid_set_motion_stations);
+int spread_set_motion_sections(spar_fluid *fluid, int64_t n, const double *eta, const double *offset) {
+    return set_nodes(fluid, SPAR_NODES_MOTION, n, eta, 1, offset, spar_fluid_set_motion_stations);
 }
 
 int spread_set_motion_weights(spar_fluid *fluid, int64_t n, const double *w) {
@@ -410,17 +410,17 @@ int spread_get_flag_count(const spar_fluid *fluid, int which, int flag, int64_t 
     return status;
 }
 
-int spread_get_map(const spar_fluid *fluid, int which, double *xi, double *distance, int *flags) {
+int spread_get_map(const spar_fluid *fluid, int which, double *eta, double *distance, int *flags) {
     cut c = cut_of(fluid, which);
     int *own = room(c.n, sizeof *own);
     double *as = room(c.n, sizeof *as), *seen = flags ? room(c.whole, sizeof *seen) : NULL;
-    double *part[3] = {place_for(&c, 1, xi), place_for(&c, 1, distance), as};
+    double *part[3] = {place_for(&c, 1, eta), place_for(&c, 1, distance), as};
     int64_t whole = c.whole;
     int status = spar_fluid_get_map(fluid, which, part[0], part[1], own);
     for (int64_t i = 0; i < c.n; i++) {
         as[i] = own[i];
     }
-    status = put_together(&c, status, 3, part, (int[]){1, 1, 1}, (double *[]){xi, distance, seen});
+    status = put_together(&c, status, 3, part, (int[]){1, 1, 1}, (double *[]){eta, distance, seen});
     for (int64_t i = 0; i < whole && flags && status == SPAR_OK; i++) {
         flags[i] = (int)seen[i];
     }

@@ -168,7 +168,7 @@ typedef struct cantilever {
     spar_session *session;
     spar_member *beam;
     spar_fluid *strips;
-    double xi[POINTS], weight[POINTS], added;
+    double eta[POINTS], weight[POINTS], added;
 } cantilever;
 
 static int strips(spar_session *s, double t, double dt, int iteration, void *context) {
@@ -194,9 +194,12 @@ static double swing(int fidelity, int substeps, double dt, double added, int *it
     OK(s, spar_member_set_fidelity(c.beam, fidelity, fidelity == SPAR_FIDELITY_MODAL ? 4 : 0));
     OK(s, spar_member_commit(c.beam));
     OK(s, spar_member_set_load(c.beam, NODES - 1, SPAR_LOAD_DEAD, load));
-    spari_gauss(POINTS, c.xi, c.weight);
+    spari_gauss(POINTS, c.eta, c.weight);
+    for (int i = 0; i < POINTS; i++) {
+        c.eta[i] = 0.5 * (1 + c.eta[i]);
+    }
     OK(s, spar_fluid_create(c.beam, "strips", &c.strips));
-    OK(s, spar_fluid_set_stations(c.strips, POINTS, c.xi, NULL));
+    OK(s, spar_fluid_set_stations(c.strips, POINTS, c.eta, NULL));
     OK(s, spar_fluid_map(c.strips));
     OK(s, spar_session_set_integrator(s, 0.9, substeps));
     OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 0, 1e-6, 30));

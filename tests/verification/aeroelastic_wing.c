@@ -17,7 +17,7 @@ typedef struct wing {
     spar_session *session;
     spar_member *beam;
     spar_fluid *strips;
-    double xi[STRIPS], weight[STRIPS];
+    double eta[STRIPS], weight[STRIPS];
 } wing;
 
 static void create(wing *w, double root) {
@@ -32,9 +32,12 @@ static void create(wing *w, double root) {
     OK(s, spar_beam_set_sections(w->beam, 1, eta, K, M));
     OK(s, spar_member_set_root(w->beam, SPAR_ROOT_FIXED));
     OK(s, spar_member_commit(w->beam));
-    spari_gauss(STRIPS, w->xi, w->weight);
+    spari_gauss(STRIPS, w->eta, w->weight);
+    for (int i = 0; i < STRIPS; i++) {
+        w->eta[i] = 0.5 * (1 + w->eta[i]);
+    }
     OK(s, spar_fluid_create(w->beam, "strips", &w->strips));
-    OK(s, spar_fluid_set_stations(w->strips, STRIPS, w->xi, NULL));
+    OK(s, spar_fluid_set_stations(w->strips, STRIPS, w->eta, NULL));
     OK(s, spar_fluid_map(w->strips));
 }
 

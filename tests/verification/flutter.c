@@ -46,7 +46,7 @@ static void build(wing *w, const wing_data *of, double speed, double angle) {
     const double centre[3] = {0, (of->centre - of->axis) * of->chord, 0};
     const double own = of->inertia - of->mass * centre[1] * centre[1], J[3] = {own, 1e-4 * own, own};
     const double alpha[2] = {-0.5, 0.5}, cl[2] = {-pi, pi}, cd[2] = {0, 0};
-    double K[36], M[36], xi[STRIPS], offset[STRIPS][3] = {{0}};
+    double K[36], M[36], along[STRIPS], offset[STRIPS][3] = {{0}};
     *w = (wing){.of = of, .s = scene_session(), .speed = speed};
     scene_diagonal(K, 1e3 * of->flap, 1e3 * of->flap, 1e3 * of->flap, of->twist, of->flap, of->lag);
     scene_mass(M, of->mass, centre, J);
@@ -57,10 +57,10 @@ static void build(wing *w, const wing_data *of, double speed, double angle) {
     OK(w->s, spar_member_commit(w->beam));
     OK(w->s, spar_fluid_create(w->beam, "air", &w->air));
     for (int i = 0; i < STRIPS; i++) {
-        xi[i] = -1 + 2.0 * i / (STRIPS - 1);
+        along[i] = 1.0 * i / (STRIPS - 1);
         offset[i][1] = (-0.25 - of->axis) * of->chord;
     }
-    OK(w->s, spar_fluid_set_stations(w->air, STRIPS, xi, offset[0]));
+    OK(w->s, spar_fluid_set_stations(w->air, STRIPS, along, offset[0]));
     OK(w->s, spar_fluid_map(w->air));
     OK(w->s, spar_polar_create(2, alpha, cl, cd, NULL, &w->polar));
     OK(w->s, spar_aero_create(1, &w->air, &w->aero));

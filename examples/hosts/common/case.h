@@ -66,7 +66,7 @@
      aerodyn PRIMARY [BLADE]    chord, twist and polars by AeroDyn's files
        axes qw qx qy qz         of the blade's axes there in the members' own
        stations n first last    n sections at even distances (m from the root); default: those of the file
-     section* xi chord twist POLAR [y z]      instead; POLAR: a file of rows alpha cl cd [cm], rad
+     section* eta chord twist POLAR [y z]      instead; POLAR: a file of rows alpha cl cd [cm], rad
      rotor x y z  ax ay az  hub_radius tip_radius     a point of the shaft, its direction, the blades' ends
      turn 1|-1                  total n, blades of the whole rotor
      shear power|log|linear  x y z  ux uy uz  height parameter   ground, up, where the wind is that given, the law's own

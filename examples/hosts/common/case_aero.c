@@ -63,19 +63,19 @@ static int set_section(const spar_case *c, const case_line *line, int64_t i, spa
 /* The places of the rows on one blade. */
 static int place_rows(const spar_case *c, const case_block *block, int64_t n, spar_fluid *fluid) {
     const case_line *line;
-    double *xi = calloc(4 * (size_t)n, sizeof *xi), *offset = xi ? xi + n : NULL;
-    int status = xi ? SPAR_OK : case_no_memory(c), number = block->number;
+    double *eta = calloc(4 * (size_t)n, sizeof *eta), *offset = eta ? eta + n : NULL;
+    int status = eta ? SPAR_OK : case_no_memory(c), number = block->number;
     for (int64_t at = 0, i = 0; status == SPAR_OK && (line = case_next(block, "section", &at)); i++) {
         number = line->number;
-        status =
-            line->n == 4 || line->n == 6
-                ? case_numbers(&c->text, line, 1, 1, xi + i)
-                : case_fail(&c->text, number, SPAR_ERR_ARGUMENT,
-                            "section has %d values; give xi chord twist POLAR, and y z if it is off the line", line->n);
+        status = line->n == 4 || line->n == 6
+                     ? case_numbers(&c->text, line, 1, 1, eta + i)
+                     : case_fail(&c->text, number, SPAR_ERR_ARGUMENT,
+                                 "section has %d values; give eta chord twist POLAR, and y z if it is off the line",
+                                 line->n);
         status = status == SPAR_OK && line->n == 6 ? case_numbers(&c->text, line, 5, 2, offset + 3 * i + 1) : status;
     }
-    status = status == SPAR_OK ? case_told(c, number, spar_fluid_set_stations(fluid, n, xi, offset)) : status;
-    free(xi);
+    status = status == SPAR_OK ? case_told(c, number, spar_fluid_set_stations(fluid, n, eta, offset)) : status;
+    free(eta);
     return status;
 }
 

@@ -184,7 +184,7 @@ static void blow(spar_session *s, spar_aero *aero) {
 }
 
 static void aerodyn(const char *good) {
-    double xi[2][STATIONS];
+    double eta[2][STATIONS];
     int64_t n = 0;
     spar_session *s = scene_session();
     spar_member *b = good_beam(s);
@@ -194,7 +194,7 @@ static void aerodyn(const char *good) {
     must(spar_fluid_create(b, "air", &f), s);
     must(spar_fluid_read_aerodyn(f, good, NULL, NULL, 0, NULL), s);
     must(spar_fluid_map(f), s);
-    must(spar_fluid_get_map(f, SPAR_NODES_MOTION, xi[0], NULL, NULL), s);
+    must(spar_fluid_get_map(f, SPAR_NODES_MOTION, eta[0], NULL, NULL), s);
     must(spar_aero_create(1, &f, &aero), s);
     must(spar_aero_read_aerodyn(aero, good, NULL, NULL, NULL), s);
     int status = spar_aero_read_aerodyn(aero, "primary.dat", NULL, NULL, NULL);
@@ -206,8 +206,8 @@ static void aerodyn(const char *good) {
     if (status != SPAR_OK) {
         refused(status, spar_session_message(s), "spar_fluid_read_aerodyn: ");
         must(spar_fluid_get_count(f, SPAR_NODES_MOTION, &n), s);
-        must(n == STATIONS ? spar_fluid_get_map(f, SPAR_NODES_MOTION, xi[1], NULL, NULL) : SPAR_ERR_STATE, s);
-        if (memcmp(xi[0], xi[1], sizeof xi[0]) != 0) {
+        must(n == STATIONS ? spar_fluid_get_map(f, SPAR_NODES_MOTION, eta[1], NULL, NULL) : SPAR_ERR_STATE, s);
+        if (memcmp(eta[0], eta[1], sizeof eta[0]) != 0) {
             fault("the sections are not as they were", status, "");
         }
     } else if ((status = spar_fluid_map(f)) != SPAR_OK) {

@@ -66,11 +66,11 @@ void do_spar_fluid_set_force_nodes(call *c) {
     set_nodes(c, spar_fluid_set_force_nodes);
 }
 
-static void set_sections(call *c, int (*set)(spar_fluid *fluid, int64_t n, const double *xi, const double *offset)) {
+static void set_sections(call *c, int (*set)(spar_fluid *fluid, int64_t n, const double *eta, const double *offset)) {
     live_fluid *f = arg_fluid(c);
     int64_t n = chance(c, 5) ? 0 : arg_count(c, 2, 4), room = length(n);
-    double *xi = arg_rising(c, room, -0.9, 1), *offset = arg_reals_or_null(c, 3 * room, -0.05, 0.05);
-    RUN(c, set(f->f, n, xi, offset));
+    double *eta = arg_rising(c, room, 0.05, 1), *offset = arg_reals_or_null(c, 3 * room, -0.05, 0.05);
+    RUN(c, set(f->f, n, eta, offset));
 }
 
 void do_spar_fluid_set_stations(call *c) {
@@ -195,9 +195,9 @@ void do_spar_fluid_get_map(call *c) {
     live_fluid *f = arg_fluid(c);
     int which = arg_int(c, 0, 1);
     int64_t n = fluid_count(f, which);
-    double *xi = OUT_OR_NULL(c, n), *distance = OUT_OR_NULL(c, n);
+    double *eta = OUT_OR_NULL(c, n), *distance = OUT_OR_NULL(c, n);
     int *flags = arg_out(c, n * (int64_t)sizeof(int), 1);
-    RUN(c, spar_fluid_get_map(f->f, which, xi, distance, flags));
+    RUN(c, spar_fluid_get_map(f->f, which, eta, distance, flags));
 }
 
 void do_spar_fluid_get_feet(call *c) {

@@ -510,7 +510,7 @@ static void act_fidelities(void) {
 /* A fluid of every kind, and all that can be pulled and pushed. */
 static void act_fluids(void) {
     host h = {.fluids = 1, .members = 1};
-    double xi[5] = {-1, -0.5, 0, 0.5, 1}, out[16 * NODES], q[4 * NODES], w[3 * NODES], audit[8];
+    double eta[5] = {0, 0.25, 0.5, 0.75, 1}, out[16 * NODES], q[4 * NODES], w[3 * NODES], audit[8];
     float x32[3 * NODES], v32[3 * NODES], q32[4 * NODES];
     int flags[NODES];
     int64_t count, first[NODES];
@@ -528,9 +528,9 @@ static void act_fluids(void) {
     CALL(spar_fluid_set_interpolation, f, SPAR_INTERPOLATE_CONSISTENT);
     CALL(spar_fluid_map, f);
     CALL(spar_fluid_create, b, "sections", &sections);
-    CALL(spar_fluid_set_stations, sections, 5, xi, NULL);
+    CALL(spar_fluid_set_stations, sections, 5, eta, NULL);
     CALL(spar_fluid_map, sections);
-    CALL(spar_fluid_set_motion_stations, sections, 5, xi, NULL);
+    CALL(spar_fluid_set_motion_stations, sections, 5, eta, NULL);
     CALL(spar_fluid_map, sections);
     CALL(spar_fluid_get_kind, sections, SPAR_NODES_FORCE, flags);
     CALL(spar_fluid_set_layout, sections, SPAR_NODES_FORCE, 3, 1);
@@ -572,7 +572,7 @@ static void act_fluids(void) {
     CALL(spar_fluid_get_audit, sections, 8, audit);
     CALL(spar_step_reject, s);
     go(&h, 2);
-    CALL(spar_fluid_set_stations, sections, 3, xi, NULL); /* mapped again */
+    CALL(spar_fluid_set_stations, sections, 3, eta, NULL); /* mapped again */
     CALL(spar_fluid_map, sections);
     h.steps = 0;
     go(&h, 1);
@@ -883,7 +883,7 @@ static void act_aero(void) {
     enum { N = 5 };
     static const double pi = 3.14159265358979323846, hub[3], axis[3] = {0, 1, 0}, ground[3] = {0, 9, -90},
                         up[3] = {0, 0, 1};
-    double alpha[7], cl[7], cd[7], cm[7], xi[N], a[N], b[N], c[N], force[3 * N], thrust, torque, power,
+    double alpha[7], cl[7], cd[7], cm[7], eta[N], a[N], b[N], c[N], force[3 * N], thrust, torque, power,
         table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT];
     int flags[N];
     int64_t none;
@@ -896,14 +896,14 @@ static void act_aero(void) {
     CALL(spar_member_commit, blade);
     CALL(spar_fluid_create, blade, "air", &f);
     for (int i = 0; i < N; i++) {
-        xi[i] = -0.9 + 1.8 * i / (N - 1);
+        eta[i] = 0.05 + 0.9 * i / (N - 1);
         w.inflow[i][1] = 10;
     }
     for (int i = 0; i < 7; i++) {
         alpha[i] = -pi + i * pi / 3;
         cl[i] = i == 6 ? sin(2 * alpha[0]) : sin(2 * alpha[i]), cd[i] = 0.02, cm[i] = -0.01;
     }
-    CALL(spar_fluid_set_stations, f, here ? N : 0, here ? xi : NULL, NULL);
+    CALL(spar_fluid_set_stations, f, here ? N : 0, here ? eta : NULL, NULL);
     CALL(spar_fluid_map, f);
     if (here) {
         CALL(spar_polar_create, 7, alpha, cl, cd, cm, &polar);

@@ -138,14 +138,14 @@ static int allocate(actuator_machine *a) {
 static int make_points(actuator_machine *a, int b) {
     const turbine *t = &a->turbine;
     const int64_t n = t->sections;
-    double *work = calloc(11 * (size_t)n, sizeof *work), *xi = work;
+    double *work = calloc(11 * (size_t)n, sizeof *work), *eta = work;
     if (!work) {
         return say(a, SPAR_ERR_MEMORY, "no memory");
     }
-    double *q = xi + n, *arm = q + 4 * n, *offset = arm + 3 * n, axes[9];
+    double *q = eta + n, *arm = q + 4 * n, *offset = arm + 3 * n, axes[9];
     char name[32];
     snprintf(name, sizeof name, "points%d", b + 1);
-    int status = spar_fluid_get_map(t->air[b], SPAR_NODES_MOTION, xi, NULL, NULL);
+    int status = spar_fluid_get_map(t->air[b], SPAR_NODES_MOTION, eta, NULL, NULL);
     status = status ? status : spar_fluid_get_feet(t->air[b], SPAR_NODES_MOTION, NULL, q, arm);
     for (int64_t i = 0; status == SPAR_OK && i < 3 * n; i++) {
         matrix(q + 4 * (i / 3), axes);
@@ -154,7 +154,7 @@ static int make_points(actuator_machine *a, int b) {
         }
     }
     status = status ? status : spar_fluid_create(t->blade[b], name, &a->point[b]);
-    status = status ? status : spar_fluid_set_motion_stations(a->point[b], n, xi, offset);
+    status = status ? status : spar_fluid_set_motion_stations(a->point[b], n, eta, offset);
     status = status ? status : spar_fluid_map(a->point[b]);
     status = status ? status : spar_fluid_set_layout(a->point[b], SPAR_NODES_MOTION, 1, a->points);
     free(work);
