@@ -214,10 +214,12 @@ static int pull(strip *f) {
     float x32[6 * STRIPS], v32[6 * STRIPS], a32[6 * STRIPS];
     if (!k->single) {
         TRY(spar_fluid_pull_motion(fluid, k->theta, f->x, f->v));
-        return k->acceleration ? spar_fluid_pull_sections(fluid, k->theta, NULL, NULL, f->a) : SPAR_OK;
+        return k->acceleration
+                   ? spar_fluid_pull_poses(fluid, SPAR_NODES_MOTION, k->theta, NULL, NULL, NULL, NULL, f->a, NULL)
+                   : SPAR_OK;
     }
     TRY(spar_fluid_pull_motion_f32(fluid, k->theta, x32, v32));
-    TRY(spar_fluid_pull_sections_f32(fluid, k->theta, NULL, NULL, a32));
+    TRY(spar_fluid_pull_poses_f32(fluid, SPAR_NODES_MOTION, k->theta, NULL, NULL, NULL, NULL, a32, NULL));
     for (int i = 0; i < 6 * STRIPS; i++) {
         f->x[i] = (double)x32[i], f->v[i] = (double)v32[i], f->a[i] = (double)a32[i];
     }

@@ -166,7 +166,7 @@ contains
     integer :: i
 
     call fluid(k)%pull_motion(1.0_dp, x, v)
-    call fluid(k)%pull_sections(1.0_dp, omega=omega, accel=accel)
+    call fluid(k)%pull_poses(SPAR_NODES_MOTION, 1.0_dp, omega=omega, accel=accel)
     call fluid(k)%pull_matrices(1.0_dp, SPAR_MATRIX_GLOBAL_TO_LOCAL, rows)
     do i = 1, ns
       c = cos(extra_twist(i))

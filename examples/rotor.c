@@ -237,7 +237,8 @@ static int sample_transfer(scene *s) {
     double since = now();
     for (int k = 0; k < s->mine; k++) {
         TRY(spar_fluid_pull_motion(s->fluid[k], s->options.theta, s->place + 3 * k * n, s->velocity + 3 * k * n));
-        TRY(spar_fluid_pull_sections(s->fluid[k], s->options.theta, s->turn + 4 * k * n, s->spin + 3 * k * n, NULL));
+        TRY(spar_fluid_pull_poses(s->fluid[k], SPAR_NODES_MOTION, s->options.theta, NULL, s->turn + 4 * k * n, NULL,
+                                  s->spin + 3 * k * n, NULL, NULL));
     }
     lap(s, ROTOR_MOTION, &since);
     TRY(spar_aero_get_loads(s->aero, NULL, s->force, s->moment));

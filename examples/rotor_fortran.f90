@@ -30,7 +30,7 @@ contains
     u = [wind_at(t), 0.0_dp, 0.0_dp]
     do k = 1, nb
       call fluid(k)%pull_motion(1.0_dp, x, v)
-      call fluid(k)%pull_sections(1.0_dp, q)
+      call fluid(k)%pull_poses(SPAR_NODES_MOTION, 1.0_dp, q=q)
       do i = 1, ns
         r = frame_of(q(:,i))
         c = cos(extra_twist(i)) * r(:,2) - sin(extra_twist(i)) * r(:,3)

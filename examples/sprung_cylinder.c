@@ -23,7 +23,7 @@ static int solve_wake(spar_session *session, double t, double dt, int iteration,
     if (iteration == 0) {
         w->q = w->q_new, w->rate = w->rate_new;
     }
-    int status = spar_fluid_pull_poses(w->fluid, 1, x, q, v, NULL, a, NULL);
+    int status = spar_fluid_pull_poses(w->fluid, SPAR_NODES_MOTION, 1, x, q, v, NULL, a, NULL);
     if (status != SPAR_OK) {
         return status;
     }
@@ -52,7 +52,8 @@ static int run(double speed, double *amplitude) {
         (status = spar_fluid_set_force_nodes(w.fluid, 1, x)) == SPAR_OK &&
         (status = spar_fluid_map(w.fluid)) == SPAR_OK) {
         status = spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-6, 50); /* the water is heavy */
-        status = status == SPAR_OK ? spar_session_solve_initial(s, 0.004, solve_wake, &w, NULL) : status; /* also at t = 0 */
+        status =
+            status == SPAR_OK ? spar_session_solve_initial(s, 0.004, solve_wake, &w, NULL) : status; /* also at t = 0 */
     }
     *amplitude = 0;
     for (int i = 0; i < 10000 && status == SPAR_OK; i++) {

@@ -142,7 +142,7 @@ static void outline(double thickness, int j, double *along, double *up) {
 static int look_at_blade(turbine_view *v, const turbine *t, int b) {
     turbine_patch *p = v->patch + BLADE + b;
     const double *force = v->force + 6 * b * t->sections;
-    int status = spar_fluid_pull_poses(t->air[b], 1, v->place, v->turn, NULL, NULL, NULL, NULL);
+    int status = spar_fluid_pull_poses(t->air[b], SPAR_NODES_MOTION, 1, v->place, v->turn, NULL, NULL, NULL, NULL);
     for (int i = 0; i < p->rows && status == SPAR_OK; i++) {
         double chord = t->data.chord[i], twist = t->twist[i], *f = (double *)(uintptr_t)(force + 6 * i);
         double thick = thickness_of(t->data.polar[t->data.polar_of[i]].name);

@@ -28,7 +28,7 @@
 ! stands for arrays x(n,3), by component, (3, 1) for x(3,n).
 ! Kinds. Numbers are real(c_double) or real(c_float), all arrays of a call of one kind and all its single numbers of one kind, so
 ! that literals may be default reals. What a host in single precision gives and takes is converted on its way; the library
-! computes in double. Motion and loads of nodes (pull_motion, pull_sections, pull_forces, push_forces) it reads and writes as they
+! computes in double. Motion and loads of nodes (pull_motion, pull_poses, pull_forces, push_forces) it reads and writes as they
 ! are. The host's own procedures (spar_fluid_solver, spar_before_step) get times as real(c_double). Integers, logicals and the constants SPAR_* have the default kind: a host whose integers
 ! have 8 bytes compiles this file and spar_c.f90 with its own options (-fdefault-integer-8). A count may have 4 or 8 bytes in
 ! any case; one too large for C is refused as any other that is out of range.
@@ -445,20 +445,8 @@ module spar
     procedure :: get_flag_count => fluid_get_flag_count
     procedure, private :: fluid_get_feet, fluid_get_feet_single_1, fluid_get_feet_single_2, fluid_get_feet_single_3
     generic :: get_feet => fluid_get_feet, fluid_get_feet_single_1, fluid_get_feet_single_2, fluid_get_feet_single_3
-    procedure, private :: fluid_pull_sections, fluid_pull_sections_single_1, fluid_pull_sections_single_2, &
-        fluid_pull_sections_single_3, fluid_pull_sections_single_4, fluid_pull_sections_single_5, &
-        fluid_pull_sections_single_6, fluid_pull_sections_single_7
-    generic :: pull_sections => fluid_pull_sections, fluid_pull_sections_single_1, fluid_pull_sections_single_2, &
-        fluid_pull_sections_single_3, fluid_pull_sections_single_4, fluid_pull_sections_single_5, &
-        fluid_pull_sections_single_6, fluid_pull_sections_single_7
     procedure, private :: fluid_get_travel, fluid_get_travel_single_1
     generic :: get_travel => fluid_get_travel, fluid_get_travel_single_1
-    procedure, private :: fluid_pull_force_places, fluid_pull_force_places_single_1, &
-        fluid_pull_force_places_single_2, fluid_pull_force_places_single_3, fluid_pull_force_places_single_4, &
-        fluid_pull_force_places_single_5, fluid_pull_force_places_single_6, fluid_pull_force_places_single_7
-    generic :: pull_force_places => fluid_pull_force_places, fluid_pull_force_places_single_1, &
-        fluid_pull_force_places_single_2, fluid_pull_force_places_single_3, fluid_pull_force_places_single_4, &
-        fluid_pull_force_places_single_5, fluid_pull_force_places_single_6, fluid_pull_force_places_single_7
     procedure, private :: fluid_get_positions, fluid_get_positions_single_1, fluid_get_positions_single_2, &
         fluid_get_positions_single_3, fluid_get_positions_single_4
     generic :: get_positions => fluid_get_positions, fluid_get_positions_single_1, fluid_get_positions_single_2, &
@@ -478,8 +466,8 @@ module spar
     generic :: push_states => fluid_push_states, fluid_push_states_single_1
     procedure, private :: fluid_pull_motion_f32, fluid_pull_motion_f32_single_1
     generic :: pull_motion_f32 => fluid_pull_motion_f32, fluid_pull_motion_f32_single_1
-    procedure, private :: fluid_pull_sections_f32, fluid_pull_sections_f32_single_1
-    generic :: pull_sections_f32 => fluid_pull_sections_f32, fluid_pull_sections_f32_single_1
+    procedure, private :: fluid_pull_poses_f32, fluid_pull_poses_f32_single_1
+    generic :: pull_poses_f32 => fluid_pull_poses_f32, fluid_pull_poses_f32_single_1
     procedure, private :: fluid_pull_forces_f32, fluid_pull_forces_f32_single_1
     generic :: pull_forces_f32 => fluid_pull_forces_f32, fluid_pull_forces_f32_single_1
     procedure, private :: fluid_get_audit, fluid_get_audit_single_1
@@ -3501,8 +3489,9 @@ contains
     call finish(spar_fluid_map(self%handle), self%session, stat, errmsg)
   end subroutine fluid_map
 
-  subroutine fluid_pull_poses(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses(self, which, theta, x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_double), intent(in) :: theta
     real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:), v(:,:), omega(:,:), accel(:,:), alpha(:,:)
     integer, intent(out), optional :: stat
@@ -3511,22 +3500,23 @@ contains
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
+    status = spar_fluid_get_count(self%handle, to_c(which), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
     end if
-    if (present(x)) call need_triples(self, SPAR_NODES_MOTION, fault, 'x', shape(x, kind=c_int64_t), n)
+    if (present(x)) call need_triples(self, which, fault, 'x', shape(x, kind=c_int64_t), n)
     if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(v)) call need_triples(self, SPAR_NODES_MOTION, fault, 'v', shape(v, kind=c_int64_t), n)
-    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
-    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
-    if (present(alpha)) call need_triples(self, SPAR_NODES_MOTION, fault, 'alpha', shape(alpha, kind=c_int64_t), n)
+    if (present(v)) call need_triples(self, which, fault, 'v', shape(v, kind=c_int64_t), n)
+    if (present(omega)) call need_triples(self, which, fault, 'omega', shape(omega, kind=c_int64_t), n)
+    if (present(accel)) call need_triples(self, which, fault, 'accel', shape(accel, kind=c_int64_t), n)
+    if (present(alpha)) call need_triples(self, which, fault, 'alpha', shape(alpha, kind=c_int64_t), n)
     if (allocated(fault)) then
       call refuse('fluid%pull_poses', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_pull_poses(self%handle, theta, x, q, v, omega, accel, alpha), self%session, stat, errmsg)
+    call finish(spar_fluid_pull_poses(self%handle, to_c(which), theta, x, q, v, omega, accel, alpha), self%session, &
+        stat, errmsg)
   end subroutine fluid_pull_poses
 
   subroutine fluid_set_motion_stations(self, eta, offset, stat, errmsg)
@@ -3681,31 +3671,6 @@ contains
     call finish(spar_fluid_get_feet(self%handle, to_c(which), x_map, q_map, con), self%session, stat, errmsg)
   end subroutine fluid_get_feet
 
-  subroutine fluid_pull_sections(self, theta, q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_double), contiguous, intent(inout), optional :: q(:,:), omega(:,:), accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
-    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
-    if (allocated(fault)) then
-      call refuse('fluid%pull_sections', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_sections(self%handle, theta, q, omega, accel), self%session, stat, errmsg)
-  end subroutine fluid_pull_sections
-
   subroutine fluid_get_travel(self, largest, node, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(inout), optional :: largest
@@ -3716,35 +3681,10 @@ contains
     call finish(spar_fluid_get_travel(self%handle, largest, node), self%session, stat, errmsg)
   end subroutine fluid_get_travel
 
-  subroutine fluid_pull_force_places(self, theta, x, v, q, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:), q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_FORCE), n)
-    if (status /= SPAR_OK) then
-      call finish(status, self%session, stat, errmsg)
-      return
-    end if
-    if (present(x)) call need_triples(self, SPAR_NODES_FORCE, fault, 'x', shape(x, kind=c_int64_t), n)
-    if (present(v)) call need_triples(self, SPAR_NODES_FORCE, fault, 'v', shape(v, kind=c_int64_t), n)
-    if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('fluid%pull_force_places', fault, stat, errmsg, self%name)
-      return
-    end if
-    call finish(spar_fluid_pull_force_places(self%handle, theta, x, v, q), self%session, stat, errmsg)
-  end subroutine fluid_pull_force_places
-
-  subroutine fluid_get_positions(self, which, x, v, q, foot, stat, errmsg)
+  subroutine fluid_get_positions(self, which, x, q, v, nearest, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
-    real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:), q(:,:), foot(:,:)
+    real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:), v(:,:), nearest(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
@@ -3757,14 +3697,14 @@ contains
       return
     end if
     if (present(x)) call need(fault, 'x', shape(x, kind=c_int64_t), [3_c_int64_t, n])
-    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
     if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(foot)) call need(fault, 'foot', shape(foot, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(v)) call need(fault, 'v', shape(v, kind=c_int64_t), [3_c_int64_t, n])
+    if (present(nearest)) call need(fault, 'nearest', shape(nearest, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
       call refuse('fluid%get_positions', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_get_positions(self%handle, to_c(which), x, v, q, foot), self%session, stat, errmsg)
+    call finish(spar_fluid_get_positions(self%handle, to_c(which), x, q, v, nearest), self%session, stat, errmsg)
   end subroutine fluid_get_positions
 
   subroutine fluid_pull_forces(self, theta, force, stat, errmsg)
@@ -3901,30 +3841,35 @@ contains
     call finish(spar_fluid_pull_motion_f32(self%handle, theta, x, v), self%session, stat, errmsg)
   end subroutine fluid_pull_motion_f32
 
-  subroutine fluid_pull_sections_f32(self, theta, q, omega, accel, stat, errmsg)
+  subroutine fluid_pull_poses_f32(self, which, theta, x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_double), intent(in) :: theta
-    real(c_float), contiguous, intent(inout), optional :: q(:,:), omega(:,:), accel(:,:)
+    real(c_float), contiguous, intent(inout), optional :: x(:,:), q(:,:), v(:,:), omega(:,:), accel(:,:), alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     integer(c_int64_t) :: n
     character(:), allocatable :: fault
     integer(c_int) :: status
 
-    status = spar_fluid_get_count(self%handle, to_c(SPAR_NODES_MOTION), n)
+    status = spar_fluid_get_count(self%handle, to_c(which), n)
     if (status /= SPAR_OK) then
       call finish(status, self%session, stat, errmsg)
       return
     end if
+    if (present(x)) call need_triples(self, which, fault, 'x', shape(x, kind=c_int64_t), n)
     if (present(q)) call need(fault, 'q', shape(q, kind=c_int64_t), [4_c_int64_t, n])
-    if (present(omega)) call need_triples(self, SPAR_NODES_MOTION, fault, 'omega', shape(omega, kind=c_int64_t), n)
-    if (present(accel)) call need_triples(self, SPAR_NODES_MOTION, fault, 'accel', shape(accel, kind=c_int64_t), n)
+    if (present(v)) call need_triples(self, which, fault, 'v', shape(v, kind=c_int64_t), n)
+    if (present(omega)) call need_triples(self, which, fault, 'omega', shape(omega, kind=c_int64_t), n)
+    if (present(accel)) call need_triples(self, which, fault, 'accel', shape(accel, kind=c_int64_t), n)
+    if (present(alpha)) call need_triples(self, which, fault, 'alpha', shape(alpha, kind=c_int64_t), n)
     if (allocated(fault)) then
-      call refuse('fluid%pull_sections_f32', fault, stat, errmsg, self%name)
+      call refuse('fluid%pull_poses_f32', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_pull_sections_f32(self%handle, theta, q, omega, accel), self%session, stat, errmsg)
-  end subroutine fluid_pull_sections_f32
+    call finish(spar_fluid_pull_poses_f32(self%handle, to_c(which), theta, x, q, v, omega, accel, alpha), &
+        self%session, stat, errmsg)
+  end subroutine fluid_pull_poses_f32
 
   subroutine fluid_pull_forces_f32(self, theta, force, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -6951,8 +6896,9 @@ contains
     call fluid_set_stations(self, eta=real(eta, c_double), offset=c_offset, stat=stat, errmsg=errmsg)
   end subroutine fluid_set_stations_single_1
 
-  subroutine fluid_pull_poses_single_1(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_1(self, which, theta, x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_float), intent(in) :: theta
     real(c_double), contiguous, intent(inout), optional :: x(:,:)
     real(c_double), contiguous, intent(inout), optional :: q(:,:)
@@ -6963,331 +6909,219 @@ contains
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call fluid_pull_poses(self, theta=real(theta, c_double), x=x, q=q, v=v, omega=omega, accel=accel, alpha=alpha, &
-        stat=stat, errmsg=errmsg)
+    call fluid_pull_poses(self, which=which, theta=real(theta, c_double), x=x, q=q, v=v, omega=omega, accel=accel, &
+        alpha=alpha, stat=stat, errmsg=errmsg)
   end subroutine fluid_pull_poses_single_1
 
-  subroutine fluid_pull_poses_single_2(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_2(self, which, theta, x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_double), intent(in) :: theta
-    real(c_float), intent(inout) :: x(:,:)
-    real(c_float), intent(inout), optional :: q(:,:)
-    real(c_float), intent(inout), optional :: v(:,:)
-    real(c_float), intent(inout), optional :: omega(:,:)
-    real(c_float), intent(inout), optional :: accel(:,:)
-    real(c_float), intent(inout), optional :: alpha(:,:)
+    real(c_float), contiguous, intent(inout) :: x(:,:)
+    real(c_float), contiguous, intent(inout), optional :: q(:,:)
+    real(c_float), contiguous, intent(inout), optional :: v(:,:)
+    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    real(c_float), contiguous, intent(inout), optional :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_x(:,:)
-    real(c_double), allocatable :: c_q(:,:)
-    real(c_double), allocatable :: c_v(:,:)
-    real(c_double), allocatable :: c_omega(:,:)
-    real(c_double), allocatable :: c_accel(:,:)
-    real(c_double), allocatable :: c_alpha(:,:)
 
-    allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
-    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
-    if (present(omega)) allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
-    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
-    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
-    call fluid_pull_poses(self, theta=theta, x=c_x, q=c_q, v=c_v, omega=c_omega, accel=c_accel, alpha=c_alpha, &
+    call fluid_pull_poses_f32(self, which=which, theta=theta, x=x, q=q, v=v, omega=omega, accel=accel, alpha=alpha, &
         stat=stat, errmsg=errmsg)
-    call take(c_x, x)
-    call take(c_q, q)
-    call take(c_v, v)
-    call take(c_omega, omega)
-    call take(c_accel, accel)
-    call take(c_alpha, alpha)
   end subroutine fluid_pull_poses_single_2
 
-  subroutine fluid_pull_poses_single_3(self, theta, no_x, q, v, omega, accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_3(self, which, theta, no_x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_double), intent(in) :: theta
     type(absent), intent(in), optional :: no_x
-    real(c_float), intent(inout) :: q(:,:)
-    real(c_float), intent(inout), optional :: v(:,:)
-    real(c_float), intent(inout), optional :: omega(:,:)
-    real(c_float), intent(inout), optional :: accel(:,:)
-    real(c_float), intent(inout), optional :: alpha(:,:)
+    real(c_float), contiguous, intent(inout) :: q(:,:)
+    real(c_float), contiguous, intent(inout), optional :: v(:,:)
+    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    real(c_float), contiguous, intent(inout), optional :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_q(:,:)
-    real(c_double), allocatable :: c_v(:,:)
-    real(c_double), allocatable :: c_omega(:,:)
-    real(c_double), allocatable :: c_accel(:,:)
-    real(c_double), allocatable :: c_alpha(:,:)
 
-    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
-    if (present(omega)) allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
-    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
-    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
     if (present(no_x)) return
-    call fluid_pull_poses(self, theta=theta, q=c_q, v=c_v, omega=c_omega, accel=c_accel, alpha=c_alpha, stat=stat, &
-        errmsg=errmsg)
-    call take(c_q, q)
-    call take(c_v, v)
-    call take(c_omega, omega)
-    call take(c_accel, accel)
-    call take(c_alpha, alpha)
+    call fluid_pull_poses_f32(self, which=which, theta=theta, q=q, v=v, omega=omega, accel=accel, alpha=alpha, &
+        stat=stat, errmsg=errmsg)
   end subroutine fluid_pull_poses_single_3
 
-  subroutine fluid_pull_poses_single_4(self, theta, no_x, no_q, v, omega, accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_4(self, which, theta, no_x, no_q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_double), intent(in) :: theta
     type(absent), intent(in), optional :: no_x
     type(absent), intent(in), optional :: no_q
-    real(c_float), intent(inout) :: v(:,:)
-    real(c_float), intent(inout), optional :: omega(:,:)
-    real(c_float), intent(inout), optional :: accel(:,:)
-    real(c_float), intent(inout), optional :: alpha(:,:)
+    real(c_float), contiguous, intent(inout) :: v(:,:)
+    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    real(c_float), contiguous, intent(inout), optional :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_v(:,:)
-    real(c_double), allocatable :: c_omega(:,:)
-    real(c_double), allocatable :: c_accel(:,:)
-    real(c_double), allocatable :: c_alpha(:,:)
 
-    allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
-    if (present(omega)) allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
-    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
-    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
     if (present(no_x) .or. present(no_q)) return
-    call fluid_pull_poses(self, theta=theta, v=c_v, omega=c_omega, accel=c_accel, alpha=c_alpha, stat=stat, &
+    call fluid_pull_poses_f32(self, which=which, theta=theta, v=v, omega=omega, accel=accel, alpha=alpha, stat=stat, &
         errmsg=errmsg)
-    call take(c_v, v)
-    call take(c_omega, omega)
-    call take(c_accel, accel)
-    call take(c_alpha, alpha)
   end subroutine fluid_pull_poses_single_4
 
-  subroutine fluid_pull_poses_single_5(self, theta, no_x, no_q, no_v, omega, accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_5(self, which, theta, no_x, no_q, no_v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_double), intent(in) :: theta
     type(absent), intent(in), optional :: no_x
     type(absent), intent(in), optional :: no_q
     type(absent), intent(in), optional :: no_v
-    real(c_float), intent(inout) :: omega(:,:)
-    real(c_float), intent(inout), optional :: accel(:,:)
-    real(c_float), intent(inout), optional :: alpha(:,:)
+    real(c_float), contiguous, intent(inout) :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    real(c_float), contiguous, intent(inout), optional :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_omega(:,:)
-    real(c_double), allocatable :: c_accel(:,:)
-    real(c_double), allocatable :: c_alpha(:,:)
 
-    allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
-    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
-    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
     if (present(no_x) .or. present(no_q) .or. present(no_v)) return
-    call fluid_pull_poses(self, theta=theta, omega=c_omega, accel=c_accel, alpha=c_alpha, stat=stat, errmsg=errmsg)
-    call take(c_omega, omega)
-    call take(c_accel, accel)
-    call take(c_alpha, alpha)
+    call fluid_pull_poses_f32(self, which=which, theta=theta, omega=omega, accel=accel, alpha=alpha, stat=stat, &
+        errmsg=errmsg)
   end subroutine fluid_pull_poses_single_5
 
-  subroutine fluid_pull_poses_single_6(self, theta, no_x, no_q, no_v, no_omega, accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_6(self, which, theta, no_x, no_q, no_v, no_omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_double), intent(in) :: theta
     type(absent), intent(in), optional :: no_x
     type(absent), intent(in), optional :: no_q
     type(absent), intent(in), optional :: no_v
     type(absent), intent(in), optional :: no_omega
-    real(c_float), intent(inout) :: accel(:,:)
-    real(c_float), intent(inout), optional :: alpha(:,:)
+    real(c_float), contiguous, intent(inout) :: accel(:,:)
+    real(c_float), contiguous, intent(inout), optional :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_accel(:,:)
-    real(c_double), allocatable :: c_alpha(:,:)
 
-    allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
-    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
     if (present(no_x) .or. present(no_q) .or. present(no_v) .or. present(no_omega)) return
-    call fluid_pull_poses(self, theta=theta, accel=c_accel, alpha=c_alpha, stat=stat, errmsg=errmsg)
-    call take(c_accel, accel)
-    call take(c_alpha, alpha)
+    call fluid_pull_poses_f32(self, which=which, theta=theta, accel=accel, alpha=alpha, stat=stat, errmsg=errmsg)
   end subroutine fluid_pull_poses_single_6
 
-  subroutine fluid_pull_poses_single_7(self, theta, no_x, no_q, no_v, no_omega, no_accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_7(self, which, theta, no_x, no_q, no_v, no_omega, no_accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_double), intent(in) :: theta
     type(absent), intent(in), optional :: no_x
     type(absent), intent(in), optional :: no_q
     type(absent), intent(in), optional :: no_v
     type(absent), intent(in), optional :: no_omega
     type(absent), intent(in), optional :: no_accel
-    real(c_float), intent(inout) :: alpha(:,:)
+    real(c_float), contiguous, intent(inout) :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_alpha(:,:)
 
-    allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
     if (present(no_x) .or. present(no_q) .or. present(no_v) .or. present(no_omega) .or. present(no_accel)) return
-    call fluid_pull_poses(self, theta=theta, alpha=c_alpha, stat=stat, errmsg=errmsg)
-    call take(c_alpha, alpha)
+    call fluid_pull_poses_f32(self, which=which, theta=theta, alpha=alpha, stat=stat, errmsg=errmsg)
   end subroutine fluid_pull_poses_single_7
 
-  subroutine fluid_pull_poses_single_8(self, theta, x, q, v, omega, accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_8(self, which, theta, x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_float), intent(in) :: theta
-    real(c_float), intent(inout) :: x(:,:)
-    real(c_float), intent(inout), optional :: q(:,:)
-    real(c_float), intent(inout), optional :: v(:,:)
-    real(c_float), intent(inout), optional :: omega(:,:)
-    real(c_float), intent(inout), optional :: accel(:,:)
-    real(c_float), intent(inout), optional :: alpha(:,:)
+    real(c_float), contiguous, intent(inout) :: x(:,:)
+    real(c_float), contiguous, intent(inout), optional :: q(:,:)
+    real(c_float), contiguous, intent(inout), optional :: v(:,:)
+    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    real(c_float), contiguous, intent(inout), optional :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_x(:,:)
-    real(c_double), allocatable :: c_q(:,:)
-    real(c_double), allocatable :: c_v(:,:)
-    real(c_double), allocatable :: c_omega(:,:)
-    real(c_double), allocatable :: c_accel(:,:)
-    real(c_double), allocatable :: c_alpha(:,:)
 
-    allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
-    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
-    if (present(omega)) allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
-    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
-    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
-    call fluid_pull_poses(self, theta=real(theta, c_double), x=c_x, q=c_q, v=c_v, omega=c_omega, accel=c_accel, &
-        alpha=c_alpha, stat=stat, errmsg=errmsg)
-    call take(c_x, x)
-    call take(c_q, q)
-    call take(c_v, v)
-    call take(c_omega, omega)
-    call take(c_accel, accel)
-    call take(c_alpha, alpha)
+    call fluid_pull_poses_f32(self, which=which, theta=real(theta, c_double), x=x, q=q, v=v, omega=omega, &
+        accel=accel, alpha=alpha, stat=stat, errmsg=errmsg)
   end subroutine fluid_pull_poses_single_8
 
-  subroutine fluid_pull_poses_single_9(self, theta, no_x, q, v, omega, accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_9(self, which, theta, no_x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_float), intent(in) :: theta
     type(absent), intent(in), optional :: no_x
-    real(c_float), intent(inout) :: q(:,:)
-    real(c_float), intent(inout), optional :: v(:,:)
-    real(c_float), intent(inout), optional :: omega(:,:)
-    real(c_float), intent(inout), optional :: accel(:,:)
-    real(c_float), intent(inout), optional :: alpha(:,:)
+    real(c_float), contiguous, intent(inout) :: q(:,:)
+    real(c_float), contiguous, intent(inout), optional :: v(:,:)
+    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    real(c_float), contiguous, intent(inout), optional :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_q(:,:)
-    real(c_double), allocatable :: c_v(:,:)
-    real(c_double), allocatable :: c_omega(:,:)
-    real(c_double), allocatable :: c_accel(:,:)
-    real(c_double), allocatable :: c_alpha(:,:)
 
-    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
-    if (present(omega)) allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
-    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
-    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
     if (present(no_x)) return
-    call fluid_pull_poses(self, theta=real(theta, c_double), q=c_q, v=c_v, omega=c_omega, accel=c_accel, &
-        alpha=c_alpha, stat=stat, errmsg=errmsg)
-    call take(c_q, q)
-    call take(c_v, v)
-    call take(c_omega, omega)
-    call take(c_accel, accel)
-    call take(c_alpha, alpha)
+    call fluid_pull_poses_f32(self, which=which, theta=real(theta, c_double), q=q, v=v, omega=omega, accel=accel, &
+        alpha=alpha, stat=stat, errmsg=errmsg)
   end subroutine fluid_pull_poses_single_9
 
-  subroutine fluid_pull_poses_single_10(self, theta, no_x, no_q, v, omega, accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_10(self, which, theta, no_x, no_q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_float), intent(in) :: theta
     type(absent), intent(in), optional :: no_x
     type(absent), intent(in), optional :: no_q
-    real(c_float), intent(inout) :: v(:,:)
-    real(c_float), intent(inout), optional :: omega(:,:)
-    real(c_float), intent(inout), optional :: accel(:,:)
-    real(c_float), intent(inout), optional :: alpha(:,:)
+    real(c_float), contiguous, intent(inout) :: v(:,:)
+    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    real(c_float), contiguous, intent(inout), optional :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_v(:,:)
-    real(c_double), allocatable :: c_omega(:,:)
-    real(c_double), allocatable :: c_accel(:,:)
-    real(c_double), allocatable :: c_alpha(:,:)
 
-    allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
-    if (present(omega)) allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
-    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
-    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
     if (present(no_x) .or. present(no_q)) return
-    call fluid_pull_poses(self, theta=real(theta, c_double), v=c_v, omega=c_omega, accel=c_accel, alpha=c_alpha, &
-        stat=stat, errmsg=errmsg)
-    call take(c_v, v)
-    call take(c_omega, omega)
-    call take(c_accel, accel)
-    call take(c_alpha, alpha)
+    call fluid_pull_poses_f32(self, which=which, theta=real(theta, c_double), v=v, omega=omega, accel=accel, &
+        alpha=alpha, stat=stat, errmsg=errmsg)
   end subroutine fluid_pull_poses_single_10
 
-  subroutine fluid_pull_poses_single_11(self, theta, no_x, no_q, no_v, omega, accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_11(self, which, theta, no_x, no_q, no_v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_float), intent(in) :: theta
     type(absent), intent(in), optional :: no_x
     type(absent), intent(in), optional :: no_q
     type(absent), intent(in), optional :: no_v
-    real(c_float), intent(inout) :: omega(:,:)
-    real(c_float), intent(inout), optional :: accel(:,:)
-    real(c_float), intent(inout), optional :: alpha(:,:)
+    real(c_float), contiguous, intent(inout) :: omega(:,:)
+    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    real(c_float), contiguous, intent(inout), optional :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_omega(:,:)
-    real(c_double), allocatable :: c_accel(:,:)
-    real(c_double), allocatable :: c_alpha(:,:)
 
-    allocate (c_omega(ubound(omega, 1, c_int64_t), ubound(omega, 2, c_int64_t)), source=untouched)
-    if (present(accel)) allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
-    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
     if (present(no_x) .or. present(no_q) .or. present(no_v)) return
-    call fluid_pull_poses(self, theta=real(theta, c_double), omega=c_omega, accel=c_accel, alpha=c_alpha, stat=stat, &
-        errmsg=errmsg)
-    call take(c_omega, omega)
-    call take(c_accel, accel)
-    call take(c_alpha, alpha)
+    call fluid_pull_poses_f32(self, which=which, theta=real(theta, c_double), omega=omega, accel=accel, alpha=alpha, &
+        stat=stat, errmsg=errmsg)
   end subroutine fluid_pull_poses_single_11
 
-  subroutine fluid_pull_poses_single_12(self, theta, no_x, no_q, no_v, no_omega, accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_12(self, which, theta, no_x, no_q, no_v, no_omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_float), intent(in) :: theta
     type(absent), intent(in), optional :: no_x
     type(absent), intent(in), optional :: no_q
     type(absent), intent(in), optional :: no_v
     type(absent), intent(in), optional :: no_omega
-    real(c_float), intent(inout) :: accel(:,:)
-    real(c_float), intent(inout), optional :: alpha(:,:)
+    real(c_float), contiguous, intent(inout) :: accel(:,:)
+    real(c_float), contiguous, intent(inout), optional :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_accel(:,:)
-    real(c_double), allocatable :: c_alpha(:,:)
 
-    allocate (c_accel(ubound(accel, 1, c_int64_t), ubound(accel, 2, c_int64_t)), source=untouched)
-    if (present(alpha)) allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
     if (present(no_x) .or. present(no_q) .or. present(no_v) .or. present(no_omega)) return
-    call fluid_pull_poses(self, theta=real(theta, c_double), accel=c_accel, alpha=c_alpha, stat=stat, errmsg=errmsg)
-    call take(c_accel, accel)
-    call take(c_alpha, alpha)
+    call fluid_pull_poses_f32(self, which=which, theta=real(theta, c_double), accel=accel, alpha=alpha, stat=stat, &
+        errmsg=errmsg)
   end subroutine fluid_pull_poses_single_12
 
-  subroutine fluid_pull_poses_single_13(self, theta, no_x, no_q, no_v, no_omega, no_accel, alpha, stat, errmsg)
+  subroutine fluid_pull_poses_single_13(self, which, theta, no_x, no_q, no_v, no_omega, no_accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_float), intent(in) :: theta
     type(absent), intent(in), optional :: no_x
     type(absent), intent(in), optional :: no_q
     type(absent), intent(in), optional :: no_v
     type(absent), intent(in), optional :: no_omega
     type(absent), intent(in), optional :: no_accel
-    real(c_float), intent(inout) :: alpha(:,:)
+    real(c_float), contiguous, intent(inout) :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_alpha(:,:)
 
-    allocate (c_alpha(ubound(alpha, 1, c_int64_t), ubound(alpha, 2, c_int64_t)), source=untouched)
     if (present(no_x) .or. present(no_q) .or. present(no_v) .or. present(no_omega) .or. present(no_accel)) return
-    call fluid_pull_poses(self, theta=real(theta, c_double), alpha=c_alpha, stat=stat, errmsg=errmsg)
-    call take(c_alpha, alpha)
+    call fluid_pull_poses_f32(self, which=which, theta=real(theta, c_double), alpha=alpha, stat=stat, errmsg=errmsg)
   end subroutine fluid_pull_poses_single_13
 
   subroutine fluid_set_motion_stations_single_1(self, eta, offset, stat, errmsg)
@@ -7393,95 +7227,6 @@ contains
     call take(c_con, con)
   end subroutine fluid_get_feet_single_3
 
-  subroutine fluid_pull_sections_single_1(self, theta, q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(in) :: theta
-    real(c_double), contiguous, intent(inout), optional :: q(:,:)
-    real(c_double), contiguous, intent(inout), optional :: omega(:,:)
-    real(c_double), contiguous, intent(inout), optional :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call fluid_pull_sections(self, theta=real(theta, c_double), q=q, omega=omega, accel=accel, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_1
-
-  subroutine fluid_pull_sections_single_2(self, theta, q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_float), contiguous, intent(inout) :: q(:,:)
-    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
-    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call fluid_pull_sections_f32(self, theta=theta, q=q, omega=omega, accel=accel, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_2
-
-  subroutine fluid_pull_sections_single_3(self, theta, no_q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    type(absent), intent(in), optional :: no_q
-    real(c_float), contiguous, intent(inout) :: omega(:,:)
-    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    if (present(no_q)) return
-    call fluid_pull_sections_f32(self, theta=theta, omega=omega, accel=accel, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_3
-
-  subroutine fluid_pull_sections_single_4(self, theta, no_q, no_omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    type(absent), intent(in), optional :: no_q
-    type(absent), intent(in), optional :: no_omega
-    real(c_float), contiguous, intent(inout) :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    if (present(no_q) .or. present(no_omega)) return
-    call fluid_pull_sections_f32(self, theta=theta, accel=accel, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_4
-
-  subroutine fluid_pull_sections_single_5(self, theta, q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(in) :: theta
-    real(c_float), contiguous, intent(inout) :: q(:,:)
-    real(c_float), contiguous, intent(inout), optional :: omega(:,:)
-    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call fluid_pull_sections_f32(self, theta=real(theta, c_double), q=q, omega=omega, accel=accel, stat=stat, &
-        errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_5
-
-  subroutine fluid_pull_sections_single_6(self, theta, no_q, omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(in) :: theta
-    type(absent), intent(in), optional :: no_q
-    real(c_float), contiguous, intent(inout) :: omega(:,:)
-    real(c_float), contiguous, intent(inout), optional :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    if (present(no_q)) return
-    call fluid_pull_sections_f32(self, theta=real(theta, c_double), omega=omega, accel=accel, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_6
-
-  subroutine fluid_pull_sections_single_7(self, theta, no_q, no_omega, accel, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(in) :: theta
-    type(absent), intent(in), optional :: no_q
-    type(absent), intent(in), optional :: no_omega
-    real(c_float), contiguous, intent(inout) :: accel(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    if (present(no_q) .or. present(no_omega)) return
-    call fluid_pull_sections_f32(self, theta=real(theta, c_double), accel=accel, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_sections_single_7
-
   subroutine fluid_get_travel_single_1(self, largest, node, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_float), intent(inout) :: largest
@@ -7495,213 +7240,92 @@ contains
     call take(c_largest, largest)
   end subroutine fluid_get_travel_single_1
 
-  subroutine fluid_pull_force_places_single_1(self, theta, x, v, q, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(in) :: theta
-    real(c_double), contiguous, intent(inout), optional :: x(:,:)
-    real(c_double), contiguous, intent(inout), optional :: v(:,:)
-    real(c_double), contiguous, intent(inout), optional :: q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call fluid_pull_force_places(self, theta=real(theta, c_double), x=x, v=v, q=q, stat=stat, errmsg=errmsg)
-  end subroutine fluid_pull_force_places_single_1
-
-  subroutine fluid_pull_force_places_single_2(self, theta, x, v, q, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    real(c_float), intent(inout) :: x(:,:)
-    real(c_float), intent(inout), optional :: v(:,:)
-    real(c_float), intent(inout), optional :: q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_x(:,:)
-    real(c_double), allocatable :: c_v(:,:)
-    real(c_double), allocatable :: c_q(:,:)
-
-    allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
-    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
-    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    call fluid_pull_force_places(self, theta=theta, x=c_x, v=c_v, q=c_q, stat=stat, errmsg=errmsg)
-    call take(c_x, x)
-    call take(c_v, v)
-    call take(c_q, q)
-  end subroutine fluid_pull_force_places_single_2
-
-  subroutine fluid_pull_force_places_single_3(self, theta, no_x, v, q, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    type(absent), intent(in), optional :: no_x
-    real(c_float), intent(inout) :: v(:,:)
-    real(c_float), intent(inout), optional :: q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_v(:,:)
-    real(c_double), allocatable :: c_q(:,:)
-
-    allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
-    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    if (present(no_x)) return
-    call fluid_pull_force_places(self, theta=theta, v=c_v, q=c_q, stat=stat, errmsg=errmsg)
-    call take(c_v, v)
-    call take(c_q, q)
-  end subroutine fluid_pull_force_places_single_3
-
-  subroutine fluid_pull_force_places_single_4(self, theta, no_x, no_v, q, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_double), intent(in) :: theta
-    type(absent), intent(in), optional :: no_x
-    type(absent), intent(in), optional :: no_v
-    real(c_float), intent(inout) :: q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_q(:,:)
-
-    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    if (present(no_x) .or. present(no_v)) return
-    call fluid_pull_force_places(self, theta=theta, q=c_q, stat=stat, errmsg=errmsg)
-    call take(c_q, q)
-  end subroutine fluid_pull_force_places_single_4
-
-  subroutine fluid_pull_force_places_single_5(self, theta, x, v, q, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(in) :: theta
-    real(c_float), intent(inout) :: x(:,:)
-    real(c_float), intent(inout), optional :: v(:,:)
-    real(c_float), intent(inout), optional :: q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_x(:,:)
-    real(c_double), allocatable :: c_v(:,:)
-    real(c_double), allocatable :: c_q(:,:)
-
-    allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
-    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
-    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    call fluid_pull_force_places(self, theta=real(theta, c_double), x=c_x, v=c_v, q=c_q, stat=stat, errmsg=errmsg)
-    call take(c_x, x)
-    call take(c_v, v)
-    call take(c_q, q)
-  end subroutine fluid_pull_force_places_single_5
-
-  subroutine fluid_pull_force_places_single_6(self, theta, no_x, v, q, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(in) :: theta
-    type(absent), intent(in), optional :: no_x
-    real(c_float), intent(inout) :: v(:,:)
-    real(c_float), intent(inout), optional :: q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_v(:,:)
-    real(c_double), allocatable :: c_q(:,:)
-
-    allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
-    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    if (present(no_x)) return
-    call fluid_pull_force_places(self, theta=real(theta, c_double), v=c_v, q=c_q, stat=stat, errmsg=errmsg)
-    call take(c_v, v)
-    call take(c_q, q)
-  end subroutine fluid_pull_force_places_single_6
-
-  subroutine fluid_pull_force_places_single_7(self, theta, no_x, no_v, q, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    real(c_float), intent(in) :: theta
-    type(absent), intent(in), optional :: no_x
-    type(absent), intent(in), optional :: no_v
-    real(c_float), intent(inout) :: q(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_q(:,:)
-
-    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    if (present(no_x) .or. present(no_v)) return
-    call fluid_pull_force_places(self, theta=real(theta, c_double), q=c_q, stat=stat, errmsg=errmsg)
-    call take(c_q, q)
-  end subroutine fluid_pull_force_places_single_7
-
-  subroutine fluid_get_positions_single_1(self, which, x, v, q, foot, stat, errmsg)
+  subroutine fluid_get_positions_single_1(self, which, x, q, v, nearest, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     real(c_float), intent(inout) :: x(:,:)
-    real(c_float), intent(inout), optional :: v(:,:)
     real(c_float), intent(inout), optional :: q(:,:)
-    real(c_float), intent(inout), optional :: foot(:,:)
+    real(c_float), intent(inout), optional :: v(:,:)
+    real(c_float), intent(inout), optional :: nearest(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_x(:,:)
-    real(c_double), allocatable :: c_v(:,:)
     real(c_double), allocatable :: c_q(:,:)
-    real(c_double), allocatable :: c_foot(:,:)
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_nearest(:,:)
 
     allocate (c_x(ubound(x, 1, c_int64_t), ubound(x, 2, c_int64_t)), source=untouched)
-    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
     if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    if (present(foot)) allocate (c_foot(ubound(foot, 1, c_int64_t), ubound(foot, 2, c_int64_t)), source=untouched)
-    call fluid_get_positions(self, which=which, x=c_x, v=c_v, q=c_q, foot=c_foot, stat=stat, errmsg=errmsg)
+    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(nearest)) allocate (c_nearest(ubound(nearest, 1, c_int64_t), ubound(nearest, 2, c_int64_t)), &
+        source=untouched)
+    call fluid_get_positions(self, which=which, x=c_x, q=c_q, v=c_v, nearest=c_nearest, stat=stat, errmsg=errmsg)
     call take(c_x, x)
-    call take(c_v, v)
     call take(c_q, q)
-    call take(c_foot, foot)
+    call take(c_v, v)
+    call take(c_nearest, nearest)
   end subroutine fluid_get_positions_single_1
 
-  subroutine fluid_get_positions_single_2(self, which, no_x, v, q, foot, stat, errmsg)
+  subroutine fluid_get_positions_single_2(self, which, no_x, q, v, nearest, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     type(absent), intent(in), optional :: no_x
+    real(c_float), intent(inout) :: q(:,:)
+    real(c_float), intent(inout), optional :: v(:,:)
+    real(c_float), intent(inout), optional :: nearest(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_q(:,:)
+    real(c_double), allocatable :: c_v(:,:)
+    real(c_double), allocatable :: c_nearest(:,:)
+
+    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
+    if (present(v)) allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
+    if (present(nearest)) allocate (c_nearest(ubound(nearest, 1, c_int64_t), ubound(nearest, 2, c_int64_t)), &
+        source=untouched)
+    if (present(no_x)) return
+    call fluid_get_positions(self, which=which, q=c_q, v=c_v, nearest=c_nearest, stat=stat, errmsg=errmsg)
+    call take(c_q, q)
+    call take(c_v, v)
+    call take(c_nearest, nearest)
+  end subroutine fluid_get_positions_single_2
+
+  subroutine fluid_get_positions_single_3(self, which, no_x, no_q, v, nearest, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
+    type(absent), intent(in), optional :: no_x
+    type(absent), intent(in), optional :: no_q
     real(c_float), intent(inout) :: v(:,:)
-    real(c_float), intent(inout), optional :: q(:,:)
-    real(c_float), intent(inout), optional :: foot(:,:)
+    real(c_float), intent(inout), optional :: nearest(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_v(:,:)
-    real(c_double), allocatable :: c_q(:,:)
-    real(c_double), allocatable :: c_foot(:,:)
+    real(c_double), allocatable :: c_nearest(:,:)
 
     allocate (c_v(ubound(v, 1, c_int64_t), ubound(v, 2, c_int64_t)), source=untouched)
-    if (present(q)) allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    if (present(foot)) allocate (c_foot(ubound(foot, 1, c_int64_t), ubound(foot, 2, c_int64_t)), source=untouched)
-    if (present(no_x)) return
-    call fluid_get_positions(self, which=which, v=c_v, q=c_q, foot=c_foot, stat=stat, errmsg=errmsg)
+    if (present(nearest)) allocate (c_nearest(ubound(nearest, 1, c_int64_t), ubound(nearest, 2, c_int64_t)), &
+        source=untouched)
+    if (present(no_x) .or. present(no_q)) return
+    call fluid_get_positions(self, which=which, v=c_v, nearest=c_nearest, stat=stat, errmsg=errmsg)
     call take(c_v, v)
-    call take(c_q, q)
-    call take(c_foot, foot)
-  end subroutine fluid_get_positions_single_2
-
-  subroutine fluid_get_positions_single_3(self, which, no_x, no_v, q, foot, stat, errmsg)
-    class(spar_fluid), intent(in) :: self
-    integer, intent(in) :: which
-    type(absent), intent(in), optional :: no_x
-    type(absent), intent(in), optional :: no_v
-    real(c_float), intent(inout) :: q(:,:)
-    real(c_float), intent(inout), optional :: foot(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_q(:,:)
-    real(c_double), allocatable :: c_foot(:,:)
-
-    allocate (c_q(ubound(q, 1, c_int64_t), ubound(q, 2, c_int64_t)), source=untouched)
-    if (present(foot)) allocate (c_foot(ubound(foot, 1, c_int64_t), ubound(foot, 2, c_int64_t)), source=untouched)
-    if (present(no_x) .or. present(no_v)) return
-    call fluid_get_positions(self, which=which, q=c_q, foot=c_foot, stat=stat, errmsg=errmsg)
-    call take(c_q, q)
-    call take(c_foot, foot)
+    call take(c_nearest, nearest)
   end subroutine fluid_get_positions_single_3
 
-  subroutine fluid_get_positions_single_4(self, which, no_x, no_v, no_q, foot, stat, errmsg)
+  subroutine fluid_get_positions_single_4(self, which, no_x, no_q, no_v, nearest, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     type(absent), intent(in), optional :: no_x
-    type(absent), intent(in), optional :: no_v
     type(absent), intent(in), optional :: no_q
-    real(c_float), intent(inout) :: foot(:,:)
+    type(absent), intent(in), optional :: no_v
+    real(c_float), intent(inout) :: nearest(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_foot(:,:)
+    real(c_double), allocatable :: c_nearest(:,:)
 
-    allocate (c_foot(ubound(foot, 1, c_int64_t), ubound(foot, 2, c_int64_t)), source=untouched)
-    if (present(no_x) .or. present(no_v) .or. present(no_q)) return
-    call fluid_get_positions(self, which=which, foot=c_foot, stat=stat, errmsg=errmsg)
-    call take(c_foot, foot)
+    allocate (c_nearest(ubound(nearest, 1, c_int64_t), ubound(nearest, 2, c_int64_t)), source=untouched)
+    if (present(no_x) .or. present(no_q) .or. present(no_v)) return
+    call fluid_get_positions(self, which=which, nearest=c_nearest, stat=stat, errmsg=errmsg)
+    call take(c_nearest, nearest)
   end subroutine fluid_get_positions_single_4
 
   subroutine fluid_pull_forces_single_1(self, theta, force, stat, errmsg)
@@ -7793,18 +7417,22 @@ contains
     call fluid_pull_motion_f32(self, theta=real(theta, c_double), x=x, v=v, stat=stat, errmsg=errmsg)
   end subroutine fluid_pull_motion_f32_single_1
 
-  subroutine fluid_pull_sections_f32_single_1(self, theta, q, omega, accel, stat, errmsg)
+  subroutine fluid_pull_poses_f32_single_1(self, which, theta, x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
+    integer, intent(in) :: which
     real(c_float), intent(in) :: theta
+    real(c_float), contiguous, intent(inout), optional :: x(:,:)
     real(c_float), contiguous, intent(inout), optional :: q(:,:)
+    real(c_float), contiguous, intent(inout), optional :: v(:,:)
     real(c_float), contiguous, intent(inout), optional :: omega(:,:)
     real(c_float), contiguous, intent(inout), optional :: accel(:,:)
+    real(c_float), contiguous, intent(inout), optional :: alpha(:,:)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call fluid_pull_sections_f32(self, theta=real(theta, c_double), q=q, omega=omega, accel=accel, stat=stat, &
-        errmsg=errmsg)
-  end subroutine fluid_pull_sections_f32_single_1
+    call fluid_pull_poses_f32(self, which=which, theta=real(theta, c_double), x=x, q=q, v=v, omega=omega, &
+        accel=accel, alpha=alpha, stat=stat, errmsg=errmsg)
+  end subroutine fluid_pull_poses_f32_single_1
 
   subroutine fluid_pull_forces_f32_single_1(self, theta, force, stat, errmsg)
     class(spar_fluid), intent(in) :: self

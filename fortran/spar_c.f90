@@ -341,9 +341,10 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_map
 
-    function spar_fluid_pull_poses(fluid, theta, x, q, v, omega, accel, alpha) bind(c) result(status)
+    function spar_fluid_pull_poses(fluid, which, theta, x, q, v, omega, accel, alpha) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
+      integer(c_int), value :: which
       real(c_double), value :: theta
       real(c_double), intent(inout), optional :: x(*), q(*), v(*), omega(*), accel(*), alpha(*)
       integer(c_int) :: status
@@ -1114,14 +1115,6 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_get_basis
 
-    function spar_fluid_pull_sections(fluid, theta, q, omega, accel) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      real(c_double), value :: theta
-      real(c_double), intent(inout), optional :: q(*), omega(*), accel(*)
-      integer(c_int) :: status
-    end function spar_fluid_pull_sections
-
     function spar_fluid_get_travel(fluid, largest, node) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid
@@ -1130,19 +1123,11 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_get_travel
 
-    function spar_fluid_pull_force_places(fluid, theta, x, v, q) bind(c) result(status)
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: fluid
-      real(c_double), value :: theta
-      real(c_double), intent(inout), optional :: x(*), v(*), q(*)
-      integer(c_int) :: status
-    end function spar_fluid_pull_force_places
-
-    function spar_fluid_get_positions(fluid, which, x, v, q, foot) bind(c) result(status)
+    function spar_fluid_get_positions(fluid, which, x, q, v, nearest) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
       integer(c_int), value :: which
-      real(c_double), intent(inout), optional :: x(*), v(*), q(*), foot(*)
+      real(c_double), intent(inout), optional :: x(*), q(*), v(*), nearest(*)
       integer(c_int) :: status
     end function spar_fluid_get_positions
 
@@ -1225,13 +1210,14 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_pull_motion_f32
 
-    function spar_fluid_pull_sections_f32(fluid, theta, q, omega, accel) bind(c) result(status)
+    function spar_fluid_pull_poses_f32(fluid, which, theta, x, q, v, omega, accel, alpha) bind(c) result(status)
       import :: c_double, c_float, c_int, c_ptr
       type(c_ptr), value :: fluid
+      integer(c_int), value :: which
       real(c_double), value :: theta
-      real(c_float), intent(inout), optional :: q(*), omega(*), accel(*)
+      real(c_float), intent(inout), optional :: x(*), q(*), v(*), omega(*), accel(*), alpha(*)
       integer(c_int) :: status
-    end function spar_fluid_pull_sections_f32
+    end function spar_fluid_pull_poses_f32
 
     function spar_fluid_pull_forces_f32(fluid, theta, force) bind(c) result(status)
       import :: c_double, c_float, c_int, c_ptr

@@ -39,7 +39,7 @@ static inline int buoy_fluid(spar_session *s, double t, double dt, int iteration
     if (++b->calls == b->failing) {
         return 77;
     }
-    OK(s, spar_fluid_pull_poses(b->fluid, 1, x, NULL, NULL, NULL, a, a + 3));
+    OK(s, spar_fluid_pull_poses(b->fluid, SPAR_NODES_MOTION, 1, x, NULL, NULL, NULL, a, a + 3));
     for (int k = 0; k < 6 && iteration == 0; k++) {
         b->drive[k] = draw(&b->seed);
     }

@@ -87,7 +87,7 @@ call spar_fluid_set_motion_nodes int fluid|fluid|value| n|int64_t|value| x|doubl
 call spar_fluid_set_force_nodes int fluid|fluid|value| n|int64_t|value| x|double|in|[n][3]
 call spar_fluid_set_stations int fluid|fluid|value| n|int64_t|value| eta|double|in|[n] offset|double|in|[n][3]
 call spar_fluid_map int fluid|fluid|value|
-call spar_fluid_pull_poses int fluid|fluid|value| theta|double|value| x|double|out|[n][3] q|double|out|[n][4] v|double|out|[n][3] omega|double|out|[n][3] accel|double|out|[n][3] alpha|double|out|[n][3]
+call spar_fluid_pull_poses int fluid|fluid|value| which|int|value| theta|double|value| x|double|out|[n][3] q|double|out|[n][4] v|double|out|[n][3] omega|double|out|[n][3] accel|double|out|[n][3] alpha|double|out|[n][3]
 call spar_session_save int session|session|value| path|char|in|[]
 call spar_session_load int session|session|value| path|char|in|[]
 call spar_beam_get_elements int beam|member|value| elements|int|out| nodes_per_element|int|out|
@@ -199,10 +199,8 @@ call spar_fluid_get_flag_count int fluid|fluid|value| which|int|value| flag|int|
 call spar_fluid_get_map int fluid|fluid|value| which|int|value| eta|double|out|[n] distance|double|out|[n] flags|int|out|[n]
 call spar_fluid_get_feet int fluid|fluid|value| which|int|value| x_map|double|out|[n][3] q_map|double|out|[n][4] con|double|out|[n][3]
 call spar_fluid_get_basis int fluid|fluid|value| which|int|value| first_node|int64_t|out|[n] phi|double|out|[n][P]
-call spar_fluid_pull_sections int fluid|fluid|value| theta|double|value| q|double|out|[n][4] omega|double|out|[n][3] accel|double|out|[n][3]
 call spar_fluid_get_travel int fluid|fluid|value| largest|double|out| node|int64_t|out|
-call spar_fluid_pull_force_places int fluid|fluid|value| theta|double|value| x|double|out|[n][3] v|double|out|[n][3] q|double|out|[n][4]
-call spar_fluid_get_positions int fluid|fluid|value| which|int|value| x|double|out|[n][3] v|double|out|[n][3] q|double|out|[n][4] foot|double|out|[n][3]
+call spar_fluid_get_positions int fluid|fluid|value| which|int|value| x|double|out|[n][3] q|double|out|[n][4] v|double|out|[n][3] nearest|double|out|[n][3]
 constants SPAR_MATRIX_LOCAL_TO_GLOBAL=0 SPAR_MATRIX_GLOBAL_TO_LOCAL=1
 call spar_fluid_pull_matrices int fluid|fluid|value| theta|double|value| convention|int|value| matrix|double|out|[n][9]
 call spar_fluid_check_matrices int fluid|fluid|value| convention|int|value| matrix|double|in|[n][9]
@@ -214,7 +212,7 @@ call spar_fluid_get_states int fluid|fluid|value| width|int64_t|out| dt|double|o
 call spar_fluid_pull_states int fluid|fluid|value| width|int64_t|value| states|double|out|[n][width]
 call spar_fluid_push_states int fluid|fluid|value| width|int64_t|value| states|double|in|[n][width]
 call spar_fluid_pull_motion_f32 int fluid|fluid|value| theta|double|value| x|float|out|[n][3] v|float|out|[n][3]
-call spar_fluid_pull_sections_f32 int fluid|fluid|value| theta|double|value| q|float|out|[n][4] omega|float|out|[n][3] accel|float|out|[n][3]
+call spar_fluid_pull_poses_f32 int fluid|fluid|value| which|int|value| theta|double|value| x|float|out|[n][3] q|float|out|[n][4] v|float|out|[n][3] omega|float|out|[n][3] accel|float|out|[n][3] alpha|float|out|[n][3]
 call spar_fluid_pull_forces_f32 int fluid|fluid|value| theta|double|value| force|float|out|[n][3]
 call spar_fluid_push_forces_f32 int fluid|fluid|value| force|float|in|[n][3] moment|float|in|[n][3]
 constants SPAR_AUDIT_FORCE=0 SPAR_AUDIT_MOMENT=1 SPAR_AUDIT_POWER=2 SPAR_AUDIT_FORCE_ERROR=3 SPAR_AUDIT_MOMENT_ERROR=4 SPAR_AUDIT_POWER_ERROR=5 SPAR_AUDIT_FARTHEST=6 SPAR_AUDIT_NODES=7 SPAR_AUDIT_COUNT=8
@@ -297,7 +295,7 @@ _CALLBACKS = {
     'progress': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
     'log': ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)}
 _IN_AND_OUT = {('spar_session_sum', 'x'), ('spar_step_adaptive', 'dt')}  # results that are read too
-_OF_FORCE_NODES = {'get_forces', 'pull_forces', 'push_forces', 'push_forces_at', 'pull_force_places', 'pull_forces_f32',
+_OF_FORCE_NODES = {'get_forces', 'pull_forces', 'push_forces', 'push_forces_at', 'pull_forces_f32',
                    'push_forces_f32'}
 _ENOUGH = 1000  # the capacity of lists that the library cuts off at their end
 

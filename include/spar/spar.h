@@ -388,16 +388,25 @@ SPAR_API int spar_fluid_set_stations(spar_fluid *fluid, int64_t n, const double 
    Of equally near points the first along the line is taken. Nodes of a point or rigid body are mapped to its node.
    SPAR_ERR_MAPPING: a node is too far (spar_fluid_set_projection); the nodes stay unmapped. */
 SPAR_API int spar_fluid_map(spar_fluid *fluid);
-/* Full motion of the motion nodes at t^n + theta dt, for blade element models.
-     theta: in, in [0,1]
-     x[n][3]: out, position, m, NULL: not wanted
+/* The whole motion of the nodes of one set at t^n + theta dt, for blade elements, actuator lines and fluids that need
+   accelerations. What is not wanted costs nothing.
+     which: in, SPAR_NODES_MOTION, or SPAR_NODES_FORCE: where an actuator line spreads what spar_fluid_pull_forces gives
+           at the same theta
+     theta: in, in [0,1], as of spar_fluid_pull_motion
+     x[n][3]: out, m, position, NULL: not wanted
      q[n][4]: out, orientation of the section, scalar part >= 0, NULL: not wanted
-     v[n][3]: out, velocity, m/s, NULL: not wanted
-     omega[n][3]: out, angular velocity, rad/s, NULL: not wanted
-     accel[n][3]: out, acceleration, m/s^2, NULL: not wanted
-     alpha[n][3]: out, angular acceleration, rad/s^2, NULL: not wanted */
-SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, double theta, double *x, double *q, double *v, double *omega,
-                                   double *accel, double *alpha);
+     v[n][3]: out, m/s, NULL: not wanted
+     omega[n][3]: out, rad/s, angular velocity, NULL: not wanted
+     accel[n][3]: out, m/s^2, acceleration of the node, NULL: not wanted
+     alpha[n][3]: out, rad/s^2, angular acceleration, NULL: not wanted
+   Steps with substeps, and steps from the first change of dt on, give mean accelerations: the mean over the step,
+   extrapolated to the end of the step with the mean of the step before (T15). They are of second order too, and an
+   added mass may respond to them. A member with an added mass of its own (spar_member_set_added_mass) always gives the
+   accelerations at the time itself.
+   Local. SPAR_ERR_UNSUPPORTED: a rotation of motion nodes with weights; SPAR_ERR_NUMERIC: as of
+   spar_fluid_pull_motion. */
+SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, int which, double theta, double *x, double *q, double *v,
+                                   double *omega, double *accel, double *alpha);
 
 /* ---- save and load ----------------------------------------------------------------------------------------------- */
 

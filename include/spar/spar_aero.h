@@ -5,7 +5,7 @@
    made on the calls of spar.h alone.
 
    A section is a place of a fluid (spar_fluid_set_stations); its aerodynamic centre is the fluid's node. Its frame is
-   the one spar_fluid_pull_sections gives: x along the span from root to tip, y from leading to trailing edge, z = x
+   the one spar_fluid_pull_poses gives: x along the span from root to tip, y from leading to trailing edge, z = x
    cross y. A twist given here is measured from that frame: where the beam's own frames already carry the blade's
    twist, give the difference (or 0). All calls but the report of effects are local to the rank: an object holds the
    blades whose fluids live on this rank, which may be none. An object is used by one thread at a time. Angles are in

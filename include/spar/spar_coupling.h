@@ -19,7 +19,7 @@ extern "C" {
            has 5.4 times the error of dt that 0.9 has; default 0.9. An exact beam that spins at Omega without a driven
            root is taken by TR-BDF2 where 1 - rho_inf < 1.5 Omega dt
      substeps: in, structural steps per coupling step, >= 1, with loads interpolated linearly between t^n and t^{n+1};
-           default 1. More than one: fluids pull means of accelerations (spar_fluid_pull_sections)
+           default 1. More than one: fluids pull means of accelerations (spar_fluid_pull_poses)
    SPAR_ERR_MEMORY: all is as before. */
 SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, int substeps);
 SPAR_API int spar_session_get_integrator(const spar_session *session, double *rho_inf, int *substeps);
@@ -421,30 +421,22 @@ SPAR_API int spar_fluid_get_basis(const spar_fluid *fluid, int which, int64_t *f
 
 /* ---- fluids: motion and loads -------------------------------------------------------------------------------------- */
 
-/* At the same nodes and time. Each NULL: not wanted.
-     q[n][4]: out, orientation of the section now, scalar part >= 0
-     omega[n][3]: out, rad/s
-     accel[n][3]: out, acceleration of the node, m/s^2. Of a member without a guess of the added mass, with substeps and
-           from the first step of another length on, the mean over the step carried on to its end by the mean before,
-           (T15): of second order too, and one that an added mass may answer to */
-SPAR_API int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel);
 /* How far the motion nodes of this rank have gone since t^n, in the latest iterate: what a mesh has to follow. Between
    steps 0.
      largest: out, m, of all of them
      node: out, which, the first of equals; -1: there are none
    Each NULL: not wanted. */
 SPAR_API int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node);
-/* Force nodes at t^n + theta dt, where an actuator line spreads what spar_fluid_pull_forces gives at the same theta.
-   Each output NULL: not wanted. x[n][3], v[n][3]: out, m, m/s q[n][4]: out, orientation of the section now, scalar part
-   >= 0 */
-SPAR_API int spar_fluid_pull_force_places(spar_fluid *fluid, double theta, double *x, double *v, double *q);
-/* Either set at t^{n+1} as it stands in the latest iterate, between steps now: for pictures and post-processing. A
-   getter: it counts as no pull, and a trial leaves nothing out. Each output NULL: not wanted.
+/* The nodes of one set at t^{n+1} in the latest iterate, between steps at t^n: for pictures and post-processing. A
+   getter: it does not count as a pull, and a trial that switches effects off does not change it.
      which: in, SPAR_NODES_*
-     x[n][3], v[n][3]: out, m, m/s, of nodes with weights the part they take
-     q[n][4]: out, orientation of the section at the foot, scalar part >= 0
-     foot[n][3]: out, m, where the foot is */
-SPAR_API int spar_fluid_get_positions(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *foot);
+     x[n][3]: out, m, position, NULL: not wanted; nodes with weights follow in part, as in pulls
+     q[n][4]: out, orientation of the section at the nearest point, scalar part >= 0, NULL: not wanted
+     v[n][3]: out, m/s, NULL: not wanted
+     nearest[n][3]: out, m, position of the nearest point on the line, NULL: not wanted
+   Local. */
+SPAR_API int spar_fluid_get_positions(const spar_fluid *fluid, int which, double *x, double *q, double *v,
+                                      double *nearest);
 /* Direction cosines of the sections instead of quaternions. Row by row in C; a Fortran array m(3,3,n) so filled holds
    m(column, row, n), that is the transpose. */
 enum {
@@ -495,10 +487,30 @@ SPAR_API int spar_fluid_pull_states(const spar_fluid *fluid, int64_t width, doub
      width: in, as set
      states[n][width]: in, by force node */
 SPAR_API int spar_fluid_push_states(spar_fluid *fluid, int64_t width, const double *states);
-/* The same calls for hosts in single precision: numbers are converted at the edge, all sums are double. */
+/* The calls of each iteration for hosts in single precision. Numbers are converted on the way in and out; all sums are in
+   double precision. spar_fluid_pull_motion:
+     theta: in, in [0,1]
+     x[n][3]: out, m, NULL: not wanted
+     v[n][3]: out, m/s, NULL: not wanted */
 SPAR_API int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v);
-SPAR_API int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel);
+/* spar_fluid_pull_poses in single precision.
+     which: in, SPAR_NODES_*
+     theta: in, in [0,1]
+     x[n][3]: out, m, NULL: not wanted
+     q[n][4]: out, NULL: not wanted
+     v[n][3]: out, m/s, NULL: not wanted
+     omega[n][3]: out, rad/s, NULL: not wanted
+     accel[n][3]: out, m/s^2, NULL: not wanted
+     alpha[n][3]: out, rad/s^2, NULL: not wanted */
+SPAR_API int spar_fluid_pull_poses_f32(spar_fluid *fluid, int which, double theta, float *x, float *q, float *v,
+                                       float *omega, float *accel, float *alpha);
+/* spar_fluid_pull_forces in single precision.
+     theta: in, in [0,1]
+     force[n][3]: out, N */
 SPAR_API int spar_fluid_pull_forces_f32(spar_fluid *fluid, double theta, float *force);
+/* spar_fluid_push_forces in single precision.
+     force[n][3]: in, N
+     moment[n][3]: in, N m, NULL: none */
 SPAR_API int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const float *moment);
 /* Figures of the last push. */
 enum {

@@ -517,8 +517,8 @@ static int pull_centres(spar_aero *aero, double theta) {
         int64_t at = b * aero->n;
         int moving = (aero->rotor.effects & SPAR_AERO_UNSTEADY) != 0;
         double *omega = aero->rotor_given || moving ? aero->omega + 3 * at : NULL;
-        SPARI_TRY(spar_fluid_pull_poses(aero->fluid[b], theta, aero->x + 3 * at, aero->q + 4 * at, aero->v + 3 * at,
-                                        omega, moving ? aero->a + 3 * at : NULL,
+        SPARI_TRY(spar_fluid_pull_poses(aero->fluid[b], SPAR_NODES_MOTION, theta, aero->x + 3 * at, aero->q + 4 * at,
+                                        aero->v + 3 * at, omega, moving ? aero->a + 3 * at : NULL,
                                         moving ? aero->omega_a + 3 * at : NULL));
     }
     return SPAR_OK;

@@ -479,33 +479,22 @@ int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
     return SPAR_OK;
 }
 
-int spar_fluid_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel) {
-    SPARI_GUARD_ENVIRONMENT;
-    SPARI_FLUID_HANDLE(fluid);
-    wanted w = {.q.d = q, .omega.d = omega, .accel.d = accel};
-    return pull_motion(fluid, theta, &w, __func__);
-}
-
-int spar_fluid_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel) {
-    SPARI_GUARD_ENVIRONMENT;
-    SPARI_FLUID_HANDLE(fluid);
-    wanted w = {.q.f = q, .omega.f = omega, .accel.f = accel};
-    return pull_motion(fluid, theta, &w, __func__);
-}
-
-int spar_fluid_pull_poses(spar_fluid *fluid, double theta, double *x, double *q, double *v, double *omega,
+int spar_fluid_pull_poses(spar_fluid *fluid, int which, double theta, double *x, double *q, double *v, double *omega,
                           double *accel, double *alpha) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
+    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     wanted w = {.x.d = x, .q.d = q, .v.d = v, .omega.d = omega, .accel.d = accel, .alpha.d = alpha};
-    return pull_motion(fluid, theta, &w, __func__);
+    return pull_nodes(fluid, which, theta, &w, __func__);
 }
 
-int spar_fluid_pull_force_places(spar_fluid *fluid, double theta, double *x, double *v, double *q) {
+int spar_fluid_pull_poses_f32(spar_fluid *fluid, int which, double theta, float *x, float *q, float *v, float *omega,
+                              float *accel, float *alpha) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
-    wanted w = {.x.d = x, .v.d = v, .q.d = q};
-    return pull_nodes(fluid, SPAR_NODES_FORCE, theta, &w, __func__);
+    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
+    wanted w = {.x.f = x, .q.f = q, .v.f = v, .omega.f = omega, .accel.f = accel, .alpha.f = alpha};
+    return pull_nodes(fluid, which, theta, &w, __func__);
 }
 
 static int check_convention(const spar_fluid *fluid, int convention, const char *caller) {
@@ -592,7 +581,7 @@ int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *m
     return status;
 }
 
-int spar_fluid_get_positions(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *nearest) {
+int spar_fluid_get_positions(const spar_fluid *fluid, int which, double *x, double *q, double *v, double *nearest) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));

@@ -36,7 +36,7 @@ static double *at(const sketch *s, int column, int components, int64_t point) {
 /* Fills the nodes of one set, which begin at `first`. */
 static int fill_set(const spar_fluid *fluid, int which, int64_t first, const sketch *s) {
     static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    SPARI_TRY(spar_fluid_get_positions(fluid, which, at(s, X, 3, first), at(s, V, 3, first), s->q + 4 * first,
+    SPARI_TRY(spar_fluid_get_positions(fluid, which, at(s, X, 3, first), s->q + 4 * first, at(s, V, 3, first),
                                        at(s, X, 3, s->n + first)));
     SPARI_TRY(spar_fluid_get_map(fluid, which, at(s, ETA, 1, first), at(s, DISTANCE, 1, first), s->flags + first));
     if (s->kind[which] & SPAR_KIND_FORCES) {

@@ -21,7 +21,7 @@ static int push_ponds(spar_session *s, double t, double dt, int iteration, void 
     (void)t, (void)dt, (void)iteration;
     for (pond *p = context; p; p = p->next) {
         double x[3], q[4];
-        OK(s, spar_fluid_pull_poses(p->fluid, 1, x, q, NULL, NULL, NULL, NULL));
+        OK(s, spar_fluid_pull_poses(p->fluid, SPAR_NODES_MOTION, 1, x, q, NULL, NULL, NULL, NULL));
         const double force[3] = {0, 0, p->f0 - p->k * x[2]};
         OK(s, spar_fluid_push_forces(p->fluid, force, NULL));
         if (++p->calls == p->fails_at) {

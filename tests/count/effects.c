@@ -347,7 +347,8 @@ static void exchange(scene *s) {
     spar_fluid *f = s->fluid[0];
     MUST(spar_fluid_pull_motion(f, theta, s->x, is->velocity ? s->v : NULL));
     if (is->poses) {
-        MUST(spar_fluid_pull_sections(f, theta, s->q, s->w, is->accelerations ? s->a : NULL));
+        MUST(spar_fluid_pull_poses(f, SPAR_NODES_MOTION, theta, NULL, s->q, NULL, s->w, is->accelerations ? s->a : NULL,
+                                   NULL));
     }
     double follow = 1e-3 * (1 - 1e-3 * s->x[3 * s->n - 1]);
     for (int64_t j = s->n - 10; j < s->n; j++) {

@@ -47,7 +47,7 @@ static void create(bar *b, int fidelity, double added, double rtol) {
    root, that the bar hardly answers; `noise` of each on what is pushed. */
 static void push(bar *b, double t, double part, double noise) {
     double a[3 * NODES];
-    OK(b->session, spar_fluid_pull_sections(b->fluid, 1, NULL, NULL, a));
+    OK(b->session, spar_fluid_pull_poses(b->fluid, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, NULL, a, NULL));
     for (int i = 0; i < 3 * NODES; i++) {
         double gust = i % 3 == 0 ? 0.3 * (i == 0 ? 10 : 1) : 0.1 * sin(5 * t + i);
         b->pushed[i] += part * (gust - b->added * a[i] - b->pushed[i]);

@@ -166,7 +166,7 @@ static void sections_stand_where_asked(void **state) {
         }
     }
     OK(spar_fluid_pull_motion(f, 1, x[0], NULL));
-    OK(spar_fluid_pull_sections(f, 1, now[0], NULL, NULL));
+    OK(spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, NULL, now[0], NULL, NULL, NULL, NULL));
     for (int j = 0; j < N; j++) {
         CLOSE(fabs(spari_quat_dot(now[j], q[j])), 1, 1e-15);
         for (int i = 0; i < 3; i++) {
@@ -213,7 +213,7 @@ static void bodies_carry_their_nodes(void **state) {
         spari_quat_exp(psi, q + 3);
         OK(spar_member_set_motion(m, q, v, NULL));
         OK(spar_fluid_pull_motion(f, 1, x[0], dx[0]));
-        OK(spar_fluid_pull_sections(f, 1, now[0], omega[0], NULL));
+        OK(spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, NULL, now[0], NULL, omega[0], NULL, NULL));
         for (int j = 0; j < 2; j++) {
             double expect[4];
             spari_rotate(q + 3, con[j], r);
@@ -262,9 +262,9 @@ static void poses_and_matrices(void **state) {
     OK(spar_fluid_set_stations(f, N, eta, offset[0]));
     OK(spar_fluid_map(f));
     bend(&r, 0.8);
-    OK(spar_fluid_pull_poses(f, 1, x[0][0], q[0][0], v[0][0], omega[0][0], accel[0][0], alpha[0]));
+    OK(spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, x[0][0], q[0][0], v[0][0], omega[0][0], accel[0][0], alpha[0]));
     OK(spar_fluid_pull_motion(f, 1, x[1][0], v[1][0]));
-    OK(spar_fluid_pull_sections(f, 1, q[1][0], omega[1][0], accel[1][0]));
+    OK(spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, NULL, q[1][0], NULL, omega[1][0], accel[1][0], NULL));
     assert_memory_equal(x[0], x[1], sizeof x[0]);
     assert_memory_equal(q[0], q[1], sizeof q[0]);
     assert_memory_equal(v[0], v[1], sizeof v[0]);
@@ -318,8 +318,10 @@ static void single_precision_at_the_edge(void **state) {
     enum { N = 21 };
     rig r;
     unsigned long long seed = 6;
-    double node[N][3], x[N][3], v[N][3], q[N][4], omega[N][3], accel[N][3], force[N][3], load[2][MOST][6], back[N][3];
-    float xs[N][3], vs[N][3], qs[N][4], omegas[N][3], accels[N][3], forces[N][3], backs[N][3];
+    double node[N][3], x[N][3], v[N][3], q[N][4], omega[N][3], accel[N][3], alpha[N][3], force[N][3], load[2][MOST][6],
+        back[N][3];
+    float xs[N][3], vs[N][3], qs[N][4], omegas[N][3], accels[N][3], alphas[N][3], again[2][N][3], forces[N][3],
+        backs[N][3];
     rig_start(&r, SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_FLUID_MOMENT);
     scatter(node, N, &seed);
     spar_fluid *f;
@@ -330,8 +332,11 @@ static void single_precision_at_the_edge(void **state) {
     bend(&r, 0.5);
     OK(spar_fluid_pull_motion(f, 1, x[0], v[0]));
     OK(spar_fluid_pull_motion_f32(f, 1, xs[0], vs[0]));
-    OK(spar_fluid_pull_sections(f, 1, q[0], omega[0], accel[0]));
-    OK(spar_fluid_pull_sections_f32(f, 1, qs[0], omegas[0], accels[0]));
+    OK(spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, NULL, q[0], NULL, omega[0], accel[0], alpha[0]));
+    OK(spar_fluid_pull_poses_f32(f, SPAR_NODES_MOTION, 1, again[0][0], qs[0], again[1][0], omegas[0], accels[0],
+                                 alphas[0]));
+    assert_memory_equal(again[0], xs, sizeof xs);
+    assert_memory_equal(again[1], vs, sizeof vs);
     for (int j = 0; j < N; j++) {
         for (int i = 0; i < 4; i++) {
             assert_true(qs[j][i] == (float)q[j][i]);
@@ -339,6 +344,7 @@ static void single_precision_at_the_edge(void **state) {
         for (int i = 0; i < 3; i++) {
             assert_true(xs[j][i] == (float)x[j][i] && vs[j][i] == (float)v[j][i]);
             assert_true(omegas[j][i] == (float)omega[j][i] && accels[j][i] == (float)accel[j][i]);
+            assert_true(alphas[j][i] == (float)alpha[j][i]);
             forces[j][i] = (float)line_random(&seed);
             force[j][i] = forces[j][i];
         }
@@ -393,7 +399,7 @@ static void theta_lies_between_the_times(void **state) {
         OK(spar_fluid_pull_motion(f, theta[k], x[k][0], v[k][0]));
     }
     for (int k = 0; k < 3; k++) {
-        OK(spar_fluid_pull_sections(f, theta[k], q[k][0], w[k][0], a[k][0]));
+        OK(spar_fluid_pull_poses(f, SPAR_NODES_MOTION, theta[k], NULL, q[k][0], NULL, w[k][0], a[k][0], NULL));
     }
     for (int j = 0; j < N; j++) {
         for (int i = 0; i < 3; i++) {
@@ -490,7 +496,7 @@ static void pulls_give_what_is_asked_for(void **state) {
         OK(spar_fluid_set_interpolation(f, kind ? SPAR_INTERPOLATE_CONSISTENT : SPAR_INTERPOLATE_NODAL));
         OK(spar_fluid_set_motion_nodes(f, N, node[0]));
         OK(spar_fluid_map(f));
-        OK(spar_fluid_pull_poses(f, 1, x[0], q[0], v[0], w[0], a[0], alpha[0]));
+        OK(spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, x[0], q[0], v[0], w[0], a[0], alpha[0]));
         OK(spar_fluid_pull_motion(f, 1, y[0][0], NULL));
         assert_memory_equal(y[0], x, sizeof x);
         OK(spar_fluid_pull_motion(f, 1, NULL, y[0][0]));
@@ -498,13 +504,13 @@ static void pulls_give_what_is_asked_for(void **state) {
         OK(spar_fluid_pull_motion(f, 1, y[0][0], y[1][0]));
         assert_memory_equal(y[0], x, sizeof x);
         assert_memory_equal(y[1], v, sizeof v);
-        OK(spar_fluid_pull_sections(f, 1, y[0][0], NULL, NULL));
+        OK(spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, NULL, y[0][0], NULL, NULL, NULL, NULL));
         assert_memory_equal(y[0], q, sizeof q);
-        OK(spar_fluid_pull_sections(f, 1, NULL, y[0][0], NULL));
+        OK(spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, y[0][0], NULL, NULL));
         assert_memory_equal(y[0], w, sizeof w);
-        OK(spar_fluid_pull_sections(f, 1, NULL, NULL, y[0][0]));
+        OK(spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, NULL, y[0][0], NULL));
         assert_memory_equal(y[0], a, sizeof a);
-        OK(spar_fluid_pull_poses(f, 1, y[0][0], y[1][0], y[2][0], y[3][0], NULL, NULL));
+        OK(spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, y[0][0], y[1][0], y[2][0], y[3][0], NULL, NULL));
         assert_memory_equal(y[0], x, sizeof x);
         assert_memory_equal(y[1], q, sizeof q);
         assert_memory_equal(y[2], v, sizeof v);

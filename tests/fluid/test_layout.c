@@ -128,7 +128,8 @@ static void compare_pulls(const pair *p, const int64_t l[2], double theta) {
             clear(all[i], i % 2 ? x32[k] : v32[k]);
         }
         OK(p->session, spar_fluid_pull_motion_f32(f[k], theta, x32[k], v32[k]));
-        OK(p->session, spar_fluid_pull_poses(f[k], theta, x[k], q[k][0], v[k], w[k], a[k], alpha[k]));
+        OK(p->session,
+           spar_fluid_pull_poses(f[k], SPAR_NODES_MOTION, theta, x[k], q[k][0], v[k], w[k], a[k], alpha[k]));
     }
     must_be_laid(l, x[1], x[0]);
     must_be_laid(l, v[1], v[0]);
@@ -197,7 +198,7 @@ static void compare_pushes(const pair *p, const int64_t l[2], int kind) {
         clear(w[k], v32[k]);
         OK(p->session, spar_fluid_pull_forces(fluid[k], 0.5, x[k]));
         OK(p->session, spar_fluid_pull_forces_f32(fluid[k], 0.5, x32[k]));
-        OK(p->session, spar_fluid_pull_force_places(fluid[k], 0.5, v[k], w[k], NULL));
+        OK(p->session, spar_fluid_pull_poses(fluid[k], SPAR_NODES_FORCE, 0.5, v[k], NULL, w[k], NULL, NULL, NULL));
     }
     assert_memory_equal(audit[0], audit[1], sizeof audit[0]);
     assert_memory_equal(total[0], total[1], sizeof total[0]);
@@ -242,7 +243,7 @@ static void left_out_by_layout(void **state) {
         for (int i = 0; i < 4; i++) {
             clear(all[i], x32[k]);
         }
-        OK(p.session, spar_fluid_pull_poses(f[k], 1, x[k], NULL, v[k], w[k], NULL, NULL));
+        OK(p.session, spar_fluid_pull_poses(f[k], SPAR_NODES_MOTION, 1, x[k], NULL, v[k], w[k], NULL, NULL));
         OK(p.session, spar_fluid_pull_forces(f[k], 1, a[k]));
         spari_fluid_mute(f[k], 0);
     }

@@ -95,7 +95,8 @@ static void same_places_same_bits(void **state) {
         for (int i = 0; i < 3; i++) {
             double x[2][N][3], v[2][N][3], w[2][N][3], q[2][N][4], force[2][N][3] = {{{0}}}, audit[2][8];
             for (int j = 0; j < 2; j++) {
-                OK(b.session, spar_fluid_pull_poses(f[j], 0.5 * i, x[j][0], q[j][0], v[j][0], w[j][0], NULL, NULL));
+                OK(b.session, spar_fluid_pull_poses(f[j], SPAR_NODES_MOTION, 0.5 * i, x[j][0], q[j][0], v[j][0],
+                                                    w[j][0], NULL, NULL));
                 some_forces(force[j], 3 + k + i);
                 OK(b.session, spar_fluid_push_forces(f[j], force[j][0], NULL));
                 OK(b.session, spar_fluid_get_audit(f[j], 8, audit[j]));
@@ -124,7 +125,8 @@ static void either_set_is_where_asked(void **state) {
     (void)state;
     blade b;
     int kind[2];
-    double x[2][N][3], v[2][N][3], q[2][N][4], foot[N][3], rest[N][4], con[N][3], arm[3], back[4], turn[4];
+    double x[2][N][3], v[2][N][3], q[2][N][4], w[2][N][3], a[2][N][3], alpha[2][N][3], foot[N][3], rest[N][4],
+        con[N][3], arm[3], back[4], turn[4];
     blade_begin(&b, 0);
     spar_fluid *both = line(&b, "apart", 1), *motion = NULL, *force = line(&b, "forces", 0),
                *unpulled = line(&b, "unpulled", 0);
@@ -146,19 +148,27 @@ static void either_set_is_where_asked(void **state) {
             OK(b.session, spar_step_begin(b.session, 0.1));
             move(&b, 0.7);
         }
-        OK(b.session, spar_fluid_pull_poses(both, theta, x[0][0], q[0][0], v[0][0], NULL, NULL, NULL));
-        OK(b.session, spar_fluid_pull_poses(motion, theta, x[1][0], q[1][0], v[1][0], NULL, NULL, NULL));
+        OK(b.session,
+           spar_fluid_pull_poses(both, SPAR_NODES_MOTION, theta, x[0][0], q[0][0], v[0][0], NULL, NULL, NULL));
+        OK(b.session,
+           spar_fluid_pull_poses(motion, SPAR_NODES_MOTION, theta, x[1][0], q[1][0], v[1][0], NULL, NULL, NULL));
         assert_memory_equal(x[0], x[1], M * sizeof x[0][0]);
         assert_memory_equal(q[0], q[1], M * sizeof q[0][0]);
         assert_memory_equal(v[0], v[1], M * sizeof v[0][0]);
-        OK(b.session, spar_fluid_pull_force_places(both, theta, x[0][0], v[0][0], q[0][0]));
-        OK(b.session, spar_fluid_pull_poses(force, theta, x[1][0], q[1][0], v[1][0], NULL, NULL, NULL));
+        OK(b.session, spar_fluid_pull_poses(both, SPAR_NODES_FORCE, theta, x[0][0], q[0][0], v[0][0], w[0][0], a[0][0],
+                                            alpha[0][0]));
+        OK(b.session, spar_fluid_pull_poses(force, SPAR_NODES_MOTION, theta, x[1][0], q[1][0], v[1][0], w[1][0],
+                                            a[1][0], alpha[1][0]));
         assert_memory_equal(x[0], x[1], sizeof x[0]);
         assert_memory_equal(q[0], q[1], sizeof q[0]);
         assert_memory_equal(v[0], v[1], sizeof v[0]);
+        assert_memory_equal(w[0], w[1], sizeof w[0]);
+        assert_memory_equal(a[0], a[1], sizeof a[0]);
+        assert_memory_equal(alpha[0], alpha[1], sizeof alpha[0]);
+        assert_true(i % 3 == 0 || (w[0][1][0] != 0 && a[0][1][0] != 0));
     }
     int asked = spari_fluid_asked(both);
-    OK(b.session, spar_fluid_get_positions(both, SPAR_NODES_FORCE, x[0][0], v[0][0], q[0][0], foot[0]));
+    OK(b.session, spar_fluid_get_positions(both, SPAR_NODES_FORCE, x[0][0], q[0][0], v[0][0], foot[0]));
     assert_int_equal(spari_fluid_asked(both), asked);
     assert_memory_equal(x[0], x[1], sizeof x[0]);
     assert_memory_equal(q[0], q[1], sizeof q[0]);
@@ -172,7 +182,7 @@ static void either_set_is_where_asked(void **state) {
             NEAR(foot[j][i], x[0][j][i] - arm[i], 1e-14 * 20);
         }
     }
-    OK(b.session, spar_fluid_get_positions(unpulled, SPAR_NODES_MOTION, x[0][0], v[0][0], q[0][0], NULL));
+    OK(b.session, spar_fluid_get_positions(unpulled, SPAR_NODES_MOTION, x[0][0], q[0][0], v[0][0], NULL));
     OK(b.session, spar_fluid_get_forces(unpulled, x[0][0]));
     assert_int_equal(spari_fluid_asked(unpulled), 0);
     blade_end(&b);
@@ -193,7 +203,7 @@ static void loads_are_conserved(void **state) {
     OK(b.session, spar_fluid_get_audit(f, 8, audit));
     assert_true(audit[SPAR_AUDIT_FORCE_ERROR] < 1e-13 && audit[SPAR_AUDIT_MOMENT_ERROR] < 1e-13 &&
                 audit[SPAR_AUDIT_POWER_ERROR] < 1e-13 && audit[SPAR_AUDIT_NODES] == N);
-    OK(b.session, spar_fluid_pull_force_places(f, 1, x[0], v[0], NULL));
+    OK(b.session, spar_fluid_pull_poses(f, SPAR_NODES_FORCE, 1, x[0], NULL, v[0], NULL, NULL, NULL));
     for (int j = 0; j < N; j++) {
         spari_cross(x[j], force[j], t);
         power += spari_dot(force[j], v[j]);
@@ -275,7 +285,7 @@ static void apart_saved_and_loaded(void **state) {
     for (int k = 0; k < 2; k++) {
         OK(b[k].session, spar_step_begin(b[k].session, 0.1)); /* predicts the forces from the history */
         OK(b[k].session, spar_fluid_pull_motion(f[k], 0.5, x[k][0], NULL));
-        OK(b[k].session, spar_fluid_pull_force_places(f[k], 0.5, p[k][0], NULL, NULL));
+        OK(b[k].session, spar_fluid_pull_poses(f[k], SPAR_NODES_FORCE, 0.5, p[k][0], NULL, NULL, NULL, NULL, NULL));
         OK(b[k].session, spar_fluid_pull_forces(f[k], 0.5, got[k][0]));
     }
     assert_memory_equal(x[0], x[1], M * sizeof x[0][0]);
@@ -296,19 +306,19 @@ static void apart_in_a_trial(void **state) {
     double x[3][N][3], p[3][N][3], q[2][N][4];
     blade_begin(&b, 1);
     spar_fluid *f = line(&b, "apart", 1);
-    OK(b.session, spar_fluid_pull_poses(f, 1, x[0][0], q[0][0], NULL, NULL, NULL, NULL));
-    OK(b.session, spar_fluid_pull_force_places(f, 1, p[0][0], NULL, NULL));
+    OK(b.session, spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, x[0][0], q[0][0], NULL, NULL, NULL, NULL));
+    OK(b.session, spar_fluid_pull_poses(f, SPAR_NODES_FORCE, 1, p[0][0], NULL, NULL, NULL, NULL, NULL));
     spari_rebuild wish = spari_rebuild_of(b.beam);
     wish.per_element = 9;
     OK(b.session, spari_member_rebuild(b.beam, &wish, &old));
     OK(b.session, spari_fluid_rebuild(f, &old, &was));
     memcpy(b.beam->after.q, b.beam->now.q, (size_t)(7 * b.beam->nodes) * sizeof(double));
-    OK(b.session, spar_fluid_pull_poses(f, 1, x[1][0], q[1][0], NULL, NULL, NULL, NULL));
-    OK(b.session, spar_fluid_pull_force_places(f, 1, p[1][0], NULL, NULL));
+    OK(b.session, spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, x[1][0], q[1][0], NULL, NULL, NULL, NULL));
+    OK(b.session, spar_fluid_pull_poses(f, SPAR_NODES_FORCE, 1, p[1][0], NULL, NULL, NULL, NULL, NULL));
     spari_fluid_restore(f, was);
     spari_member_restore(b.beam, &old);
     OK(b.session, spar_fluid_pull_motion(f, 1, x[2][0], NULL));
-    OK(b.session, spar_fluid_pull_force_places(f, 1, p[2][0], NULL, NULL));
+    OK(b.session, spar_fluid_pull_poses(f, SPAR_NODES_FORCE, 1, p[2][0], NULL, NULL, NULL, NULL, NULL));
     for (int j = 0; j < N; j++) {
         for (int i = 0; i < 3; i++) {
             NEAR(p[1][j][i], p[0][j][i], 1e-13);
@@ -326,7 +336,7 @@ static void apart_in_a_trial(void **state) {
 /* A blade with a lift line of 2 pi alpha in a wind, its control points half a chord behind the centres that the loads
    act at. It turns about its own line at 3 rad/s: the flow at the control points is the wind less 3 rad/s x 0.5 m. The
    same loads come from a blade at rest with the control points at the centres in the wind so changed, and act at the
-   force nodes: their moment is that of the places that spar_fluid_pull_force_places gives. */
+   force nodes: their moment is that of the positions of the force nodes that spar_fluid_pull_poses gives. */
 static void control_points_of_their_own(void **state) {
     (void)state;
     const double alpha[2] = {-0.5, 0.5}, cl[2] = {-3.14159265358979, 3.14159265358979}, cd[2] = {0.01, 0.01},
@@ -352,7 +362,7 @@ static void control_points_of_their_own(void **state) {
             motion[l][3] = 1, rate[l][3] = k == 0 ? 3 : 0;
         }
         OK(b.session, spar_member_set_motion(b.beam, motion[0], rate[0], NULL));
-        OK(b.session, spar_fluid_pull_sections(f, 1, q[0], NULL, NULL));
+        OK(b.session, spar_fluid_pull_poses(f, SPAR_NODES_MOTION, 1, NULL, q[0], NULL, NULL, NULL, NULL));
         for (int j = 0; j < N; j++) {
             /* v = 3 e_x x (-0.5 e_y), of the section's axes: -1.5 m/s along its z */
             double up[3] = {0, 0, k == 0 ? 0 : 1.5}, flow[3] = {0, -12, 4};
@@ -364,7 +374,7 @@ static void control_points_of_their_own(void **state) {
         }
         OK(b.session, spar_aero_solve(aero, 1.2, wind[0], 1));
         OK(b.session, spar_aero_get_loads(aero, NULL, load[k][0], NULL));
-        OK(b.session, spar_fluid_pull_force_places(f, 1, x[0], NULL, NULL));
+        OK(b.session, spar_fluid_pull_poses(f, SPAR_NODES_FORCE, 1, x[0], NULL, NULL, NULL, NULL, NULL));
         memset(want, 0, sizeof want);
         for (int j = 0; j < N; j++) {
             spari_cross(x[j], load[k][j], t);
@@ -414,7 +424,10 @@ static void bad_sections_are_refused(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "section 0: eta = -1 lies outside [0,1]",
             spar_fluid_set_stations(f, 2, from_minus_one, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "section 1", spar_fluid_set_motion_stations(f, 2, eta, offset[0]));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "theta", spar_fluid_pull_force_places(f, 1.5, x[0], NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "theta",
+            spar_fluid_pull_poses(f, SPAR_NODES_FORCE, 1.5, x[0], NULL, NULL, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "set 2", spar_fluid_pull_poses(f, 2, 1, x[0], NULL, NULL, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "set -1", spar_fluid_pull_poses_f32(f, -1, 1, NULL, NULL, NULL, NULL, NULL, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "set 2", spar_fluid_get_positions(f, 2, x[0], NULL, NULL, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "set -1", spar_fluid_get_kind(f, -1, &kind));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_get_kind(f, 0, NULL));

@@ -99,7 +99,7 @@ typedef struct motion {
 
 static void pull(const mesh *m, spar_fluid *f, double theta, motion *to) {
     OK(m->session, spar_fluid_pull_motion(f, theta, to->x[0], to->v[0]));
-    OK(m->session, spar_fluid_pull_sections(f, theta, NULL, NULL, to->a[0]));
+    OK(m->session, spar_fluid_pull_poses(f, SPAR_NODES_MOTION, theta, NULL, NULL, NULL, NULL, to->a[0], NULL));
 }
 
 /* What one node of weight w must be, to within the rounding of three operations on numbers as large as it. */
@@ -501,13 +501,15 @@ static void bad_weights_are_refused(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "blending", spar_fluid_fade_motion(m.weighted, 0, INFINITY, N, NULL, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "weights for", spar_fluid_fade_motion(m.weighted, 0, 1, 0, NULL, NULL));
     mesh_map(&m);
-    REFUSED(s, SPAR_ERR_UNSUPPORTED, "weights", spar_fluid_pull_sections(m.weighted, 1, q[0], NULL, NULL));
-    REFUSED(s, SPAR_ERR_UNSUPPORTED, "weights", spar_fluid_pull_sections(m.weighted, 1, NULL, turn[0], NULL));
     REFUSED(s, SPAR_ERR_UNSUPPORTED, "weights",
-            spar_fluid_pull_poses(m.weighted, 1, a.x[0], NULL, NULL, NULL, NULL, turn[0]));
+            spar_fluid_pull_poses(m.weighted, SPAR_NODES_MOTION, 1, NULL, q[0], NULL, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_UNSUPPORTED, "weights",
+            spar_fluid_pull_poses(m.weighted, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, turn[0], NULL, NULL));
+    REFUSED(s, SPAR_ERR_UNSUPPORTED, "weights",
+            spar_fluid_pull_poses(m.weighted, SPAR_NODES_MOTION, 1, a.x[0], NULL, NULL, NULL, NULL, turn[0]));
     REFUSED(s, SPAR_ERR_UNSUPPORTED, "weights", spar_fluid_pull_matrices(m.weighted, 1, 0, matrix[0]));
     REFUSED(s, SPAR_ERR_UNSUPPORTED, "weights", spar_fluid_check_matrices(m.weighted, 0, matrix[0]));
-    OK(s, spar_fluid_pull_poses(m.weighted, 1, a.x[0], NULL, a.v[0], NULL, a.a[0], NULL));
+    OK(s, spar_fluid_pull_poses(m.weighted, SPAR_NODES_MOTION, 1, a.x[0], NULL, a.v[0], NULL, a.a[0], NULL));
     OK(s, spar_step_begin(s, 0.1));
     REFUSED(s, SPAR_ERR_STATE, "in progress", spar_fluid_set_motion_weights(m.weighted, N, m.w));
     REFUSED(s, SPAR_ERR_STATE, "in progress", spar_fluid_set_motion_weights(m.weighted, 0, NULL));

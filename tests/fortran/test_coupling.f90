@@ -245,7 +245,7 @@ contains
         'places in a turned state')
     call check(all(abs(xdot - reshape([-4, 0, 1, 0, -2, 1] * 1.0_c_double, [3, 2])) < 1e-14_c_double), &
         'velocities')
-    call fluid%pull_poses(1.0_c_double, x, orientation, v=xdot, omega=con)
+    call fluid%pull_poses(SPAR_NODES_MOTION, 1.0_c_double, x, orientation, v=xdot, omega=con)
     call check(all(abs([x(2,1) - 2, xdot(1,1) + 4, con(3,2) - 2, orientation(:,1) - q(4:7,1)]) < 1e-14_c_double), &
         'all of the motion at once')
     call fluid%pull_motion_f32(1.0_c_double, single, v=single_v)
@@ -319,9 +319,9 @@ contains
     call fluid%push_forces(f)
     call fluid%sum_loads(force=total)
     call check(all(abs(total - [0, 0, 7]) < 1e-14_c_double), 'forces by component')
-    call fluid%pull_force_places(1.0_c_double, x)
+    call fluid%pull_poses(SPAR_NODES_FORCE, 1.0_c_double, x)
     call check(all(abs(x(:,2) - [2, 2, 5]) < 1e-15_c_double), 'force nodes have no weights')
-    call fluid%get_positions(SPAR_NODES_FORCE, x, foot=xdot)
+    call fluid%get_positions(SPAR_NODES_FORCE, x, nearest=xdot)
     call check(all(abs(x(2,:) - [2, 2, 5]) < 1e-15_c_double) .and. all(abs(xdot(2,:) - 2) < 1e-15_c_double), &
         'getters are packed')
     call fluid%get_forces(x)

@@ -262,7 +262,7 @@ contains
     call fluid%pull_motion(1.0_c_double, v=x(:,1:3), stat=stat, errmsg=errmsg)
     call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, 'fluid%pull_motion: ''fluid'': v has the shape (3,3)') > 0, &
         'velocity of three')
-    call fluid%pull_sections(1.0_c_double, omega=q(1:4,:), stat=stat)
+    call fluid%pull_poses(SPAR_NODES_MOTION, 1.0_c_double, omega=q(1:4,:), stat=stat)
     call check(stat == SPAR_ERR_ARGUMENT, 'omega of 4 entries')
     call fluid%get_map(SPAR_NODES_MOTION, flags=flags(1:3), stat=stat)
     call check(stat == SPAR_ERR_ARGUMENT, 'flags of three')
@@ -303,7 +303,7 @@ contains
     call session%step_begin(0.1_c_double)
     call session%step_solve()
     call fluid%pull_motion(1.0_c_double, x, x)
-    call fluid%pull_sections(1.0_c_double, q, x, x)
+    call fluid%pull_poses(SPAR_NODES_MOTION, 1.0_c_double, q=q, omega=x, accel=x)
     call fluid%pull_forces(1.0_c_double, x)
     call fluid%push_forces(x, x)
     call session%step_check(done)

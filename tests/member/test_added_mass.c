@@ -410,7 +410,7 @@ static int fin_fluid(spar_session *s, double t, double dt, int iteration, void *
     fin *f = context;
     double q[4 * STRIPS], a[3 * STRIPS], force[3 * STRIPS];
     (void)iteration;
-    OK(s, spar_fluid_pull_sections(f->fluid, 1, q, NULL, a));
+    OK(s, spar_fluid_pull_poses(f->fluid, SPAR_NODES_MOTION, 1, NULL, q, NULL, NULL, a, NULL));
     for (int k = 0; k < STRIPS; k++) {
         double own[3];
         spari_rotate_back(q + 4 * k, a + 3 * k, own);

@@ -24,7 +24,7 @@ static int arms_fluid(spar_session *s, double t, double dt, int iteration, void 
         double q[4 * ARM_NODES], a[3 * ARM_NODES], f[3 * ARM_NODES];
         int n = k ? ARM_NODES : 1;
         if (k) {
-            OK(s, spar_fluid_pull_sections(m->fluid[1], 1, q, NULL, a));
+            OK(s, spar_fluid_pull_poses(m->fluid[1], SPAR_NODES_MOTION, 1, NULL, q, NULL, NULL, a, NULL));
         } else {
             double pose[7], rate[6];
             OK(s, spar_member_get_motion(m->body, pose, NULL, rate));
@@ -306,7 +306,7 @@ static int mast_fluid(spar_session *s, double t, double dt, int iteration, void 
     mast *m = context;
     double q[4 * ARM_NODES], a[3 * ARM_NODES], f[3 * ARM_NODES];
     (void)iteration;
-    OK(s, spar_fluid_pull_sections(m->fluid, 1, q, NULL, a));
+    OK(s, spar_fluid_pull_poses(m->fluid, SPAR_NODES_MOTION, 1, NULL, q, NULL, NULL, a, NULL));
     for (int i = 0; i < 3 * ARM_NODES; i++) {
         f[i] = -m->mass * a[i] + (i % 3 == 2 ? 3 + sin(3 * (t + dt)) : 0);
     }
@@ -375,7 +375,7 @@ static int swing_fluid(spar_session *s, double t, double dt, int iteration, void
     (void)iteration, (void)t, (void)dt;
     OK(s, spar_member_get_motion(m->beam, root, NULL, NULL));
     double turn = 2 * atan2(root[6], root[3]), c = cos(turn), d = sin(turn), share = -m->mass / ARM_NODES;
-    OK(s, spar_fluid_pull_sections(m->fluid, 1, q, NULL, a));
+    OK(s, spar_fluid_pull_poses(m->fluid, SPAR_NODES_MOTION, 1, NULL, q, NULL, NULL, a, NULL));
     for (int i = 0; i < ARM_NODES; i++) {
         double along = a[3 * i] * c + a[3 * i + 1] * d, across = a[3 * i + 1] * c - a[3 * i] * d;
         f[3 * i] = share * (along * c - 5 * across * d);

@@ -236,7 +236,7 @@ static int fin_fluid(spar_session *s, double t, double dt, int iteration, void *
     fin *f = context;
     double q[4 * STRIPS], a[3 * STRIPS], v[3 * STRIPS], force[3 * STRIPS];
     (void)iteration;
-    OK(s, spar_fluid_pull_sections(f->fluid, 1, q, NULL, a));
+    OK(s, spar_fluid_pull_poses(f->fluid, SPAR_NODES_MOTION, 1, NULL, q, NULL, NULL, a, NULL));
     OK(s, spar_fluid_pull_motion(f->fluid, 1, NULL, v));
     memcpy(f->after, v, sizeof v);
     for (int k = 0; k < STRIPS; k++) {

@@ -165,7 +165,7 @@ static void seen_a_little(void **state) {
             while (!done) {
                 double a[6], f[6] = {0};
                 OK(b.session, spar_step_solve(b.session));
-                OK(b.session, spar_fluid_pull_poses(b.fluid, 1, NULL, NULL, NULL, NULL, a, a + 3));
+                OK(b.session, spar_fluid_pull_poses(b.fluid, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, NULL, a, a + 3));
                 spari_rotate_back(b.axes, a, a);
                 f[0] = -b.added[0] * a[0] + (step == 0 ? 1 : 0);
                 f[1] = -b.added[7] * a[1] + 1e-3 * (step % 3);
@@ -233,7 +233,7 @@ static int raft_fluid(spar_session *s, double t, double dt, int iteration, void 
     raft *r = context;
     double a[3];
     (void)iteration;
-    OK(s, spar_fluid_pull_sections(r->fluid, 1, NULL, NULL, a));
+    OK(s, spar_fluid_pull_poses(r->fluid, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, NULL, a, NULL));
     const double f[3] = {0.1 - r->added * a[0], 0.3 * sin(9 * (t + dt)) - r->added * a[1],
                          0.2 * cos(7 * (t + dt)) - r->added * a[2]};
     return spar_fluid_push_forces(r->fluid, f, NULL);
@@ -302,7 +302,7 @@ static int bent_fluid(spar_session *s, double t, double dt, int iteration, void 
     const bent *b = context;
     double a[3 * BENT], f[3 * BENT];
     (void)s, (void)iteration;
-    int status = spar_fluid_pull_poses(b->fluid, 1, NULL, NULL, NULL, NULL, a, NULL);
+    int status = spar_fluid_pull_poses(b->fluid, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, NULL, a, NULL);
     for (int i = 0; i < 3 * BENT; i++) {
         f[i] = -0.8 * a[i] + sin(9 * (t + dt) + i);
     }

@@ -69,7 +69,8 @@ static int solve(spar_session *s, double t, double dt, int iteration, void *cont
     c->calls++;
     for (int k = 0; k < 2; k++) {
         double a[NODES][3];
-        OK(s, spar_fluid_pull_sections(c->fluid[k], 1, NULL, NULL, c->n ? a[0] : NULL));
+        OK(s,
+           spar_fluid_pull_poses(c->fluid[k], SPAR_NODES_MOTION, 1, NULL, NULL, NULL, NULL, c->n ? a[0] : NULL, NULL));
         for (int64_t i = 0; i < c->n; i++) {
             for (int d = 0; d < 3; d++) {
                 a[i][d] *= -4 * 4.0 / NODES;

@@ -55,7 +55,9 @@ static int solve(spar_session *s, double t, double dt, int iteration, void *cont
     (void)s, (void)t, (void)dt, (void)iteration;
     int status = spar_fluid_get_count(f->fluid, SPAR_NODES_MOTION, &n);
     status = status != SPAR_OK ? status : spar_fluid_pull_motion(f->fluid, 0.5, f->x, f->v);
-    status = status != SPAR_OK ? status : spar_fluid_pull_sections(f->fluid, 1, f->q, f->omega, f->accel);
+    status = status != SPAR_OK
+                 ? status
+                 : spar_fluid_pull_poses(f->fluid, SPAR_NODES_MOTION, 1, NULL, f->q, NULL, f->omega, f->accel, NULL);
     status = status != SPAR_OK ? status : spar_fluid_pull_motion(f->fluid, 1, f->x, f->v);
     for (int64_t i = 0; i < 3 * n; i++) {
         f->force[i] = (i % 3 == 1 ? 0.02 : 0) - 1e-3 * f->v[i];

@@ -46,7 +46,7 @@ static int piston_fluid(spar_session *s, double t, double dt, int iteration, voi
     p->calls++;
     p->dt_seen = dt;
     OK(s, spar_fluid_pull_motion(p->fluid, 1, x, NULL));
-    OK(s, spar_fluid_pull_sections(p->fluid, 1, NULL, NULL, a));
+    OK(s, spar_fluid_pull_poses(p->fluid, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, NULL, a, NULL));
     for (int k = 0; k < 3; k++) {
         f[k] = -ratio * a[k] - x[k];
     }
@@ -99,7 +99,8 @@ static void accelerations_and_loads_belong_together(void **state) {
         assert_true(t == 0 && step == 0 && q[0] == 0 && v[0] == 0);
         NEAR(a[0], 1, 1e-8);
         NEAR(load[0], pull - ratio, 1e-7);
-        OK(p.session, spar_fluid_pull_sections(p.fluid, 0, NULL, NULL, a)); /* and fluids see it before a step */
+        OK(p.session, spar_fluid_pull_poses(p.fluid, SPAR_NODES_MOTION, 0, NULL, NULL, NULL, NULL, a,
+                                            NULL)); /* and fluids see it before a step */
         NEAR(a[0], 1, 1e-8);
         spar_session_destroy(&p.session);
     }
@@ -257,7 +258,7 @@ static int cantilever_fluid(spar_session *s, double t, double dt, int iteration,
     cantilever *c = context;
     double a[POINTS][3], f[POINTS][3];
     (void)t, (void)dt, (void)iteration;
-    OK(s, spar_fluid_pull_sections(c->strips, 1, NULL, NULL, a[0]));
+    OK(s, spar_fluid_pull_poses(c->strips, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, NULL, a[0], NULL));
     for (int i = 0; i < 3 * POINTS; i++) {
         f[i / 3][i % 3] = -c->added * c->weight[i / 3] * a[i / 3][i % 3];
     }
@@ -365,7 +366,7 @@ static int pendulum_fluid(spar_session *s, double t, double dt, int iteration, v
     pendulum *p = context;
     double f[3];
     (void)t, (void)dt, (void)iteration;
-    OK(s, spar_fluid_pull_sections(p->fluid, 1, NULL, NULL, f));
+    OK(s, spar_fluid_pull_poses(p->fluid, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, NULL, f, NULL));
     for (int k = 0; k < 3; k++) {
         f[k] *= -drag_mass;
     }
@@ -474,7 +475,7 @@ typedef struct wet_arm {
 static int arm_fluid(spar_session *s, double t, double dt, int iteration, void *context) {
     const wet_arm *w = context;
     double a[9], f[9];
-    int status = spar_fluid_pull_poses(w->fluid, 1, NULL, NULL, NULL, NULL, a, NULL);
+    int status = spar_fluid_pull_poses(w->fluid, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, NULL, a, NULL);
     for (int k = 0; k < 9; k++) {
         f[k] = -3 * a[k] + cos(t + dt + k);
     }

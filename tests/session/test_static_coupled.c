@@ -64,7 +64,7 @@ static int wing_fluid(spar_session *s, double t, double dt, int iteration, void 
     static double q[MOST_STRIPS][4], force[MOST_STRIPS][3], moment[MOST_STRIPS][3];
     (void)t, (void)dt, (void)iteration;
     w->calls++;
-    OK(s, spar_fluid_pull_sections(w->strips, w->theta, q[0], NULL, NULL));
+    OK(s, spar_fluid_pull_poses(w->strips, SPAR_NODES_MOTION, w->theta, NULL, q[0], NULL, NULL, NULL, NULL));
     for (int i = 0; i < w->n; i++) {
         double twist = 2 * atan2(q[i][1], q[i][0]);
         moment[i][0] = w->lambda * w->lambda * wing_gj * (twist + w->alpha0) * w->weight[i];
@@ -92,7 +92,7 @@ static void test_twist_of_a_wing(void **state) {
     static double q[MOST_STRIPS][4];
     wing_create(&w, 1, 12, 1.2, SPAR_COUPLING_IQN_ILS);
     OK(w.session, spar_session_solve_static(w.session, 1, wing_fluid, &w, NULL));
-    OK(w.session, spar_fluid_pull_sections(w.strips, 1, q[0], NULL, NULL));
+    OK(w.session, spar_fluid_pull_poses(w.strips, SPAR_NODES_MOTION, 1, NULL, q[0], NULL, NULL, NULL, NULL));
     for (int i = 0; i < w.n; i++) {
         NEAR(2 * atan2(q[i][1], q[i][0]), wing_twist(&w, wing_span * w.eta[i]), 1e-7 * wing_twist(&w, 3));
     }

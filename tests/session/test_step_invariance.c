@@ -54,7 +54,7 @@ static void create(world *w, int scheme, const char *stop, double arm) {
 
 static void answer(const world *w, double t, double f[3 * PUSHED]) {
     double v[3 * PUSHED], a[3 * PUSHED];
-    OK(w->s, spar_fluid_pull_poses(w->fluid, 1, NULL, NULL, v, NULL, a, NULL));
+    OK(w->s, spar_fluid_pull_poses(w->fluid, SPAR_NODES_MOTION, 1, NULL, NULL, v, NULL, a, NULL));
     for (int i = 0; i < 3 * PUSHED; i++) {
         f[i] = 20 * sin(9 * t + i) - (w->steady ? 0 : 0.05 * a[i] + 0.8 * v[i]);
     }
@@ -316,7 +316,7 @@ static int wind_and_waves(spar_session *s, double t, double dt, int iteration, v
     const world *w = context;
     double v[3 * PUSHED], a[3 * PUSHED], f[3 * PUSHED];
     (void)s, (void)dt, (void)iteration;
-    OK(w->s, spar_fluid_pull_poses(w->fluid, 1, NULL, NULL, v, NULL, a, NULL));
+    OK(w->s, spar_fluid_pull_poses(w->fluid, SPAR_NODES_MOTION, 1, NULL, NULL, v, NULL, a, NULL));
     for (int i = 0; i < 3 * PUSHED; i++) {
         double wind = i % 3 == 1 ? 8 : 0, water = i % 3 == 2 ? 3 * sin(2 * t) : 0,
                lost = i % 3 == 2 ? 6 * cos(2 * t) : 0;

@@ -436,11 +436,11 @@ int spread_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q
     return put_together(&c, status, 3, part, (int[]){3, 4, 3}, (double *[]){x_map, q_map, con});
 }
 
-int spread_get_places(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *foot) {
+int spread_get_positions(const spar_fluid *fluid, int which, double *x, double *q, double *v, double *nearest) {
     cut c = cut_of(fluid, which);
-    double *part[4] = {place_for(&c, 3, x), place_for(&c, 3, v), place_for(&c, 4, q), place_for(&c, 3, foot)};
+    double *part[4] = {place_for(&c, 3, x), place_for(&c, 4, q), place_for(&c, 3, v), place_for(&c, 3, nearest)};
     int status = spar_fluid_get_positions(fluid, which, part[0], part[1], part[2], part[3]);
-    return put_together(&c, status, 4, part, (int[]){3, 3, 4, 3}, (double *[]){x, v, q, foot});
+    return put_together(&c, status, 4, part, (int[]){3, 4, 3, 3}, (double *[]){x, q, v, nearest});
 }
 
 int spread_pull_motion(spar_fluid *fluid, double theta, double *x, double *v) {
@@ -450,30 +450,17 @@ int spread_pull_motion(spar_fluid *fluid, double theta, double *x, double *v) {
     return put_together(&c, status, 2, part, (int[]){3, 3}, (double *[]){x, v});
 }
 
-int spread_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel) {
-    cut c = cut_of(fluid, SPAR_NODES_MOTION);
-    double *part[3] = {place_for(&c, 4, q), place_for(&c, 3, omega), place_for(&c, 3, accel)};
-    int status = spar_fluid_pull_sections(fluid, theta, part[0], part[1], part[2]);
-    return put_together(&c, status, 3, part, (int[]){4, 3, 3}, (double *[]){q, omega, accel});
-}
+static const int pose_width[6] = {3, 4, 3, 3, 3, 3};
 
-int spread_pull_poses(spar_fluid *fluid, double theta, double *x, double *q, double *v, double *omega, double *accel,
-                      double *alpha) {
-    cut c = cut_of(fluid, SPAR_NODES_MOTION);
+int spread_pull_poses(spar_fluid *fluid, int which, double theta, double *x, double *q, double *v, double *omega,
+                      double *accel, double *alpha) {
+    cut c = cut_of(fluid, which);
     double *to[6] = {x, q, v, omega, accel, alpha}, *part[6];
-    static const int width[6] = {3, 4, 3, 3, 3, 3};
     for (int k = 0; k < 6; k++) {
-        part[k] = place_for(&c, width[k], to[k]);
+        part[k] = place_for(&c, pose_width[k], to[k]);
     }
-    int status = spar_fluid_pull_poses(fluid, theta, part[0], part[1], part[2], part[3], part[4], part[5]);
-    return put_together(&c, status, 6, part, width, to);
-}
-
-int spread_pull_force_places(spar_fluid *fluid, double theta, double *x, double *v, double *q) {
-    cut c = cut_of(fluid, SPAR_NODES_FORCE);
-    double *part[3] = {place_for(&c, 3, x), place_for(&c, 3, v), place_for(&c, 4, q)};
-    int status = spar_fluid_pull_force_places(fluid, theta, part[0], part[1], part[2]);
-    return put_together(&c, status, 3, part, (int[]){3, 3, 4}, (double *[]){x, v, q});
+    int status = spar_fluid_pull_poses(fluid, which, theta, part[0], part[1], part[2], part[3], part[4], part[5]);
+    return put_together(&c, status, 6, part, pose_width, to);
 }
 
 int spread_pull_forces(spar_fluid *fluid, double theta, double *force) {
@@ -505,18 +492,18 @@ static void narrow_to(float *x, const double *wide, int64_t n) {
     }
 }
 
-/* Up to three arrays of single precision that `pull` fills for this rank's nodes of a set. */
+/* Up to six arrays of single precision that `pull` fills for this rank's nodes of a set. */
 static int pull_single(spar_fluid *fluid, int which, double theta, int count, const int *width, float *const *x,
-                       int (*pull)(spar_fluid *, double, float *const *)) {
+                       int (*pull)(spar_fluid *, int, double, float *const *)) {
     cut c = cut_of(fluid, which);
-    float *own[3] = {NULL};
-    double *part[3] = {NULL}, *whole[3] = {NULL};
+    float *own[6] = {NULL};
+    double *part[6] = {NULL}, *whole[6] = {NULL};
     int64_t n = c.n, all = c.whole;
     for (int k = 0; k < count; k++) {
         own[k] = x[k] ? room(n * width[k], sizeof *own[k]) : NULL;
         whole[k] = x[k] ? room(all * width[k], sizeof *whole[k]) : NULL;
     }
-    int status = pull(fluid, theta, own);
+    int status = pull(fluid, which, theta, own);
     for (int k = 0; k < count; k++) {
         part[k] = wide_of(own[k], n * width[k]);
     }
@@ -529,15 +516,17 @@ static int pull_single(spar_fluid *fluid, int which, double theta, int count, co
     return status;
 }
 
-static int pull_own_motion(spar_fluid *fluid, double theta, float *const *x) {
+static int pull_own_motion(spar_fluid *fluid, int which, double theta, float *const *x) {
+    (void)which;
     return spar_fluid_pull_motion_f32(fluid, theta, x[0], x[1]);
 }
 
-static int pull_own_sections(spar_fluid *fluid, double theta, float *const *x) {
-    return spar_fluid_pull_sections_f32(fluid, theta, x[0], x[1], x[2]);
+static int pull_own_poses(spar_fluid *fluid, int which, double theta, float *const *x) {
+    return spar_fluid_pull_poses_f32(fluid, which, theta, x[0], x[1], x[2], x[3], x[4], x[5]);
 }
 
-static int pull_own_forces(spar_fluid *fluid, double theta, float *const *x) {
+static int pull_own_forces(spar_fluid *fluid, int which, double theta, float *const *x) {
+    (void)which;
     return spar_fluid_pull_forces_f32(fluid, theta, x[0]);
 }
 
@@ -545,9 +534,9 @@ int spread_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v) 
     return pull_single(fluid, SPAR_NODES_MOTION, theta, 2, (int[]){3, 3}, (float *[]){x, v}, pull_own_motion);
 }
 
-int spread_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel) {
-    return pull_single(fluid, SPAR_NODES_MOTION, theta, 3, (int[]){4, 3, 3}, (float *[]){q, omega, accel},
-                       pull_own_sections);
+int spread_pull_poses_f32(spar_fluid *fluid, int which, double theta, float *x, float *q, float *v, float *omega,
+                          float *accel, float *alpha) {
+    return pull_single(fluid, which, theta, 6, pose_width, (float *[]){x, q, v, omega, accel, alpha}, pull_own_poses);
 }
 
 int spread_pull_forces_f32(spar_fluid *fluid, double theta, float *force) {

@@ -30,16 +30,15 @@ int spread_get_count(const spar_fluid *fluid, int which, int64_t *n);
 int spread_get_flag_count(const spar_fluid *fluid, int which, int flag, int64_t *n);
 int spread_get_map(const spar_fluid *fluid, int which, double *eta, double *distance, int *flags);
 int spread_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con);
-int spread_get_places(const spar_fluid *fluid, int which, double *x, double *v, double *q, double *foot);
+int spread_get_positions(const spar_fluid *fluid, int which, double *x, double *q, double *v, double *nearest);
 int spread_pull_motion(spar_fluid *fluid, double theta, double *x, double *v);
-int spread_pull_sections(spar_fluid *fluid, double theta, double *q, double *omega, double *accel);
-int spread_pull_poses(spar_fluid *fluid, double theta, double *x, double *q, double *v, double *omega, double *accel,
-                      double *alpha);
-int spread_pull_force_places(spar_fluid *fluid, double theta, double *x, double *v, double *q);
+int spread_pull_poses(spar_fluid *fluid, int which, double theta, double *x, double *q, double *v, double *omega,
+                      double *accel, double *alpha);
 int spread_pull_forces(spar_fluid *fluid, double theta, double *force);
 int spread_get_forces(const spar_fluid *fluid, double *force);
 int spread_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v);
-int spread_pull_sections_f32(spar_fluid *fluid, double theta, float *q, float *omega, float *accel);
+int spread_pull_poses_f32(spar_fluid *fluid, int which, double theta, float *x, float *q, float *v, float *omega,
+                          float *accel, float *alpha);
 int spread_pull_forces_f32(spar_fluid *fluid, double theta, float *force);
 int spread_push_forces_f32(spar_fluid *fluid, const float *force, const float *moment);
 int spread_get_travel(spar_fluid *fluid, double *largest, int64_t *node);
@@ -82,15 +81,13 @@ int spread_remove(const char *path);
 #define spar_fluid_get_flag_count spread_get_flag_count
 #define spar_fluid_get_map spread_get_map
 #define spar_fluid_get_feet spread_get_feet
-#define spar_fluid_get_positions spread_get_places
+#define spar_fluid_get_positions spread_get_positions
 #define spar_fluid_pull_motion spread_pull_motion
-#define spar_fluid_pull_sections spread_pull_sections
 #define spar_fluid_pull_poses spread_pull_poses
-#define spar_fluid_pull_force_places spread_pull_force_places
 #define spar_fluid_pull_forces spread_pull_forces
 #define spar_fluid_get_forces spread_get_forces
 #define spar_fluid_pull_motion_f32 spread_pull_motion_f32
-#define spar_fluid_pull_sections_f32 spread_pull_sections_f32
+#define spar_fluid_pull_poses_f32 spread_pull_poses_f32
 #define spar_fluid_pull_forces_f32 spread_pull_forces_f32
 #define spar_fluid_push_forces_f32 spread_push_forces_f32
 #define spar_fluid_get_travel spread_get_travel

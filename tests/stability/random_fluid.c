@@ -54,7 +54,7 @@ static int answer(spar_session *s, double t, double dt, int iteration, void *con
     bath *b = context;
     double v[3 * NODES], a[3 * NODES], f[3 * NODES];
     (void)t, (void)iteration;
-    OK(s, spar_fluid_pull_poses(b->fluid, 1, NULL, NULL, v, NULL, a, NULL));
+    OK(s, spar_fluid_pull_poses(b->fluid, SPAR_NODES_MOTION, 1, NULL, NULL, v, NULL, a, NULL));
     for (int i = 0; b->differences && dt > 0 && i < 3 * b->nodes; i++) {
         a[i] = (v[i] - b->before[i]) / dt;
     }

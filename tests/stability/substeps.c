@@ -41,7 +41,7 @@ static int mode_fluid(spar_session *s, double t, double dt, int iteration, void 
     mode *p = context;
     double a[3];
     (void)t, (void)dt, (void)iteration;
-    OK(s, spar_fluid_pull_sections(p->fluid, 1, NULL, NULL, a));
+    OK(s, spar_fluid_pull_poses(p->fluid, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, NULL, a, NULL));
     p->seen = a[0];
     for (int k = 0; k < 3; k++) {
         a[k] *= -p->ratio;
@@ -125,7 +125,7 @@ static void what_fluids_see(void **state) {
     }
     double before = (v[2] - v[1]) / h[1], mean = (v[3] - v[2]) / h[2];
     NEAR(p.seen, mean + (mean - before) * h[2] / (h[2] + h[1]), 1e-9);
-    OK(p.session, spar_fluid_pull_sections(p.fluid, 0, NULL, NULL, a));
+    OK(p.session, spar_fluid_pull_poses(p.fluid, SPAR_NODES_MOTION, 0, NULL, NULL, NULL, NULL, a, NULL));
     NEAR(a[0], p.seen, 1e-12);
     char path[64];
     (void)snprintf(path, sizeof path, "substeps_%d.spar", 1);
@@ -175,7 +175,7 @@ static int strips(spar_session *s, double t, double dt, int iteration, void *con
     cantilever *c = context;
     double a[POINTS][3];
     (void)t, (void)dt, (void)iteration;
-    OK(s, spar_fluid_pull_sections(c->strips, 1, NULL, NULL, a[0]));
+    OK(s, spar_fluid_pull_poses(c->strips, SPAR_NODES_MOTION, 1, NULL, NULL, NULL, NULL, a[0], NULL));
     for (int i = 0; i < 3 * POINTS; i++) {
         a[i / 3][i % 3] *= -c->added * c->weight[i / 3];
     }

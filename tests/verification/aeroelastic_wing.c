@@ -50,7 +50,7 @@ static double angle(const double q[4], double speed, double axes[9], double plan
 
 static void push(const wing *w, double speed) {
     double q[STRIPS][4], f[STRIPS][3], m[STRIPS][3];
-    OK(w->session, spar_fluid_pull_sections(w->strips, 1, q[0], NULL, NULL));
+    OK(w->session, spar_fluid_pull_poses(w->strips, SPAR_NODES_MOTION, 1, NULL, q[0], NULL, NULL, NULL, NULL));
     for (int i = 0; i < STRIPS; i++) {
         double R[9], p[2], a = angle(q[i], speed, R, p), v2 = p[0] * p[0] + p[1] * p[1], v = sqrt(v2);
         double lift = 0.5 * density * v2 * chord * 2 * pi * a * w->weight[i] * span / 2;

@@ -133,7 +133,8 @@ static int take_sections(spar_aerodyn *s, int b, int64_t first, int reference) {
             s->v[i] = 0;
         }
     } else {
-        status = spar_fluid_pull_poses(s->sections[b], 1, s->x, s->q, s->v, s->omega, s->accel, s->alpha);
+        status =
+            spar_fluid_pull_poses(s->sections[b], SPAR_NODES_MOTION, 1, s->x, s->q, s->v, s->omega, s->accel, s->alpha);
     }
     narrow(3 * n, s->x, s->place + 3 * first);
     for (int64_t i = 0; i < n; i++) {

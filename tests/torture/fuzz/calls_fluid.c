@@ -245,28 +245,23 @@ void do_spar_fluid_pull_motion_f32(call *c) {
     RUN(c, spar_fluid_pull_motion_f32(f->f, theta, x, v));
 }
 
-void do_spar_fluid_pull_sections(call *c) {
+void do_spar_fluid_pull_poses_f32(call *c) {
     live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_MOTION), room = fluid_room(f, SPAR_NODES_MOTION);
-    double theta = arg_theta(c), *q = OUT_OR_NULL(c, 4 * n), *omega = OUT_OR_NULL(c, room),
-           *accel = OUT_OR_NULL(c, room);
-    RUN(c, spar_fluid_pull_sections(f->f, theta, q, omega, accel));
-}
-
-void do_spar_fluid_pull_sections_f32(call *c) {
-    live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_MOTION), room = fluid_room(f, SPAR_NODES_MOTION);
+    int which = arg_int(c, 0, 1);
+    int64_t n = fluid_count(f, which), room = fluid_room(f, which);
     double theta = arg_theta(c);
-    float *q = out_floats(c, 4 * n), *omega = out_floats(c, room), *accel = out_floats(c, room);
-    RUN(c, spar_fluid_pull_sections_f32(f->f, theta, q, omega, accel));
+    float *x = out_floats(c, room), *q = out_floats(c, 4 * n), *v = out_floats(c, room), *omega = out_floats(c, room),
+          *accel = out_floats(c, room), *alpha = out_floats(c, room);
+    RUN(c, spar_fluid_pull_poses_f32(f->f, which, theta, x, q, v, omega, accel, alpha));
 }
 
 void do_spar_fluid_pull_poses(call *c) {
     live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_MOTION), room = fluid_room(f, SPAR_NODES_MOTION);
+    int which = arg_int(c, 0, 1);
+    int64_t n = fluid_count(f, which), room = fluid_room(f, which);
     double theta = arg_theta(c), *x = OUT_OR_NULL(c, room), *q = OUT_OR_NULL(c, 4 * n), *v = OUT_OR_NULL(c, room),
            *omega = OUT_OR_NULL(c, room), *accel = OUT_OR_NULL(c, room), *alpha = OUT_OR_NULL(c, room);
-    RUN(c, spar_fluid_pull_poses(f->f, theta, x, q, v, omega, accel, alpha));
+    RUN(c, spar_fluid_pull_poses(f->f, which, theta, x, q, v, omega, accel, alpha));
 }
 
 void do_spar_fluid_pull_matrices(call *c) {
@@ -290,20 +285,13 @@ void do_spar_fluid_check_matrices(call *c) {
     RUN(c, spar_fluid_check_matrices(f->f, convention, matrix));
 }
 
-void do_spar_fluid_pull_force_places(call *c) {
-    live_fluid *f = arg_fluid(c);
-    int64_t n = fluid_count(f, SPAR_NODES_FORCE), room = fluid_room(f, SPAR_NODES_FORCE);
-    double theta = arg_theta(c), *x = OUT_OR_NULL(c, room), *v = OUT_OR_NULL(c, room), *q = OUT_OR_NULL(c, 4 * n);
-    RUN(c, spar_fluid_pull_force_places(f->f, theta, x, v, q));
-}
-
 void do_spar_fluid_get_positions(call *c) {
     live_fluid *f = arg_fluid(c);
     int which = arg_int(c, 0, 1);
     int64_t n = fluid_count(f, which);
-    double *x = OUT_OR_NULL(c, 3 * n), *v = OUT_OR_NULL(c, 3 * n), *q = OUT_OR_NULL(c, 4 * n),
-           *foot = OUT_OR_NULL(c, 3 * n);
-    RUN(c, spar_fluid_get_positions(f->f, which, x, v, q, foot));
+    double *x = OUT_OR_NULL(c, 3 * n), *q = OUT_OR_NULL(c, 4 * n), *v = OUT_OR_NULL(c, 3 * n),
+           *nearest = OUT_OR_NULL(c, 3 * n);
+    RUN(c, spar_fluid_get_positions(f->f, which, x, q, v, nearest));
 }
 
 void do_spar_fluid_get_forces(call *c) {

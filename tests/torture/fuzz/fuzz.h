@@ -54,7 +54,7 @@ enum {
     CALL(spar_session_set_threads, 20, FUZZ_CHANGES)                                                                   \
     CALL(spar_session_set_tolerance, 60, FUZZ_CHANGES)                                                                 \
     CALL(spar_session_get_tolerance, 20, FUZZ_PURE)                                                                    \
-    CALL(spar_session_get_step_control, 40, FUZZ_PURE)                                                                         \
+    CALL(spar_session_get_step_control, 40, FUZZ_PURE)                                                                 \
     CALL(spar_session_set_option, 140, FUZZ_CHANGES)                                                                   \
     CALL(spar_session_get_gravity, 20, FUZZ_PURE)                                                                      \
     CALL(spar_session_get_integrator, 20, FUZZ_PURE)                                                                   \
@@ -70,7 +70,7 @@ enum {
     CALL(spar_member_get_effects, 20, FUZZ_PURE)                                                                       \
     CALL(spar_member_get_fidelity, 20, FUZZ_PURE)                                                                      \
     CALL(spar_member_get_owner, 20, FUZZ_PURE)                                                                         \
-    CALL(spar_member_get_iterations, 20, FUZZ_PURE)                                                                        \
+    CALL(spar_member_get_iterations, 20, FUZZ_PURE)                                                                    \
     CALL(spar_beam_get_elements, 20, FUZZ_PURE)                                                                        \
     CALL(spar_beam_get_quadrature, 20, FUZZ_PURE)                                                                      \
     CALL(spar_beam_get_damping, 20, FUZZ_PURE)                                                                         \
@@ -110,7 +110,7 @@ enum {
     CALL(spar_beam_read_beamdyn, 15, FUZZ_CHANGES)                                                                     \
     CALL(spar_beam_set_line_load, 100, FUZZ_CHANGES)                                                                   \
     CALL(spar_beam_set_modal_damping, 30, FUZZ_CHANGES)                                                                \
-    CALL(spar_beam_evaluate, 100, FUZZ_PURE)                                                                        \
+    CALL(spar_beam_evaluate, 100, FUZZ_PURE)                                                                           \
     CALL(spar_member_set_placement, 40, FUZZ_CHANGES)                                                                  \
     CALL(spar_member_set_root, 40, FUZZ_CHANGES)                                                                       \
     CALL(spar_member_set_external, 30, FUZZ_CHANGES)                                                                   \
@@ -127,7 +127,7 @@ enum {
     CALL(spar_member_get_reference, 60, FUZZ_PURE)                                                                     \
     CALL(spar_member_get_motion, 80, FUZZ_PURE)                                                                        \
     CALL(spar_member_set_motion, 100, FUZZ_CHANGES)                                                                    \
-    CALL(spar_member_drive, 140, FUZZ_CHANGES)                                                                    \
+    CALL(spar_member_drive, 140, FUZZ_CHANGES)                                                                         \
     CALL(spar_member_set_load, 240, FUZZ_CHANGES)                                                                      \
     CALL(spar_member_get_loads, 60, FUZZ_PURE)                                                                         \
     CALL(spar_member_get_reaction, 60, FUZZ_PURE)                                                                      \
@@ -160,8 +160,7 @@ enum {
     CALL(spar_fluid_fade_motion, 40, FUZZ_CHANGES)                                                                     \
     CALL(spar_fluid_set_motion_stations, 60, FUZZ_CHANGES)                                                             \
     CALL(spar_fluid_get_kind, 20, FUZZ_PURE)                                                                           \
-    CALL(spar_fluid_pull_force_places, 60, FUZZ_PURE)                                                                  \
-    CALL(spar_fluid_get_positions, 40, FUZZ_PURE)                                                                         \
+    CALL(spar_fluid_get_positions, 40, FUZZ_PURE)                                                                      \
     CALL(spar_fluid_get_forces, 30, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_set_states, 60, FUZZ_CHANGES)                                                                      \
     CALL(spar_fluid_get_states, 20, FUZZ_PURE)                                                                         \
@@ -179,8 +178,7 @@ enum {
     CALL(spar_fluid_get_basis, 60, FUZZ_PURE)                                                                          \
     CALL(spar_fluid_pull_motion, 150, FUZZ_PURE)                                                                       \
     CALL(spar_fluid_pull_motion_f32, 60, FUZZ_PURE)                                                                    \
-    CALL(spar_fluid_pull_sections, 80, FUZZ_PURE)                                                                      \
-    CALL(spar_fluid_pull_sections_f32, 60, FUZZ_PURE)                                                                  \
+    CALL(spar_fluid_pull_poses_f32, 60, FUZZ_PURE)                                                                     \
     CALL(spar_fluid_pull_poses, 80, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_pull_matrices, 80, FUZZ_PURE)                                                                      \
     CALL(spar_fluid_check_matrices, 60, FUZZ_PURE)                                                                     \
@@ -200,10 +198,10 @@ enum {
     CALL(spar_step_accept, 250, FUZZ_CHANGES)                                                                          \
     CALL(spar_step_reject, 100, FUZZ_CHANGES)                                                                          \
     CALL(spar_step, 250, FUZZ_CHANGES)                                                                                 \
-    CALL(spar_session_solve_initial, 60, FUZZ_CHANGES)                                                                         \
-    CALL(spar_step_adaptive, 80, FUZZ_CHANGES)                                                                           \
-    CALL(spar_member_estimate_error, 60, FUZZ_PURE)                                                                         \
-    CALL(spar_step_begin_initial, 60, FUZZ_CHANGES)                                                                      \
+    CALL(spar_session_solve_initial, 60, FUZZ_CHANGES)                                                                 \
+    CALL(spar_step_adaptive, 80, FUZZ_CHANGES)                                                                         \
+    CALL(spar_member_estimate_error, 60, FUZZ_PURE)                                                                    \
+    CALL(spar_step_begin_initial, 60, FUZZ_CHANGES)                                                                    \
     CALL(spar_session_solve_static, 60, FUZZ_CHANGES)                                                                  \
     CALL(spar_session_save, 20, FUZZ_PURE)                                                                             \
     CALL(spar_session_load, 20, FUZZ_CHANGES)                                                                          \

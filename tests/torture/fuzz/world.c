@@ -90,7 +90,7 @@ static void see_fluid(const live_fluid *f, uint64_t *h, uint64_t *of_last_push) 
             add(h, seen_index, (size_t)n * sizeof *seen_index);
         }
         if (status == SPAR_OK && which == SPAR_NODES_MOTION) {
-            add_seen(h, spar_fluid_get_positions(f->f, which, seen, seen + 3 * n, NULL, NULL), 6 * n);
+            add_seen(h, spar_fluid_get_positions(f->f, which, seen, NULL, seen + 3 * n, NULL), 6 * n);
         }
     }
     add_seen(of_last_push, spar_fluid_get_audit(f->f, 8, seen), 8);
@@ -262,8 +262,8 @@ static void check_state(const call *c) {
         }
         parts[2] = c->index != CALL_spar_aero_solve;
     }
-    if (c->index == CALL_spar_step || c->index == CALL_spar_step_adaptive || c->index == CALL_spar_session_solve_initial ||
-        c->index == CALL_spar_session_solve_static) {
+    if (c->index == CALL_spar_step || c->index == CALL_spar_step_adaptive ||
+        c->index == CALL_spar_session_solve_initial || c->index == CALL_spar_session_solve_static) {
         parts[1] = parts[2] = 0;
     }
     parts[2] = parts[2] && !(flags & FUZZ_TRIAL);

@@ -543,19 +543,19 @@ static void act_fluids(void) {
         CALL(spar_fluid_get_basis, sections, SPAR_NODES_FORCE, first, out);
     }
     go(&h, 1);
-    CALL(spar_fluid_pull_sections, sections, 1, q, w, NULL);
-    CALL(spar_fluid_pull_sections, sections, 0.5, q, w, out);
-    CALL(spar_fluid_pull_force_places, sections, 0.5, out, w, q);
-    CALL(spar_fluid_get_positions, sections, SPAR_NODES_FORCE, out, w, q, NULL);
+    CALL(spar_fluid_pull_poses, sections, SPAR_NODES_MOTION, 1, NULL, q, NULL, w, NULL, NULL);
+    CALL(spar_fluid_pull_poses, sections, SPAR_NODES_MOTION, 0.5, NULL, q, NULL, w, out, NULL);
+    CALL(spar_fluid_pull_poses, sections, SPAR_NODES_FORCE, 0.5, out, q, w, NULL, NULL, NULL);
+    CALL(spar_fluid_get_positions, sections, SPAR_NODES_FORCE, out, q, w, NULL);
     CALL(spar_fluid_get_forces, sections, w);
     CALL(spar_fluid_set_states, sections, 2);
     CALL(spar_fluid_get_states, sections, &count, NULL);
     CALL(spar_fluid_pull_states, sections, 2, out);
-    CALL(spar_fluid_pull_poses, sections, 1, out, q, w, w, w, w);
+    CALL(spar_fluid_pull_poses, sections, SPAR_NODES_MOTION, 1, out, q, w, w, w, w);
     CALL(spar_fluid_pull_matrices, sections, 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, out);
     CALL(spar_fluid_check_matrices, sections, SPAR_MATRIX_LOCAL_TO_GLOBAL, out);
     CALL(spar_fluid_pull_motion_f32, f, 1, n ? x32 : NULL, n ? v32 : NULL);
-    CALL(spar_fluid_pull_sections_f32, sections, 1, q32, x32, v32);
+    CALL(spar_fluid_pull_poses_f32, sections, SPAR_NODES_MOTION, 1, NULL, q32, NULL, x32, v32, NULL);
     for (int i = 0; i < 3 * NODES; i++) {
         w[i] = 0.01 * i;
         x32[i] = 0.25F * (float)i;

@@ -242,7 +242,7 @@ static int push_all(scene *w, double t) {
     int status = SPAR_OK;
     for (int k = 0; k < w->fluids && status == SPAR_OK; k++) {
         double v[3 * PLACES], a[3 * PLACES], f[3 * PLACES];
-        status = spar_fluid_pull_poses(w->fluid[k], 1, NULL, NULL, v, NULL, a, NULL);
+        status = spar_fluid_pull_poses(w->fluid[k], SPAR_NODES_MOTION, 1, NULL, NULL, v, NULL, a, NULL);
         for (int i = 0; i < 3 * PLACES; i++) {
             f[i] = -w->heavy[k] * a[i] - 0.2 * v[i] + sin(7 * t + i + k);
         }
