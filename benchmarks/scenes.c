@@ -15,8 +15,6 @@ static int settings(spar_session *s, const knobs *k) {
     TRY(spar_session_set_integrator(s, k->rho, k->substeps));
     TRY(spar_session_set_predictor(s, k->predictor));
     TRY(spar_session_set_coupling(s, k->learn > 0 ? SPAR_COUPLING_IQN_ILS : k->scheme, 0, k->tolerance, 60));
-    TRY(spar_session_set_option(s, "fluid.theta", k->group ? "group" : "average"));
-    TRY(spar_session_set_option(s, "fluid.audit", "off"));
     TRY(k->newton > 0 ? spar_session_set_newton(s, 1e-15, k->newton, 50) : SPAR_OK);
     return k->newton > 0 ? spar_session_set_option(s, "newton.stop", "strict") : SPAR_OK;
 }
@@ -53,6 +51,12 @@ static int straight_beam(scene_run *r, double length, const double *C, const dou
     }
     TRY(spar_member_learn_added_mass(r->member, r->knobs.learn > 0, eta));
     return commit(r->member, &r->knobs);
+}
+
+static int create_fluid(scene_run *r, const char *name) {
+    TRY(spar_fluid_create(r->member, name, &r->fluid));
+    TRY(spar_fluid_set_option(r->fluid, "theta", r->knobs.group ? "group" : "average"));
+    return spar_fluid_set_option(r->fluid, "audit", "off");
 }
 
 /* The loads of a host in single precision. */
@@ -184,7 +188,7 @@ static int build_wing(scene_run *r) {
         offset[3 * i + 1] = -0.25;
         b->inflow[3 * i + 1] = 25 * cos(angle), b->inflow[3 * i + 2] = -25 * sin(angle);
     }
-    TRY(spar_fluid_create(r->member, "strips", &r->fluid));
+    TRY(create_fluid(r, "strips"));
     TRY(spar_fluid_set_stations(r->fluid, WING_STRIPS, along, offset));
     TRY(spar_fluid_set_interpolation(r->fluid, r->knobs.consistent));
     TRY(spar_fluid_map(r->fluid));
@@ -261,7 +265,7 @@ static int build_strip(scene_run *r, const strip *of, double length, const doubl
         const double x[3] = {length * (0.5 + i % STRIPS) / STRIPS, 0, (i < STRIPS ? 0.02 : -0.02) * length};
         memcpy(f->rest + 3 * i, x, sizeof x);
     }
-    TRY(spar_fluid_create(r->member, "nodes", &r->fluid));
+    TRY(create_fluid(r, "nodes"));
     TRY(spar_fluid_set_motion_nodes(r->fluid, 2 * STRIPS, f->rest));
     TRY(spar_fluid_set_force_nodes(r->fluid, 2 * STRIPS, f->rest));
     TRY(spar_fluid_set_projection(r->fluid, r->knobs.projection, 0));

@@ -223,7 +223,7 @@ static void table(int64_t largest) {
                    ob = rate(&s, copy_as_pull);
             double audited = rate(&s, push);
             check_audit(&s);
-            MUST(s.session, spar_session_set_option(s.session, "fluid.audit", "off"));
+            MUST(s.session, spar_fluid_set_option(s.loads, "audit", "off"));
             double in = rate(&s, push), in_n = rate(&s, push_native), ip = rate(&s, push_portable),
                    ib = rate(&s, copy_as_push);
             printf("| %d | %lld | %.1f | %.0f | %.0f | %.1f | %.1f | %.1f | %.0f | %.0f | %.0f | %.0f | %.1f | %.1f | "
@@ -275,7 +275,7 @@ static void single(int64_t n) {
         }
         double audited = rate(&s, push), audited1 = rate(&s, push_single);
         check_audit(&s);
-        MUST(s.session, spar_session_set_option(s.session, "fluid.audit", "off"));
+        MUST(s.session, spar_fluid_set_option(s.loads, "audit", "off"));
         double in = rate(&s, push), in1 = rate(&s, push_single), in_bytes = rate(&s, copy_as_push),
                in1_bytes = rate(&s, copy_as_push_single);
         printf("| %d | %.0f | %.0f | %.0f | %.0f | %.2f | %.0f | %.0f | %.0f | %.0f | %.0f | %.0f | %.2f | %.2f |\n",
@@ -329,8 +329,8 @@ static void make_rigid(rigid_scene *s, int kind, int64_t n) {
         s->force[3 * j] = 1, s->force[3 * j + 1] = cos(turn), s->force[3 * j + 2] = 0.1;
     }
     MUST(s->session, spar_session_create(&s->session));
-    MUST(s->session, spar_session_set_option(s->session, "fluid.audit", "off"));
     MUST(s->session, spar_fluid_create(make_carrier(s->session, kind), "around", &s->fluid));
+    MUST(s->session, spar_fluid_set_option(s->fluid, "audit", "off"));
     MUST(s->session, spar_fluid_set_motion_nodes(s->fluid, n, s->node));
     MUST(s->session, spar_fluid_set_force_nodes(s->fluid, n, s->node));
     MUST(s->session, spar_fluid_map(s->fluid));

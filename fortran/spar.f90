@@ -84,6 +84,7 @@ module spar
       SPAR_REPORT_ADDED_MASS_SPREAD = 7, SPAR_REPORT_MOTION_ERROR = 8, SPAR_REPORT_COUNT = 9
   integer, parameter, public :: SPAR_PHASE_START = 0, SPAR_PHASE_BETWEEN = 1, SPAR_PHASE_BEGUN = 2, &
       SPAR_PHASE_SOLVED = 3, SPAR_PHASE_CHECKED = 4
+  integer, parameter, public :: SPAR_RESPONSE_ACCELERATION = 0, SPAR_RESPONSE_VELOCITY = 1
   integer, parameter, public :: SPAR_PACE_RATIO = 0, SPAR_PACE_NEXT_DT = 1, SPAR_PACE_REJECT = 2, &
       SPAR_PACE_REJECTED = 3, SPAR_PACE_COUNT = 4
   integer, parameter, public :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
@@ -319,6 +320,8 @@ module spar
     generic :: get_iterations => member_get_iterations, member_get_iterations_single_1
     procedure, private :: member_set_added_mass, member_set_added_mass_single_1
     generic :: set_added_mass => member_set_added_mass, member_set_added_mass_single_1
+    procedure :: set_added_mass_response => member_set_added_mass_response
+    procedure :: get_added_mass_response => member_get_added_mass_response
     procedure :: set_owner => member_set_owner
     procedure :: get_owner => member_get_owner
     procedure, private :: member_estimate_error, member_estimate_error_single_1, member_estimate_error_single_2
@@ -439,6 +442,7 @@ module spar
     generic :: set_projection => fluid_set_projection, fluid_set_projection_single_1
     procedure, private :: fluid_get_projection, fluid_get_projection_single_1
     generic :: get_projection => fluid_get_projection, fluid_get_projection_single_1
+    procedure :: set_option => fluid_set_option
     procedure :: set_interpolation => fluid_set_interpolation
     procedure :: get_interpolation => fluid_get_interpolation
     procedure :: get_kind => fluid_get_kind
@@ -494,6 +498,7 @@ module spar
     procedure :: get_name => fluid_get_name
     procedure, private :: fluid_get_map, fluid_get_map_single_1, fluid_get_map_single_2
     generic :: get_map => fluid_get_map, fluid_get_map_single_1, fluid_get_map_single_2
+    procedure :: get_option => fluid_get_option
     procedure, private :: fluid_get_basis, fluid_get_basis_single_1
     generic :: get_basis => fluid_get_basis, fluid_get_basis_single_1
     procedure, private :: fluid_pull_matrices, fluid_pull_matrices_single_1, fluid_pull_matrices_single_2, &
@@ -1989,6 +1994,29 @@ contains
     call narrow(status, long, n, 'fluid%get_count', self%session, stat, errmsg)
   end subroutine fluid_get_count_32
 
+  ! value is as long as what is set.
+  subroutine fluid_get_option(self, key, value, stat, errmsg)
+    class(spar_fluid), intent(in) :: self
+    character(*), intent(in) :: key
+    character(:), allocatable, intent(inout) :: value
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer, parameter :: room = 64
+    character(kind=c_char) :: text(room)
+    integer(c_int) :: status
+    integer :: i
+
+    status = spar_fluid_get_option(self%handle, c_text(key), int(room, c_int64_t), text)
+    if (status == SPAR_OK) then
+      value = ''
+      do i = 1, room
+        if (text(i) == c_null_char) exit
+        value = value // text(i)
+      end do
+    end if
+    call finish(status, self%session, stat, errmsg)
+  end subroutine fluid_get_option
+
   subroutine fluid_get_map(self, which, eta, distance, flags, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
@@ -3266,6 +3294,27 @@ contains
         errmsg)
   end subroutine member_set_added_mass
 
+  subroutine member_set_added_mass_response(self, response, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, intent(in) :: response
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_member_set_added_mass_response(self%handle, to_c(response)), self%session, stat, errmsg)
+  end subroutine member_set_added_mass_response
+
+  subroutine member_get_added_mass_response(self, response, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer, intent(inout) :: response
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_response
+
+    status = spar_member_get_added_mass_response(self%handle, c_response)
+    call hand(status, c_response, response)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_added_mass_response
+
   subroutine member_set_owner(self, rank, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(in) :: rank
@@ -3601,6 +3650,15 @@ contains
     call hand(status, c_method, method)
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_projection
+
+  subroutine fluid_set_option(self, key, value, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    character(*), intent(in) :: key, value
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_set_option(self%handle, c_text(key), c_text(value)), self%session, stat, errmsg)
+  end subroutine fluid_set_option
 
   subroutine fluid_set_interpolation(self, kind, stat, errmsg)
     class(spar_fluid), intent(inout) :: self

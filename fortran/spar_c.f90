@@ -854,6 +854,20 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_get_added_mass
 
+    function spar_member_set_added_mass_response(member, response) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), value :: response
+      integer(c_int) :: status
+    end function spar_member_set_added_mass_response
+
+    function spar_member_get_added_mass_response(member, response) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: member
+      integer(c_int), intent(inout), optional :: response
+      integer(c_int) :: status
+    end function spar_member_get_added_mass_response
+
     function spar_session_solve_initial(session, dt, solve, context, iterations) bind(c) result(status)
       import :: c_double, c_funptr, c_int, c_ptr
       type(c_ptr), value :: session
@@ -1050,6 +1064,22 @@ module spar_calls
       real(c_double), intent(inout), optional :: max_distance
       integer(c_int) :: status
     end function spar_fluid_get_projection
+
+    function spar_fluid_set_option(fluid, key, value) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: fluid
+      character(kind=c_char), intent(in), optional :: key(*), value(*)
+      integer(c_int) :: status
+    end function spar_fluid_set_option
+
+    function spar_fluid_get_option(fluid, key, capacity, text) bind(c) result(status)
+      import :: c_char, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: fluid
+      character(kind=c_char), intent(in), optional :: key(*)
+      integer(c_int64_t), value :: capacity
+      character(kind=c_char), intent(inout), optional :: text(*)
+      integer(c_int) :: status
+    end function spar_fluid_get_option
 
     function spar_fluid_set_interpolation(fluid, kind) bind(c) result(status)
       import :: c_int, c_ptr
@@ -1652,6 +1682,7 @@ module spar_c
       SPAR_REPORT_ADDED_MASS_SPREAD = 7, SPAR_REPORT_MOTION_ERROR = 8, SPAR_REPORT_COUNT = 9
   integer(c_int), parameter :: SPAR_PHASE_START = 0, SPAR_PHASE_BETWEEN = 1, SPAR_PHASE_BEGUN = 2, &
       SPAR_PHASE_SOLVED = 3, SPAR_PHASE_CHECKED = 4
+  integer(c_int), parameter :: SPAR_RESPONSE_ACCELERATION = 0, SPAR_RESPONSE_VELOCITY = 1
   integer(c_int), parameter :: SPAR_PACE_RATIO = 0, SPAR_PACE_NEXT_DT = 1, SPAR_PACE_REJECT = 2, &
       SPAR_PACE_REJECTED = 3, SPAR_PACE_COUNT = 4
   integer(c_int), parameter :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1

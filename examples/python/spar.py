@@ -161,6 +161,9 @@ constants SPAR_PHASE_START=0 SPAR_PHASE_BETWEEN=1 SPAR_PHASE_BEGUN=2 SPAR_PHASE_
 call spar_session_get_phase int session|session|value| phase|int|out|
 call spar_member_set_added_mass int member|member|value| n|int64_t|value| eta|double|in|[n] mass|double|in|[n][36]
 call spar_member_get_added_mass int member|member|value| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] mass|double|out|[capacity][36]
+constants SPAR_RESPONSE_ACCELERATION=0 SPAR_RESPONSE_VELOCITY=1
+call spar_member_set_added_mass_response int member|member|value| response|int|value|
+call spar_member_get_added_mass_response int member|member|value| response|int|out|
 call spar_session_solve_initial int session|session|value| dt|double|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
 call spar_step_begin_initial int session|session|value| dt|double|value|
 call spar_session_solve_static int session|session|value| load_steps|int|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
@@ -190,6 +193,8 @@ call spar_fluid_set_layout int fluid|fluid|value| which|int|value| node|int64_t|
 call spar_fluid_get_layout int fluid|fluid|value| which|int|value| node|int64_t|out| component|int64_t|out|
 call spar_fluid_set_projection int fluid|fluid|value| method|int|value| max_distance|double|value|
 call spar_fluid_get_projection int fluid|fluid|value| method|int|out| max_distance|double|out|
+call spar_fluid_set_option int fluid|fluid|value| key|char|in|[] value|char|in|[]
+call spar_fluid_get_option int fluid|fluid|value| key|char|in|[] capacity|int64_t|value| text|char|out|[capacity]
 call spar_fluid_set_interpolation int fluid|fluid|value| kind|int|value|
 call spar_fluid_get_interpolation int fluid|fluid|value| kind|int|out|
 call spar_fluid_get_count int fluid|fluid|value| which|int|value| n|int64_t|out|

@@ -77,15 +77,6 @@ SPAR_API int spar_session_get_relaxation(const spar_session *session, double *om
      coupling.motion_rtol   0 to 1, default 0: if one is set, the iteration also goes on until the nodes move from one
                             iteration to the next by no more than atol + rtol times their way since t^n (root of the
                             sum of squares; turns count times the member's length)
-     fluid.theta            average (default) | group: pull at 0 < theta < 1 gives the average of the two states,
-                            (T12), or the node motion interpolated on the group (does not cut corners)
-     fluid.added_mass       acceleration (default) | velocity: what the fluids' added mass answers to, for loads that
-                            are predicted of members with one that is given or learned: accelerations as they are
-                            pulled at t^{n+1}, or the change of the velocity over the step, as flow solvers with
-                            moving walls have it; explicit coupling with heavy fluids of that kind needs it. With one
-                            substep
-     fluid.far              take (default) | refuse: fluid nodes beyond max_distance are flagged, or SPAR_ERR_MAPPING
-     fluid.audit            on (default) | off: whether push keeps the figures of spar_fluid_get_audit
      advise.dt, advise.nodes, advise.fidelity, advise.coupling
                             vary (default) | keep: what spar_session_advise may propose to change; with nodes go
                             elements
@@ -166,6 +157,19 @@ SPAR_API int spar_member_set_added_mass(spar_member *member, int64_t n, const do
    mass[capacity][36]: out, 0 behind the last, NULL: not wanted. Local. */
 SPAR_API int spar_member_get_added_mass(const spar_member *member, int64_t *n, int64_t capacity, double *eta,
                                         double *mass);
+/* What the added mass of a member's fluids responds to. */
+enum {
+    SPAR_RESPONSE_ACCELERATION = 0, /* the acceleration at t^{n+1}, as it is pulled */
+    SPAR_RESPONSE_VELOCITY = 1      /* the change of the velocity over the step, as in flow solvers with moving walls */
+};
+/* Says what the fluid's added mass responds to, given or learned. The prediction of the loads depends on it, so explicit
+   coupling with a heavy fluid needs the right one. The loads of all fluids on a member are predicted with one added
+   mass, on all ranks alike: hence this belongs to the member. Steps with substeps take accelerations in any case.
+     response: in, SPAR_RESPONSE_*, default SPAR_RESPONSE_ACCELERATION
+   Local, before commit; the ranks must agree, which spar_member_commit checks. SPAR_ERR_UNSUPPORTED: a point. */
+SPAR_API int spar_member_set_added_mass_response(spar_member *member, int response);
+/* response: out. Local. */
+SPAR_API int spar_member_get_added_mass_response(const spar_member *member, int *response);
 
 /* ---- initial conditions and statics -------------------------------------------------------------------------------- */
 
@@ -380,11 +384,27 @@ SPAR_API int spar_fluid_set_layout(spar_fluid *fluid, int which, int64_t node, i
 SPAR_API int spar_fluid_get_layout(const spar_fluid *fluid, int which, int64_t *node, int64_t *component);
 /* How feet are found, for the next spar_fluid_map.
      method: in, SPAR_PROJECT_*, default bounded
-     max_distance: in, m, beyond which a node is flagged SPAR_MAP_FAR (and refused under the option fluid.far = refuse);
+     max_distance: in, m, beyond which a node is flagged SPAR_MAP_FAR (and refused under the option far = refuse);
            <= 0: no limit (default) */
 SPAR_API int spar_fluid_set_projection(spar_fluid *fluid, int method, double max_distance);
 /* method, max_distance: out, NULL: not wanted. */
 SPAR_API int spar_fluid_get_projection(const spar_fluid *fluid, int *method, double *max_distance);
+/* Options of a fluid, by name. Each concerns the nodes of this rank alone; ranks may differ.
+     key: in
+     value: in
+   theta    average (default) | group: a pull at 0 < theta < 1 gives the average of the states at both ends (T12), or the
+            motion of the member's nodes interpolated on the group. The average cuts the corner of a rotation
+   far      take (default) | refuse: spar_fluid_map flags nodes beyond max_distance (spar_fluid_set_projection), or is
+            SPAR_ERR_MAPPING
+   audit    on (default) | off: whether a push computes the figures of spar_fluid_get_audit
+   Local, between steps and not in a trial. SPAR_ERR_ARGUMENT: no such key or value; the message lists them. */
+SPAR_API int spar_fluid_set_option(spar_fluid *fluid, const char *key, const char *value);
+/* The value of an option, as a text that spar_fluid_set_option takes.
+     key: in
+     capacity: in, of the text with its end; 32 is always enough
+     text[capacity]: out
+   Local. SPAR_ERR_ARGUMENT: no such key, or the capacity is too small. */
+SPAR_API int spar_fluid_get_option(const spar_fluid *fluid, const char *key, int64_t capacity, char *text);
 /* kind: in, SPAR_INTERPOLATE_*, default nodal. */
 SPAR_API int spar_fluid_set_interpolation(spar_fluid *fluid, int kind);
 /* kind: out. */

@@ -68,11 +68,6 @@ int(spari_fail)(const spar_session *session, int status, const char *format, ...
     return status;
 }
 
-double spari_setting_value(const spar_session *session, const spari_setting *of) {
-    const void *field = (const char *)session + of->field;
-    return of->kind == SPARI_IS_REAL ? *(const double *)field : *(const int *)field;
-}
-
 int spari_need_capacity(const spar_session *session, const char *call, int64_t capacity) {
     SPARI_REQUIRE(session, capacity >= 0 && capacity <= SPARI_MOST, SPAR_ERR_ARGUMENT,
                   "%s: capacity is %lld; give the length of the array, 0 to 2^40", call, (long long)capacity);

@@ -2,7 +2,7 @@
 #ifndef SPARI_SESSION_H
 #define SPARI_SESSION_H
 
-#include "message.h"
+#include "setting.h"
 #include "workspace.h"
 
 #include <math.h>
@@ -12,24 +12,6 @@ typedef struct spari_own spari_own;   /* exchange/session_private.h */
 
 /* Progress of the current step. */
 typedef enum spari_phase { SPARI_IDLE, SPARI_BEGUN, SPARI_SOLVED, SPARI_CHECKED } spari_phase;
-
-/* A setting: one row of the table in session/settings.c. */
-typedef struct spari_setting {
-    const char *name; /* full name: "rho_inf of spar_session_set_integrator" */
-    const char *key;  /* name of the option or argument; NULL: the effect of a call, compared between ranks only */
-    size_t field;     /* offset in spar_session */
-    enum { SPARI_IS_REAL, SPARI_IS_WHOLE, SPARI_IS_WORD } kind; /* double, int, or int with words for 0 and 1 */
-    int by;                                                     /* call that sets it */
-    double least, most;
-    const char *range, *words[2]; /* allowed values, in words */
-    double initial;
-    int flags; /* SPARI_AGREED, ... */
-} spari_setting;
-enum {
-    SPARI_AGREED = 1,      /* must agree across ranks: compared in collective calls */
-    SPARI_OF_COUPLING = 2, /* the coupling depends on it: it is created anew after a change, and saved with it */
-    SPARI_VARIED = 4       /* varied by trials and advice */
-};
 
 /* Ranks of the session, and what they agree on. */
 typedef struct spari_ranks {
@@ -89,14 +71,6 @@ typedef struct spari_tolerance {
     double rtol;  /* relative */
 } spari_tolerance;
 
-/* Settings of the exchange with fluids. */
-typedef struct spari_exchange_settings {
-    int added_by_velocity; /* option fluid.added_mass = acceleration (default) | velocity */
-    int theta_on_group;    /* option fluid.theta = average (default) | group */
-    int far_refuse;        /* option fluid.far = take (default) | refuse: nodes beyond max_distance */
-    int audit_off;         /* option fluid.audit = on (default) | off */
-} spari_exchange_settings;
-
 /* Settings of the advice. */
 typedef struct spari_advice_settings {
     int keep_dt;       /* option advise.dt = keep */
@@ -155,7 +129,6 @@ struct spar_session {
     spari_newton_settings newton;
     spari_coupling_settings coupling;
     spari_tolerance tolerance;
-    spari_exchange_settings exchange;
     spari_advice_settings advice;
     const spari_setting *settings; /* table of all settings */
     int setting_count;
@@ -167,9 +140,6 @@ struct spar_session {
     spari_workspace workspace;      /* work space of the calling thread, for one call; its content is nobody's */
     spari_own *own;                 /* private data (exchange/session_private.h) */
 };
-
-/* Present value of a setting. */
-double spari_setting_value(const spar_session *session, const spari_setting *of);
 
 /* Redirects messages of this thread to text [SPARI_MESSAGE_SIZE] until called with NULL; sessions and logs do not
    see them. Returns the previous destination. */

@@ -202,10 +202,10 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
     spari_nodes_put(*made, f.element, f.xi, f.con, f.flags);
     free_points_found(&f);
     free(again);
-    if (far[0] > 0 && m->session->exchange.far_refuse) {
+    if (far[0] > 0 && fluid->options.far_refuse) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MAPPING, caller,
                                   "%lld of %lld %s nodes lie farther than %g from the line, the first is node %lld; "
-                                  "move them, increase max_distance, or accept them with the option fluid.far = take",
+                                  "move them, increase max_distance, or accept them with the option far = take",
                                   (long long)far[0], (long long)n, set_name[which], fluid->max_distance,
                                   (long long)far[1]);
     }

@@ -73,13 +73,12 @@ static int is_between(double theta) {
 
 /* Coefficients of the one or two states that give time theta, and their weights. Returns their number. */
 static int fill_states(const spar_fluid *fluid, double theta, int upto, double share[2]) {
-    const spar_member *m = fluid->member;
     share[0] = 1, share[1] = 0;
     if (!is_between(theta)) {
         fill_one(fluid, theta != 0, upto, fluid->field[0]);
         return 1;
     }
-    if (m->session->exchange.theta_on_group) {
+    if (fluid->options.theta_on_group) {
         fill_blended(fluid, theta, upto);
         return 1;
     }
@@ -106,7 +105,7 @@ static int need_second(spar_fluid *fluid, const char *caller) {
 
 /* The first average of two states allocates the second. */
 static int need_states(spar_fluid *fluid, double theta, const char *caller) {
-    return is_between(theta) && !fluid->member->session->exchange.theta_on_group ? need_second(fluid, caller) : SPAR_OK;
+    return is_between(theta) && !fluid->options.theta_on_group ? need_second(fluid, caller) : SPAR_OK;
 }
 
 int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller) {

@@ -180,7 +180,7 @@ static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source fo
 
 static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment, const char *caller) {
     spari_audit audit = {0};
-    int audited = !fluid->member->session->exchange.audit_off;
+    int audited = !fluid->options.audit_off;
     if (s->n > 0 && !force.d && !force.f) {
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
                                   "the force array is NULL though there are %lld force nodes", (long long)s->n);

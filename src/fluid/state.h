@@ -72,12 +72,20 @@ typedef struct spari_taking {
    Each is of twice the loads, so that half of a pushed sum is made of integers too. Valid for 2^28 nodes. */
 enum { SPARI_OF_PUSHED, SPARI_OF_NEXT, SPARI_OF_ACCEPTED, SPARI_OF_MEAN, SPARI_OF_BEGIN, SPARI_OF_END, SPARI_OF_COUNT };
 
+/* Settings by spar_fluid_set_option (options.c). */
+typedef struct spari_fluid_options {
+    int theta_on_group; /* theta = average (default) | group */
+    int far_refuse;     /* far = take (default) | refuse: nodes beyond max_distance */
+    int audit_off;      /* audit = on (default) | off */
+} spari_fluid_options;
+
 struct spar_fluid {
     spar_member *member;
     spar_fluid *next;
     char *name;
     int method, consistent;
     double max_distance;
+    spari_fluid_options options;
     int gone;   /* destroyed during a trial: freed when the trial has ended */
     int shared; /* sections: the motion set serves as both */
     int asked;  /* SPARI_MUTE_*: what has been pulled so far */

@@ -86,6 +86,28 @@ int spar_member_get_added_mass(const spar_member *member, int64_t *n, int64_t ca
     return SPAR_OK;
 }
 
+int spar_member_set_added_mass_response(spar_member *member, int response) {
+    SPARI_GUARD_ENVIRONMENT;
+    SPARI_TRY(spari_need_open(member, __func__));
+    SPARI_REQUIRE(member->session, member->kind != SPARI_POINT, SPAR_ERR_UNSUPPORTED,
+                  "%s: '%s' is a point with prescribed motion; added mass does not apply to points", __func__,
+                  member->name);
+    SPARI_REQUIRE(member->session, response == SPAR_RESPONSE_ACCELERATION || response == SPAR_RESPONSE_VELOCITY,
+                  SPAR_ERR_ARGUMENT,
+                  "%s: '%s': response %d is not known; give SPAR_RESPONSE_ACCELERATION or SPAR_RESPONSE_VELOCITY",
+                  __func__, member->name, response);
+    member->added_by_velocity = response == SPAR_RESPONSE_VELOCITY;
+    return SPAR_OK;
+}
+
+int spar_member_get_added_mass_response(const spar_member *member, int *response) {
+    SPARI_TRY(spari_need_member(member, __func__));
+    SPARI_REQUIRE(member->session, response, SPAR_ERR_ARGUMENT, "%s: '%s': the pointer to the response is NULL",
+                  __func__, member->name);
+    *response = member->added_by_velocity ? SPAR_RESPONSE_VELOCITY : SPAR_RESPONSE_ACCELERATION;
+    return SPAR_OK;
+}
+
 /* ---- strips ---- */
 
 static void free_strips(spari_strips *p) {
@@ -404,7 +426,7 @@ static void predict_by_velocity(spar_member *m, const double w[3], double dt) {
 void spari_added_predict(spar_member *m, const double w[3], double dt) {
     const spari_added *d = m->added;
     const double *a[3] = {m->now.a, d->past[0], d->past[1]};
-    int by_velocity = m->session->exchange.added_by_velocity && m->session->integrator.substeps == 1;
+    int by_velocity = m->added_by_velocity && m->session->integrator.substeps == 1;
     if (by_velocity) {
         predict_by_velocity(m, w, dt);
     }

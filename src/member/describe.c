@@ -433,8 +433,8 @@ int spar_member_get_owner(const spar_member *member, int *rank) {
 /* FNV-1a hash of everything the ranks must agree on. */
 uint64_t spari_member_copy_hash(const spar_member *m) {
     uint64_t h = SPARI_HASH_BEGIN;
-    int numbers[] = {m->kind,          m->external,         m->root,     m->effects,   m->effects_given,
-                     m->mesh.elements, m->mesh.per_element, m->fidelity, (int)m->modes};
+    int numbers[] = {m->kind,          m->external,         m->root,     m->effects,    m->effects_given,
+                     m->mesh.elements, m->mesh.per_element, m->fidelity, (int)m->modes, m->added_by_velocity};
     h = spari_hash_bytes(h, numbers, sizeof numbers);
     h = spari_hash_bytes(h, m->mass, sizeof m->mass);
     if (m->guess_count > 0) {

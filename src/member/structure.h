@@ -143,6 +143,7 @@ struct spar_member {
     int64_t guess_count; /* stations of the host's added mass (a rigid body: 1); 0: none */
     double *guess_eta;
     double *guess;
+    int added_by_velocity;  /* the fluid's added mass responds to velocities; used with one substep */
     spari_learned *learned; /* NULL: not requested; shared with the member rebuilt from it in a trial */
     spari_beam *beam;
     spari_body *body; /* of members that are solved */

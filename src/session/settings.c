@@ -53,8 +53,7 @@ enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REP
 
 static const char not_negative[] = "a finite number >= 0", one_or_more[] = "at least 1";
 
-/* The options fluid.far and fluid.audit concern a rank's own nodes only, so ranks may differ. The default tolerances
-   of Newton keep the influence of rotated axes or another number of ranks below 1e-11. */
+/* The default tolerances of Newton keep the influence of rotated axes or another number of ranks below 1e-11. */
 static const spari_setting settings[] = {
     ALONG("gravity (x)", 0),
     ALONG("gravity (y)", 1),
@@ -85,7 +84,6 @@ static const spari_setting settings[] = {
     OPTION_WHOLE("coupling.patience", coupling.patience, 1, 1000000, "a whole number from 1 to 1000000", 3,
                  SPARI_AGREED),
     OPTION_WORD("coupling.norm", coupling.norm_of_loads, "motion", "loads", SPARI_AGREED | SPARI_OF_COUPLING),
-    OPTION_WORD("fluid.added_mass", exchange.added_by_velocity, "acceleration", "velocity", SPARI_AGREED),
     OPTION_WORD("coupling.estimate", coupling.estimate, "off", "on", SPARI_AGREED | SPARI_OF_COUPLING),
     OPTION_WHOLE("coupling.columns", coupling.columns, 1, 10000, "a whole number from 1 to 10000", 30,
                  SPARI_AGREED | SPARI_OF_COUPLING),
@@ -97,9 +95,6 @@ static const spari_setting settings[] = {
                 SPARI_AGREED | SPARI_OF_COUPLING),
     OPTION_REAL("coupling.motion_rtol", coupling.motion_rtol, 0, 1, "a number from 0 to 1", 0,
                 SPARI_AGREED | SPARI_OF_COUPLING),
-    OPTION_WORD("fluid.theta", exchange.theta_on_group, "average", "group", SPARI_AGREED),
-    OPTION_WORD("fluid.far", exchange.far_refuse, "take", "refuse", 0),
-    OPTION_WORD("fluid.audit", exchange.audit_off, "on", "off", 0),
     OPTION_WORD("advise.dt", advice.keep_dt, "vary", "keep", SPARI_AGREED),
     OPTION_WORD("advise.nodes", advice.keep_nodes, "vary", "keep", SPARI_AGREED),
     OPTION_WORD("advise.fidelity", advice.keep_fidelity, "vary", "keep", SPARI_AGREED),
@@ -115,17 +110,8 @@ enum { SETTINGS = sizeof settings / sizeof *settings };
 
 /* A value that is the same as before changes nothing: the coupling's memory stays. */
 static void store(spar_session *s, const spari_setting *of, double x) {
-    void *field = (char *)s + of->field;
     s->coupling.stale |= of->flags & SPARI_OF_COUPLING && spari_setting_value(s, of) != x;
-    if (of->kind == SPARI_IS_REAL) {
-        *(double *)field = x;
-    } else {
-        *(int *)field = (int)x;
-    }
-}
-
-static int is_allowed(const spari_setting *of, double x) {
-    return x >= of->least && x <= of->most && (of->kind == SPARI_IS_REAL || x == floor(x));
+    spari_setting_store(s, of, x);
 }
 
 void spari_settings_default(spar_session *s) {
@@ -191,8 +177,8 @@ static int check_given(spar_session *session, const char *call, int by, const do
     SPARI_TRY(settable(session, call));
     for (int i = 0; i < SETTINGS; i++) {
         if (settings[i].by == by) {
-            SPARI_REQUIRE(session, is_allowed(settings + i, *given), SPAR_ERR_ARGUMENT, "%s: %s is %.15g; give %s",
-                          call, settings[i].key, *given, settings[i].range);
+            SPARI_REQUIRE(session, spari_setting_allows(settings + i, *given), SPAR_ERR_ARGUMENT,
+                          "%s: %s is %.15g; give %s", call, settings[i].key, *given, settings[i].range);
             given++;
         }
     }
@@ -358,17 +344,6 @@ static const spari_setting *find_option(const char *key) {
     return NULL;
 }
 
-/* Whether the text is a value of the option. */
-static int read_value(const spari_setting *of, const char *text, double *x) {
-    if (of->kind == SPARI_IS_WORD) {
-        *x = strcmp(text, of->words[1]) == 0;
-        return *x > 0 || strcmp(text, of->words[0]) == 0;
-    }
-    char *end;
-    *x = strtod(text, &end);
-    return end != text && *end == '\0' && is_allowed(of, *x);
-}
-
 int spar_session_set_option(spar_session *session, const char *key, const char *value) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(settable(session, __func__));
@@ -376,7 +351,7 @@ int spar_session_set_option(spar_session *session, const char *key, const char *
     const spari_setting *of = find_option(key);
     SPARI_REQUIRE(session, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
     double x;
-    SPARI_REQUIRE(session, read_value(of, value, &x), SPAR_ERR_ARGUMENT,
+    SPARI_REQUIRE(session, spari_setting_read(of, value, &x), SPAR_ERR_ARGUMENT,
                   "%s: option '%s' does not accept '%s'; give %s", __func__, key, value, of->range);
     store(session, of, x);
     return SPAR_OK;
@@ -388,20 +363,5 @@ int spar_session_get_option(const spar_session *session, const char *key, int64_
     SPARI_REQUIRE(session, key && text, SPAR_ERR_ARGUMENT, "%s: key or text is NULL", __func__);
     const spari_setting *of = find_option(key);
     SPARI_REQUIRE(session, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
-    char value[40] = "";
-    double x = spari_setting_value(session, of);
-    if (of->kind == SPARI_IS_WORD) {
-        (void)snprintf(value, sizeof value, "%s", of->words[x > 0]);
-    } else { /* the shortest text that is read as the same number */
-        for (int digits = 15; digits <= 17 && (digits == 15 || strtod(value, NULL) != x); digits++) {
-            (void)snprintf(value, sizeof value, "%.*g", digits, x);
-        }
-    }
-    int64_t needed = (int64_t)strlen(value) + 1;
-    SPARI_TRY(spari_need_capacity(session, __func__, capacity));
-    SPARI_REQUIRE(session, capacity >= needed, SPAR_ERR_ARGUMENT,
-                  "%s: the value of '%s' needs %lld characters; the buffer has %lld", __func__, key, (long long)needed,
-                  (long long)capacity);
-    memcpy(text, value, (size_t)needed);
-    return SPAR_OK;
+    return spari_setting_write(session, __func__, of, spari_setting_value(session, of), capacity, text);
 }

@@ -175,6 +175,39 @@ static void other_order(void **state) {
     spar_session_destroy(&s);
 }
 
+/* What the fluid's added mass responds to is part of a member's description; the options of a fluid are not compared.
+ */
+static void other_response(void **state) {
+    (void)state;
+    const double node[3] = {0, 0, 0};
+    double mass[36] = {0};
+    spar_session *s = NULL;
+    spar_member *body = NULL;
+    spar_fluid *fluid = NULL;
+    OK(NULL, spar_session_create_mpi(MPI_COMM_WORLD, &s));
+    for (int i = 0; i < 6; i++) {
+        mass[7 * i] = 1;
+    }
+    OK(s, spar_rigid_create(s, "body", NULL, NULL, mass, &body));
+    OK(s, spar_member_set_added_mass(body, 1, NULL, mass));
+    scene c = {.session = s};
+    if (size > 1) {
+        OK(s, spar_member_set_added_mass_response(body, last ? SPAR_RESPONSE_VELOCITY : SPAR_RESPONSE_ACCELERATION));
+        differs(&c, spar_member_commit(body), "descriptions of it");
+    }
+    OK(s, spar_member_set_added_mass_response(body, SPAR_RESPONSE_VELOCITY));
+    OK(s, spar_member_commit(body));
+    OK(s, spar_fluid_create(body, "fluid", &fluid));
+    OK(s, spar_fluid_set_option(fluid, "theta", last ? "group" : "average"));
+    OK(s, spar_fluid_set_option(fluid, "far", last ? "refuse" : "take"));
+    OK(s, spar_fluid_set_option(fluid, "audit", last ? "off" : "on"));
+    OK(s, spar_fluid_set_motion_nodes(fluid, 1, node));
+    OK(s, spar_fluid_map(fluid));
+    OK(s, spar_step_begin(s, dt));
+    OK(s, spar_step_reject(s));
+    spar_session_destroy(&s);
+}
+
 /* Nowhere to put the session on one rank: none on the others either. */
 static void no_place(void **state) {
     (void)state;
@@ -275,15 +308,11 @@ static void calls_from_callbacks(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(trials),
-        cmocka_unit_test(advice),
-        cmocka_unit_test(aero),
-        cmocka_unit_test(members),
-        cmocka_unit_test(other_order),
-        cmocka_unit_test(no_place),
-        cmocka_unit_test(destroyed_on_one_rank),
-        cmocka_unit_test(sums),
-        cmocka_unit_test(calls_from_callbacks),
+        cmocka_unit_test(trials),      cmocka_unit_test(advice),
+        cmocka_unit_test(aero),        cmocka_unit_test(members),
+        cmocka_unit_test(other_order), cmocka_unit_test(other_response),
+        cmocka_unit_test(no_place),    cmocka_unit_test(destroyed_on_one_rank),
+        cmocka_unit_test(sums),        cmocka_unit_test(calls_from_callbacks),
     };
     spar_session *s = NULL;
     int early = spar_session_create_mpi(MPI_COMM_WORLD, &s);

@@ -232,6 +232,15 @@ static void make_blades(scene *s) {
     }
 }
 
+static void set_options(const scene *s, spar_fluid *f) {
+    if (s->is.unaudited) {
+        MUST(spar_fluid_set_option(f, "audit", "off"));
+    }
+    if (s->is.group) {
+        MUST(spar_fluid_set_option(f, "theta", "group"));
+    }
+}
+
 /* Nodes around the line, some metres apart from the axis. */
 static void make_fluid(scene *s) {
     spar_fluid **f = &s->fluid[0];
@@ -245,6 +254,7 @@ static void make_fluid(scene *s) {
         s->moment[3 * j] = 1e-4;
     }
     MUST(spar_fluid_create(s->member[0], "around", f));
+    set_options(s, *f);
     MUST(spar_fluid_set_motion_nodes(*f, s->n, s->x));
     MUST(spar_fluid_set_force_nodes(*f, s->n, s->x));
     MUST(spar_fluid_map(*f));
@@ -265,6 +275,7 @@ static void make_aero(scene *s) {
     }
     for (int b = 0; b < BLADES; b++) {
         MUST(spar_fluid_create(s->member[b], "blade", &s->fluid[b]));
+        set_options(s, s->fluid[b]);
         MUST(spar_fluid_set_stations(s->fluid[b], SECTIONS, eta, offset[0]));
         MUST(spar_fluid_map(s->fluid[b]));
     }
@@ -312,14 +323,8 @@ static void make(scene *s, const setting *is) {
     if (is->scheme & GIVEN) {
         MUST(spar_session_set_coupling(s->session, is->scheme & ~GIVEN, 1e-9, 1e-9, 20));
     }
-    if (is->unaudited) {
-        MUST(spar_session_set_option(s->session, "fluid.audit", "off"));
-    }
     if (is->reproducible & GIVEN) {
         MUST(spar_session_set_reproducible(s->session, is->reproducible & ~GIVEN));
-    }
-    if (is->group) {
-        MUST(spar_session_set_option(s->session, "fluid.theta", "group"));
     }
     if (is->aero) {
         make_aero(s);

@@ -37,11 +37,11 @@ static void make(void) {
         force[j][0] = 1, force[j][1] = cos(3 * t), force[j][2] = sin(t);
     }
     MUST(spar_session_create(&session));
-    MUST(spar_session_set_option(session, "fluid.audit", "off"));
     MUST(spar_point_create(session, "point", place, NULL, &member));
     MUST(spar_member_commit(member));
     MUST(spar_member_set_motion(member, q, rates, NULL));
     MUST(spar_fluid_create(member, "around", &fluid));
+    MUST(spar_fluid_set_option(fluid, "audit", "off"));
     MUST(spar_fluid_set_motion_nodes(fluid, N, node[0]));
     MUST(spar_fluid_set_force_nodes(fluid, N, node[0]));
     MUST(spar_fluid_map(fluid));

@@ -657,12 +657,12 @@ static void test_no_output(void **state) {
 static void test_added_mass(void **state) {
     (void)state;
     spar_session *s = scene_session();
-    spar_case *c =
-        read_text(s, NULL,
-                  "[beam wing]\nnodes 4\naxis 0 0 0 0\naxis 1 2 0 0\nsection 0 4e4 4e4 4e4 800 600 600 1 1 1 "
-                  ".02 .01 .01\nadded_mass 0 1 2 3 .4 .5 .6\nadded_mass 1 2 4 6 .8 1 1.2\n"
-                  "mass_damping .25\nbody 1 5 5 5 .1 .1 .2\nbody .5 3 3 3 .1 .1 .1\n"
-                  "[rigid body]\nplace 5 0 0\nmass 2 2 2 1 1 1\nadded_mass 7 8 9 .7 .8 .9\nroot free\n");
+    spar_case *c = read_text(
+        s, NULL,
+        "[beam wing]\nnodes 4\naxis 0 0 0 0\naxis 1 2 0 0\nsection 0 4e4 4e4 4e4 800 600 600 1 1 1 "
+        ".02 .01 .01\nadded_mass 0 1 2 3 .4 .5 .6\nadded_mass 1 2 4 6 .8 1 1.2\nadded_mass_response velocity\n"
+        "mass_damping .25\nbody 1 5 5 5 .1 .1 .2\nbody .5 3 3 3 .1 .1 .1\n"
+        "[rigid body]\nplace 5 0 0\nmass 2 2 2 1 1 1\nadded_mass 7 8 9 .7 .8 .9\nroot free\n");
     const double given[6] = {1, 2, 3, .4, .5, .6};
     double eta[2], mass[2][36];
     int64_t n = 0;
@@ -678,6 +678,11 @@ static void test_added_mass(void **state) {
     assert_true(n == 2 && eta[0] == 1 && eta[1] == .5 && mass[0][7] == 5 && mass[0][35] == .2 && mass[1][0] == 3);
     OK(s, spar_member_get_added_mass(spar_case_member_at(c, 1), &n, 1, NULL, mass[0]));
     assert_true(n == 1 && mass[0][0] == 7 && mass[0][7] == 8 && mass[0][35] == .9);
+    for (int i = 0; i < 2; i++) {
+        int response;
+        OK(s, spar_member_get_added_mass_response(spar_case_member_at(c, i), &response));
+        assert_int_equal(response, i == 0 ? SPAR_RESPONSE_VELOCITY : SPAR_RESPONSE_ACCELERATION);
+    }
     spar_case_free(&c);
     spar_session_destroy(&s);
 }

@@ -426,10 +426,10 @@ static void group_interpolation_keeps_the_radius(void **state) {
     spar_member *m;
     spar_fluid *f;
     OK(spar_session_create(&s));
-    OK(spar_session_set_option(s, "fluid.theta", "group"));
     OK(spar_point_create(s, "hub", origin, none, &m));
     OK(spar_member_commit(m));
     OK(spar_fluid_create(m, "arm", &f));
+    OK(spar_fluid_set_option(f, "theta", "group"));
     OK(spar_fluid_set_motion_nodes(f, 1, node));
     OK(spar_fluid_map(f));
     OK(spar_step_begin(s, 1));
@@ -453,10 +453,10 @@ static void half_step_cuts_the_corner(void **state) {
         spar_member *m;
         spar_fluid *f;
         OK(spar_session_create(&s));
-        OK(spar_session_set_option(s, "fluid.theta", group ? "group" : "average"));
         OK(spar_point_create(s, "hub", NULL, none, &m));
         OK(spar_member_commit(m));
         OK(spar_fluid_create(m, "arm", &f));
+        OK(spar_fluid_set_option(f, "theta", group ? "group" : "average"));
         OK(spar_fluid_set_motion_nodes(f, 1, node));
         OK(spar_fluid_map(f));
         OK(spar_step_begin(s, 1));
@@ -715,7 +715,7 @@ static void far_nodes_are_flagged_or_refused(void **state) {
     assert_int_equal(count, 2);
     OK(spar_fluid_get_flag_count(f, SPAR_NODES_MOTION, SPAR_MAP_END, &count));
     assert_int_equal(count, 1);
-    OK(spar_session_set_option(r.session, "fluid.far", "refuse"));
+    OK(spar_fluid_set_option(f, "far", "refuse"));
     OK(spar_fluid_set_motion_nodes(f, 3, node[0]));
     assert_int_equal(spar_fluid_map(f), SPAR_ERR_MAPPING);
     assert_true(says(&r, "2 of 3") && says(&r, "node 1") && says(&r, "surface"));

@@ -144,7 +144,10 @@ static void either_set_is_where_asked(void **state) {
         double theta = 0.5 * (i % 3);
         if (i % 3 == 0) {
             OK(b.session, i > 0 ? spar_step_reject(b.session) : SPAR_OK);
-            OK(b.session, spar_session_set_option(b.session, "fluid.theta", i < 3 ? "average" : "group"));
+            spar_fluid *all[] = {both, motion, force, unpulled};
+            for (int k = 0; k < 4; k++) {
+                OK(b.session, spar_fluid_set_option(all[k], "theta", i < 3 ? "average" : "group"));
+            }
             OK(b.session, spar_step_begin(b.session, 0.1));
             move(&b, 0.7);
         }

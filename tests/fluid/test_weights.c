@@ -84,6 +84,11 @@ static void mesh_begin(mesh *m, int elements, int kind) {
     m->weighted = add_fluid(m, "weighted", kind);
 }
 
+static void mesh_set_theta(const mesh *m, const char *theta) {
+    OK(m->session, spar_fluid_set_option(m->plain, "theta", theta));
+    OK(m->session, spar_fluid_set_option(m->weighted, "theta", theta));
+}
+
 static void mesh_map(const mesh *m) {
     OK(m->session, spar_fluid_map(m->plain));
     OK(m->session, spar_fluid_map(m->weighted));
@@ -125,7 +130,7 @@ static void one_is_as_without(void **state) {
         for (int j = 0; j < N; j++) {
             w[j] = 1;
         }
-        OK(m.session, spar_session_set_option(m.session, "fluid.theta", k & 4 ? "group" : "average"));
+        mesh_set_theta(&m, k & 4 ? "group" : "average");
         OK(m.session, spar_fluid_set_motion_weights(m.weighted, N, w));
         mesh_map(&m);
         set_pose(&m, 0.3, 1);
@@ -159,7 +164,7 @@ static void part_of_the_motion(void **state) {
         double most = 0, way;
         const double zero[3] = {0, 0, 0};
         mesh_begin(&m, k & 1 ? 2 : 0, k & 2 ? SPAR_INTERPOLATE_CONSISTENT : SPAR_INTERPOLATE_NODAL);
-        OK(m.session, spar_session_set_option(m.session, "fluid.theta", k & 4 ? "group" : "average"));
+        mesh_set_theta(&m, k & 4 ? "group" : "average");
         OK(m.session, spar_fluid_set_motion_weights(m.weighted, N, m.w));
         mesh_map(&m);
         set_pose(&m, 0.3, 1);

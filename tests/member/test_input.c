@@ -62,7 +62,7 @@ static void test_session_settings(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "atol is nan", spar_session_set_coupling(s, 1, NAN, 0, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "omega", spar_session_set_relaxation(s, 0));
     REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_session_set_option(s, "colour", "red"));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "does not accept", spar_session_set_option(s, "fluid.theta", "red"));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "does not accept", spar_session_set_option(s, "coupling.norm", "red"));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_session_set_option(s, NULL, "red"));
     still_works(s, "after");
     spar_session_destroy(&s);
@@ -236,16 +236,12 @@ static void test_read_back(void **state) {
                                             {"coupling.unconverged", "error", "accept"},
                                             {"coupling.patience", "3", "1000000"},
                                             {"coupling.norm", "motion", "loads"},
-                                            {"fluid.added_mass", "acceleration", "velocity"},
                                             {"coupling.estimate", "off", "on"},
                                             {"coupling.columns", "30", "7"},
                                             {"coupling.reuse", "5", "0"},
                                             {"coupling.filter", "0.0001", "0.12345678901234566"},
                                             {"coupling.motion_atol", "0", "1e-09"},
                                             {"coupling.motion_rtol", "0", "0.1"},
-                                            {"fluid.theta", "average", "group"},
-                                            {"fluid.far", "take", "refuse"},
-                                            {"fluid.audit", "on", "off"},
                                             {"advise.dt", "vary", "keep"},
                                             {"advise.nodes", "vary", "keep"},
                                             {"advise.fidelity", "vary", "keep"},
@@ -295,10 +291,10 @@ static void test_read_back(void **state) {
         OK(s, spar_session_get_option(s, option[i][0], (int64_t)strlen(option[i][2]) + 1, word));
         assert_string_equal(word, option[i][2]);
     }
-    REFUSED(s, SPAR_ERR_ARGUMENT, "needs 7 characters; the buffer has 6",
-            spar_session_get_option(s, "fluid.far", 6, word));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "needs 5 characters; the buffer has 4",
+            spar_session_get_option(s, "advise.dt", 4, word));
     REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_session_get_option(s, "far", 32, word));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "give average or group", spar_session_set_option(s, "fluid.theta", "red"));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "give motion or loads", spar_session_set_option(s, "coupling.norm", "red"));
     assert_int_equal(spar_session_get_newton(NULL, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
     spar_session_destroy(&s);
 }
@@ -307,7 +303,10 @@ static void test_read_back(void **state) {
 static void test_read_members(void **state) {
     (void)state;
     const double place[3] = {1, 2, 3}, q[4] = {0.6, 0, 0.8, 0}, mu[6] = {1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3};
+    static const char *const option[][3] = {
+        {"theta", "average", "group"}, {"far", "take", "refuse"}, {"audit", "on", "off"}};
     double C[36], J[36], x[3], r[4], found[6], far;
+    char word[32];
     int kind, on, rank, elements, nodes, rule, points, effects, method;
     int64_t modes;
     scene_diagonal(C, 1, 1, 1, 1, 1, 1);
@@ -345,6 +344,28 @@ static void test_read_members(void **state) {
     OK(s, spar_fluid_get_projection(f, &method, &far));
     OK(s, spar_fluid_get_interpolation(f, &kind));
     assert_true(method == SPAR_PROJECT_BOUNDED && far <= 0 && kind == SPAR_INTERPOLATE_NODAL);
+    for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
+        OK(s, spar_fluid_get_option(f, option[i][0], sizeof word, word));
+        assert_string_equal(word, option[i][1]);
+        OK(s, spar_fluid_set_option(f, option[i][0], option[i][2]));
+        OK(s, spar_fluid_get_option(f, option[i][0], (int64_t)strlen(option[i][2]) + 1, word));
+        assert_string_equal(word, option[i][2]);
+    }
+    REFUSED(s, SPAR_ERR_ARGUMENT, "needs 7 characters; the buffer has 6", spar_fluid_get_option(f, "far", 6, word));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no option 'fluid.far'; give theta, far or audit",
+            spar_fluid_get_option(f, "fluid.far", 32, word));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_fluid_set_option(f, "fluid.far", "take"));
+    REFUSED(s, SPAR_ERR_ARGUMENT,
+            "fluid 'air' of member 'beam': option 'theta' does not accept 'red'; give average or group",
+            spar_fluid_set_option(f, "theta", "red"));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_set_option(f, "theta", NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_fluid_get_option(f, "theta", 32, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_session_set_option(s, "fluid.theta", "group"));
+    OK(s, spar_step_begin(s, 0.1));
+    REFUSED(s, SPAR_ERR_STATE, "in progress", spar_fluid_set_option(f, "theta", "average"));
+    OK(s, spar_step_reject(s));
+    OK(s, spar_fluid_get_option(f, "theta", sizeof word, word));
+    assert_string_equal(word, "group");
     OK(s, spar_fluid_set_projection(f, SPAR_PROJECT_RPOLY, 0.25));
     OK(s, spar_fluid_set_interpolation(f, SPAR_INTERPOLATE_CONSISTENT));
     OK(s, spar_fluid_get_projection(f, &method, &far));

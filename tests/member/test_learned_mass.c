@@ -1,6 +1,6 @@
 /* The fluid's added mass learned from iterations (spar_member_learn_added_mass), and loads of fluids that take
-   accelerations from velocities (option fluid.added_mass): docs/theory.md, (T19) to (T22). What is learned of an exact
-   fluid is its mass to rounding, with what its springs add over the step. */
+   accelerations from velocities (spar_member_set_added_mass_response): docs/theory.md, (T19) to (T22). What is learned
+   of an exact fluid is its mass to rounding, with what its springs add over the step. */
 #include "buoy.h"
 #include "pistons.h"
 
@@ -276,6 +276,8 @@ static void fin_create(fin *f, const fin_case *c) {
         OK(f->session, spar_member_set_root(f->beam, SPAR_ROOT_FREE));
     }
     OK(f->session, spar_member_learn_added_mass(f->beam, c->learn, eta));
+    OK(f->session, spar_member_set_added_mass_response(f->beam, c->by_velocity ? SPAR_RESPONSE_VELOCITY
+                                                                               : SPAR_RESPONSE_ACCELERATION));
     OK(f->session, spar_member_commit(f->beam));
     for (int k = 0; k < STRIPS; k++) {
         f->weight[k] = w[k % 5], f->eta[k] = 0.25 * (gauss[k % 5] + (k < 5 ? 1 : 3));
@@ -287,8 +289,6 @@ static void fin_create(fin *f, const fin_case *c) {
     OK(f->session, spar_fluid_map(f->fluid));
     OK(f->session, spar_session_set_integrator(f->session, 0.9, 1));
     OK(f->session, spar_session_set_coupling(f->session, SPAR_COUPLING_IQN_ILS, 1e-12, 1e-9, 400));
-    OK(f->session,
-       spar_session_set_option(f->session, "fluid.added_mass", c->by_velocity ? "velocity" : "acceleration"));
 }
 
 /* Steps with the fluid; 0, or the status that ended them. */
@@ -414,6 +414,8 @@ static void explicit_is_iterated(void **state) {
             OK(b.session, spar_rigid_create(b.session, "vessel", origin, q, mass, &b.body));
             scene_diagonal(mass, answer * b.added, 0, 0, 0, 0, 0);
             OK(b.session, spar_member_set_added_mass(b.body, 1, NULL, mass));
+            OK(b.session,
+               spar_member_set_added_mass_response(b.body, way ? SPAR_RESPONSE_VELOCITY : SPAR_RESPONSE_ACCELERATION));
             OK(b.session, spar_member_commit(b.body));
             OK(b.session, spar_fluid_create(b.body, "fluid", &b.fluid));
             OK(b.session, spar_fluid_set_motion_nodes(b.fluid, 1, origin));
@@ -426,7 +428,6 @@ static void explicit_is_iterated(void **state) {
             OK(b.session, spar_session_set_predictor(b.session, n / (RATIOS * 3)));
             OK(b.session, spar_session_set_coupling(b.session, way ? SPAR_COUPLING_EXPLICIT : SPAR_COUPLING_IQN_ILS,
                                                     1e-13, 1e-11, 100));
-            OK(b.session, spar_session_set_option(b.session, "fluid.added_mass", way ? "velocity" : "acceleration"));
             for (int i = 0; i < 100; i++) {
                 OK(b.session, spar_step(b.session, i < 50 ? 0.05 : 0.03, vessel_fluid, &b, NULL));
                 OK(b.session, spar_member_get_motion(b.body, pose, v, NULL));
@@ -483,6 +484,15 @@ static void refusals(void **state) {
     OK(s, spar_member_get_learned_added_mass(beam, NULL, NULL, &n, 0, NULL, NULL));
     assert_int_equal(n, 3);
     assert_int_equal(spar_member_get_learned_added_mass(beam, NULL, NULL, &n, -1, NULL, NULL), SPAR_ERR_ARGUMENT);
+    int response;
+    OK(s, spar_member_get_added_mass_response(beam, &response));
+    assert_int_equal(response, SPAR_RESPONSE_ACCELERATION);
+    OK(s, spar_member_set_added_mass_response(beam, SPAR_RESPONSE_VELOCITY));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "response 2", spar_member_set_added_mass_response(beam, 2));
+    REFUSED(s, SPAR_ERR_UNSUPPORTED, "point", spar_member_set_added_mass_response(point, SPAR_RESPONSE_VELOCITY));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_member_get_added_mass_response(beam, NULL));
+    OK(s, spar_member_get_added_mass_response(beam, &response));
+    assert_int_equal(response, SPAR_RESPONSE_VELOCITY);
     OK(s, spar_member_set_external(beam, 1));
     assert_int_equal(spar_member_commit(beam), SPAR_ERR_UNSUPPORTED);
     assert_non_null(strstr(spar_session_message(s), "does not apply to prescribed members"));
@@ -490,6 +500,7 @@ static void refusals(void **state) {
     OK(s, spar_member_commit(beam));
     OK(s, spar_member_commit(body));
     assert_int_equal(spar_member_learn_added_mass(body, 1, NULL), SPAR_ERR_STATE);
+    REFUSED(s, SPAR_ERR_STATE, "committed", spar_member_set_added_mass_response(body, SPAR_RESPONSE_VELOCITY));
     spar_session_destroy(&s);
 }
 

@@ -140,6 +140,9 @@ static void member_settings(scene *w, spar_member *m) {
     WRITE(w, spar_member_set_external(m, i));
     keep_one(w, i);
     STATIONS(w, m, 36, spar_member_get_added_mass, spar_member_set_added_mass);
+    OK(w->s, spar_member_get_added_mass_response(m, &i));
+    WRITE(w, spar_member_set_added_mass_response(m, i));
+    keep_one(w, i);
     OK(w->s, spar_member_get_owner(m, &i));
     WRITE(w, spar_member_set_owner(m, i));
     keep_one(w, i);
@@ -158,6 +161,15 @@ static void fluid_settings(scene *w, spar_fluid *f, int before_map) {
     OK(w->s, spar_fluid_get_interpolation(f, &i));
     WRITE(w, spar_fluid_set_interpolation(f, i));
     keep_one(w, i);
+    for (int k = 0; k < 3; k++) {
+        static const char *const key[3] = {"theta", "far", "audit"};
+        char text[32];
+        OK(w->s, spar_fluid_get_option(f, key[k], sizeof text, text));
+        WRITE(w, spar_fluid_set_option(f, key[k], text));
+        for (const char *c = text; *c; c++) {
+            keep_one(w, *c);
+        }
+    }
     for (int which = SPAR_NODES_MOTION; which <= SPAR_NODES_FORCE; which++) {
         OK(w->s, spar_fluid_get_layout(f, which, &a, &b));
         WRITE(w, spar_fluid_set_layout(f, which, a, b));
@@ -183,8 +195,8 @@ static void change_session(spar_session *s) {
         {"newton.stop", "strict"},        {"coupling.unconverged", "accept"},
         {"coupling.patience", "7"},       {"coupling.filter", "0.00012345678901234"},
         {"coupling.columns", "20"},       {"coupling.reuse", "4"},
-        {"coupling.motion_rtol", "1e-9"}, {"fluid.theta", "group"},
-        {"advise.nodes", "keep"},         {"advise.fluid_cost", "0.125"}};
+        {"coupling.motion_rtol", "1e-9"}, {"advise.nodes", "keep"},
+        {"advise.fluid_cost", "0.125"}};
     OK(s, spar_session_set_gravity(s, (const double[]){0.1, 0.2, -9.81}));
     OK(s, spar_session_set_integrator(s, 0.8, 2));
     OK(s, spar_session_set_newton(s, 1e-14, 1e-11, 40));
@@ -254,6 +266,8 @@ static void make_fluid(scene *w, int k, spar_member *m, int furnished) {
         OK(w->s, spar_fluid_set_interpolation(w->f[k], SPAR_INTERPOLATE_CONSISTENT));
         OK(w->s, spar_fluid_set_layout(w->f[k], SPAR_NODES_MOTION, 1, 3));
         OK(w->s, spar_fluid_set_states(w->f[k], 2));
+        OK(w->s, spar_fluid_set_option(w->f[k], "theta", "group"));
+        OK(w->s, spar_fluid_set_option(w->f[k], "audit", "off"));
     }
     fluid_settings(w, w->f[k], 1);
     OK(w->s, spar_fluid_map(w->f[k]));
@@ -279,6 +293,7 @@ static void make(scene *w, int changed, int writes, const scene *effects_of) {
         furnish(w, w->m[BLADE]);
         scene_diagonal(mass, 1, 1, 1, 0, 0, 0);
         OK(w->s, spar_member_set_added_mass(w->m[BODY], 1, NULL, mass));
+        OK(w->s, spar_member_set_added_mass_response(w->m[BODY], SPAR_RESPONSE_VELOCITY));
         OK(w->s, spar_member_set_effects(w->m[BLADE], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
         OK(w->s, spar_member_set_fidelity(w->m[BARE], SPAR_FIDELITY_MODAL, 4));
     }
@@ -424,7 +439,7 @@ static void test_all_settings_are_tried(void **state) {
         "session_reproducible session_threads session_option session_tolerance session_goal beam_masses "
         "beam_foundation beam_pretension beam_quadrature beam_damping beam_mass_damping member_placement member_root "
         "member_external member_effects member_fidelity member_added_mass member_owner fluid_motion_weights "
-        "fluid_layout fluid_projection fluid_interpolation fluid_states ";
+        "fluid_layout fluid_projection fluid_interpolation fluid_states fluid_option member_added_mass_response ";
     static const char *const other = " joint_load aero_rotor member_motion ";
     char *text = headers();
     int found = 0;

@@ -246,7 +246,7 @@ static void test_learned_mass(void **state) {
             assert_true(result.used && result.used_at < 10 && flow_distance(&result, &exact) < 1e-4);
             assert_true(fixed < (scene == FLOW_CYLINDER ? 2.3 : 13));
             c.then = SPAR_COUPLING_EXPLICIT, c.then_predictor = scene == FLOW_CYLINDER;
-            c.option[0][0] = "fluid.added_mass", c.option[0][1] = "velocity";
+            c.response = SPAR_RESPONSE_VELOCITY;
             run(&c);
             double off = flow_distance(&result, &exact);
             print_message("scene %d, added mass %g: fixed point %.1f evaluations, explicit off by %.1e\n", scene,

@@ -56,6 +56,7 @@ static int learn(const flow *f) {
     for (int k = 1; k < f->c->learn; k++) {
         eta[k] = (double)k / (f->c->learn - 1);
     }
+    TRY(spar_member_set_added_mass_response(f->member, f->c->response));
     return spar_member_learn_added_mass(f->member, f->c->learn, eta);
 }
 

@@ -41,6 +41,7 @@ typedef struct flow_case {
     double omega;                        /* 0: the library's */
     const char *option[FLOW_OPTIONS][2]; /* keys and values, ends at NULL */
     int learn;                           /* stations at which the added mass is learned; 0: it is not */
+    int response;                        /* SPAR_RESPONSE_*: what predicted loads of it answer to */
     int change_at, then, then_predictor; /* after so many steps, if not 0, another scheme and predictor */
     int fixed;                           /* so many iterations in each step, whatever the check says; 0: no */
     unsigned seed;

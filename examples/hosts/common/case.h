@@ -44,6 +44,8 @@
    [rigid NAME]
      mass                       a 6x6 matrix            added_mass              likewise, a guess of the fluid's
    [point NAME]
+   a beam or rigid body with an added mass
+     added_mass_response acceleration|velocity      spar_member_set_added_mass_response
    these three
      place x y z                orientation qw qx qy qz
      root free|fixed|pinned|driven               external on|off          owner rank

@@ -325,6 +325,14 @@ static int set_stations(const spar_case *c, const case_block *block, const char 
     return status;
 }
 
+static int set_response(const spar_case *c, const case_block *block, spar_member *member) {
+    static const char *const names[] = {"acceleration", "velocity", NULL}; /* in the order of SPAR_RESPONSE_* */
+    const case_line *line = case_find(block, "added_mass_response");
+    int response;
+    CASE_TRY(line ? case_choice(&c->text, line, 1, names, &response) : SPAR_OK);
+    return line ? case_told(c, line->number, spar_member_set_added_mass_response(member, response)) : SPAR_OK;
+}
+
 static int describe_beam(const spar_case *c, const case_block *block, spar_member **beam) {
     static const char *const rules[] = {"gauss", "lobatto", "sections", NULL};
     const case_line *elements = case_find(block, "elements"), *nodes = case_find(block, "nodes"), *line;
@@ -351,6 +359,7 @@ static int describe_beam(const spar_case *c, const case_block *block, spar_membe
         DO(c, line->number, spar_beam_set_mass_damping(*beam, mu[0]));
     }
     CASE_TRY(set_masses(c, block, "added_mass", spar_member_set_added_mass, *beam));
+    CASE_TRY(set_response(c, block, *beam));
     CASE_TRY(set_masses(c, block, "body", spar_beam_set_masses, *beam));
     CASE_TRY(set_stations(c, block, "foundation", 3, spar_beam_set_foundation, *beam));
     CASE_TRY(set_stations(c, block, "pretension", 6, spar_beam_set_pretension, *beam));
@@ -371,7 +380,7 @@ static int describe_rigid(const spar_case *c, const case_block *block, spar_memb
         CASE_TRY(case_matrix(&c->text, line, mass));
         DO(c, line->number, spar_member_set_added_mass(*body, 1, NULL, mass));
     }
-    return SPAR_OK;
+    return set_response(c, block, *body);
 }
 
 static int set_effects(const spar_case *c, const case_line *line, spar_member *member) {

@@ -25,9 +25,11 @@ static const known_key beam_keys[] = {
     {"axis_file", 1, 1, 0}, {"node", 3, 7, 1},       {"twist_scale", 1, 1, 0},   {"section", 7, 73, 1},
     {"beamdyn", 1, 2, 0},   {"damping", 6, 6, 0},    {"modal_damping", 4, 4, 0}, {"sections_file", 1, 1, 0},
     {"fidelity", 1, 2, 0},  {"line_load", 8, 8, 1},  {"added_mass", 7, 37, 1},   {"mass_damping", 1, 1, 0},
-    {"body", 7, 37, 1},     {"foundation", 4, 4, 1}, {"pretension", 7, 7, 1},    {NULL, 0, 0, 0},
+    {"body", 7, 37, 1},     {"foundation", 4, 4, 1}, {"pretension", 7, 7, 1},    {"added_mass_response", 1, 1, 0},
+    {NULL, 0, 0, 0},
 };
-static const known_key rigid_keys[] = {{"mass", 6, 36, 0}, {"added_mass", 6, 36, 0}, {NULL, 0, 0, 0}};
+static const known_key rigid_keys[] = {
+    {"mass", 6, 36, 0}, {"added_mass", 6, 36, 0}, {"added_mass_response", 1, 1, 0}, {NULL, 0, 0, 0}};
 static const known_key joint_keys[] = {
     {"a", 2, 2, 0},      {"b", 1, 2, 0},          {"free", 1, 6, 0},     {"place", 3, 3, 0},
     {"axes", 4, 4, 0},   {"stiffness", 6, 36, 0}, {"damping", 6, 36, 0}, {"preload", 6, 6, 0},

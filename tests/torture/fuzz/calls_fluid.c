@@ -385,6 +385,33 @@ void do_spar_fluid_get_interpolation(call *c) {
     RUN(c, spar_fluid_get_interpolation(f->f, kind));
 }
 
+static const char *const option_keys[] = {"theta", "far", "audit"};
+
+void do_spar_fluid_set_option(call *c) {
+    static const char *const values[][2] = {{"average", "group"}, {"take", "refuse"}, {"on", "off"}},
+                             *const strange[] = {"", "1", "spar%n", "ON"};
+    live_fluid *f = arg_fluid(c);
+    int k = below(c, 3);
+    const char *key = option_keys[k], *value = values[k][below(c, 2)];
+    if (odd(c)) {
+        key = chance(c, 30) ? NULL : chance(c, 50) ? "fluid.theta" : option_keys[below(c, 3)];
+    }
+    if (odd(c)) {
+        value = chance(c, 20) ? NULL : strange[below(c, 4)];
+    }
+    text(c, ", \"%s\", \"%s\"", key ? key : "NULL", value ? value : "NULL");
+    RUN(c, spar_fluid_set_option(f->f, key, value));
+}
+
+void do_spar_fluid_get_option(call *c) {
+    live_fluid *f = arg_fluid(c);
+    const char *key = odd(c) ? NULL : option_keys[below(c, 3)];
+    int64_t n = arg_count(c, 0, 30);
+    char *into = arg_out(c, length(n), 1);
+    text(c, ", \"%s\"", key ? key : "NULL");
+    RUN(c, spar_fluid_get_option(f->f, key, n, into));
+}
+
 void do_spar_fluid_get_audit(call *c) {
     live_fluid *f = arg_fluid(c);
     int64_t n = arg_count(c, 0, SPAR_AUDIT_COUNT + 2);

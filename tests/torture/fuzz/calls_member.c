@@ -247,6 +247,18 @@ void do_spar_member_get_added_mass(call *c) {
     RUN(c, spar_member_get_added_mass(m->m, n, capacity, eta, M));
 }
 
+void do_spar_member_set_added_mass_response(call *c) {
+    live_member *m = arg_member(c, -1);
+    int response = arg_int(c, 0, 1);
+    RUN(c, spar_member_set_added_mass_response(m->m, response));
+}
+
+void do_spar_member_get_added_mass_response(call *c) {
+    live_member *m = arg_member(c, -1);
+    int *response = arg_out(c, (int64_t)sizeof *response, 0);
+    RUN(c, spar_member_get_added_mass_response(m->m, response));
+}
+
 void do_spar_member_learn_added_mass(call *c) {
     live_member *m = arg_member(c, -1);
     int64_t n = chance(c, 10) ? 0 : m->kind == KIND_BEAM ? arg_count(c, 1, 3) : arg_count(c, 1, 1), room = length(n);

@@ -224,17 +224,12 @@ void do_spar_session_set_threads(call *c) {
 }
 
 void do_spar_session_set_option(call *c) {
-    static const char *const keys[] = {"coupling.unconverged", "fluid.theta",       "fluid.far",
-                                       "fluid.audit",          "advise.dt",         "advise.nodes",
-                                       "advise.fidelity",      "advise.coupling",   "coupling.columns",
-                                       "coupling.reuse",       "coupling.filter",   "coupling.motion_atol",
-                                       "coupling.motion_rtol", "advise.fluid_cost", "advise.limit",
-                                       "coupling.norm",        "coupling.patience", "coupling.estimate",
-                                       "fluid.added_mass",     "newton.stop"};
+    static const char *const keys[] = {
+        "coupling.unconverged", "advise.dt",      "advise.nodes",    "advise.fidelity",      "advise.coupling",
+        "coupling.columns",     "coupling.reuse", "coupling.filter", "coupling.motion_atol", "coupling.motion_rtol",
+        "advise.fluid_cost",    "advise.limit",   "coupling.norm",   "coupling.patience",    "coupling.estimate",
+        "newton.stop"};
     static const char *const values[][3] = {{"error", "accept", "accept"},
-                                            {"average", "group", "group"},
-                                            {"take", "refuse", "refuse"},
-                                            {"on", "off", "off"},
                                             {"vary", "keep", "keep"},
                                             {"vary", "keep", "keep"},
                                             {"vary", "keep", "keep"},
@@ -249,7 +244,6 @@ void do_spar_session_set_option(call *c) {
                                             {"motion", "loads", "loads"},
                                             {"1", "3", "1000000"},
                                             {"off", "on", "on"},
-                                            {"acceleration", "velocity", "velocity"},
                                             {"balanced", "strict", "balanced"}};
     static const char *const strange[] = {"",   "nan",   "inf",    "-1", "1e999",  "1,5",  "0x10",  " 1",   "1 ",
                                           "%s", "10001", "1e-400", "-0", "accept", "keep", "1e300", "10000"};
@@ -349,7 +343,7 @@ void do_spar_session_sum_balance(call *c) {
 }
 
 void do_spar_session_get_option(call *c) {
-    static const char *const keys[] = {"coupling.unconverged", "fluid.audit",   "coupling.columns",
+    static const char *const keys[] = {"coupling.unconverged", "newton.stop",   "coupling.columns",
                                        "coupling.filter",      "coupling.norm", "coupling.patience",
                                        "advise.fluid_cost",    "no.option",     "spar%n"};
     live_session *l = arg_session(c);

@@ -118,6 +118,8 @@ enum {
     CALL(spar_member_set_fidelity, 40, FUZZ_CHANGES)                                                                   \
     CALL(spar_member_set_added_mass, 40, FUZZ_CHANGES)                                                                 \
     CALL(spar_member_get_added_mass, 20, FUZZ_PURE)                                                                    \
+    CALL(spar_member_set_added_mass_response, 20, FUZZ_CHANGES)                                                        \
+    CALL(spar_member_get_added_mass_response, 20, FUZZ_PURE)                                                           \
     CALL(spar_member_learn_added_mass, 40, FUZZ_CHANGES)                                                               \
     CALL(spar_member_get_learned_added_mass, 20, FUZZ_PURE)                                                            \
     CALL(spar_member_set_initial_velocity, 60, FUZZ_CHANGES)                                                           \
@@ -170,6 +172,8 @@ enum {
     CALL(spar_fluid_get_layout, 20, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_set_projection, 50, FUZZ_CHANGES)                                                                  \
     CALL(spar_fluid_set_interpolation, 50, FUZZ_CHANGES)                                                               \
+    CALL(spar_fluid_set_option, 60, FUZZ_CHANGES)                                                                      \
+    CALL(spar_fluid_get_option, 20, FUZZ_PURE)                                                                         \
     CALL(spar_fluid_map, 140, FUZZ_CHANGES)                                                                            \
     CALL(spar_fluid_get_count, 40, FUZZ_PURE)                                                                          \
     CALL(spar_fluid_get_flag_count, 40, FUZZ_PURE)                                                                     \

@@ -50,12 +50,14 @@ static void beam(writer *w) {
     part(w, 15, CALL_spar_beam_set_quadrature);
     part(w, 20, CALL_spar_member_set_added_mass);
     part(w, 20, CALL_spar_member_learn_added_mass);
+    part(w, 10, CALL_spar_member_set_added_mass_response);
 }
 
 static void fluid(writer *w) {
     part(w, 100, CALL_spar_fluid_create);
     part(w, 15, CALL_spar_fluid_set_projection);
     part(w, 30, CALL_spar_fluid_set_interpolation);
+    part(w, 30, CALL_spar_fluid_set_option);
     if (roll(w, 100) < 45) {
         part(w, 100, CALL_spar_fluid_set_stations);
     } else {

@@ -264,15 +264,11 @@ static void settings(spar_session *s) {
                                             {"coupling.unconverged", "accept"},
                                             {"coupling.patience", "100"},
                                             {"coupling.norm", "motion"},
-                                            {"fluid.added_mass", "velocity"},
                                             {"coupling.estimate", "on"},
                                             {"coupling.columns", "10"},
                                             {"coupling.reuse", "2"},
                                             {"coupling.filter", "1e-5"},
                                             {"coupling.motion_rtol", "1e-3"},
-                                            {"fluid.theta", "group"},
-                                            {"fluid.far", "take"},
-                                            {"fluid.audit", "on"},
                                             {"advise.fluid_cost", "0"},
                                             {"advise.limit", "0"},
                                             {"advise.coupling", "vary"}};
@@ -367,6 +363,7 @@ static void read_back(const spar_session *s, const spar_member *b, const spar_fl
     CALL(spar_beam_get_damping, b, number + 0);
     CALL(spar_fluid_get_projection, f, whole + 0, number + 8);
     CALL(spar_fluid_get_interpolation, f, whole + 0);
+    CALL(spar_fluid_get_option, f, "theta", (int64_t)sizeof word, word);
     CALL(spar_session_get_phase, s, whole + 0);
     PLAIN(spar_member_get_name, b);
     PLAIN(spar_fluid_get_name, f);
@@ -466,6 +463,7 @@ static void act_fidelities(void) {
     double load[6] = {0, 1, 2, 0, 0.1, 0}, frequency[3], shapes[3 * 6 * MANY], work[3], guess[72] = {0}, body[72] = {0},
            eta[2] = {0, 1};
     int64_t stations;
+    int response;
     guess[7] = guess[14] = guess[36 + 7] = 0.1;
     body[0] = body[7] = body[14] = body[36] = body[43] = body[50] = 0.1;
     spar_session *s = h.session = begin_session();
@@ -480,6 +478,8 @@ static void act_fidelities(void) {
         if (k != 3) {
             CALL(spar_member_set_added_mass, m, 2, eta, guess);
             CALL(spar_member_get_added_mass, m, &stations, 2, NULL, guess);
+            CALL(spar_member_set_added_mass_response, m, SPAR_RESPONSE_VELOCITY);
+            CALL(spar_member_get_added_mass_response, m, &response);
             CALL(spar_beam_set_mass_damping, m, what[k].root == SPAR_ROOT_FIXED ? 0.1 : 0);
             CALL(spar_beam_get_mass_damping, m, work);
             CALL(spar_beam_set_masses, m, 2, eta, body);
@@ -526,6 +526,7 @@ static void act_fluids(void) {
     CALL(spar_fluid_set_motion_weights, f, n, n > 0 ? out : NULL);
     CALL(spar_fluid_set_projection, f, SPAR_PROJECT_RPOLY, 1.0);
     CALL(spar_fluid_set_interpolation, f, SPAR_INTERPOLATE_CONSISTENT);
+    CALL(spar_fluid_set_option, f, "theta", "group");
     CALL(spar_fluid_map, f);
     CALL(spar_fluid_create, b, "sections", &sections);
     CALL(spar_fluid_set_stations, sections, 5, eta, NULL);

@@ -1,54 +1,56 @@
 /* The functions that are local: they send and wait for nothing. */
-" spar_aero_create spar_aero_destroy spar_aero_effect_name spar_aero_get_flags spar_aero_get_loads "
-    "spar_beam_set_mass_damping spar_beam_get_mass_damping spar_beam_set_masses spar_beam_get_masses "
-    "spar_beam_set_foundation spar_beam_get_foundation spar_beam_set_pretension spar_beam_get_pretension "
-    "spar_aero_get_chord spar_aero_set_shear spar_aero_set_tower "
-    "spar_aero_get_rotor spar_aero_get_sections spar_aero_set_blades spar_aero_set_effects spar_aero_set_rotor "
-    "spar_aero_read_aerodyn spar_fluid_read_aerodyn "
-    "spar_aero_set_section spar_aero_set_turn spar_aero_solve spar_beam_create spar_beam_evaluate "
-    "spar_beam_read_beamdyn spar_beam_set_axis spar_beam_set_damping spar_beam_set_line_load spar_beam_set_nodes "
-    "spar_beam_set_quadrature spar_beam_set_sections spar_effect_name spar_fluid_check_matrices spar_fluid_create "
-    "spar_fluid_destroy spar_fluid_get_audit spar_fluid_get_basis spar_fluid_get_count spar_fluid_get_feet "
-    "spar_fluid_get_flag_count spar_fluid_get_map spar_fluid_map spar_fluid_pull_forces spar_fluid_pull_forces_f32 "
-    "spar_fluid_pull_matrices spar_fluid_pull_motion spar_fluid_pull_motion_f32 spar_fluid_pull_poses "
-    "spar_fluid_pull_poses_f32 spar_fluid_push_forces spar_fluid_push_forces_at "
-    "spar_fluid_push_forces_f32 spar_fluid_set_force_nodes spar_fluid_set_interpolation spar_fluid_set_motion_nodes "
-    "spar_fluid_set_projection spar_fluid_set_stations spar_fluid_get_travel spar_fluid_write_vtk spar_has "
-    "spar_member_drive spar_member_get_advice spar_member_get_count spar_member_get_energy "
-    "spar_member_get_loads spar_member_solve_modes spar_member_solve_eigenvalues spar_member_get_motion "
-    "spar_member_get_reaction "
-    "spar_member_get_reference "
-    "spar_member_get_work spar_member_set_effects spar_member_set_external spar_member_set_fidelity "
-    "spar_member_set_added_mass spar_member_get_added_mass "
-    "spar_member_learn_added_mass spar_member_get_learned_added_mass "
-    "spar_member_set_motion "
-    "spar_member_set_load spar_member_set_owner spar_member_set_placement spar_member_set_root "
-    "spar_member_set_initial_velocity "
-    "spar_member_write_vtk "
-    "spar_point_create spar_polar_create spar_polar_destroy spar_polar_evaluate spar_polar_set_interpolation "
-    "spar_rigid_create spar_session_create spar_session_get_iterations spar_session_get_report spar_session_get_time "
-    "spar_session_get_residual spar_session_set_tolerance spar_session_get_tolerance spar_session_get_step_control "
-    "spar_member_estimate_error spar_member_get_iterations "
-    "spar_session_message "
-    "spar_session_set_coupling spar_session_set_gravity spar_session_set_integrator spar_session_set_log "
-    "spar_session_set_progress "
-    "spar_session_set_newton spar_session_set_option spar_session_set_predictor spar_session_set_relaxation "
-    "spar_session_set_goal spar_session_get_goal spar_session_push_numbers "
-    "spar_session_set_reproducible spar_session_set_threads spar_session_get_threads spar_status_text spar_version "
-    "spar_vtk_series_add "
-    "spar_session_get_gravity spar_session_get_integrator spar_session_get_newton "
-    "spar_session_get_predictor spar_session_get_coupling spar_session_get_relaxation "
-    "spar_session_get_reproducible spar_member_get_placement spar_member_get_root "
-    "spar_member_get_external spar_member_get_effects spar_member_get_fidelity "
-    "spar_member_get_owner spar_beam_get_elements spar_beam_get_quadrature "
-    "spar_beam_get_damping spar_fluid_get_projection spar_fluid_get_interpolation "
-    "spar_session_get_option spar_session_get_phase spar_member_get_session spar_member_get_name "
-    "spar_fluid_set_layout spar_fluid_get_layout spar_fluid_set_motion_stations spar_fluid_get_kind "
-    "spar_fluid_get_positions "
-    "spar_fluid_get_forces spar_fluid_set_motion_weights spar_fluid_get_motion_weights spar_fluid_fade_motion "
-    "spar_fluid_get_member spar_fluid_get_name spar_fluid_fail "
-    "spar_fluid_set_states spar_fluid_get_states spar_fluid_pull_states spar_fluid_push_states "
-    "spar_joint_create spar_joint_set_frame spar_joint_set_spring spar_joint_set_driven spar_joint_drive "
-    "spar_joint_set_load spar_joint_get_motion spar_joint_get_load spar_joint_get_energy spar_member_set_spring "
-    "spar_link_create "
-    "spar_link_set_spring "
+" spar_aero_create spar_aero_destroy spar_aero_effect_name spar_aero_get_flags spar_aero_get_loads ",
+" spar_beam_set_mass_damping spar_beam_get_mass_damping spar_beam_set_masses spar_beam_get_masses ",
+" spar_beam_set_foundation spar_beam_get_foundation spar_beam_set_pretension spar_beam_get_pretension ",
+" spar_aero_get_chord spar_aero_set_shear spar_aero_set_tower ",
+" spar_aero_get_rotor spar_aero_get_sections spar_aero_set_blades spar_aero_set_effects spar_aero_set_rotor ",
+" spar_aero_read_aerodyn spar_fluid_read_aerodyn ",
+" spar_aero_set_section spar_aero_set_turn spar_aero_solve spar_beam_create spar_beam_evaluate ",
+" spar_beam_read_beamdyn spar_beam_set_axis spar_beam_set_damping spar_beam_set_line_load spar_beam_set_nodes ",
+" spar_beam_set_quadrature spar_beam_set_sections spar_effect_name spar_fluid_check_matrices spar_fluid_create ",
+" spar_fluid_destroy spar_fluid_get_audit spar_fluid_get_basis spar_fluid_get_count spar_fluid_get_feet ",
+" spar_fluid_get_flag_count spar_fluid_get_map spar_fluid_map spar_fluid_pull_forces spar_fluid_pull_forces_f32 ",
+" spar_fluid_pull_matrices spar_fluid_pull_motion spar_fluid_pull_motion_f32 spar_fluid_pull_poses ",
+" spar_fluid_pull_poses_f32 spar_fluid_push_forces spar_fluid_push_forces_at ",
+" spar_fluid_push_forces_f32 spar_fluid_set_force_nodes spar_fluid_set_interpolation spar_fluid_set_motion_nodes ",
+" spar_fluid_set_projection spar_fluid_set_stations spar_fluid_get_travel spar_fluid_write_vtk spar_has ",
+" spar_member_drive spar_member_get_advice spar_member_get_count spar_member_get_energy ",
+" spar_member_get_loads spar_member_solve_modes spar_member_solve_eigenvalues spar_member_get_motion ",
+" spar_member_get_reaction ",
+" spar_member_get_reference ",
+" spar_member_get_work spar_member_set_effects spar_member_set_external spar_member_set_fidelity ",
+" spar_member_set_added_mass spar_member_get_added_mass spar_member_set_added_mass_response ",
+" spar_member_get_added_mass_response ",
+" spar_member_learn_added_mass spar_member_get_learned_added_mass ",
+" spar_member_set_motion ",
+" spar_member_set_load spar_member_set_owner spar_member_set_placement spar_member_set_root ",
+" spar_member_set_initial_velocity ",
+" spar_member_write_vtk ",
+" spar_point_create spar_polar_create spar_polar_destroy spar_polar_evaluate spar_polar_set_interpolation ",
+" spar_rigid_create spar_session_create spar_session_get_iterations spar_session_get_report spar_session_get_time ",
+" spar_session_get_residual spar_session_set_tolerance spar_session_get_tolerance spar_session_get_step_control ",
+" spar_member_estimate_error spar_member_get_iterations ",
+" spar_session_message ",
+" spar_session_set_coupling spar_session_set_gravity spar_session_set_integrator spar_session_set_log ",
+" spar_session_set_progress ",
+" spar_session_set_newton spar_session_set_option spar_session_set_predictor spar_session_set_relaxation ",
+" spar_session_set_goal spar_session_get_goal spar_session_push_numbers ",
+" spar_session_set_reproducible spar_session_set_threads spar_session_get_threads spar_status_text spar_version ",
+" spar_vtk_series_add ",
+" spar_session_get_gravity spar_session_get_integrator spar_session_get_newton ",
+" spar_session_get_predictor spar_session_get_coupling spar_session_get_relaxation ",
+" spar_session_get_reproducible spar_member_get_placement spar_member_get_root ",
+" spar_member_get_external spar_member_get_effects spar_member_get_fidelity ",
+" spar_member_get_owner spar_beam_get_elements spar_beam_get_quadrature ",
+" spar_beam_get_damping spar_fluid_get_projection spar_fluid_get_interpolation spar_fluid_set_option ",
+" spar_fluid_get_option ",
+" spar_session_get_option spar_session_get_phase spar_member_get_session spar_member_get_name ",
+" spar_fluid_set_layout spar_fluid_get_layout spar_fluid_set_motion_stations spar_fluid_get_kind ",
+" spar_fluid_get_positions ",
+" spar_fluid_get_forces spar_fluid_set_motion_weights spar_fluid_get_motion_weights spar_fluid_fade_motion ",
+" spar_fluid_get_member spar_fluid_get_name spar_fluid_fail ",
+" spar_fluid_set_states spar_fluid_get_states spar_fluid_pull_states spar_fluid_push_states ",
+" spar_joint_create spar_joint_set_frame spar_joint_set_spring spar_joint_set_driven spar_joint_drive ",
+" spar_joint_set_load spar_joint_get_motion spar_joint_get_load spar_joint_get_energy spar_member_set_spring ",
+" spar_link_create ",
+" spar_link_set_spring ",

@@ -1,0 +1,51 @@
+/* Options of a fluid: one table, used by the setter and the getter. A new option is a field of the fluid, a row here,
+   and the code that uses it. Each concerns this rank's nodes alone, so ranks may differ. */
+#include "../base/environment.h"
+#include "../base/setting.h"
+#include "state.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#define FLUID_WORD(key, field, zero, one)                                                                              \
+    {                                                                                                                  \
+        "option " key, key, offsetof(spar_fluid, options.field), SPARI_IS_WORD, 0, 0, 1, zero " or " one, {zero, one}, \
+            0, 0                                                                                                       \
+    }
+static const spari_setting options[] = {
+    FLUID_WORD("theta", theta_on_group, "average", "group"),
+    FLUID_WORD("far", far_refuse, "take", "refuse"),
+    FLUID_WORD("audit", audit_off, "on", "off"),
+};
+
+static const spari_setting *find_fluid_option(const char *key) {
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+        if (strcmp(options[i].key, key) == 0) {
+            return options + i;
+        }
+    }
+    return NULL;
+}
+
+int spar_fluid_set_option(spar_fluid *fluid, const char *key, const char *value) {
+    SPARI_GUARD_ENVIRONMENT;
+    SPARI_FLUID_HANDLE(fluid);
+    SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
+    SPARI_FLUID_REQUIRE(fluid, key && value, SPAR_ERR_ARGUMENT, "key or value is NULL");
+    const spari_setting *of = find_fluid_option(key);
+    SPARI_FLUID_REQUIRE(fluid, of, SPAR_ERR_ARGUMENT, "there is no option '%s'; give theta, far or audit", key);
+    double x;
+    SPARI_FLUID_REQUIRE(fluid, spari_setting_read(of, value, &x), SPAR_ERR_ARGUMENT,
+                        "option '%s' does not accept '%s'; give %s", key, value, of->range);
+    spari_setting_store(fluid, of, x);
+    return SPAR_OK;
+}
+
+int spar_fluid_get_option(const spar_fluid *fluid, const char *key, int64_t capacity, char *text) {
+    SPARI_GUARD_ENVIRONMENT;
+    SPARI_FLUID_HANDLE(fluid);
+    SPARI_FLUID_REQUIRE(fluid, key && text, SPAR_ERR_ARGUMENT, "key or text is NULL");
+    const spari_setting *of = find_fluid_option(key);
+    SPARI_FLUID_REQUIRE(fluid, of, SPAR_ERR_ARGUMENT, "there is no option '%s'; give theta, far or audit", key);
+    return spari_setting_write(fluid->member->session, __func__, of, spari_setting_value(fluid, of), capacity, text);
+}
