@@ -20,11 +20,14 @@ static int settings(spar_session *s, const knobs *k) {
 }
 
 static int commit(spar_member *b, const knobs *k) {
+    const int every = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
+                      SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK | SPAR_EFFECT_MASSES |
+                      SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION;
     if (k->rule >= 0) {
         TRY(spar_beam_set_quadrature(b, k->rule, k->points));
     }
     if (k->effects >= 0) {
-        TRY(spar_member_set_effects(b, k->effects));
+        TRY(spar_member_set_effects(b, k->effects, every & ~k->effects));
     }
     TRY(spar_member_set_fidelity(b, k->fidelity, k->modes));
     return spar_member_commit(b);

@@ -138,9 +138,7 @@ static int create_blade(scene *s, int b) {
     if (!o->rigid && o->fidelity != SPAR_FIDELITY_EXACT) {
         TRY(spar_member_set_fidelity(s->blade[b], o->fidelity, o->fidelity == SPAR_FIDELITY_MODAL ? o->modes : 0));
     }
-    if (o->effects_given) {
-        TRY(spar_member_set_effects(s->blade[b], o->effects));
-    }
+    TRY(spar_member_set_effects(s->blade[b], 0, o->effects_off));
     TRY(spar_member_set_owner(s->blade[b], b % s->ranks));
     TRY(spar_member_commit(s->blade[b]));
     return spin(s, b);

@@ -154,6 +154,14 @@ void rotor_options_help(const char *program) {
     printf("\n");
 }
 
+static int all_effects(int of_aero) {
+    int all = 0;
+    for (int i = 0; i < EFFECT_COUNT; i++) {
+        all |= effects[i].of_aero == of_aero ? effects[i].bit : 0;
+    }
+    return all;
+}
+
 /* Sets (or clears) the effects of a list of names; a kind of effects none of which is named keeps its default when
    clearing. */
 static int read_effects(rotor_options *o, const char *list, int clear) {
@@ -171,9 +179,8 @@ static int read_effects(rotor_options *o, const char *list, int clear) {
         chosen[effects[i].of_aero] |= effects[i].bit;
         at += size + (at[size] == ',');
     }
-    o->effects = clear ? o->effects & ~chosen[0] : chosen[0];
+    o->effects_off = clear ? o->effects_off | chosen[0] : all_effects(0) & ~chosen[0];
     o->aero_effects = clear ? o->aero_effects & ~chosen[1] : chosen[1];
-    o->effects_given |= !clear || chosen[0];
     o->aero_effects_given |= !clear || chosen[1];
     return 0;
 }
@@ -264,9 +271,7 @@ static void set_defaults(rotor_options *o) {
                          .vtk_every = NAN,
                          .out = "rotor-out",
                          .data = SPAR_DATA_DIR "/nrel5mw"};
-    for (int i = 0; i < EFFECT_COUNT; i++) {
-        *(effects[i].of_aero ? &o->aero_effects : &o->effects) |= effects[i].bit;
-    }
+    o->aero_effects = all_effects(1);
 }
 
 int rotor_options_read(rotor_options *o, int argc, char **argv) {

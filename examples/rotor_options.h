@@ -15,9 +15,9 @@ typedef struct rotor_options {
     double tilt, precone;                 /* deg; not finite: those of the turbine */
     double seconds, dt;                   /* seconds not finite: the program's choice */
     int rigid, straight, elements, nodes, quadrature;
-    int fidelity, modes;       /* SPAR_FIDELITY_*; modes of a modal blade */
-    int effects, aero_effects; /* SPAR_EFFECT_*, SPAR_AERO_* in force */
-    int effects_given, aero_effects_given;
+    int fidelity, modes;           /* SPAR_FIDELITY_*; modes of a modal blade */
+    int effects_off, aero_effects; /* SPAR_EFFECT_* that are off, SPAR_AERO_* that are on */
+    int aero_effects_given;
     int scheme, max_iterations, predictor, substeps;
     double coupling_tolerance, relaxation, rho_inf, theta, newton;
     double tolerance, trial; /* not finite: no advice wanted; s, how long trials last, not finite: the program's */

@@ -377,7 +377,7 @@ contains
       call blade(b)%set_placement(x, quaternion_of(r))
       call blade(b)%set_root(SPAR_ROOT_DRIVEN)
       call blade(b)%set_owner(mod(b - 1, ranks))
-      if (keep_work) call blade(b)%set_effects(SPAR_EFFECT_DEFAULT + SPAR_EFFECT_WORK)
+      if (keep_work) call blade(b)%set_effects(SPAR_EFFECT_WORK, 0)
       call blade(b)%commit()
       call spin(b)
       if (mod(b - 1, ranks) == rank) then

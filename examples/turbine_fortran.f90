@@ -153,7 +153,7 @@ contains
     call nacelle%commit()
     call generator%create_rigid(session, 'generator', [0.0_dp, 0.0_dp, tower_height + shaft_height], shaft_axes, &
         body_mass(0.0_dp, none, [534.116_dp * 97 * 97, 0.0_dp, 0.0_dp]))
-    call generator%set_effects(SPAR_EFFECT_INERTIA)
+    call generator%set_effects(0, SPAR_EFFECT_GRAVITY + SPAR_EFFECT_GYROSCOPIC)
     call generator%commit()
     call hub_body%create_rigid(session, 'hub', hub, shaft_axes, &
         body_mass(56780.0_dp, none, [115926.0_dp, 115926.0_dp, 115926.0_dp]))

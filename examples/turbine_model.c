@@ -114,7 +114,7 @@ static int create_bodies(turbine *t) {
        gyroscopic moments are left out. */
     body_mass(0, zero, (double[]){generator_inertia, 0, 0}, M);
     TRY(spar_rigid_create(t->session, "generator", t->shaft_place, t->shaft_axes, M, &t->generator));
-    TRY(spar_member_set_effects(t->generator, SPAR_EFFECT_INERTIA));
+    TRY(spar_member_set_effects(t->generator, 0, SPAR_EFFECT_GRAVITY | SPAR_EFFECT_GYROSCOPIC));
     TRY(spar_member_commit(t->generator));
     body_mass(hub_mass, zero, (double[]){hub_inertia, hub_inertia, hub_inertia}, M);
     TRY(spar_rigid_create(t->session, "hub", t->rotor.hub, t->shaft_axes, M, &t->hub));

@@ -70,7 +70,7 @@ module spar
       SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
   integer, parameter, public :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
       SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_FLUID_MOMENT = 32, SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, &
-      SPAR_EFFECT_DEFAULT = 256, SPAR_EFFECT_MASSES = 512, SPAR_EFFECT_FOUNDATION = 1024, SPAR_EFFECT_PRETENSION = 2048
+      SPAR_EFFECT_MASSES = 512, SPAR_EFFECT_FOUNDATION = 1024, SPAR_EFFECT_PRETENSION = 2048
   integer, parameter, public :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
       SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_FOUNDATION = 4, SPAR_ENERGY_COUNT = 5
   integer, parameter, public :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_JOINTS = 3, &
@@ -3139,13 +3139,13 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_fidelity
 
-  subroutine member_set_effects(self, effects, stat, errmsg)
+  subroutine member_set_effects(self, switch_on, switch_off, stat, errmsg)
     class(spar_member), intent(inout) :: self
-    integer, intent(in) :: effects
+    integer, intent(in) :: switch_on, switch_off
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_member_set_effects(self%handle, to_c(effects)), self%session, stat, errmsg)
+    call finish(spar_member_set_effects(self%handle, to_c(switch_on), to_c(switch_off)), self%session, stat, errmsg)
   end subroutine member_set_effects
 
   subroutine member_get_effects(self, effects, stat, errmsg)

@@ -496,10 +496,10 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_get_fidelity
 
-    function spar_member_set_effects(member, effects) bind(c) result(status)
+    function spar_member_set_effects(member, switch_on, switch_off) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: member
-      integer(c_int), value :: effects
+      integer(c_int), value :: switch_on, switch_off
       integer(c_int) :: status
     end function spar_member_set_effects
 
@@ -1667,7 +1667,7 @@ module spar_c
       SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
   integer(c_int), parameter :: SPAR_EFFECT_INERTIA = 1, SPAR_EFFECT_GYROSCOPIC = 2, SPAR_EFFECT_GRAVITY = 4, &
       SPAR_EFFECT_DAMPING = 8, SPAR_EFFECT_FLUID_MOMENT = 32, SPAR_EFFECT_FLUID_HISTORY = 64, SPAR_EFFECT_WORK = 128, &
-      SPAR_EFFECT_DEFAULT = 256, SPAR_EFFECT_MASSES = 512, SPAR_EFFECT_FOUNDATION = 1024, SPAR_EFFECT_PRETENSION = 2048
+      SPAR_EFFECT_MASSES = 512, SPAR_EFFECT_FOUNDATION = 1024, SPAR_EFFECT_PRETENSION = 2048
   integer(c_int), parameter :: SPAR_ENERGY_KINETIC = 0, SPAR_ENERGY_STRAIN = 1, SPAR_ENERGY_GRAVITY = 2, &
       SPAR_ENERGY_DISSIPATED = 3, SPAR_ENERGY_FOUNDATION = 4, SPAR_ENERGY_COUNT = 5
   integer(c_int), parameter :: SPAR_WORK_LOADS = 0, SPAR_WORK_FLUID = 1, SPAR_WORK_ROOT = 2, SPAR_WORK_JOINTS = 3, &

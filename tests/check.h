@@ -33,6 +33,13 @@
         }                                                                                                              \
     } while (0)
 
+/* Effects for spar_member_set_effects: these and no others. */
+#define EFFECTS_ONLY(effects)                                                                                          \
+    (effects), ((SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |            \
+                 SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK | SPAR_EFFECT_MASSES |        \
+                 SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION) &                                                    \
+                ~(effects))
+
 /* |got - expected| <= tolerance, with both printed when not */
 #define NEAR(got, expected, tolerance)                                                                                 \
     do {                                                                                                               \

@@ -109,8 +109,8 @@ call spar_beam_get_mass_damping int beam|member|value| alpha|double|out|
 constants SPAR_FIDELITY_PRESCRIBED=0 SPAR_FIDELITY_RIGID=1 SPAR_FIDELITY_LINEAR=2 SPAR_FIDELITY_MODAL=3 SPAR_FIDELITY_EXACT=4
 call spar_member_set_fidelity int member|member|value| kind|int|value| modes|int64_t|value|
 call spar_member_get_fidelity int member|member|value| kind|int|out| modes|int64_t|out|
-constants SPAR_EFFECT_INERTIA=1 SPAR_EFFECT_GYROSCOPIC=2 SPAR_EFFECT_GRAVITY=4 SPAR_EFFECT_DAMPING=8 SPAR_EFFECT_FLUID_MOMENT=32 SPAR_EFFECT_FLUID_HISTORY=64 SPAR_EFFECT_WORK=128 SPAR_EFFECT_DEFAULT=256 SPAR_EFFECT_MASSES=512 SPAR_EFFECT_FOUNDATION=1024 SPAR_EFFECT_PRETENSION=2048
-call spar_member_set_effects int member|member|value| effects|int|value|
+constants SPAR_EFFECT_INERTIA=1 SPAR_EFFECT_GYROSCOPIC=2 SPAR_EFFECT_GRAVITY=4 SPAR_EFFECT_DAMPING=8 SPAR_EFFECT_FLUID_MOMENT=32 SPAR_EFFECT_FLUID_HISTORY=64 SPAR_EFFECT_WORK=128 SPAR_EFFECT_MASSES=512 SPAR_EFFECT_FOUNDATION=1024 SPAR_EFFECT_PRETENSION=2048
+call spar_member_set_effects int member|member|value| switch_on|int|value| switch_off|int|value|
 call spar_member_get_effects int member|member|value| effects|int|out|
 call spar_member_get_placement int member|member|value| x|double|out|[3] q|double|out|[4]
 call spar_member_get_root int member|member|value| kind|int|out|

@@ -149,17 +149,18 @@ enum {
     SPAR_EFFECT_FLUID_MOMENT = 32,  /* moments given to spar_fluid_push_forces */
     SPAR_EFFECT_FLUID_HISTORY = 64, /* node forces kept for spar_fluid_pull_forces */
     SPAR_EFFECT_WORK = 128,         /* the account of spar_member_get_work */
-    SPAR_EFFECT_DEFAULT = 256,      /* the defaults, to be combined with others */
     SPAR_EFFECT_MASSES = 512,       /* spar_beam_set_masses */
     SPAR_EFFECT_FOUNDATION = 1024,  /* spar_beam_set_foundation */
     SPAR_EFFECT_PRETENSION = 2048   /* spar_beam_set_pretension */
 };
-/* Chooses the effects. Default: what the description implies (without damping given, none is computed), without
-   WORK, and with FLUID_HISTORY for fluids made of stations. An effect that the member does not have may be
-   requested; the request is ignored.
-     effects: in, SPAR_EFFECT_* combined */
-SPAR_API int spar_member_set_effects(spar_member *member, int effects);
-/* effects: out, those in force: chosen, or default, and described; after the commit */
+/* Switches effects of a member on or off. By default every effect is on that the description has data for, except
+   SPAR_EFFECT_WORK; SPAR_EFFECT_FLUID_HISTORY is on for fluids with stations. A later call replaces an earlier one.
+     switch_on: in, SPAR_EFFECT_* combined, to be on besides the defaults; one that the description has no data for is
+           ignored
+     switch_off: in, SPAR_EFFECT_* combined, of the defaults, to be off
+   Local, before commit. SPAR_ERR_ARGUMENT: an effect is in both. */
+SPAR_API int spar_member_set_effects(spar_member *member, int switch_on, int switch_off);
+/* effects: out, SPAR_EFFECT_* combined, those in force. After commit. Local. */
 SPAR_API int spar_member_get_effects(const spar_member *member, int *effects);
 
 /* ---- members: description --------------------------------------------------------------------------------------- */

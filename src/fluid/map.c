@@ -224,11 +224,11 @@ int spari_fluid_renew_history(spar_fluid *fluid, int64_t n) {
 }
 
 /* Sections imply node forces (a blade-element host has one set of nodes, an actuator line needs their forces),
-   unless the host has chosen the effects. */
+   unless the host has switched the effect off. */
 static int keeps_forces(const spar_fluid *fluid) {
     const spar_member *m = fluid->member;
     return fluid->history || (m->effects & SPAR_EFFECT_FLUID_HISTORY) ||
-           (spari_fluid_set(fluid, SPAR_NODES_FORCE)->sections && !m->effects_given);
+           (spari_fluid_set(fluid, SPAR_NODES_FORCE)->sections && !(m->effects_off & SPAR_EFFECT_FLUID_HISTORY));
 }
 
 /* Resets all data per force node to zero, or nothing if it fails. */

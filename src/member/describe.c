@@ -307,22 +307,25 @@ int spar_member_set_external(spar_member *member, int on) {
     return SPAR_OK;
 }
 
-int spar_member_set_effects(spar_member *member, int effects) {
+int spar_member_set_effects(spar_member *member, int switch_on, int switch_off) {
     SPARI_GUARD_ENVIRONMENT;
     const int all = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
-                    SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK | SPAR_EFFECT_DEFAULT |
-                    SPAR_EFFECT_MASSES | SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION,
-              large_rotation = 16; /* this bit stays free */
+                    SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK | SPAR_EFFECT_MASSES |
+                    SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION,
+              large_rotation = 16, given = switch_on | switch_off; /* the bit 16 stays free */
     SPARI_TRY(spari_need_open(member, __func__));
-    SPARI_REQUIRE(member->session, !(effects & large_rotation), SPAR_ERR_ARGUMENT,
+    SPARI_REQUIRE(member->session, !(given & large_rotation), SPAR_ERR_ARGUMENT,
                   "%s: '%s': large rotation (16) is not an effect: SPAR_FIDELITY_EXACT always includes large "
                   "rotations; remove this bit; for a linear beam use SPAR_FIDELITY_LINEAR (spar_member_set_fidelity)",
                   __func__, member->name);
-    SPARI_REQUIRE(member->session, (effects & ~all) == 0, SPAR_ERR_ARGUMENT,
+    SPARI_REQUIRE(member->session, (given & ~all) == 0, SPAR_ERR_ARGUMENT,
                   "%s: '%s': unknown effect bits 0x%x; see SPAR_EFFECT_*", __func__, member->name,
-                  (unsigned)(effects & ~all));
-    member->effects = member->effects_asked = effects;
-    member->effects_given = !(effects & SPAR_EFFECT_DEFAULT);
+                  (unsigned)(given & ~all));
+    SPARI_REQUIRE(member->session, (switch_on & switch_off) == 0, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': effect bits 0x%x are to be on and off; give each bit once", __func__, member->name,
+                  (unsigned)(switch_on & switch_off));
+    member->effects_on = switch_on;
+    member->effects_off = switch_off;
     return SPAR_OK;
 }
 
@@ -433,7 +436,7 @@ int spar_member_get_owner(const spar_member *member, int *rank) {
 /* FNV-1a hash of everything the ranks must agree on. */
 uint64_t spari_member_copy_hash(const spar_member *m) {
     uint64_t h = SPARI_HASH_BEGIN;
-    int numbers[] = {m->kind,          m->external,         m->root,     m->effects,    m->effects_given,
+    int numbers[] = {m->kind,          m->external,         m->root,     m->effects,    m->effects_off,
                      m->mesh.elements, m->mesh.per_element, m->fidelity, (int)m->modes, m->added_by_velocity};
     h = spari_hash_bytes(h, numbers, sizeof numbers);
     h = spari_hash_bytes(h, m->mass, sizeof m->mass);

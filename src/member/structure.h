@@ -125,9 +125,8 @@ struct spar_member {
     int owner;
     int owner_given;                  /* by the host; otherwise the least loaded rank is chosen, */
     int owner_assigned;               /* and this is set */
-    int effects;                      /* SPAR_EFFECT_*: requested; after commit those in force */
-    int effects_given;                /* 0: with those implied by the description */
-    int effects_asked;                /* as requested, also if the present fidelity has no use for them */
+    int effects;                      /* SPAR_EFFECT_*: in force, after commit */
+    int effects_on, effects_off;      /* as the host has switched them, on besides those implied, and off */
     int fidelity;                     /* SPAR_FIDELITY_* */
     int64_t modes;                    /* of a modal member */
     const struct spari_fidelity *row; /* table row of its fidelity (time/fidelity.h); after commit */

@@ -295,7 +295,7 @@ static int check_complete(spar_member *m) {
 int spari_member_effects(const spar_member *m) {
     const int implied = SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
                         SPAR_EFFECT_FLUID_MOMENT | SPAR_EFFECT_MASSES | SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION;
-    int e = m->effects_given ? m->effects_asked : m->effects_asked | implied;
+    const int e = (implied | m->effects_on) & ~m->effects_off;
     const spari_fidelity *row = spari_fidelity_of(m);
     int massive = m->kind == SPARI_RIGID || (m->beam && m->beam->mass), solved = row->solved;
     int possible = SPAR_EFFECT_FLUID_MOMENT;
@@ -464,7 +464,7 @@ int spar_member_commit(spar_member *member) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_member(member, __func__));
     spar_session *s = member->session;
-    int asked = member->effects, status;
+    int status;
     if (member->committed) {
         status = spari_fail(s, SPAR_ERR_STATE, "%s: '%s' is committed already", __func__, member->name);
     } else {
@@ -485,9 +485,6 @@ int spar_member_commit(spar_member *member) {
     if (agreed != SPAR_OK) {
         if (status == SPAR_OK) {
             spari_member_release(member);
-        }
-        if (!member->committed) {
-            member->effects = asked;
         }
         return spari_named(s, __func__, agreed);
     }

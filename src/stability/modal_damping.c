@@ -179,11 +179,9 @@ static int check_pair(const spar_member *m, const int64_t mode[2], const double 
                   m->name);
     SPARI_REQUIRE(s, !s->clock.started && s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "member '%s': the clock has started; choose the damping before the first step", m->name);
-    SPARI_REQUIRE(
-        s, m->body && !(m->effects_given && !(m->effects & SPAR_EFFECT_DAMPING)), SPAR_ERR_STATE,
-        "member '%s': damping is off; leave SPAR_EFFECT_DAMPING in its effects and give spar_beam_set_damping "
-        "any value before commit, or set no effects",
-        m->name);
+    SPARI_REQUIRE(s, m->body && !(m->effects_off & SPAR_EFFECT_DAMPING), SPAR_ERR_STATE,
+                  "member '%s': damping is switched off; leave SPAR_EFFECT_DAMPING on in spar_member_set_effects",
+                  m->name);
     SPARI_REQUIRE(s, m->row->renew, SPAR_ERR_UNSUPPORTED,
                   "member '%s' is linear or modal, and its damping is fixed at commit; compute mu with an exact member "
                   "and pass it to spar_beam_set_damping",

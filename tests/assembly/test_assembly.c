@@ -350,7 +350,7 @@ static spar_member *make_accounted(spar_session *s, const char *name, const doub
     spar_member *b = NULL;
     scene_mass(mass, m, c, J);
     OK(s, spar_rigid_create(s, name, x, upright, mass, &b));
-    OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_commit(b));
     return b;
 }

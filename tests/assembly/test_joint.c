@@ -537,7 +537,7 @@ static void test_snap(void **state) {
         OK(s, spar_session_set_gravity(s, (double[]){0, 0, -r.g}));
         scene_mass(mass, r.m, origin, J);
         OK(s, spar_rigid_create(s, "ball", at, rest, mass, &ball));
-        OK(s, spar_member_set_effects(ball, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+        OK(s, spar_member_set_effects(ball, SPAR_EFFECT_WORK, 0));
         OK(s, spar_member_commit(ball));
         OK(s, spar_link_create(s, "rope", ball, 0, at, NULL, 0, origin, &rope));
         OK(s, spar_link_set_spring(rope, r.k, r.c, r.length, 1));
@@ -684,7 +684,7 @@ static spar_member *make_light(spar_session *s, int external) {
     scene_mass(mass, 2, origin, J);
     OK(s, spar_rigid_create(s, "light", origin, rest, mass, &b));
     OK(s, spar_member_set_external(b, external));
-    OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_commit(b));
     if (external) {
         OK(s, spar_member_set_motion(b, NULL, (double[]){1, 0, 0, 0, 0, 0}, NULL));
@@ -1316,7 +1316,7 @@ static void test_joints_apart_change_nothing(void **state) {
     scene_mass(mass, 2, origin, J);
     OK(s, spar_rigid_create(s, "one", origin, q, mass, &m[0]));
     OK(s, spar_rigid_create(s, "two", away, q, mass, &m[1]));
-    OK(s, spar_member_set_effects(m[0], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(m[0], SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_commit(m[0]));
     OK(s, spar_member_commit(m[1]));
     OK(s, spar_link_create(s, "line", m[0], 0, origin, NULL, 0, up, &j[0]));

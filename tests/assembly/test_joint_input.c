@@ -266,7 +266,7 @@ static void test_asked_before(void **state) {
     spar_member *b = NULL;
     scene_mass(mass, 1, zero, J);
     OK(s, spar_rigid_create(s, "b", x, upright, mass, &b));
-    OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_set_initial_velocity(b, zero, zero, (double[]){0, 2, 0}));
     OK(s, spar_member_commit(b));
     spar_joint *hinge = scene_joint_at(s, "hinge", b, 0, NULL, 0, SPAR_FREE_RY, zero), *line = NULL;

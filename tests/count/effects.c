@@ -24,7 +24,9 @@ enum { NODES = 8, FLUID = 1000, WARM = 2, STEPS = 4, SECTIONS = 19, BLADES = 3 }
 enum { GIVEN = 1 << 30 };
 enum {
     ALL = GIVEN | SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_DAMPING |
-          SPAR_EFFECT_FLUID_MOMENT
+          SPAR_EFFECT_FLUID_MOMENT,
+    EVERY = (ALL & ~GIVEN) | SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK | SPAR_EFFECT_MASSES |
+            SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION
 };
 
 /* ---- what is measured ---- */
@@ -187,10 +189,10 @@ static void make_beam(scene *s) {
     }
     MUST(spar_member_set_root(*b, SPAR_ROOT_DRIVEN));
     if (s->is.effects & GIVEN) {
-        MUST(spar_member_set_effects(*b, s->is.effects & ~GIVEN));
+        MUST(spar_member_set_effects(*b, s->is.effects & ~GIVEN, EVERY & ~s->is.effects));
     }
     if (s->is.account) {
-        MUST(spar_member_set_effects(*b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+        MUST(spar_member_set_effects(*b, SPAR_EFFECT_WORK, 0));
     }
     if (s->is.guess) {
         MUST(spar_member_set_added_mass(*b, 1, eta, mass));
@@ -225,7 +227,7 @@ static void make_blades(scene *s) {
                at[4] = {q[0] * face[0], q[1] * face[0], -q[1] * face[3], q[0] * face[3]};
         MUST(spar_point_create(s->session, name, NULL, at, &s->member[b]));
         if (s->is.effects & GIVEN) {
-            MUST(spar_member_set_effects(s->member[b], s->is.effects & ~GIVEN));
+            MUST(spar_member_set_effects(s->member[b], s->is.effects & ~GIVEN, EVERY & ~s->is.effects));
         }
         s->described = b == 0 ? heap : s->described;
         MUST(spar_member_commit(s->member[b]));

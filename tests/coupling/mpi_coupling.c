@@ -43,7 +43,7 @@ static void create(scene *c, int me, int ranks, int scheme) {
     OK(s, spar_session_set_relaxation(s, 0.3));
     c->beam = scene_beam(s, "beam", 3, POINTS / 3, 10, K, M);
     OK(s, spar_member_set_root(c->beam, SPAR_ROOT_FIXED));
-    OK(s, spar_member_set_effects(c->beam, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY));
+    OK(s, spar_member_set_effects(c->beam, SPAR_EFFECT_FLUID_HISTORY, 0));
     scene_diagonal(added, guess, guess, guess, 0, 0, 0);
     scene_diagonal(along, guess / 10, guess / 10, guess / 10, 0, 0, 0);
     OK(s, spar_member_set_added_mass(c->beam, guess > 0, eta, along));

@@ -645,7 +645,7 @@ static void moments_of_parts_come_and_go(void **state) {
     for (int effect = 0; effect < 2; effect++) {
         pistons_create(&p, 1, &r);
         OK(p.session, spar_point_create(p.session, "point", x, NULL, &point));
-        OK(p.session, spar_member_set_effects(point, effect ? SPAR_EFFECT_FLUID_MOMENT : 0));
+        OK(p.session, spar_member_set_effects(point, EFFECTS_ONLY(effect ? SPAR_EFFECT_FLUID_MOMENT : 0)));
         OK(p.session, spar_member_commit(point));
         OK(p.session, spar_fluid_create(point, "f", &fluid));
         OK(p.session, spar_fluid_set_force_nodes(fluid, 1, x));

@@ -82,7 +82,7 @@ static const char everything[] =
     " .01 0  .01\n"
     "section 1 3e4 0 0 0 0 0  3e4 0 0 0 0  3e4 0 0 0  600 10 0  400 0  300   2 0 0 0 0 0  2 0 0 0 0  2 0 0 0  .04 0 0 "
     " .02 0  .02\n"
-    "damping 1e-3 1e-3 1e-3 2e-3 2e-3 2e-3\nplace 1 2 3\norientation 0.8 0 0 0.6\neffects default work\nowner 0\n"
+    "damping 1e-3 1e-3 1e-3 2e-3 2e-3 2e-3\nplace 1 2 3\norientation 0.8 0 0 0.6\neffects_on work\nowner 0\n"
     "load last dead 0 1 2 0.1 0.2 0.3\nload 3 follower 0 0.5 0 0 0 0\n"
     "line_load dead 0 1 0 0 0 0 0\nline_load follower 0.5 0 1 0 0 0 0\nline_load dead 1 0 0 3 0 0 0\n"
     "[beam mast]\nnode 0 0 0 1 0 0 0\nnode 0.5 0 0 1 0 0 0\nnode 1 0 0 1 0 0 0\nnodes 3\n"
@@ -132,7 +132,7 @@ static void wing_by_hand(spar_session *s, spar_member **wing) {
     OK(s, spar_beam_set_quadrature(*wing, SPAR_QUADRATURE_LOBATTO, 6));
     OK(s, spar_beam_set_damping(*wing, mu));
     OK(s, spar_member_set_placement(*wing, x, q));
-    OK(s, spar_member_set_effects(*wing, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(*wing, SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_set_owner(*wing, 0));
 }
 
@@ -485,8 +485,9 @@ static void test_mistakes(void **state) {
         {"[beam a]\nquadrature simpson 3\n", "line 2: quadrature: 'simpson' is not known", "gauss, lobatto, sections"},
         {"[point a]\nload last dead 0 0 0 0 0\n", "line 2: load has 7 values", "give 8"},
         {"[point a]\nload 1 dead 0 0 0 0 0 0\n", "line 2: load: 1", "a whole number from 0 to 0"},
-        {"[point a]\neffects inertia wrok\n", "line 2: effects: 'wrok' is not known", "did you mean work?"},
-        {"[point a]\neffects inertia large_rotation\n", "line 2: spar_member_set_effects", "use SPAR_FIDELITY_LINEAR"},
+        {"[point a]\neffects_on inertia wrok\n", "line 2: effects_on: 'wrok' is not known", "did you mean work?"},
+        {"[point a]\neffects_off inertia large_rotation\n", "line 2: spar_member_set_effects",
+         "use SPAR_FIDELITY_LINEAR"},
         {"[point a]\norientation 0 0 0 0\n", "line 2: spar_member_set_placement", "a"},
         {"[joint j]\n", "line 1: [joint j] has no end a", "a MEMBER NODE"},
         {"[joint j]\na wing 0\n", "line 2: there is no member 'wing'", "nor any other"},
@@ -695,7 +696,7 @@ static void test_stations(void **state) {
         read_text(s, NULL,
                   "[beam pile]\nnodes 4\naxis 0 0 0 0\naxis 1 2 0 0\nsection 0 4e4 4e4 4e4 800 600 600 1 1 1 "
                   ".02 .01 .01\nfoundation .2 1 2 3\nfoundation .2 4 5 6\npretension 0 100 0 0 1 2 3\n"
-                  "effects inertia foundation pretension\nroot fixed\n");
+                  "effects_off gravity gyroscopic fluid_moment\neffects_on work\nroot fixed\n");
     double eta[2], k[2][3], force[6];
     int64_t n = 0;
     int effects = 0;
@@ -704,7 +705,7 @@ static void test_stations(void **state) {
     OK(s, spar_beam_get_pretension(spar_case_member_at(c, 0), &n, 1, eta, force));
     assert_true(n == 1 && eta[0] == 0 && force[0] == 100 && force[3] == 1 && force[5] == 3);
     OK(s, spar_member_get_effects(spar_case_member_at(c, 0), &effects));
-    assert_int_equal(effects, SPAR_EFFECT_INERTIA | SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION);
+    assert_int_equal(effects, SPAR_EFFECT_INERTIA | SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION | SPAR_EFFECT_WORK);
     spar_case_free(&c);
     spar_session_destroy(&s);
 }

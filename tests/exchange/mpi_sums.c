@@ -72,7 +72,7 @@ static void create(scene *c, const MPI_Comm *comm, int deal, int scheme) {
     OK(s, spar_session_set_relaxation(s, 0.4));
     c->beam = scene_beam(s, "beam", 2, POINTS / 2, 10, K, M);
     OK(s, spar_member_set_root(c->beam, SPAR_ROOT_FIXED));
-    OK(s, spar_member_set_effects(c->beam, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY));
+    OK(s, spar_member_set_effects(c->beam, SPAR_EFFECT_FLUID_HISTORY, 0));
     OK(s, spar_member_commit(c->beam));
     scene_mass(mass, 3, centre, J);
     OK(s, spar_rigid_create(s, "piston", where, q, mass, &c->piston));

@@ -34,7 +34,7 @@ static void add_gravity(scene *w) {
 }
 
 static spar_member *keep(scene *w, spar_member *m) {
-    OK(w->s, spar_member_set_effects(m, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(w->s, spar_member_set_effects(m, SPAR_EFFECT_WORK, 0));
     OK(w->s, spar_member_commit(m));
     return w->m[w->members++] = m;
 }

@@ -105,7 +105,7 @@ static account run(int fidelity, int64_t modes, int root, double A, double dt, d
     OK(s, spar_session_set_gravity(s, g));
     OK(s, spar_session_set_integrator(s, 1, 1));
     OK(s, spar_beam_set_damping(b, mu));
-    OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_commit(b));
     if (root == SPAR_ROOT_FREE) {
         OK(s, spar_member_set_initial_velocity(b, x0, v0, spin));

@@ -25,7 +25,7 @@ typedef struct rig {
 } rig;
 
 /* A bent, twisted beam of two elements with eight nodes each, moved by the host. */
-static void rig_start(rig *r, int effects) {
+static void rig_start(rig *r, int on, int off) {
     memset(r, 0, sizeof *r);
     OK(spar_session_create(&r->session));
     OK(spar_beam_create(r->session, "blade", 2, 8, &r->member));
@@ -37,9 +37,7 @@ static void rig_start(rig *r, int effects) {
     }
     OK(spar_beam_set_axis(r->member, 21, eta, xyz[0], twist));
     OK(spar_member_set_external(r->member, 1));
-    if (effects) {
-        OK(spar_member_set_effects(r->member, effects));
-    }
+    OK(spar_member_set_effects(r->member, on, off));
     OK(spar_member_commit(r->member));
     OK(spar_member_get_count(r->member, &r->nodes));
     assert_int_equal(r->nodes, 16);
@@ -91,7 +89,7 @@ static void map_hangs_together(void **state) {
     static double x[N][3], eta[N], distance[N], foot[N][3], q[N][4], con[N][3], phi[N][8];
     static int64_t first[N];
     static int flags[N];
-    rig_start(&r, 0);
+    rig_start(&r, 0, 0);
     scatter(x, N, &seed);
     spar_fluid *f;
     OK(spar_fluid_create(r.member, "surface", &f));
@@ -145,7 +143,7 @@ static void sections_stand_where_asked(void **state) {
     double got[N], distance[N], foot[N][3], q[N][4], con[N][3], x[N][3], now[N][4], want[3];
     int flags[N];
     rig r;
-    rig_start(&r, 0);
+    rig_start(&r, 0, 0);
     spar_fluid *f;
     OK(spar_fluid_create(r.member, "sections", &f));
     OK(spar_fluid_set_stations(f, N, eta, offset[0]));
@@ -256,7 +254,7 @@ static void poses_and_matrices(void **state) {
     const double eta[N] = {0, 0.3, 0.5, 0.8, 1}, offset[N][3] = {{0, 0.1, 0}, {0, 0.2, 0.1}};
     double x[2][N][3], q[2][N][4], v[2][N][3], omega[2][N][3], accel[2][N][3], alpha[N][3], m[N][9], t[N][9], axis[3];
     rig r;
-    rig_start(&r, 0);
+    rig_start(&r, 0, 0);
     spar_fluid *f;
     OK(spar_fluid_create(r.member, "sections", &f));
     OK(spar_fluid_set_stations(f, N, eta, offset[0]));
@@ -322,7 +320,7 @@ static void single_precision_at_the_edge(void **state) {
         back[N][3];
     float xs[N][3], vs[N][3], qs[N][4], omegas[N][3], accels[N][3], alphas[N][3], again[2][N][3], forces[N][3],
         backs[N][3];
-    rig_start(&r, SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_FLUID_MOMENT);
+    rig_start(&r, SPAR_EFFECT_FLUID_HISTORY, 0);
     scatter(node, N, &seed);
     spar_fluid *f;
     OK(spar_fluid_create(r.member, "surface", &f));
@@ -361,7 +359,7 @@ static void single_precision_at_the_edge(void **state) {
             OK(spar_step_solve(r.session));
             OK(spar_step_reject(r.session));
             rig_end(&r);
-            rig_start(&r, SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_FLUID_MOMENT);
+            rig_start(&r, SPAR_EFFECT_FLUID_HISTORY, 0);
             OK(spar_fluid_create(r.member, "surface", &f));
             OK(spar_fluid_set_force_nodes(f, N, node[0]));
             OK(spar_fluid_map(f));
@@ -385,7 +383,7 @@ static void theta_lies_between_the_times(void **state) {
     unsigned long long seed = 2;
     double node[N][3], x[4][N][3], v[4][N][3], q[3][N][4], w[3][N][3], a[3][N][3];
     const double theta[4] = {0, 1, 0.5, 0.25};
-    rig_start(&r, 0);
+    rig_start(&r, 0, 0);
     scatter(node, N, &seed);
     spar_fluid *f;
     OK(spar_fluid_create(r.member, "surface", &f));
@@ -484,7 +482,7 @@ static void pulls_give_what_is_asked_for(void **state) {
         spar_member *point;
         double turn[4], qp[7] = {0.1, -0.2, 0.3}, vp[6] = {1, 2, 3, 0.4, 0.5, -0.6}, ap[6] = {3, 2, 1, -1, 0.5, 2};
         const double psi[3] = {0.3, 0.5, -0.2};
-        rig_start(&r, 0);
+        rig_start(&r, 0, 0);
         bend(&r, 0.4);
         scatter(node, N, &seed);
         spari_quat_exp(psi, turn);
@@ -539,7 +537,7 @@ static void pulls_give_what_is_asked_for(void **state) {
 static void node_forces_are_kept_and_predicted(void **state) {
     (void)state;
     rig r;
-    rig_start(&r, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY);
+    rig_start(&r, SPAR_EFFECT_FLUID_HISTORY, 0);
     const double node[3] = {5, 0.2, 0.3};
     const double dt[4] = {0.1, 0.3, 0.2, 0.05};
     double force[3], got[3], t = 0;
@@ -591,7 +589,7 @@ static void unasked_history_is_refused(void **state) {
     rig r;
     const double node[3] = {5, 0.2, 0.3}, force[3] = {1, 2, 3};
     double got[3];
-    rig_start(&r, 0);
+    rig_start(&r, 0, 0);
     spar_fluid *f;
     OK(spar_fluid_create(r.member, "line", &f));
     OK(spar_fluid_set_force_nodes(f, 1, node));
@@ -603,21 +601,24 @@ static void unasked_history_is_refused(void **state) {
     rig_end(&r);
 }
 
-/* Sections imply a history; effects without it take it away, and what was pushed is then gone for good; effects with it
-   give it to any nodes, also beside the default. */
+/* Stations imply a history. Switched off it is gone for good, with what was pushed; switched on, any force nodes have
+   it. */
 static void history_is_an_effect(void **state) {
     (void)state;
     const double eta[2] = {0.25, 0.75}, force[2][3] = {{1, 2, 3}, {4, 5, 6}};
-    enum { KINDS = 5 };
-    static const int effects[KINDS] = {0, SPAR_EFFECT_DEFAULT, SPAR_EFFECT_INERTIA, SPAR_EFFECT_FLUID_HISTORY,
-                                       SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY};
+    enum { KINDS = 4 };
+    static const struct {
+        int on, off, kept; /* kept: 1 of stations, 2 of force nodes */
+    } effects[KINDS] = {{0, 0, 1},
+                        {0, SPAR_EFFECT_FLUID_MOMENT, 1},
+                        {0, SPAR_EFFECT_FLUID_HISTORY, 0},
+                        {SPAR_EFFECT_FLUID_HISTORY, 0, 3}};
     for (int k = 0; k < 2 * KINDS; k++) {
         rig r;
         double node[2][3] = {{2, 0, 0}, {7, 0, 0}}, got[2][3];
-        int sections = k < KINDS,
-            kept = (effects[k % KINDS] & SPAR_EFFECT_FLUID_HISTORY) || (sections && k % KINDS < 2);
+        int sections = k < KINDS, kept = effects[k % KINDS].kept & (sections ? 1 : 2);
         spar_fluid *f;
-        rig_start(&r, effects[k % KINDS]);
+        rig_start(&r, effects[k % KINDS].on, effects[k % KINDS].off);
         OK(spar_fluid_create(r.member, "line", &f));
         OK(sections ? spar_fluid_set_stations(f, 2, eta, NULL) : spar_fluid_set_force_nodes(f, 2, node[0]));
         OK(spar_fluid_map(f));
@@ -655,7 +656,7 @@ static void loads_of_fluids_add(void **state) {
         unsigned long long seed = 5;
         double node[2][N][3], x[N][3], force[2][N][3], moment[2][N][3], load[MOST][6], sum[6], want[6] = {0}, t[3],
                                                                                                audit[8];
-        rig_start(&r, moments ? 0 : SPAR_EFFECT_INERTIA);
+        rig_start(&r, 0, moments ? 0 : SPAR_EFFECT_FLUID_MOMENT);
         spar_fluid *f[2];
         bend(&r, 0.9);
         for (int k = 0; k < 2; k++) {
@@ -698,7 +699,7 @@ static void loads_of_fluids_add(void **state) {
 static void far_nodes_are_flagged_or_refused(void **state) {
     (void)state;
     rig r;
-    rig_start(&r, 0);
+    rig_start(&r, 0, 0);
     const double node[3][3] = {{5, 0.2, 0}, {5, 3, 0}, {20, 0, 0}};
     int flags[3];
     spar_fluid *f;
@@ -737,7 +738,7 @@ static void totals_are_of_one_fluid(void **state) {
     double node[N][3], x[N][3], force[2][N][3], want[6] = {0}, got[6], t[3], arm[3], before[6];
     const double point[3] = {3, -1, 2}, shift[3] = {0.1, 0.2, -0.3};
     spar_fluid *f[2];
-    rig_start(&r, 0);
+    rig_start(&r, 0, 0);
     scatter(node, N, &seed);
     for (int k = 0; k < 2; k++) {
         OK(spar_fluid_create(r.member, k ? "b" : "a", &f[k]));
@@ -817,7 +818,7 @@ static void travel_is_of_the_step(void **state) {
     double largest, want = 0;
     int64_t at, expected = -1;
     spar_fluid *f;
-    rig_start(&r, 0);
+    rig_start(&r, 0, 0);
     OK(spar_fluid_create(r.member, "a", &f));
     OK(spar_fluid_get_travel(f, &largest, &at));
     assert_true(largest == 0 && at == -1);
@@ -855,7 +856,7 @@ static void travel_is_of_the_step(void **state) {
 static void bad_calls_are_refused(void **state) {
     (void)state;
     rig r;
-    rig_start(&r, 0);
+    rig_start(&r, 0, 0);
     double node[2][3] = {{5, 0, 0}, {6, NAN, 0}}, force[3] = {1, 2, 3}, eta[1] = {1.1}, x[3], before[8], after[8];
     spar_fluid *f = NULL, *g;
     spar_member *raw;
@@ -907,7 +908,7 @@ static void bad_calls_are_refused(void **state) {
 static void order_of_calls(void **state) {
     (void)state;
     rig r;
-    rig_start(&r, 0);
+    rig_start(&r, 0, 0);
     const double node[3] = {5, 0, 0}, good[3] = {1, 2, 3}, bad[3] = {1, NAN, 3};
     int done;
     spar_fluid *f[2];

@@ -46,7 +46,7 @@ static void pair_begin(pair *p, int elements) {
         OK(p->session, spar_point_create(p->session, "point", NULL, NULL, &p->member));
     }
     OK(p->session, spar_member_set_external(p->member, 1));
-    OK(p->session, spar_member_set_effects(p->member, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY));
+    OK(p->session, spar_member_set_effects(p->member, SPAR_EFFECT_FLUID_HISTORY, 0));
     OK(p->session, spar_member_commit(p->member));
     OK(p->session, spar_member_get_count(p->member, &p->nodes));
     OK(p->session, spar_member_get_reference(p->member, p->xr[0], NULL));

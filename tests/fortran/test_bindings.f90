@@ -92,7 +92,7 @@ program test_bindings
   call refused(spar_member_set_placement(none), 'spar_member_set_placement')
   call refused(spar_member_set_root(none, 0_c_int), 'spar_member_set_root')
   call refused(spar_member_set_external(none, 0_c_int), 'spar_member_set_external')
-  call refused(spar_member_set_effects(none, 0_c_int), 'spar_member_set_effects')
+  call refused(spar_member_set_effects(none, 0_c_int, 0_c_int), 'spar_member_set_effects')
   call refused(spar_member_set_fidelity(none, 0_c_int, 0_c_int64_t), 'spar_member_set_fidelity')
   call refused(spar_member_set_added_mass(none, 0_c_int64_t), 'spar_member_set_added_mass')
   call refused(spar_member_get_added_mass(none, capacity=0_c_int64_t), 'spar_member_get_added_mass')

@@ -281,7 +281,7 @@ contains
 
     call session%create()
     call point%create_point(session, 'point', origin, unit)
-    call point%set_effects(SPAR_EFFECT_DEFAULT + SPAR_EFFECT_FLUID_HISTORY)
+    call point%set_effects(SPAR_EFFECT_FLUID_HISTORY, 0)
     call point%commit()
     call fluid%create(point, 'mesh')
     x = reshape([1, 0, 0, 0, 0, 2, 0, 3, 0] * 1.0_c_double, [3, 3])

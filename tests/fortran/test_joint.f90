@@ -46,7 +46,7 @@ contains
     type(spar_member), intent(inout) :: body
 
     call body%create_rigid(session, name, x, unit, diagonal([mass, mass, mass, 0.1_c_double, 0.1_c_double, 0.1_c_double]))
-    call body%set_effects(ior(SPAR_EFFECT_DEFAULT, SPAR_EFFECT_WORK))
+    call body%set_effects(SPAR_EFFECT_WORK, 0)
     call body%commit()
   end subroutine make_body
 

@@ -53,7 +53,7 @@ contains
 
     call session%create()
     call body%create_rigid(session, 'body', origin, unit, whole_mass())
-    call body%set_effects(ior(SPAR_EFFECT_DEFAULT, SPAR_EFFECT_FLUID_HISTORY))
+    call body%set_effects(SPAR_EFFECT_FLUID_HISTORY, 0)
     call body%commit()
   end subroutine make_body
 

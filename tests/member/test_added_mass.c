@@ -240,7 +240,7 @@ static void energy(void **state) {
         scene_mass(mass, 2, x, J);
         OK(p.session, spar_session_set_integrator(p.session, 1, 1));
         OK(p.session, spar_rigid_create(p.session, "body", x, q, mass, &p.body[0]));
-        OK(p.session, spar_member_set_effects(p.body[0], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+        OK(p.session, spar_member_set_effects(p.body[0], SPAR_EFFECT_WORK, 0));
         scene_diagonal(mass, 2 * guess, 0, 0, 0, 0, 0);
         if (way > 0) {
             OK(p.session, spar_member_set_added_mass(p.body[0], 1, NULL, mass));

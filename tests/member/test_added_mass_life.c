@@ -58,7 +58,7 @@ static void arms_create_by(arms *m, double mass, double guess, int fidelity, int
     OK(s, spar_rigid_create(s, "body", x, q, M, &m->body));
     scene_diagonal(A, guess * mass, guess * mass, guess * mass, 0, 0, 0);
     OK(s, spar_member_set_added_mass(m->body, 1, NULL, A));
-    OK(s, spar_member_set_effects(m->body, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(m->body, SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_commit(m->body));
     scene_diagonal(K, 1e4, 1e4, 1e4, 100, 80, 80);
     scene_diagonal(M, 0.5, 0.5, 0.5, 0.01, 0.01, 0.01);
@@ -70,7 +70,7 @@ static void arms_create_by(arms *m, double mass, double guess, int fidelity, int
         A[i] /= 2; /* its length */
     }
     OK(s, spar_member_set_added_mass(m->beam, 1, eta, A));
-    OK(s, spar_member_set_effects(m->beam, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(m->beam, SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_commit(m->beam));
     OK(s, spar_joint_create(s, "ground", m->body, 0, NULL, 0, SPAR_FREE_RZ, &joint));
     OK(s, spar_joint_set_frame(joint, ground, q));

@@ -109,7 +109,7 @@ static void test_swing(void **state) {
         double dt = fine ? 0.02 : 0.04, e[SPAR_ENERGY_COUNT], load[5][6], tip[7], sum = 0, work[SPAR_WORK_COUNT];
         OK(s, spar_session_set_integrator(s, 1, 1));
         OK(s, spar_member_set_placement(b, none, q)); /* x, y, z go to y, z, x */
-        OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+        OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
         of_kind(s, b, run / 2, 8);
         OK(s, spar_member_set_initial_velocity(b, none, (double[3]){0, 0, v0}, none));
         bed(s, b, 7, k, 11);
@@ -180,7 +180,8 @@ static void test_off(void **state) {
         OK(s, spar_session_set_gravity(s, (double[3]){0, 0, -9.81}));
         if (off) {
             bed(s, b, 1, 100, 100);
-            OK(s, spar_member_set_effects(b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY));
+            OK(s, spar_member_set_effects(
+                      b, EFFECTS_ONLY(SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY)));
         }
         OK(s, spar_member_commit(b));
         scene_run(s, 0.01, 20);

@@ -98,8 +98,11 @@ static void test_members(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "'b'", spar_beam_create(s, "b", 1, 4, &m));
     REFUSED(s, SPAR_ERR_STATE, "no axis", spar_member_commit(b));
     REFUSED(s, SPAR_ERR_ARGUMENT, "root", spar_member_set_root(b, 7));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "effect", spar_member_set_effects(b, 1 << 20));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "use SPAR_FIDELITY_LINEAR", spar_member_set_effects(b, SPAR_EFFECT_INERTIA | 16));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "effect", spar_member_set_effects(b, 1 << 20, 0));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "unknown effect bits 0x100", spar_member_set_effects(b, 0, 256));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "effect bits 0x4 are to be on and off",
+            spar_member_set_effects(b, SPAR_EFFECT_GRAVITY | SPAR_EFFECT_WORK, SPAR_EFFECT_GRAVITY));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "use SPAR_FIDELITY_LINEAR", spar_member_set_effects(b, 0, SPAR_EFFECT_INERTIA | 16));
     REFUSED(s, SPAR_ERR_ARGUMENT, "rank", spar_member_set_owner(b, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "rank", spar_member_set_owner(b, -1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "unit", spar_member_set_placement(b, x, q));
@@ -325,7 +328,8 @@ static void test_read_members(void **state) {
     OK(s, spar_member_set_placement(b, place, q));
     OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_MODAL, 5));
-    OK(s, spar_member_set_effects(b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_DAMPING | SPAR_EFFECT_FLUID_MOMENT));
+    OK(s,
+       spar_member_set_effects(b, EFFECTS_ONLY(SPAR_EFFECT_INERTIA | SPAR_EFFECT_DAMPING | SPAR_EFFECT_FLUID_MOMENT)));
     OK(s, spar_member_commit(b));
     OK(s, spar_beam_get_quadrature(b, &rule, &points));
     OK(s, spar_beam_get_damping(b, found));

@@ -318,7 +318,7 @@ static void bent_create(bent *b) {
     OK(b->session, spar_beam_create(b->session, "bent", 2, 5, &b->beam));
     OK(b->session, spar_beam_set_axis(b->beam, 4, eta, axis, NULL));
     OK(b->session, spar_beam_set_sections(b->beam, 1, eta, K, M));
-    OK(b->session, spar_member_set_effects(b->beam, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(b->session, spar_member_set_effects(b->beam, SPAR_EFFECT_WORK, 0));
     OK(b->session, spar_member_learn_added_mass(b->beam, 3, (const double[]){0, 0.5, 1}));
     OK(b->session, spar_member_commit(b->beam));
     scene_diagonal(K, 50, 50, 50, 1, 1, 1);

@@ -115,7 +115,7 @@ static void nothing_jumps_at_half_a_turn(void **state) {
     OK(s, spar_member_set_root(c, SPAR_ROOT_FREE));
     OK(s, spar_member_set_placement(c, at, straight));
     for (int i = 0; i < 2; i++) {
-        OK(s, spar_member_set_effects(both[i], 0));
+        OK(s, spar_member_set_effects(both[i], EFFECTS_ONLY(0)));
         OK(s, spar_member_commit(both[i]));
     }
     spar_joint *j = scene_joint_at(s, "hinge", b, 7, c, 0, SPAR_FREE_RY, at);

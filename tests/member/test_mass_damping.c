@@ -110,7 +110,7 @@ static void test_energy_account(void **state) {
         spar_session *s = scene_session();
         spar_member *b = beam(s, 0, 0, alpha, NULL);
         OK(s, spar_session_set_integrator(s, 1, 1));
-        OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+        OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
         OK(s, spar_member_commit(b));
         OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, dead));
         scene_run(s, dt, (int64_t)lround(2 / dt));
@@ -196,7 +196,7 @@ static void test_off(void **state) {
         spar_session *s = scene_session();
         spar_member *b = beam(s, 0, 0, k == 0 ? 0 : alpha, NULL);
         if (k == 1) {
-            OK(s, spar_member_set_effects(b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC));
+            OK(s, spar_member_set_effects(b, EFFECTS_ONLY(SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC)));
         }
         OK(s, spar_member_set_fidelity(b, k == 3 ? SPAR_FIDELITY_RIGID : SPAR_FIDELITY_EXACT, 0));
         OK(s, spar_member_commit(b));
@@ -263,7 +263,8 @@ static void test_flies(void **state) {
         OK(s, spar_session_set_integrator(s, 1, 1));
         OK(s, spar_session_set_gravity(s, (double[3]){0, 0, heavy ? -g : 0}));
         OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
-        OK(s, spar_member_set_effects(b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_DAMPING | SPAR_EFFECT_GRAVITY));
+        OK(s,
+           spar_member_set_effects(b, EFFECTS_ONLY(SPAR_EFFECT_INERTIA | SPAR_EFFECT_DAMPING | SPAR_EFFECT_GRAVITY)));
         OK(s, spar_member_set_initial_velocity(b, none, v0, none));
         OK(s, spar_member_commit(b));
         scene_run(s, dt, 150);

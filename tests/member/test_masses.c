@@ -223,7 +223,8 @@ static void test_off(void **state) {
             OK(s, spar_beam_set_masses(b, 1, tip, mass));
         }
         if (k == 1) {
-            OK(s, spar_member_set_effects(b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY));
+            OK(s, spar_member_set_effects(
+                      b, EFFECTS_ONLY(SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC | SPAR_EFFECT_GRAVITY)));
         } else if (k == 2) {
             OK(s, spar_beam_set_masses(b, 0, NULL, NULL));
         }
@@ -255,7 +256,7 @@ static void test_report(void **state) {
         spar_member *b = scene_beam(s, "beam", 1, 6, L, K, M);
         OK(s, spar_session_set_gravity(s, g));
         OK(s, spar_beam_set_masses(b, 1, tip, mass));
-        OK(s, spar_member_set_effects(b, SPAR_EFFECT_GRAVITY | SPAR_EFFECT_MASSES));
+        OK(s, spar_member_set_effects(b, EFFECTS_ONLY(SPAR_EFFECT_GRAVITY | SPAR_EFFECT_MASSES)));
         OK(s, spar_member_commit(b));
         OK(s, spar_session_report_effects(s, 0.1, 8, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
         const double *row = table[SPAR_ROW_MASSES];

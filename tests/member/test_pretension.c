@@ -255,7 +255,7 @@ static void test_energy(void **state) {
             OK(s, spar_session_set_integrator(s, 1, 1));
             pull(s, b, 100);
             OK(s, spar_member_set_fidelity(b, i ? SPAR_FIDELITY_LINEAR : SPAR_FIDELITY_EXACT, 0));
-            OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+            OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
             OK(s, spar_member_commit(b));
             OK(s, spar_member_set_load(b, 7, SPAR_LOAD_DEAD, load));
             for (int k = 0; k < (fine ? 80 : 40); k++) {
@@ -286,9 +286,7 @@ static void test_off(void **state) {
             OK(s, spar_member_set_fidelity(b, rigid ? SPAR_FIDELITY_RIGID : SPAR_FIDELITY_EXACT, 0));
             if (off) {
                 pull(s, b, 1000);
-                OK(s, spar_member_set_effects(b, rigid ? SPAR_EFFECT_DEFAULT
-                                                       : SPAR_EFFECT_INERTIA | SPAR_EFFECT_GYROSCOPIC |
-                                                             SPAR_EFFECT_GRAVITY));
+                OK(s, spar_member_set_effects(b, 0, rigid ? 0 : SPAR_EFFECT_PRETENSION));
             }
             OK(s, spar_member_commit(b));
             OK(s, spar_member_get_effects(b, &effects));

@@ -202,7 +202,7 @@ static void move(moved *m) {
     OK(m->session, spar_beam_set_axis(m->beam, 2, eta, xyz, twist));
     OK(m->session, spar_member_set_external(m->beam, 1));
     OK(m->session, spar_member_set_placement(m->beam, place, turned));
-    OK(m->session, spar_member_set_effects(m->beam, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY));
+    OK(m->session, spar_member_set_effects(m->beam, SPAR_EFFECT_FLUID_HISTORY, 0));
     OK(m->session, spar_member_commit(m->beam));
     OK(m->session, spar_member_get_reference(m->beam, m->x, m->frame));
     for (int i = 0; i < NODES; i++) {

@@ -400,7 +400,8 @@ class Every(unittest.TestCase):
               'damping': 0.1, 'length': 1.0, 'tension_only': 0, 'drift': 1.0, 'amplitude': 1e-4, 'memory': 0, 'goals': 1,
               'tolerance': 0.1, 'compare': 0, 'density': 1.2, 'chord': 0.5, 'twist': 0.0, 'turn': 1, 'total': 1, 'law': 0,
               'height': 10.0, 'parameter': 0.1, 'hub_radius': 0.5, 'tip_radius': 11.0, 'base_radius': 1.0,
-              'top_radius': 1.0, 'alpha_rad': 0.1, 'status': 0, 'which': 0, 'flag': 1, 'convention': 0, 'effects': 255, 'response': 1,
+              'top_radius': 1.0, 'alpha_rad': 0.1, 'status': 0, 'which': 0, 'flag': 1, 'convention': 0, 'response': 1,
+              'switch_on': 128, 'switch_off': 2,
               'row': 0, 'feature': 'mpi', 'part': 0, 'i': 0, 'n': 1, 'capacity': 4}
 
     def scene(self, new):

@@ -31,7 +31,7 @@ static void create(run *r, spar_session *s, int first, int ranks, int nodes, int
     double *x = calloc((size_t)(3 * r->n) + 1, sizeof *x), *eta = calloc((size_t)r->n + 1, sizeof *eta);
     scene_box(K, M);
     r->beam = scene_beam(s, "beam", 1, 4, 10, K, M);
-    OK(s, spar_member_set_effects(r->beam, SPAR_EFFECT_DEFAULT | (kind == KEPT ? SPAR_EFFECT_FLUID_HISTORY : 0)));
+    OK(s, spar_member_set_effects(r->beam, kind == KEPT ? SPAR_EFFECT_FLUID_HISTORY : 0, 0));
     OK(s, spar_member_commit(r->beam));
     r->second = scene_beam(s, "second", 1, 4, 10, K, M); /* solved on the second rank, if there is one */
     OK(s, spar_member_commit(r->second));

@@ -33,7 +33,7 @@ static void create(run *r, int scheme, double piston_mass) {
     r->blade = scene_beam(s, "blade", 2, 4, 10, K, M);
     OK(s, spar_beam_set_damping(r->blade, mu));
     OK(s, spar_member_set_root(r->blade, SPAR_ROOT_DRIVEN));
-    OK(s, spar_member_set_effects(r->blade, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY));
+    OK(s, spar_member_set_effects(r->blade, SPAR_EFFECT_FLUID_HISTORY, 0));
     OK(s, spar_member_commit(r->blade));
     scene_mass(mass, piston_mass, centre, J);
     OK(s, spar_rigid_create(s, "piston", where, q, mass, &r->piston));

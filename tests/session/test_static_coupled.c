@@ -194,7 +194,8 @@ static void springs_create(springs *p, int n, int scheme) {
         OK(p->session, spar_beam_set_axis(p->beam[i], 2, eta, xyz, NULL));
         OK(p->session, spar_beam_set_sections(p->beam[i], 1, eta, K, M));
         OK(p->session, spar_member_set_fidelity(p->beam[i], SPAR_FIDELITY_LINEAR, 0));
-        OK(p->session, spar_member_set_effects(p->beam[i], SPAR_EFFECT_INERTIA | SPAR_EFFECT_FLUID_HISTORY));
+        OK(p->session,
+           spar_member_set_effects(p->beam[i], EFFECTS_ONLY(SPAR_EFFECT_INERTIA | SPAR_EFFECT_FLUID_HISTORY)));
         OK(p->session, spar_member_commit(p->beam[i]));
         OK(p->session, spar_fluid_create(p->beam[i], name, &p->tip[i]));
         OK(p->session, spar_fluid_set_motion_nodes(p->tip[i], 1, xyz + 3));
@@ -337,7 +338,7 @@ static void flag_create(flag *f, int scheme) {
     OK(f->session, spar_session_set_gravity(f->session, gravity));
     f->beam = scene_beam(f->session, "flag", 2, 6, 4, K, M);
     OK(f->session, spar_beam_set_damping(f->beam, mu));
-    OK(f->session, spar_member_set_effects(f->beam, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(f->session, spar_member_set_effects(f->beam, SPAR_EFFECT_WORK, 0));
     OK(f->session, spar_member_commit(f->beam));
     for (int i = 0; i < 11; i++) {
         f->x[i][0] = 0.4 * i;

@@ -260,7 +260,7 @@ static void farm_member(farm_scene *w, int i) {
         OK(w->s, spar_member_set_added_mass(w->m[i], 1, eta, mass));
     }
     if (i % 4 == 1) {
-        OK(w->s, spar_member_set_effects(w->m[i], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+        OK(w->s, spar_member_set_effects(w->m[i], SPAR_EFFECT_WORK, 0));
     }
     OK(w->s, spar_member_commit(w->m[i]));
     if (i % 3 == 0) {

@@ -294,7 +294,7 @@ static void make(scene *w, int changed, int writes, const scene *effects_of) {
         scene_diagonal(mass, 1, 1, 1, 0, 0, 0);
         OK(w->s, spar_member_set_added_mass(w->m[BODY], 1, NULL, mass));
         OK(w->s, spar_member_set_added_mass_response(w->m[BODY], SPAR_RESPONSE_VELOCITY));
-        OK(w->s, spar_member_set_effects(w->m[BLADE], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+        OK(w->s, spar_member_set_effects(w->m[BLADE], SPAR_EFFECT_WORK, 0));
         OK(w->s, spar_member_set_fidelity(w->m[BARE], SPAR_FIDELITY_MODAL, 4));
     }
     for (int k = 0; k < MEMBERS; k++) {
@@ -305,7 +305,7 @@ static void make(scene *w, int changed, int writes, const scene *effects_of) {
         }
         if (effects_of) {
             OK(w->s, spar_member_get_effects(effects_of->m[k], &effects));
-            OK(w->s, spar_member_set_effects(w->m[k], effects));
+            OK(w->s, spar_member_set_effects(w->m[k], EFFECTS_ONLY(effects)));
         }
         OK(w->s, spar_member_commit(w->m[k]));
         OK(w->s, spar_member_get_effects(w->m[k], &effects));

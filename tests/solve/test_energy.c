@@ -14,7 +14,7 @@ static void test_static(void **state) {
     scene_box(K, M);
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "b", 1, P, 10, K, NULL);
-    OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_commit(b));
     gsl_integration_glfixed_table *gauss = gsl_integration_glfixed_table_alloc(N);
     for (int k = 0; k <= N; k++) {
@@ -60,7 +60,7 @@ static double defect(int n, double T) {
     OK(s, spar_beam_set_sections(b, 1, eta, K, M));
     OK(s, spar_beam_set_damping(b, mu));
     OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
-    OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, dead));
     OK(s, spar_member_set_load(b, P / 2, SPAR_LOAD_FOLLOWER, follower));
@@ -105,7 +105,7 @@ static void test_dead_force(void **state) {
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "b", 1, P, 10, K, M);
     OK(s, spar_session_set_integrator(s, 1, 3));
-    OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, load));
     OK(s, spar_member_get_work(b, 3, work));
@@ -144,7 +144,7 @@ static void test_force_from_the_start(void **state) {
             OK(s, spar_member_set_root(m, SPAR_ROOT_DRIVEN));
             OK(s, spar_member_set_fidelity(m, SPAR_FIDELITY_RIGID, 0));
         }
-        OK(s, spar_member_set_effects(m, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+        OK(s, spar_member_set_effects(m, SPAR_EFFECT_WORK, 0));
         OK(s, spar_member_commit(m));
         OK(s, spar_member_set_initial_velocity(m, NULL, v0, NULL));
         OK(s, spar_fluid_create(m, "air", &f));
@@ -184,7 +184,7 @@ static void test_refusals(void **state) {
     spar_member *b = scene_beam(s, "b", 1, 3, 1, K, NULL), *bare = scene_beam(s, "bare", 1, 3, 1, K, NULL);
     assert_int_equal(spar_member_get_work(NULL, 3, work), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_member_get_work(b, 3, work), SPAR_ERR_STATE);
-    OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_commit(b));
     OK(s, spar_member_commit(bare));
     assert_int_equal(spar_member_get_work(b, -1, work), SPAR_ERR_ARGUMENT);

@@ -185,7 +185,7 @@ static void test_modal_falls(void **state) {
     OK(s, spar_session_set_gravity(s, g));
     OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_MODAL, 12));
-    OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_initial_velocity(b, x0, v, spin));
     OK(s, spar_member_get_work(b, 3, work));
@@ -253,7 +253,7 @@ static void test_rigid_is_the_stiff_limit(void **state) {
             OK(s, spar_session_set_integrator(s, 0.0, 1));
             OK(s, spar_member_set_root(b, SPAR_ROOT_PINNED));
             OK(s, spar_member_set_fidelity(b, i ? SPAR_FIDELITY_EXACT : SPAR_FIDELITY_RIGID, 0));
-            OK(s, spar_member_set_effects(b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+            OK(s, spar_member_set_effects(b, SPAR_EFFECT_WORK, 0));
             OK(s, spar_member_commit(b));
             OK(s, spar_member_set_load(b, 5, SPAR_LOAD_DEAD, load));
             OK(s, spar_member_get_work(b, 3, work[i]));
@@ -343,7 +343,7 @@ static void test_linear_static(void **state) {
         spar_session *s = scene_session();
         spar_member *b = scene_beam(s, "b", 2, 6, L, C, D);
         OK(s, spar_session_set_gravity(s, g));
-        OK(s, spar_member_set_effects(b, gravity ? SPAR_EFFECT_GRAVITY : 0));
+        OK(s, spar_member_set_effects(b, EFFECTS_ONLY(gravity ? SPAR_EFFECT_GRAVITY : 0)));
         OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_LINEAR, 0));
         OK(s, spar_member_commit(b));
         load[2] = gravity ? 0 : 10;
@@ -511,7 +511,7 @@ static void test_refusals(void **state) {
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_MODAL, 25));
     assert_int_equal(spar_member_commit(b), SPAR_ERR_ARGUMENT); /* it has 24 */
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_LINEAR, 0));
-    OK(s, spar_member_set_effects(b, 0));
+    OK(s, spar_member_set_effects(b, EFFECTS_ONLY(0)));
     assert_int_equal(spar_member_commit(b), SPAR_ERR_STATE); /* neither inertia nor a support */
     OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_PRESCRIBED, 0));
     assert_int_equal(spar_member_commit(b), SPAR_ERR_STATE);
@@ -524,7 +524,7 @@ static void test_refusals(void **state) {
 static spar_member *light_beam(spar_session *s, int fidelity, int effects, int root) {
     spar_member *b = scene_beam(s, "beam", 2, 4, 10, K, M);
     OK(s, spar_member_set_fidelity(b, fidelity, 4));
-    OK(s, spar_member_set_effects(b, effects));
+    OK(s, spar_member_set_effects(b, EFFECTS_ONLY(effects)));
     OK(s, spar_member_set_root(b, root));
     OK(s, spar_member_commit(b));
     return b;

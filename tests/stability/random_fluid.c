@@ -44,7 +44,7 @@ static void prepare(bath *b) {
     const double g = b->guess, eta = 0;
     double guess[36];
     scene_diagonal(guess, g, g, g, 0, 0, 0);
-    OK(b->w.s, spar_member_set_effects(b->w.m[0], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(b->w.s, spar_member_set_effects(b->w.m[0], SPAR_EFFECT_WORK, 0));
     if (g > 0) {
         OK(b->w.s, spar_member_set_added_mass(b->w.m[0], 1, &eta, guess));
     }

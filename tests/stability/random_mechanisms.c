@@ -71,7 +71,7 @@ static spar_member *body(sequence_world *w, const char *name, const double x[3],
     spar_member *p = NULL;
     scene_mass(mass, m, origin, (double[]){a, b, c});
     OK(w->s, spar_rigid_create(w->s, name, x, straight, mass, &p));
-    OK(w->s, spar_member_set_effects(p, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(w->s, spar_member_set_effects(p, SPAR_EFFECT_WORK, 0));
     OK(w->s, spar_member_commit(p));
     return w->m[w->members++] = p;
 }
@@ -95,7 +95,7 @@ static spar_member *beam(sequence_world *w, const char *name, const double a[3],
     OK(w->s, spar_beam_set_axis(p, 2, eta, line, NULL));
     OK(w->s, spar_beam_set_sections(p, 1, eta, K, M));
     OK(w->s, spar_member_set_root(p, root));
-    OK(w->s, spar_member_set_effects(p, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK));
+    OK(w->s, spar_member_set_effects(p, SPAR_EFFECT_WORK, 0));
     OK(w->s, spar_member_set_fidelity(p, fidelity, fidelity == SPAR_FIDELITY_MODAL ? modes : 0));
     OK(w->s, spar_member_commit(p));
     return w->m[w->members++] = p;

@@ -66,7 +66,7 @@ static void build_of(scene *c, int with_body, int elements, int nodes, int given
         }
         OK(c->s, spar_beam_set_nodes(c->b, (int64_t)elements * nodes, line, NULL));
     }
-    OK(c->s, spar_member_set_effects(c->b, SPAR_EFFECT_DEFAULT | (with_body ? SPAR_EFFECT_WORK : 0)));
+    OK(c->s, spar_member_set_effects(c->b, with_body ? SPAR_EFFECT_WORK : 0, 0));
     OK(c->s, spar_member_commit(c->b));
     if (with_body) {
         scene_mass(mass, 2, zero, J);
@@ -263,7 +263,7 @@ static void test_left_out_of_statics(void **state) {
     scene_diagonal(M, 1, 1, 1, 2e-3, 1e-3, 1e-3);
     OK(c.s, spar_session_set_gravity(c.s, g));
     c.b = scene_beam(c.s, "wing", 1, 6, 2, K, M);
-    OK(c.s, spar_member_set_effects(c.b, SPAR_EFFECT_GRAVITY));
+    OK(c.s, spar_member_set_effects(c.b, EFFECTS_ONLY(SPAR_EFFECT_GRAVITY)));
     OK(c.s, spar_member_commit(c.b));
     OK(c.s, spar_member_set_load(c.b, 5, SPAR_LOAD_DEAD, dead));
     OK(c.s, spar_session_report_effects(c.s, 0.1, 8, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
@@ -1073,7 +1073,7 @@ static spar_member *light_beam(spar_session *s, int fidelity, int effects, int r
     scene_box(K, M);
     spar_member *b = scene_beam(s, "beam", 2, 4, 10, K, M);
     OK(s, spar_member_set_fidelity(b, fidelity, 4));
-    OK(s, spar_member_set_effects(b, effects));
+    OK(s, spar_member_set_effects(b, EFFECTS_ONLY(effects)));
     OK(s, spar_member_set_root(b, root));
     OK(s, spar_member_commit(b));
     return b;

@@ -49,8 +49,8 @@
    these three
      place x y z                orientation qw qx qy qz
      root free|fixed|pinned|driven               external on|off          owner rank
-     effects default|none|inertia|gyroscopic|gravity|damping|fluid_moment|fluid_history|work|masses|
-             foundation|pretension ...
+     effects_on, effects_off inertia|gyroscopic|gravity|damping|fluid_moment|fluid_history|work|masses|
+             foundation|pretension ...                  besides the defaults, and of the defaults
      velocity x y z             spin x y z      about x y z          the initial rigid motion
      load* NODE dead|follower fx fy fz mx my mz                      NODE: a number from 0, first or last
    [joint NAME]

@@ -383,17 +383,44 @@ static int describe_rigid(const spar_case *c, const case_block *block, spar_memb
     return set_response(c, block, *body);
 }
 
-static int set_effects(const spar_case *c, const case_line *line, spar_member *member) {
-    /* in the order of the bits; the session refuses large_rotation, and says which fidelity to choose */
-    static const char *const names[] = {"inertia",      "gyroscopic",    "gravity", "damping", "large_rotation",
-                                        "fluid_moment", "fluid_history", "work",    "default", "masses",
-                                        "foundation",   "pretension",    "none",    NULL};
-    int effects = 0, which;
-    for (int i = 1; i <= line->n; i++) {
-        CASE_TRY(case_choice(&c->text, line, i, names, &which));
-        effects |= names[which + 1] ? 1 << which : 0;
+/* Effects that a line names, 0 without a line. */
+static int read_effects(const spar_case *c, const case_line *line, int *effects) {
+    static const struct {
+        const char *name;
+        int bit; /* the session refuses large_rotation, and says which fidelity to choose */
+    } all[] = {{"inertia", SPAR_EFFECT_INERTIA},
+               {"gyroscopic", SPAR_EFFECT_GYROSCOPIC},
+               {"gravity", SPAR_EFFECT_GRAVITY},
+               {"damping", SPAR_EFFECT_DAMPING},
+               {"large_rotation", 16},
+               {"fluid_moment", SPAR_EFFECT_FLUID_MOMENT},
+               {"fluid_history", SPAR_EFFECT_FLUID_HISTORY},
+               {"work", SPAR_EFFECT_WORK},
+               {"masses", SPAR_EFFECT_MASSES},
+               {"foundation", SPAR_EFFECT_FOUNDATION},
+               {"pretension", SPAR_EFFECT_PRETENSION}};
+    enum { COUNT = sizeof all / sizeof *all };
+    const char *names[COUNT + 1] = {NULL};
+    int which;
+    for (int i = 0; i < COUNT; i++) {
+        names[i] = all[i].name;
     }
-    return case_told(c, line->number, spar_member_set_effects(member, effects));
+    *effects = 0;
+    for (int i = 1; line && i <= line->n; i++) {
+        CASE_TRY(case_choice(&c->text, line, i, names, &which));
+        *effects |= all[which].bit;
+    }
+    return SPAR_OK;
+}
+
+static int set_effects(const spar_case *c, const case_block *block, spar_member *member) {
+    const case_line *with = case_find(block, "effects_on"), *without = case_find(block, "effects_off");
+    int on, off;
+    CASE_TRY(read_effects(c, with, &on));
+    CASE_TRY(read_effects(c, without, &off));
+    return with || without
+               ? case_told(c, without ? without->number : with->number, spar_member_set_effects(member, on, off))
+               : SPAR_OK;
 }
 
 static int set_place(const spar_case *c, const case_block *block, spar_member *member) {
@@ -452,8 +479,7 @@ static int describe_member(const spar_case *c, const case_block *block, spar_mem
         CASE_TRY(case_whole(&c->text, line, 1, 0, INT_MAX, &rank));
         DO(c, line->number, spar_member_set_owner(*member, (int)rank));
     }
-    line = case_find(block, "effects");
-    CASE_TRY(line ? set_effects(c, line, *member) : SPAR_OK);
+    CASE_TRY(set_effects(c, block, *member));
     return set_first_velocity(c, block, *member);
 }
 

@@ -16,9 +16,9 @@ static const known_key session_keys[] = {
     {"restart", 1, 1, 0},    {NULL, 0, 0, 0},
 };
 static const known_key member_keys[] = {
-    {"place", 3, 3, 0}, {"orientation", 4, 4, 0}, {"root", 1, 1, 0},  {"external", 1, 1, 0},
-    {"owner", 1, 1, 0}, {"spin", 3, 3, 0},        {"about", 3, 3, 0}, {"velocity", 3, 3, 0},
-    {"load", 8, 8, 1},  {"effects", 1, 16, 0},    {NULL, 0, 0, 0},
+    {"place", 3, 3, 0}, {"orientation", 4, 4, 0}, {"root", 1, 1, 0},         {"external", 1, 1, 0},
+    {"owner", 1, 1, 0}, {"spin", 3, 3, 0},        {"about", 3, 3, 0},        {"velocity", 3, 3, 0},
+    {"load", 8, 8, 1},  {"effects_on", 1, 16, 0}, {"effects_off", 1, 16, 0}, {NULL, 0, 0, 0},
 };
 static const known_key beam_keys[] = {
     {"elements", 1, 1, 0},  {"nodes", 1, 1, 0},      {"quadrature", 2, 2, 0},    {"axis", 4, 5, 1},

@@ -76,7 +76,7 @@ static void add_fluid(scene *c, spar_member *m, const double *x) {
 static void commit(scene *c) {
     for (int k = 0; k < c->members; k++) {
         if (c->asked != c->member[k]) {
-            MUST(c->session, spar_member_set_effects(c->member[k], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY));
+            MUST(c->session, spar_member_set_effects(c->member[k], SPAR_EFFECT_FLUID_HISTORY, 0));
         }
         MUST(c->session, spar_member_commit(c->member[k]));
     }
@@ -144,7 +144,7 @@ static void create_large(scene *c) {
     MUST(s, spar_member_set_root(m, SPAR_ROOT_FREE));
     c->asked = beam(c, "small", 1, 3);
     MUST(s, spar_member_set_fidelity(c->asked, SPAR_FIDELITY_LINEAR, 0));
-    MUST(s, spar_member_set_effects(c->asked, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY | SPAR_EFFECT_FLUID_HISTORY));
+    MUST(s, spar_member_set_effects(c->asked, SPAR_EFFECT_FLUID_HISTORY, SPAR_EFFECT_GYROSCOPIC));
     body(c, 3);
     MUST(s, spar_point_create(s, "point", x, NULL, &m));
     (void)add(c, m);

@@ -173,9 +173,10 @@ void do_spar_member_set_external(call *c) {
 
 void do_spar_member_set_effects(call *c) {
     live_member *m = arg_member(c, -1);
-    int effects = arg_flags(c, 1023 & ~16);
-    c->wild |= !(effects & SPAR_EFFECT_INERTIA); /* nothing may hold it */
-    RUN(c, spar_member_set_effects(m->m, effects));
+    int on = chance(c, 30) ? 0 : arg_flags(c, 4095 & ~(16 | 256)), off = arg_flags(c, 4095 & ~(16 | 256));
+    off &= chance(c, 95) ? ~on : ~0;
+    c->wild |= off & SPAR_EFFECT_INERTIA; /* nothing may hold it */
+    RUN(c, spar_member_set_effects(m->m, on, off));
 }
 
 void do_spar_beam_set_mass_damping(call *c) {

@@ -303,7 +303,7 @@ static void act_describe(void) {
     CALL(spar_member_set_placement, b, place, unit_q);
     CALL(spar_member_set_initial_velocity, b, place, v0, omega);
     CALL(spar_member_set_root, b, SPAR_ROOT_FREE);
-    CALL(spar_member_set_effects, b, SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY);
+    CALL(spar_member_set_effects, b, 0, SPAR_EFFECT_DAMPING | SPAR_EFFECT_GYROSCOPIC);
     CALL(spar_member_commit, b);
     for (int i = 0; i < 4; i++) {
         nodes[i][0] = 10.0 * i / 3;
@@ -387,7 +387,7 @@ static void act_step(void) {
     CALL(spar_session_set_log, s, quiet, NULL);
     spar_member *b = h.member[0] = begin_beam(s, "beam", 1, 6, 1);
     CALL(spar_member_set_root, b, SPAR_ROOT_DRIVEN);
-    CALL(spar_member_set_effects, b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK);
+    CALL(spar_member_set_effects, b, SPAR_EFFECT_WORK, 0);
     CALL(spar_beam_set_foundation, b, 2, eta, ground);
     CALL(spar_beam_get_foundation, b, &node, 2, NULL, ground);
     CALL(spar_beam_set_pretension, b, 2, eta, tension);
@@ -472,7 +472,7 @@ static void act_fidelities(void) {
         spar_member *m = h.member[k] = begin_beam(s, name[k], what[k].elements, what[k].nodes, k);
         CALL(spar_member_set_root, m, what[k].root);
         CALL(spar_member_set_fidelity, m, what[k].kind, what[k].modes);
-        CALL(spar_member_set_effects, m, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK);
+        CALL(spar_member_set_effects, m, SPAR_EFFECT_WORK, 0);
         CALL(spar_beam_set_pretension, m, 1, eta, load);
         CALL(spar_beam_set_foundation, m, what[k].kind == SPAR_FIDELITY_MODAL, eta, load);
         if (k != 3) {
@@ -517,7 +517,7 @@ static void act_fluids(void) {
     spar_fluid *sections = NULL;
     spar_session *s = h.session = begin_session();
     spar_member *b = h.member[0] = begin_beam(s, "beam", 2, 3, 0);
-    CALL(spar_member_set_effects, b, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_FLUID_HISTORY);
+    CALL(spar_member_set_effects, b, SPAR_EFFECT_FLUID_HISTORY, 0);
     CALL(spar_member_commit, b);
     spar_fluid *f = h.fluid[0] = begin_fluid(b, "loose", 10, &h.n[0], h.x[0]);
     int64_t n = h.n[0];
@@ -678,7 +678,7 @@ static void act_joints(void) {
     for (int k = 0; k < 2; k++) {
         b[k] = begin_beam(s, k ? "second" : "first", 1, 3, k);
         CALL(spar_member_set_root, b[k], k ? SPAR_ROOT_FREE : SPAR_ROOT_FIXED);
-        CALL(spar_member_set_effects, b[k], SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK);
+        CALL(spar_member_set_effects, b[k], SPAR_EFFECT_WORK, 0);
         CALL(spar_member_commit, b[k]);
     }
     CALL(spar_joint_create, s, "hinge", b[1], 0, b[0], 2, SPAR_FREE_RY, &hinge);

@@ -1136,7 +1136,7 @@ static void describe_otherwise(scene *c, int k) {
         MUST(s, spar_member_set_root(b, SPAR_ROOT_PINNED));
         break;
     case 1:
-        MUST(s, spar_member_set_effects(b, SPAR_EFFECT_GRAVITY | SPAR_EFFECT_INERTIA));
+        MUST(s, spar_member_set_effects(b, 0, SPAR_EFFECT_GYROSCOPIC));
         break;
     case 2:
         MUST(s, spar_member_set_fidelity(b, SPAR_FIDELITY_LINEAR, 0));

@@ -134,7 +134,7 @@ static void add_member(scene *w) {
             break;
         }
         if (draw(&w->random, 2)) {
-            (void)spar_member_set_effects(m, SPAR_EFFECT_DEFAULT | SPAR_EFFECT_WORK);
+            (void)spar_member_set_effects(m, SPAR_EFFECT_WORK, 0);
         }
     }
 }
