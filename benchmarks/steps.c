@@ -73,7 +73,7 @@ static spar_session *make(double rho, spar_member **body) {
     must(s, spar_session_set_option(s, "newton.stop", "strict"));
     must(s, spar_rigid_create(s, "body", x, upright, mass, body));
     must(s, spar_member_commit(*body));
-    must(s, spar_member_set_spring(*body, 0, SPAR_FREE_X, one, NULL, NULL, NULL));
+    must(s, spar_spring_create(s, "spring", *body, 0, SPAR_FREE_X, one, NULL, NULL, NULL));
     must(s, spar_member_set_initial_velocity(*body, x, v, NULL));
     return s;
 }

@@ -41,7 +41,7 @@ static int decay(int direction, double *period, double *rest) {
     if (status == SPAR_OK && (status = spar_session_set_gravity(s, (double[]){0, 0, -g})) == SPAR_OK &&
         (status = spar_rigid_create(s, "spar", x, upright, mass, &body)) == SPAR_OK &&
         (status = spar_member_commit(body)) == SPAR_OK &&
-        (status = spar_member_set_spring(body, 0, 63, stiffness, damping, preload, &water)) == SPAR_OK &&
+        (status = spar_spring_create(s, "water", body, 0, 63, stiffness, damping, preload, &water)) == SPAR_OK &&
         (status = moor(s, body)) == SPAR_OK && (status = spar_member_solve_static(body, 5)) == SPAR_OK &&
         (status = spar_joint_get_motion(water, motion, NULL, NULL)) == SPAR_OK) {
         *rest = motion[direction];

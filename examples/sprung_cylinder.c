@@ -46,7 +46,8 @@ static int run(double speed, double *amplitude) {
     int status = spar_session_create(&s);
     if (status == SPAR_OK && (status = spar_rigid_create(s, "cylinder", x, upright, mass, &cylinder)) == SPAR_OK &&
         (status = spar_member_commit(cylinder)) == SPAR_OK &&
-        (status = spar_member_set_spring(cylinder, 0, SPAR_FREE_Y, stiffness, damping, NULL, &spring)) == SPAR_OK &&
+        (status = spar_spring_create(s, "spring", cylinder, 0, SPAR_FREE_Y, stiffness, damping, NULL, &spring)) ==
+            SPAR_OK &&
         (status = spar_fluid_create(cylinder, "stream", &w.fluid)) == SPAR_OK &&
         (status = spar_fluid_set_motion_nodes(w.fluid, 1, x)) == SPAR_OK &&
         (status = spar_fluid_set_force_nodes(w.fluid, 1, x)) == SPAR_OK &&

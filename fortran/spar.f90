@@ -13,9 +13,9 @@
 ! Names. A call is the C name without its first two words: spar_fluid_push_forces is fluid%push_forces, spar_beam_set_axis is
 ! member%set_axis. The calls of the step belong to the session: session%step_begin, ..., session%step. spar_point_create,
 ! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam, spar_link_create and
-! spar_link_set_spring joint%create_link and %set_link_spring; a joint to the ground is created without b. spar_status_text,
-! spar_version, spar_has, spar_effect_name, spar_aero_effect_name and spar_vtk_series_add keep their names. A session has one
-! variable, which owns it: spar_member_get_session is left to hosts that use spar_c.
+! spar_link_set_spring joint%create_link and %set_link_spring, spar_spring_create joint%create_spring; a joint to the ground is
+! created without b. spar_status_text, spar_version, spar_has, spar_effect_name, spar_aero_effect_name and spar_vtk_series_add
+! keep their names. A session has one variable, which owns it: spar_member_get_session is left to hosts that use spar_c.
 !
 ! Status. Every call takes stat and errmsg, optional and last, as allocate does. stat is 0 or a SPAR_ERR_*; errmsg is set only
 ! where something failed, to what went wrong, where, and the cure. Without stat a failure stops the program with that message.
@@ -374,6 +374,10 @@ module spar
   contains
     procedure, private :: joint_set_frame, joint_set_frame_single_1
     generic :: set_frame => joint_set_frame, joint_set_frame_single_1
+    procedure, private :: joint_set_spring, joint_set_spring_single_1, joint_set_spring_single_2, &
+        joint_set_spring_single_3
+    generic :: set_spring => joint_set_spring, joint_set_spring_single_1, joint_set_spring_single_2, &
+        joint_set_spring_single_3
     procedure :: set_driven => joint_set_driven
     procedure, private :: joint_drive, joint_drive_single_1
     generic :: drive => joint_drive, joint_drive_single_1
@@ -395,13 +399,13 @@ module spar
         joint_create_link_32_single_1
     procedure :: exists => joint_exists
     procedure :: c_handle => joint_handle
-    procedure, private :: joint_set_spring, joint_at_node_64, joint_at_node_32
-    procedure, private :: joint_set_spring_single_1, joint_set_spring_single_2, joint_set_spring_single_3, &
-        joint_at_node_64_single_1, joint_at_node_64_single_2, joint_at_node_64_single_3, joint_at_node_32_single_1, &
-        joint_at_node_32_single_2, joint_at_node_32_single_3
-    generic :: set_spring => joint_set_spring, joint_at_node_64, joint_at_node_32, joint_set_spring_single_1, &
-        joint_set_spring_single_2, joint_set_spring_single_3, joint_at_node_64_single_1, joint_at_node_64_single_2, &
-        joint_at_node_64_single_3, joint_at_node_32_single_1, joint_at_node_32_single_2, joint_at_node_32_single_3
+    procedure, private :: joint_create_spring_64, joint_create_spring_32
+    procedure, private :: joint_create_spring_64_single_1, joint_create_spring_64_single_2, &
+        joint_create_spring_64_single_3, joint_create_spring_32_single_1, joint_create_spring_32_single_2, &
+        joint_create_spring_32_single_3
+    generic :: create_spring => joint_create_spring_64, joint_create_spring_32, joint_create_spring_64_single_1, &
+        joint_create_spring_64_single_2, joint_create_spring_64_single_3, joint_create_spring_32_single_1, &
+        joint_create_spring_32_single_2, joint_create_spring_32_single_3
     procedure, private :: joint_set_link_spring, joint_set_link_spring_single_1
     generic :: set_link_spring => joint_set_link_spring, joint_set_link_spring_single_1
   end type spar_joint
@@ -1793,8 +1797,11 @@ contains
   end function joint_handle
 
   ! A joint of one node with the ground, made with its springs.
-  subroutine joint_at_node_64(self, member, node, free_motions, stiffness, damping, preload, stat, errmsg)
+  subroutine joint_create_spring_64(self, session, name, member, node, free_motions, stiffness, damping, preload, stat, &
+      errmsg)
     class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
     class(spar_member), intent(in) :: member
     integer(c_int64_t), intent(in) :: node
     integer, intent(in) :: free_motions
@@ -1805,13 +1812,17 @@ contains
     integer(c_int) :: status
 
     made = c_null_ptr
-    status = spar_member_set_spring(member%handle, node - 1, to_c(free_motions), stiffness, damping, preload, made)
-    call joint_take(self, made, member%session, status)
-    call finish(status, member%session, stat, errmsg)
-  end subroutine joint_at_node_64
+    status = spar_spring_create(session%handle, c_text(name), member%handle, node - 1, to_c(free_motions), stiffness, &
+        damping, preload, made)
+    call joint_take(self, made, session%handle, status)
+    call finish(status, session%handle, stat, errmsg)
+  end subroutine joint_create_spring_64
 
-  subroutine joint_at_node_32(self, member, node, free_motions, stiffness, damping, preload, stat, errmsg)
+  subroutine joint_create_spring_32(self, session, name, member, node, free_motions, stiffness, damping, preload, stat, &
+      errmsg)
     class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
     class(spar_member), intent(in) :: member
     integer(c_int), intent(in) :: node
     integer, intent(in) :: free_motions
@@ -1819,8 +1830,9 @@ contains
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call joint_at_node_64(self, member, int(node, c_int64_t), free_motions, stiffness, damping, preload, stat, errmsg)
-  end subroutine joint_at_node_32
+    call joint_create_spring_64(self, session, name, member, int(node, c_int64_t), free_motions, stiffness, damping, &
+        preload, stat, errmsg)
+  end subroutine joint_create_spring_32
 
   subroutine joint_set_link_spring(self, stiffness, damping, length, tension_only, stat, errmsg)
     class(spar_joint), intent(inout) :: self
@@ -5340,8 +5352,11 @@ contains
         point_b=real(point_b, c_double), b=b, node_b=node_b, stat=stat, errmsg=errmsg)
   end subroutine joint_create_link_32_single_1
 
-  subroutine joint_at_node_64_single_1(self, member, node, free_motions, stiffness, damping, preload, stat, errmsg)
+  subroutine joint_create_spring_64_single_1(self, session, name, member, node, free_motions, stiffness, damping, &
+      preload, stat, errmsg)
     class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
     class(spar_member), intent(in) :: member
     integer(c_int64_t), intent(in) :: node
     integer, intent(in) :: free_motions
@@ -5355,12 +5370,16 @@ contains
 
     if (present(damping)) allocate (c_damping, source=real(damping, c_double))
     if (present(preload)) allocate (c_preload, source=real(preload, c_double))
-    call joint_at_node_64(self, member=member, node=node, free_motions=free_motions, stiffness=real(stiffness, &
-        c_double), damping=c_damping, preload=c_preload, stat=stat, errmsg=errmsg)
-  end subroutine joint_at_node_64_single_1
+    call joint_create_spring_64(self, session=session, name=name, member=member, node=node, &
+        free_motions=free_motions, stiffness=real(stiffness, c_double), damping=c_damping, preload=c_preload, &
+        stat=stat, errmsg=errmsg)
+  end subroutine joint_create_spring_64_single_1
 
-  subroutine joint_at_node_64_single_2(self, member, node, free_motions, no_stiffness, damping, preload, stat, errmsg)
+  subroutine joint_create_spring_64_single_2(self, session, name, member, node, free_motions, no_stiffness, damping, &
+      preload, stat, errmsg)
     class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
     class(spar_member), intent(in) :: member
     integer(c_int64_t), intent(in) :: node
     integer, intent(in) :: free_motions
@@ -5373,13 +5392,15 @@ contains
 
     if (present(preload)) allocate (c_preload, source=real(preload, c_double))
     if (present(no_stiffness)) return
-    call joint_at_node_64(self, member=member, node=node, free_motions=free_motions, damping=real(damping, c_double), &
-        preload=c_preload, stat=stat, errmsg=errmsg)
-  end subroutine joint_at_node_64_single_2
+    call joint_create_spring_64(self, session=session, name=name, member=member, node=node, &
+        free_motions=free_motions, damping=real(damping, c_double), preload=c_preload, stat=stat, errmsg=errmsg)
+  end subroutine joint_create_spring_64_single_2
 
-  subroutine joint_at_node_64_single_3(self, member, node, free_motions, no_stiffness, no_damping, preload, stat, &
-      errmsg)
+  subroutine joint_create_spring_64_single_3(self, session, name, member, node, free_motions, no_stiffness, &
+      no_damping, preload, stat, errmsg)
     class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
     class(spar_member), intent(in) :: member
     integer(c_int64_t), intent(in) :: node
     integer, intent(in) :: free_motions
@@ -5390,12 +5411,15 @@ contains
     character(*), intent(inout), optional :: errmsg
 
     if (present(no_stiffness) .or. present(no_damping)) return
-    call joint_at_node_64(self, member=member, node=node, free_motions=free_motions, preload=real(preload, c_double), &
-        stat=stat, errmsg=errmsg)
-  end subroutine joint_at_node_64_single_3
+    call joint_create_spring_64(self, session=session, name=name, member=member, node=node, &
+        free_motions=free_motions, preload=real(preload, c_double), stat=stat, errmsg=errmsg)
+  end subroutine joint_create_spring_64_single_3
 
-  subroutine joint_at_node_32_single_1(self, member, node, free_motions, stiffness, damping, preload, stat, errmsg)
+  subroutine joint_create_spring_32_single_1(self, session, name, member, node, free_motions, stiffness, damping, &
+      preload, stat, errmsg)
     class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
     class(spar_member), intent(in) :: member
     integer(c_int), intent(in) :: node
     integer, intent(in) :: free_motions
@@ -5409,12 +5433,16 @@ contains
 
     if (present(damping)) allocate (c_damping, source=real(damping, c_double))
     if (present(preload)) allocate (c_preload, source=real(preload, c_double))
-    call joint_at_node_32(self, member=member, node=node, free_motions=free_motions, stiffness=real(stiffness, &
-        c_double), damping=c_damping, preload=c_preload, stat=stat, errmsg=errmsg)
-  end subroutine joint_at_node_32_single_1
+    call joint_create_spring_32(self, session=session, name=name, member=member, node=node, &
+        free_motions=free_motions, stiffness=real(stiffness, c_double), damping=c_damping, preload=c_preload, &
+        stat=stat, errmsg=errmsg)
+  end subroutine joint_create_spring_32_single_1
 
-  subroutine joint_at_node_32_single_2(self, member, node, free_motions, no_stiffness, damping, preload, stat, errmsg)
+  subroutine joint_create_spring_32_single_2(self, session, name, member, node, free_motions, no_stiffness, damping, &
+      preload, stat, errmsg)
     class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
     class(spar_member), intent(in) :: member
     integer(c_int), intent(in) :: node
     integer, intent(in) :: free_motions
@@ -5427,13 +5455,15 @@ contains
 
     if (present(preload)) allocate (c_preload, source=real(preload, c_double))
     if (present(no_stiffness)) return
-    call joint_at_node_32(self, member=member, node=node, free_motions=free_motions, damping=real(damping, c_double), &
-        preload=c_preload, stat=stat, errmsg=errmsg)
-  end subroutine joint_at_node_32_single_2
+    call joint_create_spring_32(self, session=session, name=name, member=member, node=node, &
+        free_motions=free_motions, damping=real(damping, c_double), preload=c_preload, stat=stat, errmsg=errmsg)
+  end subroutine joint_create_spring_32_single_2
 
-  subroutine joint_at_node_32_single_3(self, member, node, free_motions, no_stiffness, no_damping, preload, stat, &
-      errmsg)
+  subroutine joint_create_spring_32_single_3(self, session, name, member, node, free_motions, no_stiffness, &
+      no_damping, preload, stat, errmsg)
     class(spar_joint), intent(inout) :: self
+    class(spar_session), intent(in) :: session
+    character(*), intent(in) :: name
     class(spar_member), intent(in) :: member
     integer(c_int), intent(in) :: node
     integer, intent(in) :: free_motions
@@ -5444,9 +5474,9 @@ contains
     character(*), intent(inout), optional :: errmsg
 
     if (present(no_stiffness) .or. present(no_damping)) return
-    call joint_at_node_32(self, member=member, node=node, free_motions=free_motions, preload=real(preload, c_double), &
-        stat=stat, errmsg=errmsg)
-  end subroutine joint_at_node_32_single_3
+    call joint_create_spring_32(self, session=session, name=name, member=member, node=node, &
+        free_motions=free_motions, preload=real(preload, c_double), stat=stat, errmsg=errmsg)
+  end subroutine joint_create_spring_32_single_3
 
   subroutine joint_set_link_spring_single_1(self, stiffness, damping, length, tension_only, stat, errmsg)
     class(spar_joint), intent(inout) :: self

@@ -645,16 +645,18 @@ module spar_calls
       integer(c_int) :: status
     end function spar_joint_set_spring
 
-    function spar_member_set_spring(member, node, free_motions, stiffness, damping, preload, joint) bind(c) &
-        result(status)
-      import :: c_double, c_int, c_int64_t, c_ptr
+    function spar_spring_create(session, name, member, node, free_motions, stiffness, damping, preload, joint) &
+        bind(c) result(status)
+      import :: c_char, c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      character(kind=c_char), intent(in), optional :: name(*)
       type(c_ptr), value :: member
       integer(c_int64_t), value :: node
       integer(c_int), value :: free_motions
       real(c_double), intent(in), optional :: stiffness(36), damping(36), preload(6)
       type(c_ptr), intent(inout), optional :: joint
       integer(c_int) :: status
-    end function spar_member_set_spring
+    end function spar_spring_create
 
     function spar_joint_set_driven(joint, mask) bind(c) result(status)
       import :: c_int, c_ptr

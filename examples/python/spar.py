@@ -132,7 +132,7 @@ constants SPAR_FREE_X=1 SPAR_FREE_Y=2 SPAR_FREE_Z=4 SPAR_FREE_RX=8 SPAR_FREE_RY=
 call spar_joint_create int session|session|value| name|char|in|[] a|member|value| node_a|int64_t|value| b|member|value| node_b|int64_t|value| free_motions|int|value| joint|joint|out|
 call spar_joint_set_frame int joint|joint|value| x|double|in|[3] q|double|in|[4]
 call spar_joint_set_spring int joint|joint|value| stiffness|double|in|[36] damping|double|in|[36] preload|double|in|[6]
-call spar_member_set_spring int member|member|value| node|int64_t|value| free_motions|int|value| stiffness|double|in|[36] damping|double|in|[36] preload|double|in|[6] joint|joint|out|
+call spar_spring_create int session|session|value| name|char|in|[] member|member|value| node|int64_t|value| free_motions|int|value| stiffness|double|in|[36] damping|double|in|[36] preload|double|in|[6] joint|joint|out|
 call spar_joint_set_driven int joint|joint|value| mask|int|value|
 call spar_joint_drive int joint|joint|value| motion|double|in|[6] rate|double|in|[6] acceleration|double|in|[6]
 call spar_joint_set_load int joint|joint|value| load|double|in|[6]

@@ -319,16 +319,22 @@ SPAR_API int spar_joint_set_frame(spar_joint *joint, const double x[3], const do
      preload[6]: in, N, N m, NULL: 0 */
 SPAR_API int spar_joint_set_spring(spar_joint *joint, const double stiffness[36], const double damping[36],
                                    const double preload[6]);
-/* A joint of one node with the ground, at the node and in its section axes, with a spring; its name is "MEMBER.NODE".
-   Before the first step.
+/* Creates a spring from one node of a member to the ground: a joint at the node, in its section axes (of a rigid body
+   its own axes). The same as spar_joint_create with b NULL and spar_joint_set_spring. Before the first step.
+     session: in
+     name: in, not empty, of no other joint of the session
+     member: in, of the session
      node: in
-     free_motions: in, SPAR_FREE_* combined; the others are constrained
-     stiffness[36]: in, as in spar_joint_set_spring
-     damping[36]: in, as there
-     preload[6]: in, as there
-     joint: out, NULL: not wanted */
-SPAR_API int spar_member_set_spring(spar_member *member, int64_t node, int free_motions, const double stiffness[36],
-                                    const double damping[36], const double preload[6], spar_joint **joint);
+     free_motions: in, SPAR_FREE_* combined, on which the spring acts; the others are held. A cylinder in a stream has
+           SPAR_FREE_Y
+     stiffness[36]: in, as of spar_joint_set_spring, NULL: 0
+     damping[36]: in, as of spar_joint_set_spring, NULL: 0
+     preload[6]: in, N, N m, NULL: 0
+     joint: out, NULL: not wanted
+   Local, the same on every rank. */
+SPAR_API int spar_spring_create(spar_session *session, const char *name, spar_member *member, int64_t node,
+                                int free_motions, const double stiffness[36], const double damping[36],
+                                const double preload[6], spar_joint **joint);
 /* Chooses which free motions spar_joint_drive prescribes. Before the first step.
      mask: in, SPAR_FREE_* combined */
 SPAR_API int spar_joint_set_driven(spar_joint *joint, int mask);

@@ -159,39 +159,40 @@ int spar_joint_set_frame(spar_joint *joint, const double x[3], const double q[4]
 }
 
 /* Checks that a spring matrix is symmetric, without entries on constrained motions. */
-static int check_spring(const spar_joint *j, const char *call, const char *what, const double *K) {
+static int check_spring(spar_session *s, const char *name, int free_motions, const char *call, const char *what,
+                        const double *K) {
     double size = 0;
     if (!K) {
         return SPAR_OK;
     }
-    SPARI_TRY(spari_need_finite(j->session, call, j->name, what, 36, K));
+    SPARI_TRY(spari_need_finite(s, call, name, what, 36, K));
     for (int i = 0; i < 36; i++) {
         size = fmax(size, fabs(K[i]));
     }
     for (int i = 0; i < 6; i++) {
         for (int k = 0; k < 6; k++) {
-            SPARI_REQUIRE(j->session, fabs(K[6 * i + k] - K[6 * k + i]) <= 1e-9 * size, SPAR_ERR_ARGUMENT,
-                          "%s: '%s': %s is not symmetric: entries (%d,%d) and (%d,%d) are %g and %g", call, j->name,
-                          what, i, k, k, i, K[6 * i + k], K[6 * k + i]);
-            SPARI_REQUIRE(j->session, K[6 * i + k] == 0 || (j->kinematics.free >> i & 1), SPAR_ERR_ARGUMENT,
+            SPARI_REQUIRE(s, fabs(K[6 * i + k] - K[6 * k + i]) <= 1e-9 * size, SPAR_ERR_ARGUMENT,
+                          "%s: '%s': %s is not symmetric: entries (%d,%d) and (%d,%d) are %g and %g", call, name, what,
+                          i, k, k, i, K[6 * i + k], K[6 * k + i]);
+            SPARI_REQUIRE(s, K[6 * i + k] == 0 || (free_motions >> i & 1), SPAR_ERR_ARGUMENT,
                           "%s: '%s': %s has %g on %s, which the joint constrains; springs act on free motions only",
-                          call, j->name, what, K[6 * i + k], motion_name[i]);
+                          call, name, what, K[6 * i + k], motion_name[i]);
         }
     }
     return SPAR_OK;
 }
 
 /* Checks all spring data of a joint. */
-static int check_springs(const spar_joint *j, const char *call, const double *stiffness, const double *damping,
-                         const double *preload) {
-    SPARI_TRY(check_spring(j, call, "stiffness", stiffness));
-    SPARI_TRY(check_spring(j, call, "damping", damping));
+static int check_springs(spar_session *s, const char *name, int free_motions, const char *call,
+                         const double *stiffness, const double *damping, const double *preload) {
+    SPARI_TRY(check_spring(s, name, free_motions, call, "stiffness", stiffness));
+    SPARI_TRY(check_spring(s, name, free_motions, call, "damping", damping));
     if (preload) {
-        SPARI_TRY(spari_need_finite(j->session, call, j->name, "preload", 6, preload));
+        SPARI_TRY(spari_need_finite(s, call, name, "preload", 6, preload));
     }
     for (int i = 0; i < 6 && preload; i++) {
-        SPARI_REQUIRE(j->session, preload[i] == 0 || (j->kinematics.free >> i & 1), SPAR_ERR_ARGUMENT,
-                      "%s: '%s': preload has %g on %s, which the joint constrains", call, j->name, preload[i],
+        SPARI_REQUIRE(s, preload[i] == 0 || (free_motions >> i & 1), SPAR_ERR_ARGUMENT,
+                      "%s: '%s': preload has %g on %s, which the joint constrains", call, name, preload[i],
                       motion_name[i]);
     }
     return SPAR_OK;
@@ -211,24 +212,24 @@ int spar_joint_set_spring(spar_joint *joint, const double stiffness[36], const d
     SPARI_TRY(need_joint(joint, __func__));
     SPARI_REQUIRE(joint->session, !joint->kinematics.line, SPAR_ERR_STATE,
                   "%s: '%s' is a line; call spar_link_set_spring", __func__, joint->name);
-    SPARI_TRY(check_springs(joint, __func__, stiffness, damping, preload));
+    SPARI_TRY(
+        check_springs(joint->session, joint->name, joint->kinematics.free, __func__, stiffness, damping, preload));
     take_springs(joint, stiffness, damping, preload);
     return SPAR_OK;
 }
 
-int spar_member_set_spring(spar_member *member, int64_t node, int free_motions, const double stiffness[36],
-                           const double damping[36], const double preload[6], spar_joint **joint) {
+int spar_spring_create(spar_session *session, const char *name, spar_member *member, int64_t node, int free_motions,
+                       const double stiffness[36], const double damping[36], const double preload[6],
+                       spar_joint **joint) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_TRY(spari_need_member(member, __func__));
-    spar_session *s = member->session;
-    char name[SPARI_MESSAGE_SIZE];
+    const char *label = name ? name : "";
     spar_joint *j = NULL;
-    (void)snprintf(name, sizeof name, "%.1000s.%lld", member->name, (long long)node);
-    SPARI_REQUIRE(s, free_motions >= 0 && free_motions <= ALL_FREE, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': free is %d; give a combination of SPAR_FREE_* bits", __func__, name, free_motions);
-    const spar_joint probe = {.session = s, .name = name, .kinematics.free = free_motions};
-    SPARI_TRY(check_springs(&probe, __func__, stiffness, damping, preload));
-    SPARI_TRY(joint_create(s, __func__, name, member, node, NULL, 0, &j));
+    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_REQUIRE(session, member, SPAR_ERR_ARGUMENT, "%s: '%s': the member is NULL; create it first", __func__, label);
+    SPARI_REQUIRE(session, free_motions >= 0 && free_motions <= ALL_FREE, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': free is %d; give a combination of SPAR_FREE_* bits", __func__, label, free_motions);
+    SPARI_TRY(check_springs(session, label, free_motions, __func__, stiffness, damping, preload));
+    SPARI_TRY(joint_create(session, __func__, name, member, node, NULL, 0, &j));
     j->kinematics.free = free_motions;
     take_springs(j, stiffness, damping, preload);
     if (joint) {

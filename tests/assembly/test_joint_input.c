@@ -113,6 +113,7 @@ static void test_short_form(void **state) {
     const double J[3] = {1, 2, 3}, x[2][3] = {{0, 0, 0}, {0, 0, 0}}, preload[6] = {0, 3, 0, 0, 0, 0};
     double mass[36], K[36] = {0}, C[36] = {0}, z[2][6];
     yard y = {.s = scene_session()};
+    spar_session *other = scene_session();
     spar_joint *j[2] = {NULL, NULL};
     scene_mass(mass, 2, zero, J);
     for (int k = 0; k < 2; k++) {
@@ -120,14 +121,24 @@ static void test_short_form(void **state) {
         OK(y.s, spar_member_commit(y.body[k]));
     }
     K[7] = 50, C[7] = 1;
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "'a.0': stiffness has 50 on y, which the joint constrains",
-            spar_member_set_spring(y.body[0], 0, SPAR_FREE_X, K, C, preload, &j[0]));
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "free is 64", spar_member_set_spring(y.body[0], 0, 64, K, C, preload, &j[0]));
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "'spring': stiffness has 50 on y, which the joint constrains",
+            spar_spring_create(y.s, "spring", y.body[0], 0, SPAR_FREE_X, K, C, preload, &j[0]));
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "free is 64",
+            spar_spring_create(y.s, "spring", y.body[0], 0, 64, K, C, preload, &j[0]));
     REFUSED(y.s, SPAR_ERR_ARGUMENT, "there is no node 1",
-            spar_member_set_spring(y.body[0], 1, 2, K, C, preload, &j[0]));
-    OK(y.s, spar_member_set_spring(y.body[0], 0, SPAR_FREE_Y, K, C, preload, &j[0]));
-    REFUSED(y.s, SPAR_ERR_ARGUMENT, "joint 'a.0' already exists",
-            spar_member_set_spring(y.body[0], 0, SPAR_FREE_Y, K, C, NULL, NULL));
+            spar_spring_create(y.s, "spring", y.body[0], 1, 2, K, C, preload, &j[0]));
+    OK(y.s, spar_spring_create(y.s, "spring", y.body[0], 0, SPAR_FREE_Y, K, C, preload, &j[0]));
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "joint 'spring' already exists",
+            spar_spring_create(y.s, "spring", y.body[0], 0, SPAR_FREE_Y, K, C, NULL, NULL));
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "needs a name",
+            spar_spring_create(y.s, NULL, y.body[0], 0, SPAR_FREE_Y, K, C, NULL, NULL));
+    REFUSED(y.s, SPAR_ERR_ARGUMENT, "the member is NULL",
+            spar_spring_create(y.s, "none", NULL, 0, SPAR_FREE_Y, K, C, NULL, NULL));
+    REFUSED(other, SPAR_ERR_ARGUMENT, "belongs to another session",
+            spar_spring_create(other, "spring", y.body[0], 0, SPAR_FREE_Y, K, C, NULL, NULL));
+    assert_int_equal(spar_spring_create(NULL, "spring", y.body[0], 0, SPAR_FREE_Y, K, C, NULL, NULL),
+                     SPAR_ERR_ARGUMENT);
+    spar_session_destroy(&other);
     OK(y.s, spar_joint_create(y.s, "b.0", y.body[1], 0, NULL, 0, SPAR_FREE_Y, &j[1]));
     OK(y.s, spar_joint_set_spring(j[1], K, C, preload));
     scene_run(y.s, 0.05, 30);

@@ -48,7 +48,7 @@ static void test_tip(void **state) {
         spar_session *s = scene_session();
         spar_member *b = slender(s, fidelity[k % 3], 1);
         K[14] = isinf(kappa) ? 0 : kappa * EI / (L * L * L);
-        OK(s, spar_member_set_spring(b, P - 1, isinf(kappa) ? ALL & ~SPAR_FREE_Z : ALL, K, NULL, NULL, NULL));
+        OK(s, spar_spring_create(s, "spring", b, P - 1, isinf(kappa) ? ALL & ~SPAR_FREE_Z : ALL, K, NULL, NULL, NULL));
         OK(s, spar_member_solve_modes(b, 2, f, NULL));
         NEAR(two_pi * f[0] / unit, 3.5160152685, 1e-4);
         NEAR(two_pi * f[1] / (unit * root * root), 1, 1e-5);
@@ -70,7 +70,7 @@ static void test_along(void **state) {
         spar_session *s = scene_session();
         spar_member *b = slender(s, SPAR_FIDELITY_EXACT, elements);
         K[14] = k;
-        OK(s, spar_member_set_spring(b, node, ALL, K, NULL, NULL, &spring));
+        OK(s, spar_spring_create(s, "spring", b, node, ALL, K, NULL, NULL, &spring));
         OK(s, spar_member_set_load(b, tip, SPAR_LOAD_DEAD, load));
         OK(s, spar_member_solve_static(b, 1));
         OK(s, spar_member_get_reference(b, x, NULL));

@@ -213,7 +213,7 @@ static void make_beam(scene *s) {
     MUST(spar_member_commit(*b));
     if (s->is.sprung) { /* its tip to the ground, all six motions free */
         const double spring[36] = {[14] = 10};
-        MUST(spar_member_set_spring(*b, NODES - 1, 63, spring, NULL, NULL, NULL));
+        MUST(spar_spring_create(s->session, "spring", *b, NODES - 1, 63, spring, NULL, NULL, NULL));
     }
     MUST(spar_member_set_load(*b, NODES - 1, SPAR_LOAD_DEAD, tip));
 }

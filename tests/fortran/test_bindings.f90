@@ -125,7 +125,7 @@ program test_bindings
       'spar_link_create')
   call refused(spar_joint_set_frame(none), 'spar_joint_set_frame')
   call refused(spar_joint_set_spring(none), 'spar_joint_set_spring')
-  call refused(spar_member_set_spring(none, 0_c_int64_t, 0_c_int, joint=made), 'spar_member_set_spring')
+  call refused(spar_spring_create(none, member=none, node=0_c_int64_t, free_motions=0_c_int, joint=made), 'spar_spring_create')
   call refused(spar_link_set_spring(none, 0.0_c_double, 0.0_c_double, 0.0_c_double, 0_c_int), 'spar_link_set_spring')
   call refused(spar_joint_set_driven(none, 0_c_int), 'spar_joint_set_driven')
   call refused(spar_joint_drive(none), 'spar_joint_drive')

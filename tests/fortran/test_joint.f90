@@ -62,7 +62,8 @@ contains
     call session%set_gravity([0.0_c_double, 0.0_c_double, -g])
     call session%set_integrator(1.0_c_double, 1)
     call make_body(session, 'body', origin, 2.0_c_double, body)
-    call spring%set_spring(body, 1, int(all_six, c_int), stiffness=diagonal([80, 90, 100, 10, 11, 12] * 1.0_c_double), &
+    call spring%create_spring(session, 'spring', body, 1, int(all_six, c_int), &
+        stiffness=diagonal([80, 90, 100, 10, 11, 12] * 1.0_c_double), &
         damping=diagonal([1, 0, 0, 0, 0, 0] * 1.0_c_double), preload=[0, 0, 4, 0, 0, 0] * 1.0_c_double)
     call check(spring%exists(), 'a spring is a joint')
     call body%solve_static(1)

@@ -201,7 +201,7 @@ static void explicit_oscillator(void **state) {
         pistons_create_with(&p, 1, &r, &guess);
         scene_diagonal(K, k, 0, 0, 0, 0, 0);
         OK(p.session, spar_session_set_integrator(p.session, 0.99, 1));
-        OK(p.session, spar_member_set_spring(p.body[0], 0, SPAR_FREE_X, K, NULL, NULL, NULL));
+        OK(p.session, spar_spring_create(p.session, "spring", p.body[0], 0, SPAR_FREE_X, K, NULL, NULL, NULL));
         OK(p.session, spar_member_set_initial_velocity(p.body[0], NULL, v0, NULL));
         OK(p.session, spar_session_set_predictor(p.session, order));
         OK(p.session, spar_fluid_push_forces(p.fluid[0], (double[3]){0}, NULL));

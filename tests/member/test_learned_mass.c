@@ -422,7 +422,7 @@ static void explicit_is_iterated(void **state) {
             OK(b.session, spar_fluid_set_force_nodes(b.fluid, 1, origin));
             OK(b.session, spar_fluid_map(b.fluid));
             scene_diagonal(K, 20 * (1 + ratio), 0, 0, 0, 0, 0);
-            OK(b.session, spar_member_set_spring(b.body, 0, SPAR_FREE_X, K, NULL, NULL, NULL));
+            OK(b.session, spar_spring_create(b.session, "spring", b.body, 0, SPAR_FREE_X, K, NULL, NULL, NULL));
             OK(b.session, spar_member_set_initial_velocity(b.body, NULL, v0, NULL));
             OK(b.session, spar_session_set_integrator(b.session, rho, 1));
             OK(b.session, spar_session_set_predictor(b.session, n / (RATIOS * 3)));

@@ -118,7 +118,7 @@ class Values(unittest.TestCase):
             stiffness, damping = numpy.zeros((6, 6)), numpy.zeros((6, 6))
             stiffness[1, 1], damping[1, 1] = 50.0, 20.0  # critical for 2 kg
             member, fluid = body(s)
-            joint = member.set_spring(0, spar.FREE_Y, stiffness, damping)
+            joint = s.spring_create('spring', member, 0, spar.FREE_Y, stiffness, damping)
             for _ in range(200):
                 s.step_begin(0.02)
                 done = False

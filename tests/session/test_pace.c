@@ -33,7 +33,7 @@ static void create_swing(swing *w, double rho) {
     }
     OK(w->session, spar_rigid_create(w->session, "body", NULL, NULL, M, &w->body));
     OK(w->session, spar_member_commit(w->body));
-    OK(w->session, spar_member_set_spring(w->body, 0, 63, K, NULL, NULL, &spring));
+    OK(w->session, spar_spring_create(w->session, "spring", w->body, 0, 63, K, NULL, NULL, &spring));
     OK(w->session, spar_member_set_load(w->body, 0, SPAR_LOAD_DEAD, load)); /* x = 1 - cos(w t) */
     OK(w->session, spar_session_set_integrator(w->session, rho, 1));
 }
@@ -305,7 +305,8 @@ static void what_is_refused(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "drift is -1", spar_session_set_tolerance(s, -1, 0));
     REFUSED(s, SPAR_ERR_ARGUMENT, "rtol is 2", spar_session_set_tolerance(s, 1, 2));
     REFUSED(s, SPAR_ERR_ARGUMENT, "drift is 0", spar_session_set_tolerance(s, 0, 0.1));
-    REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first", spar_session_get_step_control(s, SPAR_PACE_COUNT, pace));
+    REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first",
+            spar_session_get_step_control(s, SPAR_PACE_COUNT, pace));
     REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first", spar_step_adaptive(s, &dt, NULL, NULL, NULL, NULL));
     REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first", spar_member_estimate_error(w.body, &x, NULL));
     OK(s, spar_member_estimate_error(w.body, NULL, &x));

@@ -33,7 +33,7 @@ static void create(scene *c, int me, int ranks) {
     scene_mass(mass, 2, centre, J);
     OK(s, spar_rigid_create(s, "body", place, NULL, mass, &c->body));
     OK(s, spar_member_commit(c->body));
-    OK(s, spar_member_set_spring(c->body, 0, 63, spring, NULL, NULL, NULL));
+    OK(s, spar_spring_create(s, "spring", c->body, 0, 63, spring, NULL, NULL, NULL));
     for (int i = 0; i < NODES; i++) {
         if (i % carriers == me) {
             const double at[3] = {2.0 * i / (NODES - 1), 0.1, 0.05 * (i % 3)};

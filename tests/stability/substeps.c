@@ -30,7 +30,7 @@ static void mode_create(mode *p, double rho, int substeps, double stiffness, dou
     OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 1e-7, 1e-8, 50));
     OK(s, spar_rigid_create(s, "body", NULL, NULL, M, &p->body));
     OK(s, spar_member_commit(p->body));
-    OK(s, spar_member_set_spring(p->body, 0, SPAR_FREE_X, K, NULL, NULL, &p->spring));
+    OK(s, spar_spring_create(s, "spring", p->body, 0, SPAR_FREE_X, K, NULL, NULL, &p->spring));
     OK(s, spar_fluid_create(p->body, "water", &p->fluid));
     OK(s, spar_fluid_set_motion_nodes(p->fluid, 1, zero));
     OK(s, spar_fluid_set_force_nodes(p->fluid, 1, zero));

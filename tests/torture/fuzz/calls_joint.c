@@ -111,13 +111,17 @@ void do_spar_link_set_spring(call *c) {
     RUN(c, spar_link_set_spring(j->j, k, d, length, slack));
 }
 
-void do_spar_member_set_spring(call *c) {
+void do_spar_spring_create(call *c) {
     static const int masks[] = {2, 16, 63, 7};
     live_joint *at = free_joint(c);
     if (!at) {
         return;
     }
     live_member *m = arg_member(c, -1);
+    live_session *l = m->m && !odd(c) ? c->w->session + m->session : arg_session(c);
+    c->where[0] = l->s, c->asked = 1; /* as in arg_ends */
+    c->session = l->s ? (int)(l - c->w->session) : -1;
+    const char *name = arg_name(c, "s");
     int64_t node = arg_node(c, m);
     int mask = odd(c) ? arg_int(c, -1, 64) : masks[below(c, 4)], nowhere = chance(c, 20);
     const live_joint as = {.free_motions = mask};
@@ -125,11 +129,11 @@ void do_spar_member_set_spring(call *c) {
     double *K = arg_spring(c, &as, 100), *D = arg_spring(c, &as, 5);
     spar_joint *j = NULL;
     text(c, ", NULL, %s", nowhere ? "NULL" : "&j");
-    RUN(c, spar_member_set_spring(m->m, node, mask, K, D, NULL, nowhere ? NULL : &j));
+    RUN(c, spar_spring_create(l->s, name, m->m, node, mask, K, D, NULL, nowhere ? NULL : &j));
     if (!nowhere) {
-        joint_made(c, at, j, m->session, 0, mask);
+        joint_made(c, at, j, (int)(l - c->w->session), 0, mask);
     } else if (c->status == SPAR_OK) {
-        c->w->session[m->session].tied = 1;
+        l->tied = 1;
     }
 }
 

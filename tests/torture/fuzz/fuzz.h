@@ -144,7 +144,7 @@ enum {
     CALL(spar_link_create, 40, FUZZ_CHANGES)                                                                           \
     CALL(spar_joint_set_frame, 60, FUZZ_CHANGES)                                                                       \
     CALL(spar_joint_set_spring, 50, FUZZ_CHANGES)                                                                      \
-    CALL(spar_member_set_spring, 30, FUZZ_CHANGES)                                                                     \
+    CALL(spar_spring_create, 30, FUZZ_CHANGES)                                                                         \
     CALL(spar_link_set_spring, 50, FUZZ_CHANGES)                                                                       \
     CALL(spar_joint_set_driven, 60, FUZZ_CHANGES)                                                                      \
     CALL(spar_joint_drive, 80, FUZZ_CHANGES)                                                                           \

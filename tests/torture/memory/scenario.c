@@ -687,7 +687,7 @@ static void act_joints(void) {
     CALL(spar_joint_create, s, "spring", b[1], 2, NULL, 0, 7, &spring);
     CALL(spar_joint_set_frame, spring, there, NULL);
     CALL(spar_joint_set_spring, spring, stiffness, NULL, NULL);
-    CALL(spar_member_set_spring, b[0], 2, SPAR_FREE_X | SPAR_FREE_Y | SPAR_FREE_Z, stiffness, NULL, NULL, NULL);
+    CALL(spar_spring_create, s, "tie", b[0], 2, SPAR_FREE_X | SPAR_FREE_Y | SPAR_FREE_Z, stiffness, NULL, NULL, NULL);
     CALL(spar_link_create, s, "line", b[1], 1, there, NULL, 0, here, &line);
     CALL(spar_link_set_spring, line, 100, 1, 0.5, 1);
     CALL(spar_joint_set_load, spring, load);

@@ -51,6 +51,6 @@
 " spar_fluid_get_member spar_fluid_get_name spar_fluid_fail ",
 " spar_fluid_set_states spar_fluid_get_states spar_fluid_pull_states spar_fluid_push_states ",
 " spar_joint_create spar_joint_set_frame spar_joint_set_spring spar_joint_set_driven spar_joint_drive ",
-" spar_joint_set_load spar_joint_get_motion spar_joint_get_load spar_joint_get_energy spar_member_set_spring ",
+" spar_joint_set_load spar_joint_get_motion spar_joint_get_load spar_joint_get_energy spar_spring_create ",
 " spar_link_create ",
 " spar_link_set_spring ",
