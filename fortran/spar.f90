@@ -85,8 +85,6 @@ module spar
   integer, parameter, public :: SPAR_PHASE_START = 0, SPAR_PHASE_BETWEEN = 1, SPAR_PHASE_BEGUN = 2, &
       SPAR_PHASE_SOLVED = 3, SPAR_PHASE_CHECKED = 4
   integer, parameter, public :: SPAR_RESPONSE_ACCELERATION = 0, SPAR_RESPONSE_VELOCITY = 1
-  integer, parameter, public :: SPAR_PACE_RATIO = 0, SPAR_PACE_NEXT_DT = 1, SPAR_PACE_REJECT = 2, &
-      SPAR_PACE_REJECTED = 3, SPAR_PACE_COUNT = 4
   integer, parameter, public :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
   integer, parameter, public :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
   integer, parameter, public :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
@@ -173,8 +171,9 @@ module spar
     generic :: set_tolerance => session_set_tolerance, session_set_tolerance_single_1
     procedure, private :: session_get_tolerance, session_get_tolerance_single_1, session_get_tolerance_single_2
     generic :: get_tolerance => session_get_tolerance, session_get_tolerance_single_1, session_get_tolerance_single_2
-    procedure, private :: session_get_step_control, session_get_step_control_single_1
-    generic :: get_step_control => session_get_step_control, session_get_step_control_single_1
+    procedure, private :: session_get_step_control, session_get_step_control_single_1, session_get_step_control_single_2
+    generic :: get_step_control => session_get_step_control, session_get_step_control_single_1, &
+        session_get_step_control_single_2
     procedure :: set_reproducible => session_set_reproducible
     procedure :: get_reproducible => session_get_reproducible
     procedure :: set_threads => session_set_threads
@@ -2735,13 +2734,18 @@ contains
     call finish(spar_session_get_tolerance(self%handle, drift, rtol), self%handle, stat, errmsg)
   end subroutine session_get_tolerance
 
-  subroutine session_get_step_control(self, pace, stat, errmsg)
+  subroutine session_get_step_control(self, ratio, next_dt, reject, rejected, stat, errmsg)
     class(spar_session), intent(in) :: self
-    real(c_double), contiguous, intent(inout) :: pace(:)
+    real(c_double), intent(inout), optional :: ratio, next_dt
+    integer, intent(inout), optional :: reject
+    integer(c_int64_t), intent(inout), optional :: rejected
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_reject
 
-    call finish(spar_session_get_step_control(self%handle, size(pace, kind=c_int64_t), pace), self%handle, stat, errmsg)
+    status = spar_session_get_step_control(self%handle, ratio, next_dt, c_reject, rejected)
+    call hand(status, c_reject, reject)
+    call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_step_control
 
   subroutine session_set_reproducible(self, on, stat, errmsg)
@@ -6234,17 +6238,40 @@ contains
     call take(c_rtol, rtol)
   end subroutine session_get_tolerance_single_2
 
-  subroutine session_get_step_control_single_1(self, pace, stat, errmsg)
+  subroutine session_get_step_control_single_1(self, ratio, next_dt, reject, rejected, stat, errmsg)
     class(spar_session), intent(in) :: self
-    real(c_float), intent(inout) :: pace(:)
+    real(c_float), intent(inout) :: ratio
+    real(c_float), intent(inout), optional :: next_dt
+    integer, intent(inout), optional :: reject
+    integer(c_int64_t), intent(inout), optional :: rejected
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_pace(:)
+    real(c_double), allocatable :: c_ratio
+    real(c_double), allocatable :: c_next_dt
 
-    allocate (c_pace(ubound(pace, 1, c_int64_t)), source=untouched)
-    call session_get_step_control(self, pace=c_pace, stat=stat, errmsg=errmsg)
-    call take(c_pace, pace)
+    allocate (c_ratio, source=untouched)
+    if (present(next_dt)) allocate (c_next_dt, source=untouched)
+    call session_get_step_control(self, ratio=c_ratio, next_dt=c_next_dt, reject=reject, rejected=rejected, &
+        stat=stat, errmsg=errmsg)
+    call take(c_ratio, ratio)
+    call take(c_next_dt, next_dt)
   end subroutine session_get_step_control_single_1
+
+  subroutine session_get_step_control_single_2(self, no_ratio, next_dt, reject, rejected, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    type(absent), intent(in), optional :: no_ratio
+    real(c_float), intent(inout) :: next_dt
+    integer, intent(inout), optional :: reject
+    integer(c_int64_t), intent(inout), optional :: rejected
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_next_dt
+
+    allocate (c_next_dt, source=untouched)
+    if (present(no_ratio)) return
+    call session_get_step_control(self, next_dt=c_next_dt, reject=reject, rejected=rejected, stat=stat, errmsg=errmsg)
+    call take(c_next_dt, next_dt)
+  end subroutine session_get_step_control_single_2
 
   subroutine session_push_numbers_single_1(self, numbers, stat, errmsg)
     class(spar_session), intent(inout) :: self

@@ -911,11 +911,12 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_get_tolerance
 
-    function spar_session_get_step_control(session, capacity, pace) bind(c) result(status)
+    function spar_session_get_step_control(session, ratio, next_dt, reject, rejected) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session
-      integer(c_int64_t), value :: capacity
-      real(c_double), intent(inout), optional :: pace(*)
+      real(c_double), intent(inout), optional :: ratio, next_dt
+      integer(c_int), intent(inout), optional :: reject
+      integer(c_int64_t), intent(inout), optional :: rejected
       integer(c_int) :: status
     end function spar_session_get_step_control
 
@@ -1685,8 +1686,6 @@ module spar_c
   integer(c_int), parameter :: SPAR_PHASE_START = 0, SPAR_PHASE_BETWEEN = 1, SPAR_PHASE_BEGUN = 2, &
       SPAR_PHASE_SOLVED = 3, SPAR_PHASE_CHECKED = 4
   integer(c_int), parameter :: SPAR_RESPONSE_ACCELERATION = 0, SPAR_RESPONSE_VELOCITY = 1
-  integer(c_int), parameter :: SPAR_PACE_RATIO = 0, SPAR_PACE_NEXT_DT = 1, SPAR_PACE_REJECT = 2, &
-      SPAR_PACE_REJECTED = 3, SPAR_PACE_COUNT = 4
   integer(c_int), parameter :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
   integer(c_int), parameter :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
   integer(c_int), parameter :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4

@@ -169,8 +169,7 @@ call spar_step_begin_initial int session|session|value| dt|double|value|
 call spar_session_solve_static int session|session|value| load_steps|int|value| solve|fluid_solver|callback| context|context|value| iterations|int|out|
 call spar_session_set_tolerance int session|session|value| drift|double|value| rtol|double|value|
 call spar_session_get_tolerance int session|session|value| drift|double|out| rtol|double|out|
-constants SPAR_PACE_RATIO=0 SPAR_PACE_NEXT_DT=1 SPAR_PACE_REJECT=2 SPAR_PACE_REJECTED=3 SPAR_PACE_COUNT=4
-call spar_session_get_step_control int session|session|value| capacity|int64_t|value| pace|double|out|[SPAR_PACE_COUNT]
+call spar_session_get_step_control int session|session|value| ratio|double|out| next_dt|double|out| reject|int|out| rejected|int64_t|out|
 call spar_step_adaptive int session|session|value| dt|double|out| before|before_step|callback| solve|fluid_solver|callback| context|context|value| taken|double|out|
 call spar_session_set_reproducible int session|session|value| on|int|value|
 call spar_session_get_reproducible int session|session|value| on|int|out|

@@ -239,21 +239,18 @@ typedef int (*spar_before_step)(spar_session *session, double t, double dt, void
      rtol: in, 0 to 1, > 0 only with a drift > 0, as what begins at rest has no speed; out */
 SPAR_API int spar_session_set_tolerance(spar_session *session, double drift, double rtol);
 SPAR_API int spar_session_get_tolerance(const spar_session *session, double *drift, double *rtol);
-/* Entries of the pace of steps, spar_session_get_step_control. */
-enum {
-    SPAR_PACE_RATIO = 0,    /* error over tolerance, the largest of all members; 0 in a first step that began without
-                               spar_session_solve_initial, whose accelerations nobody knows */
-    SPAR_PACE_NEXT_DT = 1,  /* s, 0.2 to 2 of this step's: to go on with; or, if it is rejected, to try again with. By a
-                               PI controller; small changes, which would only cost new tangents, are not proposed */
-    SPAR_PACE_REJECT = 2,   /* 1: the step under way is to be rejected */
-    SPAR_PACE_REJECTED = 3, /* steps given up so far whose error was too large */
-    SPAR_PACE_COUNT = 4
-};
-/* What the tolerance says: between solve and accept of the step under way (the host then calls spar_step_accept or
-   spar_step_reject, and begins the next step with the dt named here, or a smaller one), between steps of the last
-   accepted one. The same on all ranks. Local. pace[capacity]: out, by SPAR_PACE_*, NULL: not wanted. SPAR_ERR_STATE: no
-   tolerance, or no step since it was set. */
-SPAR_API int spar_session_get_step_control(const spar_session *session, int64_t capacity, double *pace);
+/* What step-size control says. Between solve and accept it is about the step in progress: reject the step if `reject`
+   is 1, otherwise accept it. Then begin the next step with next_dt, or a smaller dt. Between steps it is about the last
+   accepted step.
+     ratio: out, error over tolerance, the largest of all members; 0 in a first step without
+           spar_session_solve_initial, where the initial accelerations are not known, NULL: not wanted
+     next_dt: out, s, dt of the next step, or of the next try if the step is rejected: 0.2 to 2 times this step's, by a
+           PI controller. Small changes are not proposed, because they would only cost new tangents, NULL: not wanted
+     reject: out, 1: the step in progress exceeds the tolerance, NULL: not wanted
+     rejected: out, number of steps rejected so far because of their error, NULL: not wanted
+   Local, the same on every rank. SPAR_ERR_STATE: no tolerance is set, or no step was solved since. */
+SPAR_API int spar_session_get_step_control(const spar_session *session, double *ratio, double *next_dt, int *reject,
+                                           int64_t *rejected);
 /* One step that keeps the tolerance: tried with dt, and again with a smaller one while its error is too large. For
    fluids that can go back to t^n: before and solve are called again with another dt, for the same t.
      dt: in, s, to try with; out, to go on with

@@ -42,7 +42,7 @@ static const double clock_resolves = 1e-12;
 
 static int fail_within(const spar_session *s, const char *call, const tries *t) {
     const char *why = "the motion needs smaller steps; start with a smaller dt or set a larger drift";
-    int at_clock = 0.2 * t->dt <= clock_resolves * fabs(s->clock.time); /* next_dt reduces to a fifth at most */
+    int at_clock = 0.2 * t->dt <= clock_resolves * fabs(s->clock.time); /* propose_dt reduces to a fifth at most */
     if (t->stuck && t->power < -0.5) {
         why = "rounding of positions makes the error grow as dt decreases; set a larger drift or rtol";
     } else if (t->stuck || at_clock) {

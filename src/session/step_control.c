@@ -45,7 +45,7 @@ static double fade(const spari_step_control *p, double ratio) {
 }
 
 /* PI control (Gustafsson, ACM TOMS 17, 1991), (E2). Small changes of dt are not worth a new tangent. */
-static double next_dt(const spar_session *s, double ratio) {
+static double propose_dt(const spar_session *s, double ratio) {
     static const double safety = 0.9, integral = 0.35, proportional = 0.2, most = 2, least = 0.2, up = 1.2;
     const spari_step_control *p = &s->own->step_control;
     ratio = fade(p, ratio);
@@ -79,7 +79,7 @@ void spari_step_control_accept(spar_session *s) {
         ratio = fmax(ratio, judge_member(m, &m->accuracy.step_error, &speed));
         m->accuracy.speed = speed;
     }
-    p->next = spari_step_error_is_known(s) ? next_dt(s, ratio) : s->clock.dt;
+    p->next = spari_step_error_is_known(s) ? propose_dt(s, ratio) : s->clock.dt;
     p->ratio = spari_step_error_is_known(s) ? fade(p, ratio) : 0;
     p->last = ratio;
     p->cut = 0;
@@ -94,12 +94,13 @@ void spari_step_control_reject(spar_session *s) {
     double ratio = spari_step_control_ratio(s);
     if (ratio > 1) {
         p->rejected++;
-        p->next = next_dt(s, ratio);
+        p->next = propose_dt(s, ratio);
         p->cut = 1;
     }
 }
 
-int spar_session_get_step_control(const spar_session *session, int64_t capacity, double *pace) {
+int spar_session_get_step_control(const spar_session *session, double *ratio, double *next_dt, int *reject,
+                                  int64_t *rejected) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     const spar_session *s = session;
@@ -107,19 +108,21 @@ int spar_session_get_step_control(const spar_session *session, int64_t capacity,
     SPARI_REQUIRE(s, spari_step_control_is_set(s), SPAR_ERR_STATE,
                   "%s: no tolerance is set, so step errors are not estimated; call spar_session_set_tolerance first",
                   __func__);
-    SPARI_TRY(spari_need_capacity(s, __func__, capacity));
     int judged = s->state.phase >= SPARI_SOLVED && !s->state.standing && !s->state.trial;
     SPARI_REQUIRE(s, judged || p->next > 0, SPAR_ERR_STATE,
                   "%s: no step has been solved since the tolerance was set; make one first", __func__);
-    double ratio = judged ? spari_step_control_ratio(s) : p->last;
-    const double all[SPAR_PACE_COUNT] = {
-        [SPAR_PACE_RATIO] = ratio,
-        [SPAR_PACE_NEXT_DT] = !judged                        ? p->next
-                              : spari_step_error_is_known(s) ? next_dt(s, ratio)
-                                                             : s->clock.dt,
-        [SPAR_PACE_REJECT] = judged && ratio > 1,
-        [SPAR_PACE_REJECTED] = (double)p->rejected,
-    };
-    spari_fill(capacity, pace, SPAR_PACE_COUNT, all);
+    const double now = judged ? spari_step_control_ratio(s) : p->last;
+    if (ratio) {
+        *ratio = now;
+    }
+    if (next_dt) {
+        *next_dt = !judged ? p->next : spari_step_error_is_known(s) ? propose_dt(s, now) : s->clock.dt;
+    }
+    if (reject) {
+        *reject = judged && now > 1;
+    }
+    if (rejected) {
+        *rejected = p->rejected;
+    }
     return SPAR_OK;
 }

@@ -34,7 +34,7 @@ program test_bindings
   call refused(spar_session_push_numbers(none, 0_c_int64_t), 'spar_session_push_numbers')
   call refused(spar_session_set_tolerance(none, 1.0_c_double, 0.0_c_double), 'spar_session_set_tolerance')
   call refused(spar_session_get_tolerance(none), 'spar_session_get_tolerance')
-  call refused(spar_session_get_step_control(none, 0_c_int64_t), 'spar_session_get_step_control')
+  call refused(spar_session_get_step_control(none), 'spar_session_get_step_control')
   call refused(spar_member_estimate_error(none), 'spar_member_estimate_error')
   call refused(spar_member_get_iterations(none), 'spar_member_get_iterations')
   call refused(spar_session_set_option(none), 'spar_session_set_option')

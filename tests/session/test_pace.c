@@ -46,7 +46,7 @@ static void error_of_a_step(void **state) {
     const double h = 0.02;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         swing w;
-        double found, t, pace[SPAR_PACE_COUNT];
+        double found, t, ratio;
         create_swing(&w, rows[k].rho);
         OK(w.session, spar_session_set_tolerance(w.session, 1e-3, 0));
         OK(w.session, spar_session_solve_initial(w.session, h, NULL, NULL, NULL));
@@ -58,8 +58,8 @@ static void error_of_a_step(void **state) {
             if (i > 10) { /* with rho 0 the start has died away */
                 NEAR(found, rows[k].factor * h * h * change, 0.06 * rows[k].factor * h * h * change);
             }
-            OK(w.session, spar_session_get_step_control(w.session, SPAR_PACE_COUNT, pace));
-            NEAR(pace[SPAR_PACE_RATIO], found / h / 1e-3, 1e-12 * pace[SPAR_PACE_RATIO]);
+            OK(w.session, spar_session_get_step_control(w.session, &ratio, NULL, NULL, NULL));
+            NEAR(ratio, found / h / 1e-3, 1e-12 * ratio);
         }
         spar_session_destroy(&w.session);
     }
@@ -72,7 +72,8 @@ static void error_goes_with_the_tolerance(void **state) {
     double last = 0;
     for (double rtol = 1e-2; rtol > 1e-4; rtol /= 4) {
         swing w;
-        double t = 0, dt = 0.3, taken, q[7], v[6], pace[SPAR_PACE_COUNT];
+        double t = 0, dt = 0.3, taken, q[7], v[6];
+        int64_t rejected;
         int steps = 0;
         create_swing(&w, 0.9);
         OK(w.session, spar_session_set_tolerance(w.session, 1e-6, rtol));
@@ -80,12 +81,12 @@ static void error_goes_with_the_tolerance(void **state) {
         for (; t < 5; t += taken, steps++) {
             OK(w.session, spar_step_adaptive(w.session, &dt, NULL, NULL, NULL, &taken));
         }
-        OK(w.session, spar_session_get_step_control(w.session, SPAR_PACE_COUNT, pace));
+        OK(w.session, spar_session_get_step_control(w.session, NULL, NULL, NULL, &rejected));
         OK(w.session, spar_member_get_motion(w.body, q, v, NULL));
         double error = hypot(q[0] - (1 - cos(rate * t)), v[0] / rate - sin(rate * t));
-        print_message("rtol %.1e: %d steps, %g rejected, error %.2e\n", rtol, steps, pace[SPAR_PACE_REJECTED], error);
+        print_message("rtol %.1e: %d steps, %d rejected, error %.2e\n", rtol, steps, (int)rejected, error);
         assert_true(error > 5 * rtol && error < 20 * rtol);
-        assert_true(pace[SPAR_PACE_REJECTED] >= 1); /* 0.3 s is too long for all of these */
+        assert_true(rejected >= 1); /* 0.3 s is too long for all of these */
         assert_true(last == 0 || (error < 0.5 * last && error > 0.1 * last));
         last = error;
         spar_session_destroy(&w.session);
@@ -96,8 +97,9 @@ static void error_goes_with_the_tolerance(void **state) {
 static void by_hand_as_by_one_call(void **state) {
     (void)state;
     swing w, by;
-    double dt = 0.3, taken, q[2][7], pace[SPAR_PACE_COUNT], t[2];
-    int done;
+    double dt = 0.3, taken, q[2][7], t[2];
+    int64_t rejected;
+    int done, reject;
     create_swing(&w, 0.9);
     create_swing(&by, 0.9);
     OK(w.session, spar_session_set_tolerance(w.session, 1e-6, 1e-3));
@@ -112,9 +114,8 @@ static void by_hand_as_by_one_call(void **state) {
         OK(by.session, spar_step_begin(by.session, dt));
         OK(by.session, spar_step_solve(by.session));
         OK(by.session, spar_step_check(by.session, &done));
-        OK(by.session, spar_session_get_step_control(by.session, SPAR_PACE_COUNT, pace));
-        dt = pace[SPAR_PACE_NEXT_DT];
-        if (pace[SPAR_PACE_REJECT] > 0) {
+        OK(by.session, spar_session_get_step_control(by.session, NULL, &dt, &reject, NULL));
+        if (reject) {
             OK(by.session, spar_step_reject(by.session));
         } else {
             OK(by.session, spar_step_accept(by.session));
@@ -127,8 +128,11 @@ static void by_hand_as_by_one_call(void **state) {
     OK(w.session, spar_member_get_motion(w.body, q[0], NULL, NULL));
     OK(by.session, spar_member_get_motion(by.body, q[1], NULL, NULL));
     assert_memory_equal(q[0], q[1], sizeof q[0]);
-    OK(w.session, spar_session_get_step_control(w.session, SPAR_PACE_COUNT, pace));
-    assert_true(pace[SPAR_PACE_REJECTED] >= 1);
+    OK(w.session, spar_session_get_step_control(w.session, NULL, NULL, NULL, &rejected));
+    assert_true(rejected >= 1);
+    OK(by.session,
+       spar_session_get_step_control(by.session, t, t + 1, &reject, NULL)); /* between steps: the last one */
+    assert_true(t[0] > 0 && t[0] <= 1 && t[1] == dt && reject == 0);
     spar_session_destroy(&w.session);
     spar_session_destroy(&by.session);
 }
@@ -299,14 +303,14 @@ static void test_velocity_that_jumps(void **state) {
 static void what_is_refused(void **state) {
     (void)state;
     swing w;
-    double pace[SPAR_PACE_COUNT], dt = 0.1, x;
+    double ratio = 7, dt = 0.1, x;
     create_swing(&w, 0.9);
     spar_session *s = w.session;
     REFUSED(s, SPAR_ERR_ARGUMENT, "drift is -1", spar_session_set_tolerance(s, -1, 0));
     REFUSED(s, SPAR_ERR_ARGUMENT, "rtol is 2", spar_session_set_tolerance(s, 1, 2));
     REFUSED(s, SPAR_ERR_ARGUMENT, "drift is 0", spar_session_set_tolerance(s, 0, 0.1));
     REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first",
-            spar_session_get_step_control(s, SPAR_PACE_COUNT, pace));
+            spar_session_get_step_control(s, &ratio, NULL, NULL, NULL));
     REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first", spar_step_adaptive(s, &dt, NULL, NULL, NULL, NULL));
     REFUSED(s, SPAR_ERR_STATE, "spar_session_set_tolerance first", spar_member_estimate_error(w.body, &x, NULL));
     OK(s, spar_member_estimate_error(w.body, NULL, &x));
@@ -314,7 +318,7 @@ static void what_is_refused(void **state) {
     OK(s, spar_session_set_tolerance(s, 1e-3, 0.1));
     OK(s, spar_session_get_tolerance(s, &x, &dt));
     assert_true(x == 1e-3 && dt == 0.1);
-    REFUSED(s, SPAR_ERR_STATE, "no step", spar_session_get_step_control(s, SPAR_PACE_COUNT, pace));
+    REFUSED(s, SPAR_ERR_STATE, "no step", spar_session_get_step_control(s, &ratio, NULL, NULL, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_step_adaptive(s, NULL, NULL, NULL, NULL, NULL));
     dt = -1;
     REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_step_adaptive(s, &dt, NULL, NULL, NULL, NULL));

@@ -284,7 +284,9 @@ static void failing_in_advice(void **state) {
 static void same_steps(void **state) {
     (void)state;
     scene all, alone;
-    double next[2] = {0.1, 0.1}, taken[2], pace[2][SPAR_PACE_COUNT], error[2][4];
+    double next[2] = {0.1, 0.1}, taken[2], control[3], error[2][4];
+    int64_t rejected[2];
+    int reject;
     create(&all, rank, size);
     create(&alone, 0, 1);
     OK(all.session, spar_session_set_tolerance(all.session, 1e-6, 3e-3));
@@ -296,16 +298,17 @@ static void same_steps(void **state) {
         same_on_all(taken, 1);
         NEAR(taken[0], taken[1], 1e-6 * taken[1]);
     }
-    OK(all.session, spar_session_get_step_control(all.session, SPAR_PACE_COUNT, pace[0]));
-    OK(alone.session, spar_session_get_step_control(alone.session, SPAR_PACE_COUNT, pace[1]));
+    OK(all.session, spar_session_get_step_control(all.session, control, control + 1, &reject, &rejected[0]));
+    OK(alone.session, spar_session_get_step_control(alone.session, NULL, NULL, NULL, &rejected[1]));
+    control[2] = (double)rejected[0];
     OK(all.session, spar_member_estimate_error(all.beam, error[0], error[0] + 1));
     OK(all.session, spar_member_estimate_error(all.body, error[0] + 2, error[0] + 3));
     OK(alone.session, spar_member_estimate_error(alone.beam, error[1], error[1] + 1));
     OK(alone.session, spar_member_estimate_error(alone.body, error[1] + 2, error[1] + 3));
-    same_on_all(pace[0], SPAR_PACE_COUNT);
+    same_on_all(control, 3);
     same_on_all(error[0], 4);
-    assert_true(pace[0][SPAR_PACE_REJECTED] >= 1);
-    assert_true(pace[0][SPAR_PACE_REJECTED] == pace[1][SPAR_PACE_REJECTED]);
+    assert_true(reject == 0 && rejected[0] >= 1);
+    assert_true(rejected[0] == rejected[1]);
     for (int k = 0; k < 4; k++) {
         NEAR(error[0][k], error[1][k], 1e-3 * error[1][k]);
     }

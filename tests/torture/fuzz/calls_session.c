@@ -167,9 +167,10 @@ void do_spar_session_get_tolerance(call *c) {
 
 void do_spar_session_get_step_control(call *c) {
     live_session *l = arg_session(c);
-    int64_t n = arg_count(c, 0, SPAR_PACE_COUNT + 2);
-    double *pace = OUT_OR_NULL(c, length(n));
-    RUN(c, spar_session_get_step_control(l->s, n, pace));
+    double *ratio = OUT_OR_NULL(c, 1), *dt = OUT_OR_NULL(c, 1);
+    int *reject = arg_out(c, (int64_t)sizeof *reject, 1);
+    int64_t *rejected = arg_out(c, (int64_t)sizeof *rejected, 1);
+    RUN(c, spar_session_get_step_control(l->s, ratio, dt, reject, rejected));
 }
 
 void do_spar_session_set_predictor(call *c) {

@@ -378,7 +378,7 @@ static void act_step(void) {
            report[SPAR_REPORT_COUNT], audit[8], total[6], all[6 * MANY], strain[12], force[12];
     static const double eta[2] = {0.2, 0.9};
     int64_t taken;
-    double left, pace[SPAR_PACE_COUNT], ground[6] = {1, 2, 3, 4, 5, 6}, tension[12] = {1, 0, 0, 0, 0, 0, 2};
+    double left, accuracy[4], ground[6] = {1, 2, 3, 4, 5, 6}, tension[12] = {1, 0, 0, 0, 0, 0, 2};
     int64_t step, node;
     int done = 0, iteration;
     spar_member *owner;
@@ -425,10 +425,10 @@ static void act_step(void) {
     CALL(spar_session_get_residual, s, residual, size);
     CALL(spar_session_get_report, s, SPAR_REPORT_COUNT, report);
     NOTE(report);
-    CALL(spar_session_get_step_control, s, SPAR_PACE_COUNT, pace);
-    CALL(spar_member_estimate_error, b, pace, pace + 1);
+    CALL(spar_session_get_step_control, s, accuracy + 2, accuracy + 3, &iteration, &taken);
+    CALL(spar_member_estimate_error, b, accuracy, accuracy + 1);
     CALL(spar_member_get_iterations, b, &taken, &left);
-    NOTE(pace);
+    NOTE(accuracy);
     CALL(spar_session_get_time, s, &t, &step, &iteration);
     CALL(spar_fluid_get_audit, h.fluid[0], 8, audit);
     CALL(spar_fluid_sum_loads, h.fluid[0], NULL, total, total + 3);
