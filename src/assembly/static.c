@@ -430,14 +430,6 @@ static void warn_of_bend(const spari_component *p) {
     }
 }
 
-/* A root that is driven steadily: the equilibrium is one in its frame. */
-static void rotate_with_root(spari_assembly *a, const spar_member *m) {
-    a->rotates = m->root == SPAR_ROOT_DRIVEN && spari_steady_rotation_of(m, m->now.v, m->now.a, &a->rotating.rotation);
-    for (int k = 0; k < 3; k++) {
-        a->rotating.centre[k] = m->xr[k] + m->now.q[k];
-    }
-}
-
 int spari_lone_static(spar_member *m, const double *(*fluid)(const spar_member *), int load_steps, int onward) {
     const int64_t P = m->mesh.per_element;
     spari_component p = spari_component_of(m);
@@ -448,7 +440,7 @@ int spari_lone_static(spar_member *m, const double *(*fluid)(const spar_member *
                   "member '%s': a linear member cannot have a root that is free to rotate; fix or drive its root",
                   m->name);
     a.rotating.mass = spari_zalloc(36 * P * P, sizeof(double));
-    rotate_with_root(&a, m);
+    a.rotates = m->root == SPAR_ROOT_DRIVEN && spari_rotating_frame_of(m, &m->now, &a.rotating);
     t.path = !linear && m->root != SPAR_ROOT_PINNED && has_potential_loads(&a, fluid) ? p.solver->linear : NULL;
     if (!a.rotating.mass || (t.path && spari_linear_watch(t.path))) {
         free(a.rotating.mass);

@@ -103,22 +103,6 @@ static void enter_frame(spari_component *p) {
     f->from = f->to, f->to = y;
 }
 
-/* Where a driven root is at the end of the stage, and how far it takes the member along. */
-static void prescribe_root(spari_component *p, const spari_part *part) {
-    spari_stage *g = &p->stage;
-    double turn[4], psi[3], way[3];
-    g->root = spari_drive_at(p->member, part->to, part->dt);
-    if (p->scheme.rule == SPARI_TRAPEZOIDAL) {
-        g->root = spari_drive_stage(&g->before, &g->root, p->scheme.h, p->scheme.span);
-    }
-    spari_quat_between(g->before.q + 3, g->root.q + 3, turn);
-    spari_quat_log(turn, psi);
-    for (int k = 0; k < 3; k++) {
-        way[k] = g->root.q[k] - g->before.q[k];
-    }
-    g->ends.carried = spari_norm(way) / p->solver->body->length + spari_norm(psi);
-}
-
 static int stage_of_frame(spari_component *p, const spari_part *part) {
     const spar_member *m = p->member;
     spari_frame *f = p->frame;
@@ -126,7 +110,8 @@ static int stage_of_frame(spari_component *p, const spari_part *part) {
     if (f->floats) {
         SPARI_TRY(spari_stage_root(p->solver, m, &p->scheme, part, &p->stage));
     } else {
-        prescribe_root(p, part);
+        spari_stage_drive(m, &p->scheme, part, &p->stage);
+        p->stage.ends.carried = spari_carried(&p->stage.before, &p->stage.root, p->solver->body->length);
     }
     spari_frame_stage(f, m, &p->scheme, part, &p->stage.root);
     spari_floating_root_rotate(f, &f->from, p->scheme.span);

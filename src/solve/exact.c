@@ -90,15 +90,15 @@ static int exact_problem(const spar_member *m, double *K, double *M) {
     if (!q) {
         return SPAR_ERR_MEMORY;
     }
-    spari_steady_rotation rotation;
-    int rotating = spari_steady_rotation_of(m, m->after.v, m->after.a, &rotation);
+    spari_rotating_frame frame;
+    int rotating = spari_rotating_frame_of(m, &m->after, &frame);
     spari_member_to_unique(m, 7, m->after.q, q);
     if (rotating) {
-        spari_steady_rotation_rates(m, &rotation, q, v, a);
+        spari_rotating_frame_nodes(&frame, 1, m, (int)u, q, v, a);
     }
     for (int e = 0; e < m->mesh.elements; e++) {
         int at = 6 * e * (m->mesh.per_element - 1) - spari_member_constrained(m);
-        spari_steady_rotation_tangent(m->body, rotating ? &rotation : NULL, e, q, v, a, 1, S, mass);
+        spari_steady_rotation_tangent(m->body, rotating ? &frame.rotation : NULL, e, q, v, a, 1, S, mass);
         if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, S);
         }
@@ -138,16 +138,16 @@ static int exact_linearise(const spar_member *m, const double w[3], spari_pencil
     if (!q) {
         return SPAR_ERR_MEMORY;
     }
-    spari_steady_rotation rotation;
-    int rotating = spari_steady_rotation_of(m, m->after.v, m->after.a, &rotation) || spari_norm(w) > 0;
+    spari_rotating_frame frame;
+    int rotating = spari_rotating_frame_of(m, &m->after, &frame) || spari_norm(w) > 0;
     spari_member_to_unique(m, 7, m->after.q, q);
     if (rotating) {
-        spari_steady_rotation_rates(m, &rotation, q, v, a);
+        spari_rotating_frame_nodes(&frame, 1, m, (int)u, q, v, a);
     } else {
         v = a = NULL;
     }
     for (int e = 0; e < m->mesh.elements; e++) {
-        spari_steady_rotation_pencil(m->body, w, rotation.w, e, q, v, a, K, C, M);
+        spari_steady_rotation_pencil(m->body, w, frame.rotation.w, e, q, v, a, K, C, M);
         if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, K);
         }

@@ -72,8 +72,6 @@ void spari_solver_restart(spari_solver *solver);
 void spari_solver_begin(spari_solver *solver);
 void spari_solver_accept(spari_solver *solver);
 void spari_solver_reject(spari_solver *solver);
-/* q [n][7] less the correction dx [n][6], shortened by `cut` */
-void spari_static_shift(int n, double cut, const double *dx, double *q);
 /* Its effort so far. */
 void spari_solver_effort(const spari_solver *solver, spari_effort *effort);
 

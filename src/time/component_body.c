@@ -416,15 +416,9 @@ static void rest_nodes(spari_component *p, const double *fluid, int onward) {
 
 /* Rates of the nodes at their present positions, in the rotation of the whole. */
 static void rotate_nodes(spari_component *p, double f) {
-    const spar_member *m = p->member;
-    spari_state *to = &p->solver->to;
-    for (int i = 0; i < p->solver->n && p->rotating; i++) {
-        double x[3];
-        spari_member_arm(m, i, x);
-        for (int k = 0; k < 3; k++) {
-            x[k] += m->xr[k] + to->q[7 * i + k];
-        }
-        spari_rotating_frame_rates(p->rotating, f, x, to->v + 6 * i, to->a + 6 * i);
+    const spari_state *to = &p->solver->to;
+    if (p->rotating) {
+        spari_rotating_frame_nodes(p->rotating, f, p->member, p->solver->n, to->q, to->v, to->a);
     }
 }
 
@@ -482,19 +476,6 @@ static int definite_at_rest(spari_component *p, double f) {
     spari_solver_form(p->solver, p->member, &t);
     p->solver->body = whole;
     return spari_linear_definite(p->solver->linear);
-}
-
-void spari_static_shift(int n, double cut, const double *dx, double *q) {
-    for (int i = 0; i < n; i++) {
-        double rotation[3], p[4];
-        for (int k = 0; k < 3; k++) {
-            q[7 * i + k] -= cut * dx[6 * i + k];
-            rotation[k] = -cut * dx[6 * i + 3 + k];
-        }
-        spari_quat_exp(rotation, p);
-        spari_quat_mul(p, q + 7 * i + 3, q + 7 * i + 3);
-        spari_quat_normalise(q + 7 * i + 3);
-    }
 }
 
 static void shift_nodes(spari_component *p, double cut) {

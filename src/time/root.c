@@ -56,20 +56,24 @@ static void lose_jump(const spari_solver *solver, const spar_member *m, double h
     spari_solver_spread(solver, lose_of_nodes, &t);
 }
 
+double spari_carried(const spari_pose *from, const spari_pose *to, double length) {
+    double rotation[4], psi[3], way[3];
+    spari_quat_between(from->q + 3, to->q + 3, rotation);
+    spari_quat_log(rotation, psi);
+    for (int k = 0; k < 3; k++) {
+        way[k] = to->q[k] - from->q[k];
+    }
+    return spari_norm(way) / length + spari_norm(psi);
+}
+
 /* The ends [from, to] of a substep of a root. ratio: of the algorithmic accelerations, see spari_scheme_stretch. */
 static spari_ends ends_of_root(const spari_solver *s, const spar_member *m, const spari_scheme *c,
-                               const spari_pose *root, double ratio, spari_state *from, spari_state *to) {
+                               const spari_pose *root, double ratio, const spari_state *from, const spari_state *to) {
     spari_ends e = {*from, *to, *to, NULL, 0};
     if (m->root == SPAR_ROOT_DRIVEN && s->own[0].q && !c->still) {
         const spari_pose before = spari_pose_of(from->q, from->v, from->a);
-        double rotation[4], psi[3], way[3];
-        spari_quat_between(before.q + 3, root->q + 3, rotation);
-        spari_quat_log(rotation, psi);
-        for (int k = 0; k < 3; k++) {
-            way[k] = root->q[k] - before.q[k];
-        }
         e.from = s->own[0], e.to = s->own[1], e.root = root;
-        e.carried = spari_norm(way) / s->body->length + spari_norm(psi);
+        e.carried = spari_carried(&before, root, s->body->length);
         spari_root_look_from(s, m, &before, from, &e.from);
         lose_jump(s, m, c->span, &before, root, &e.from);
     }
@@ -308,6 +312,13 @@ static void change_scheme(const spari_solver *s, const spar_member *m, const spa
 
 /* ---- stages ---- */
 
+void spari_stage_drive(const spar_member *m, const spari_scheme *c, const spari_part *part, spari_stage *g) {
+    g->root = spari_drive_at(m, part->to, part->dt);
+    if (c->rule == SPARI_TRAPEZOIDAL) {
+        g->root = spari_drive_stage(&g->before, &g->root, c->h, c->span);
+    }
+}
+
 int spari_stage_root(spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part,
                      spari_stage *g) {
     change_scheme(s, m, c, part);
@@ -315,10 +326,7 @@ int spari_stage_root(spari_solver *s, const spar_member *m, const spari_scheme *
         g->rigid = mean_motion(s, m);
     }
     int rigid = follows(m, c, g);
-    g->root = spari_drive_at(m, part->to, part->dt);
-    if (c->rule == SPARI_TRAPEZOIDAL) {
-        g->root = spari_drive_stage(&g->before, &g->root, c->h, c->span);
-    }
+    spari_stage_drive(m, c, part, g);
     g->rotation[0] = 1;
     memset(g->rotation + 1, 0, 3 * sizeof *g->rotation);
     if (m->root == SPAR_ROOT_DRIVEN) {

@@ -35,6 +35,11 @@ void spari_stage_enter(spari_solver *solver);
 /* Loads, root and ends of a stage. SPAR_OK or SPAR_ERR_MEMORY. */
 int spari_stage_begin(spari_solver *solver, const spar_member *member, const spari_scheme *scheme,
                       const spari_part *part, spari_stage *stage);
+/* A driven root alone. */
+void spari_stage_drive(const spar_member *member, const spari_scheme *scheme, const spari_part *part,
+                       spari_stage *stage);
+/* How far a root moves the member: rotation, and displacement relative to its length. */
+double spari_carried(const spari_pose *from, const spari_pose *to, double length);
 /* The root and ends alone. */
 int spari_stage_root(spari_solver *solver, const spar_member *member, const spari_scheme *scheme,
                      const spari_part *part, spari_stage *stage);

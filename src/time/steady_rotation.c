@@ -25,26 +25,6 @@ spari_steady_rotation spari_steady_rotation_part(const spari_steady_rotation *ro
     return part;
 }
 
-void spari_steady_rotation_rates(const spar_member *m, const spari_steady_rotation *rotation, const double *q,
-                                 double *v, double *a) {
-    int P = m->mesh.per_element;
-    for (int64_t i = 0; i < m->nodes; i++) {
-        int64_t u = m->mesh.elements == 1 ? i : i - i / P;
-        double r[3];
-        for (int c = 0; c < 3; c++) {
-            r[c] = m->xr[3 * i + c] - m->xr[c] + q[7 * u + c] - q[c];
-        }
-        spari_cross(rotation->w, r, v + 6 * u);
-        spari_cross(rotation->w, v + 6 * u, a + 6 * u);
-        for (int c = 0; c < 3; c++) {
-            v[6 * u + c] += rotation->v0[c];
-            a[6 * u + c] += rotation->a0[c];
-            v[6 * u + 3 + c] = rotation->w[c];
-            a[6 * u + 3 + c] = 0;
-        }
-    }
-}
-
 void spari_rotating_frame_rates(const spari_rotating_frame *t, double f, const double x[3], double v[6], double a[6]) {
     const spari_steady_rotation part = spari_steady_rotation_part(&t->rotation, f);
     const double r[3] = {x[0] - t->centre[0], x[1] - t->centre[1], x[2] - t->centre[2]};
@@ -55,6 +35,25 @@ void spari_rotating_frame_rates(const spari_rotating_frame *t, double f, const d
         a[k] += part.a0[k];
         v[3 + k] = part.w[k];
         a[3 + k] = 0;
+    }
+}
+
+int spari_rotating_frame_of(const spar_member *m, const spari_motion *at, spari_rotating_frame *frame) {
+    for (int k = 0; k < 3; k++) {
+        frame->centre[k] = m->xr[k] + at->q[k];
+    }
+    return spari_steady_rotation_of(m, at->v, at->a, &frame->rotation);
+}
+
+void spari_rotating_frame_nodes(const spari_rotating_frame *frame, double f, const spar_member *m, int n,
+                                const double *q, double *v, double *a) {
+    for (int i = 0; i < n; i++) {
+        double x[3];
+        spari_member_arm(m, i, x);
+        for (int k = 0; k < 3; k++) {
+            x[k] += m->xr[k] + q[7 * i + k];
+        }
+        spari_rotating_frame_rates(frame, f, x, v + 6 * i, a + 6 * i);
     }
 }
 

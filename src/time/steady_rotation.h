@@ -22,9 +22,6 @@ int spari_steady_rotation_of(const spar_member *member, const double v[6], const
                              spari_steady_rotation *rotation);
 /* The same at load factor f: inertia forces are multiplied by f. */
 spari_steady_rotation spari_steady_rotation_part(const spari_steady_rotation *rotation, double f);
-/* Rates v, a [unique][6] of the shape q [unique][7]. */
-void spari_steady_rotation_rates(const spar_member *member, const spari_steady_rotation *rotation, const double *q,
-                                 double *v, double *a);
 /* A frame that rotates steadily and carries several components. `rotation` of `centre` holds for every position
    relative to it. */
 typedef struct spari_rotating_frame {
@@ -35,6 +32,11 @@ typedef struct spari_rotating_frame {
 /* Rates v, a [6] at position x, at load factor f. */
 void spari_rotating_frame_rates(const spari_rotating_frame *rotating, double f, const double x[3], double v[6],
                                 double a[6]);
+/* The frame of a root with the motion `at`, as spari_steady_rotation_of. */
+int spari_rotating_frame_of(const spar_member *member, const spari_motion *at, spari_rotating_frame *frame);
+/* Rates v, a [n][6] of the unique nodes at q [n][7]. */
+void spari_rotating_frame_nodes(const spari_rotating_frame *frame, double f, const spar_member *member, int n,
+                                const double *q, double *v, double *a);
 /* As spari_body_residual, without damping. */
 double spari_steady_rotation_residual(const spari_body *damped, const double *q, const double *v, const double *a,
                                       double factor, double *r);

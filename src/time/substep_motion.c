@@ -262,3 +262,16 @@ double spari_alpha_size(const spari_solver *s, double *x) {
 int spari_alpha_close(double x, double kept) {
     return fabs(x - kept) <= 0.01 * fabs(kept);
 }
+
+void spari_static_shift(int n, double cut, const double *dx, double *q) {
+    for (int i = 0; i < n; i++) {
+        double rotation[3], p[4];
+        for (int k = 0; k < 3; k++) {
+            q[7 * i + k] -= cut * dx[6 * i + k];
+            rotation[k] = -cut * dx[6 * i + 3 + k];
+        }
+        spari_quat_exp(rotation, p);
+        spari_quat_mul(p, q + 7 * i + 3, q + 7 * i + 3);
+        spari_quat_normalise(q + 7 * i + 3);
+    }
+}

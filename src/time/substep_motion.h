@@ -30,6 +30,8 @@ void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const
                              double b);
 /* The size of increments, relative to the member's length, in radians. */
 double spari_alpha_size(const spari_solver *s, double *x);
+/* Statics: q [n][7] less the correction dx [n][6], shortened by `cut`. */
+void spari_static_shift(int n, double cut, const double *dx, double *q);
 /* Whether a coefficient x is close enough to that of the reused tangent. */
 int spari_alpha_close(double x, double kept);
 

@@ -7,7 +7,7 @@
 #include "../math/resample.h"
 #include "../member/body.h"
 #include "../session/step_control.h"
-#include "../time/body_solver.h"
+#include "../time/substep_motion.h"
 #include "../time/fidelity.h"
 #include "../trial/rebuild.h"
 

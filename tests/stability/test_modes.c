@@ -174,15 +174,16 @@ static void test_turning_tangent(void **state) {
     spar_session *s = scene_session();
     spar_member *b = scene_beam(s, "b", 1, P, 10, K, M);
     OK(s, spar_member_commit(b));
-    spari_steady_rotation turn;
-    assert_true(spari_steady_rotation_of(b, vr, ar, &turn));
+    spari_rotating_frame turn = {.mass = NULL};
+    assert_true(spari_steady_rotation_of(b, vr, ar, &turn.rotation));
+    memcpy(turn.centre, b->xr, sizeof turn.centre);
     for (int i = 0; i < P; i++) {
         double psi[3] = {0.1 * i, -0.2 * i * i, 0.3 * i};
         q[7 * i] = 0.1 * i, q[7 * i + 1] = 0.2 * i * i, q[7 * i + 2] = -0.1 * i;
         spari_quat_exp(psi, q + (ptrdiff_t)7 * i + 3);
     }
-    spari_steady_rotation_rates(b, &turn, q, v, a);
-    spari_steady_rotation_tangent(b->body, &turn, 0, q, v, a, 1, S, Me);
+    spari_rotating_frame_nodes(&turn, 1, b, P, q, v, a);
+    spari_steady_rotation_tangent(b->body, &turn.rotation, 0, q, v, a, 1, S, Me);
     for (int j = 6; j < N; j++) { /* the root carries the frame */
         for (int k = 0; k < 2; k++) {
             double p[7 * P], step = k ? h : -h, psi[3] = {0}, t[4];
@@ -194,7 +195,7 @@ static void test_turning_tangent(void **state) {
                 spari_quat_exp(psi, t);
                 spari_quat_mul(t, p + (ptrdiff_t)7 * (j / 6) + 3, p + (ptrdiff_t)7 * (j / 6) + 3);
             }
-            spari_steady_rotation_rates(b, &turn, p, v, a);
+            spari_rotating_frame_nodes(&turn, 1, b, P, p, v, a);
             spari_steady_rotation_residual(b->body, p, v, a, 1, r[k]);
         }
         for (int i = 0; i < N; i++) {
