@@ -15,7 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-void spari_assembly_name(const spari_assembly *a, char *text, int size) {
+void spari_assembly_name(const void *assembly, char *text, int size) {
+    const spari_assembly *a = assembly;
     if (a->constraints == 0) {
         (void)snprintf(text, (size_t)size, "member '%s'", a->component[0].member->name);
     } else {
@@ -656,10 +657,6 @@ static int gains_of_all(void *self, const spari_part *part) {
     return !near && gain > SPARI_GAIN * size;
 }
 
-static void name_all(const void *self, char *text, int size) {
-    spari_assembly_name(self, text, size);
-}
-
 static void enter_all(void *self, const spari_part *part) {
     spari_assembly *a = self;
     (void)part;
@@ -733,7 +730,7 @@ static int finish_all(void *self, const spari_scheme *c, const spari_part *part)
 
 int spari_assembly_advance(spari_assembly *a, double dt, int responses) {
     static const spari_stepper how = {enter_all,  rotation_rate_of_all, stage_of_all,
-                                      finish_all, gains_of_all,         name_all};
+                                      finish_all, gains_of_all,         spari_assembly_name};
     if (!a->here) {
         return SPAR_OK;
     }

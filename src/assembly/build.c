@@ -144,16 +144,6 @@ static int move_members(spari_assembly *a) {
     return SPAR_OK;
 }
 
-static void end_moves(spari_assembly *a, int back) {
-    for (int i = 0; i < a->components; i++) {
-        spari_component *p = a->component + i;
-        if (p->moved) {
-            spari_member_end_move(p->member, p->owner_before, p->solution_before, back);
-        }
-        p->moved = 0;
-    }
-}
-
 /* ---- all of them ---- */
 
 static int check_committed(const spar_joint *j, const spar_member *m) {
@@ -286,7 +276,13 @@ int spari_assemblies_make(spar_session *s, const char *call) {
     }
     status = agree_on_joints(s, call, status);
     for (spari_assembly *a = s->assemblies; a; a = a->next) {
-        end_moves(a, status != SPAR_OK);
+        for (int i = 0; i < a->components; i++) {
+            spari_component *p = a->component + i;
+            if (p->moved) {
+                spari_member_end_move(p->member, p->owner_before, p->solution_before, status != SPAR_OK);
+            }
+            p->moved = 0;
+        }
     }
     if (status != SPAR_OK && changed) {
         spari_assemblies_free(s);

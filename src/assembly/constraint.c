@@ -8,14 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-/* The motion of a node with prescribed motion: a point, a node of an external member, a node that follows its root. */
-static spari_pose told(const spar_member *m, int64_t node, double s, double dt) {
-    const spari_motion *now = &m->now, *after = &m->after;
-    const spari_pose from = spari_pose_of(now->q + 7 * node, now->v + 6 * node, now->a + 6 * node),
-                     to = spari_pose_of(after->q + 7 * node, after->v + 6 * node, after->a + 6 * node);
-    return spari_drive_between(&from, &to, s, dt);
-}
-
 /* Pose, velocity and acceleration of one side of a constraint, in a state of its component or at the part s of the
    step. */
 static void find_side(spari_constraint *l, int side, double s, double dt) {
@@ -28,7 +20,11 @@ static void find_side(spari_constraint *l, int side, double s, double dt) {
         int u = j->unique[side];
         x = spari_pose_of(state->q + 7 * u, state->v + 6 * u, state->a + 6 * u);
     } else if (m) {
-        x = told(m, j->seat[side], s, dt);
+        const spari_motion *now = &m->now, *after = &m->after; /* prescribed */
+        const int64_t i = j->seat[side];
+        const spari_pose from = spari_pose_of(now->q + 7 * i, now->v + 6 * i, now->a + 6 * i),
+                         to = spari_pose_of(after->q + 7 * i, after->v + 6 * i, after->a + 6 * i);
+        x = spari_drive_between(&from, &to, s, dt);
     }
     for (int k = 0; k < 3; k++) {
         p->x[k] = x.q[k] + (m ? m->xr[3 * j->seat[side] + k] : 0);

@@ -120,15 +120,6 @@ static void frame_of_joint(const spar_joint *j, int side, double x[3], double q[
     spari_quat_mul(pose[side].q, j->kinematics.axes[side], q);
 }
 
-static int refuse_drive(const spari_constraint *l) {
-    const spar_joint *j = l->joint;
-    return spari_fail(j->session, SPAR_ERR_UNSUPPORTED,
-                      "joint '%s' is driven between moving parts, or not about a single axis: parts in relative motion "
-                      "have no steady state; for the shape at rest drive it with a rate of 0 (spar_joint_drive), "
-                      "otherwise run time steps until the motion is periodic",
-                      j->name);
-}
-
 /* A joint driven against a side at rest, about its one axis. */
 static int meet_drive(spari_assembly *a, const spari_constraint *l, prescribed_motion *first) {
     const spar_joint *j = l->joint;
@@ -143,9 +134,12 @@ static int meet_drive(spari_assembly *a, const spari_constraint *l, prescribed_m
     if (!others && !(fabs(rate) > 0)) {
         return SPAR_OK;
     }
-    if (others || side < 0) {
-        return refuse_drive(l);
-    }
+    SPARI_REQUIRE(
+        j->session, !others && side >= 0, SPAR_ERR_UNSUPPORTED,
+        "joint '%s' is driven between moving parts, or not about a single axis: parts in relative motion have "
+        "no steady state; for the shape at rest drive it with a rate of 0 (spar_joint_drive), otherwise run "
+        "time steps until the motion is periodic",
+        j->name);
     frame_of_joint(j, side, t.x, q);
     unit[axis] = side == 1 ? rate : -rate;
     spari_rotate(q, unit, t.v + 3);

@@ -114,7 +114,7 @@ static inline spari_assembly spari_assembly_of_one(spari_component *p) {
     return (spari_assembly){.session = p->member->session, .here = 1, .components = 1, .component = p};
 }
 /* "member 'x'", or the members connected by a joint. */
-void spari_assembly_name(const spari_assembly *a, char *text, int size);
+void spari_assembly_name(const void *assembly, char *text, int size);
 /* Motions and springs of joints whose nodes all have prescribed motion, at the end of a step dt. */
 void spari_assembly_look(spari_assembly *a, double dt);
 /* As spari_system_solve, or the component's own solution where there are no constraints. */

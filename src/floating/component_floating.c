@@ -326,17 +326,12 @@ static int solve_frame(spari_component *p) {
     return 0;
 }
 
-/* Whether one correction with that tangent solves the equations: they are linear, and it is their own. */
-static int frame_is_solved(const spari_component *p) {
-    const spari_frame *f = p->frame;
-    return !f->floats && spari_carriage_is_linear(f, p->member) && f->tangent_cm == p->scheme.cm &&
-           f->tangent_cv == p->scheme.cv && memcmp(f->tangent_turn, f->turn, sizeof f->turn) == 0;
-}
-
 static double advance_frame(spari_component *p, double longest, double *way) {
+    const spari_frame *f = p->frame;
     *way = 0;
-    if (frame_is_solved(p)) {
-        correct_frame(p, 1);
+    if (!f->floats && spari_carriage_is_linear(f, p->member) && f->tangent_cm == p->scheme.cm &&
+        f->tangent_cv == p->scheme.cv && memcmp(f->tangent_turn, f->turn, sizeof f->turn) == 0) {
+        correct_frame(p, 1); /* one correction with their own tangent solves linear equations */
         return 0;
     }
     double size = correction_of_frame(p);

@@ -489,15 +489,6 @@ static void form_element(spari_frame *f, int e, double cm, double cv) {
     }
 }
 
-/* The tangent where the motion of the root is prescribed: with the sums of the forces. */
-static void form_prescribed(spari_frame *f, double cm, double cv) {
-    spari_linear_zero(f->linear);
-    for (int e = 0; e < f->elements; e++) {
-        form_element(f, e, cm, cv);
-        spari_linear_add(f->linear, e, f->element);
-    }
-}
-
 /* Of y x M y'', in the rows of the whole. */
 static void add_euler_to_rows(const spari_frame *f, double cm) {
     const spari_floating_root *c = f->floating_root;
@@ -641,7 +632,11 @@ int spari_floating_root_tangent(spari_frame *f, const spar_member *m, const spar
         form_columns(f, m, &s->root, cm, cv, tinv);
         form_chain(f, m, &s->root, cm, cv);
     } else {
-        form_prescribed(f, cm, cv);
+        spari_linear_zero(f->linear);
+        for (int e = 0; e < f->elements; e++) {
+            form_element(f, e, cm, cv);
+            spari_linear_add(f->linear, e, f->element);
+        }
     }
     for (int i = 0; i < f->constrained; i++) {
         spari_linear_fix(f->linear, i);

@@ -115,16 +115,6 @@ static void euler_matrices(const spari_frame *f, const setup *w, const double al
     }
 }
 
-/* K, D, M: at rest and unloaded the tangent is K + cv D + cm M. */
-static void rest_matrices(const spari_frame *f, const setup *w) {
-    int64_t mm = (int64_t)w->m * w->m;
-    for (int e = 0; e < w->body->elements; e++) {
-        double *K = f->K + mm * e;
-        spari_body_tangent(w->body, e, w->q, NULL, NULL, 0, 0, 0, NULL, K);
-        spari_body_rates(w->body, e, w->q, NULL, NULL, 0, K, f->D ? f->D + mm * e : NULL, f->M ? f->M + mm * e : NULL);
-    }
-}
-
 /* What of N and f belongs to omega_i omega_j alone. */
 static void polarise(spari_frame *f) {
     for (int k = 3; k < SPARI_SPIN_PRODUCTS; k++) {
@@ -312,7 +302,11 @@ int spari_frame_form(spari_frame *f, const spari_body *damped, const double *arm
     for (int64_t i = 0; i < n; i++) {
         w.q[7 * i + 3] = 1;
     }
-    rest_matrices(f, &w);
+    for (int e = 0; e < body->elements; e++) { /* at rest and unloaded the tangent is K + cv D + cm M */
+        int64_t at = (int64_t)w.m * w.m * e;
+        spari_body_tangent(body, e, w.q, NULL, NULL, 0, 0, 0, NULL, f->K + at);
+        spari_body_rates(body, e, w.q, NULL, NULL, 0, f->K + at, f->D ? f->D + at : NULL, f->M ? f->M + at : NULL);
+    }
     if (f->pull) {
         spari_body_residual(body, w.q, NULL, NULL, 0, f->pull, NULL);
     }

@@ -135,16 +135,6 @@ static void keep_factors(spari_solver *s) {
     }
 }
 
-static void restore_factors(spari_solver *s) {
-    int64_t own = 4 * (int64_t)s->n;
-    const double *from = s->before.data;
-    memcpy(s->tangent_q, from, (size_t)own * sizeof *from);
-    spari_linear_load(s->linear, from + own);
-    if (s->condensed) {
-        spari_condensed_load(s->condensed, s->condensed->fixed, from + own + spari_linear_state_size(s->linear));
-    }
-}
-
 void spari_solver_reject(spari_solver *s) {
     const spari_reuse *b = &s->begun;
     if (!s->before.open) {
@@ -155,7 +145,12 @@ void spari_solver_reject(spari_solver *s) {
     s->served = b->served, s->spent = b->spent;
     s->trace = b->trace;
     if (s->before.saved > 0) {
-        restore_factors(s);
+        const double *from = s->before.data, *factors = from + 4 * (int64_t)s->n;
+        memcpy(s->tangent_q, from, (size_t)(4 * s->n) * sizeof *from);
+        spari_linear_load(s->linear, factors);
+        if (s->condensed) {
+            spari_condensed_load(s->condensed, s->condensed->fixed, factors + spari_linear_state_size(s->linear));
+        }
     }
 }
 

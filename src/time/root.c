@@ -117,11 +117,6 @@ double spari_stage_rotation_rate(const spari_solver *s, const spar_member *m) {
 /* rad: a step with a larger rotation, or a larger phase of vibration, does not resolve it. */
 static const double farthest = 1;
 
-static int follows(const spar_member *m, const spari_scheme *c, const spari_stage *g) {
-    return c->rule != SPARI_ALPHA && !c->still && spari_member_rotates_stiffly(m) &&
-           spari_norm(g->rigid.v + 3) * c->h <= farthest;
-}
-
 static int make_own_states(spari_solver *s) {
     for (int k = 0; k < 2 && !s->own[k].q; k++) {
         double *block = spari_zalloc(25 * (int64_t)s->n, sizeof *block);
@@ -325,7 +320,8 @@ int spari_stage_root(spari_solver *s, const spar_member *m, const spari_scheme *
     if (c->rule == SPARI_TRAPEZOIDAL) {
         g->rigid = mean_motion(s, m);
     }
-    int rigid = follows(m, c, g);
+    int rigid = c->rule != SPARI_ALPHA && !c->still && spari_member_rotates_stiffly(m) &&
+                spari_norm(g->rigid.v + 3) * c->h <= farthest;
     spari_stage_drive(m, c, part, g);
     g->rotation[0] = 1;
     memset(g->rotation + 1, 0, 3 * sizeof *g->rotation);
