@@ -187,6 +187,7 @@ module spar
     procedure :: exists => session_exists
     procedure :: c_handle => session_handle
     procedure :: message => session_message
+    procedure :: get_warning => session_get_warning
     procedure :: set_log => session_set_log
     procedure :: set_progress => session_set_progress
     procedure, private :: session_sum_balance, session_sum_balance_single_1, session_sum_balance_single_2
@@ -750,6 +751,15 @@ contains
 
     call copy_text(spar_session_message(self%handle), text)
   end function session_message
+
+  ! Warning i, from 1; empty beyond the last.
+  function session_get_warning(self, i) result(text)
+    class(spar_session), intent(in) :: self
+    integer, intent(in) :: i
+    character(:), allocatable :: text
+
+    call copy_text(spar_session_get_warning(self%handle, int(i, c_int64_t) - 1), text)
+  end function session_get_warning
 
   ! Of arrays of different lengths as many ranks as the shortest has. One call, which is collective.
   subroutine session_sum_balance(self, members, expected, counted, stat, errmsg)

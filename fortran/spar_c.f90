@@ -170,6 +170,13 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_set_log
 
+    function spar_session_get_warning(session, i) bind(c) result(text)
+      import :: c_int64_t, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int64_t), value :: i
+      type(c_ptr) :: text
+    end function spar_session_get_warning
+
     function spar_point_create(session, name, x, q, member) bind(c) result(status)
       import :: c_char, c_double, c_int, c_ptr
       type(c_ptr), value :: session

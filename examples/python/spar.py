@@ -61,6 +61,7 @@ call spar_session_get_coupling int session|session|value| scheme|int|out| atol|d
 call spar_session_get_time int session|session|value| t|double|out| step|int64_t|out| iteration|int|out|
 constants SPAR_LOG_ERROR=0 SPAR_LOG_WARNING=1 SPAR_LOG_INFO=2
 call spar_session_set_log int session|session|value| log|log|callback| context|context|value|
+call spar_session_get_warning text session|session|value| i|int64_t|value|
 call spar_point_create int session|session|value| name|char|in|[] x|double|in|[3] q|double|in|[4] member|member|out|
 call spar_rigid_create int session|session|value| name|char|in|[] x|double|in|[3] q|double|in|[4] mass|double|in|[36] member|member|out|
 call spar_beam_create int session|session|value| name|char|in|[] elements|int|value| nodes_per_element|int|value| member|member|out|

@@ -218,10 +218,15 @@ enum { SPAR_LOG_ERROR = 0, SPAR_LOG_WARNING = 1, SPAR_LOG_INFO = 2 };
 /* Receives every message of the session, on the rank and in the thread where it arises. It must not call the session.
      level: SPAR_LOG_* */
 typedef void (*spar_log)(const spar_session *session, int level, const char *text, void *context);
-/* Sets the log. Without a log, warnings are kept for spar_session_get_warning. Local, at any time.
+/* Sets the log. Warnings are also kept for spar_session_get_warning. Local, at any time.
      log: in, NULL: none (default)
      context: in, handed to log; must live as long as the session uses it */
 SPAR_API int spar_session_set_log(spar_session *session, spar_log log, void *context);
+/* Warnings of this session on this rank, with or without a log: descriptions and runs that are legal and probably wrong.
+   Warnings about members are given on rank 0, about fluids on their rank. The text belongs to the session; "" for i
+   beyond the last. The first 32 are kept. Local, at any time.
+     i: in, from 0 */
+SPAR_API const char *spar_session_get_warning(const spar_session *session, int64_t i);
 
 /* ---- members ----------------------------------------------------------------------------------------------------- */
 

@@ -194,14 +194,9 @@ static int take_row(loop_rows *all, int first, int end, double size) {
 static void tell(const spari_constraint *l, int k) {
     static const char *const motion[6] = {
         "x", "y", "z", "the rotation about x", "the rotation about y", "the rotation about z"};
-    char text[SPARI_MESSAGE_SIZE];
-    const spar_session *s = l->joint->session;
-    if (s->callbacks.log) {
-        (void)snprintf(text, sizeof text,
-                       "joint '%.200s': redundant constraint ignored: %s follows from the other joints; its load is 0",
-                       l->joint->name, l->joint->kinematics.line ? "its length" : motion[k]);
-        spari_log(s, SPAR_LOG_WARNING, text);
-    }
+    spari_warn(l->joint->session,
+               "joint '%.200s': redundant constraint ignored: %s follows from the other joints; its load is 0",
+               l->joint->name, l->joint->kinematics.line ? "its length" : motion[k]);
 }
 
 static int drop_from_constraint(loop_rows *all, const spari_assembly *a, const spari_constraint *l) {

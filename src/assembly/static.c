@@ -419,14 +419,12 @@ int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_m
 /* An equilibrium of the nodes need not be one of the beam. */
 static void warn_of_bend(const spari_component *p) {
     const spar_member *m = p->member;
-    char text[SPARI_MESSAGE_SIZE];
-    double bend = m->session->callbacks.log ? largest_bend(p) : 0;
+    double bend = largest_bend(p);
     if (bend > most_bend) {
-        (void)snprintf(text, sizeof text,
-                       "static equilibrium of '%s': neighbouring nodes are rotated by %.2g rad relative to each other, "
-                       "more than the elements resolve; the result may be wrong; give the beam more nodes or elements",
-                       m->name, bend);
-        spari_log(m->session, SPAR_LOG_WARNING, text);
+        spari_warn(m->session,
+                   "static equilibrium of '%s': neighbouring nodes are rotated by %.2g rad relative to each other, "
+                   "more than the elements resolve; the result may be wrong; give the beam more nodes or elements",
+                   m->name, bend);
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Message of a failed create, which has no session. */
@@ -27,6 +28,35 @@ void spari_log(const spar_session *s, int level, const char *text) {
     }
 }
 
+/* Calls that only read a session may write its message. No session object is const: all are allocated on the heap. */
+static spar_session *teller(const spar_session *session) {
+    return (spar_session *)(uintptr_t)session;
+}
+
+void spari_warn(const spar_session *session, const char *format, ...) {
+    char text[SPARI_MESSAGE_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (length < 0 || redirected) {
+        return;
+    }
+    spar_session *s = teller(session);
+    if (!s->state.trial && s->warning_count < SPARI_MOST_WARNINGS) {
+        char *copy = malloc(strlen(text) + 1);
+        if (copy) { /* without memory the log alone has the warning */
+            memcpy(copy, text, strlen(text) + 1);
+            s->warnings[s->warning_count++] = copy;
+        }
+    }
+    spari_log(s, SPAR_LOG_WARNING, text);
+}
+
+const char *spar_session_get_warning(const spar_session *session, int64_t i) {
+    return session && i >= 0 && i < session->warning_count ? session->warnings[i] : "";
+}
+
 /* Shortens a message that is too long, as with a long name in it: its middle goes, its beginning and the remedy
    stay. */
 static void shorten(char *text) {
@@ -36,11 +66,6 @@ static void shorten(char *text) {
         memmove(text + head + sizeof gap - 1, text + n - tail, tail + 1);
         memcpy(text + head, gap, sizeof gap - 1);
     }
-}
-
-/* Calls that only read a session may write its message. No session object is const: all are allocated on the heap. */
-static spar_session *teller(const spar_session *session) {
-    return (spar_session *)(uintptr_t)session;
 }
 
 static char *message_of(const spar_session *session) {

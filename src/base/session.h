@@ -109,9 +109,13 @@ typedef struct spari_step_state {
     int trial;     /* a trial is in progress (trial/trial.h) */
 } spari_step_state;
 
+enum { SPARI_MOST_WARNINGS = 32 }; /* kept; later ones go to the log alone */
+
 struct spar_session {
     char message[SPARI_MESSAGE_SIZE];
     int64_t failures; /* messages written so far: shows whether a callback has left one */
+    char *warnings[SPARI_MOST_WARNINGS]; /* texts of the first warnings */
+    int warning_count;
     spari_ranks ranks;
     spari_callbacks callbacks;
 
@@ -147,6 +151,8 @@ char *spari_messages_redirect(char *text);
 
 /* Passes a text to the host's log callback, if there is one. */
 void spari_log(const spar_session *session, int level, const char *text);
+/* Warns the host: to the log, and kept for spar_session_get_warning, outside trials. Call it once per cause. */
+void spari_warn(const spar_session *session, const char *format, ...) SPARI_PRINTF(2, 3);
 
 /* Whether two step sizes are equal apart from rounding by the host. */
 static inline int spari_steps_are_equal(double h, double last) {

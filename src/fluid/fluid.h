@@ -43,6 +43,7 @@ enum {
     SPARI_MUTE_POSES = 2,
     SPARI_MUTE_HALF_STEP = 4,
     SPARI_MUTE_HISTORY = 8,
+    SPARI_ASKED_POSITIONS = 128, /* informative only: positions or orientations have been pulled */
     SPARI_ASKED_LOADS = 32, /* informative only: loads have been pushed, possibly zero; */
     SPARI_HAD_LOADS = 64,   /* informative only: the same at the beginning of the step, restored by reject */
     SPARI_ASKED_MOMENT = 16 /* informative only: there are moments; SPAR_EFFECT_FLUID_MOMENT switches them off */

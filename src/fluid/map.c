@@ -284,6 +284,9 @@ int spar_fluid_map(spar_fluid *fluid) {
             spari_nodes_free(made[which]);
         }
     }
+    if (status == SPAR_OK) {
+        spari_fluid_warn_far(fluid);
+    }
     return status;
 }
 

@@ -251,8 +251,8 @@ static void emit_orientations(const spar_fluid *fluid, const spari_node_set *set
 }
 
 static int parts_of(const wanted *w, double theta) {
-    return (is_wanted(w->v) ? SPARI_MUTE_VELOCITY : 0) | (wants_pose(w) ? SPARI_MUTE_POSES : 0) |
-           (theta > 0 && theta < 1 ? SPARI_MUTE_HALF_STEP : 0);
+    return (is_wanted(w->x) ? SPARI_ASKED_POSITIONS : 0) | (is_wanted(w->v) ? SPARI_MUTE_VELOCITY : 0) |
+           (wants_pose(w) ? SPARI_MUTE_POSES : 0) | (theta > 0 && theta < 1 ? SPARI_MUTE_HALF_STEP : 0);
 }
 
 static void zero(sink *out, int64_t n, const spari_layout *layout) {

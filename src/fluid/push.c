@@ -430,6 +430,7 @@ void spari_fluid_accept(spar_fluid *fluid) {
     spari_parts_accept(fluid);
     spari_fluid_keep_loads(fluid);
     spari_states_accept(fluid->states);
+    spari_fluid_warn_step(fluid);
     if (!h || h->n == 0) {
         return;
     }

@@ -89,6 +89,8 @@ struct spar_fluid {
     int gone;   /* destroyed during a trial: freed when the trial has ended */
     int shared; /* sections: the motion set serves as both */
     int asked;  /* SPARI_MUTE_*: what has been pulled so far */
+    int warned; /* SPARI_WARNED_*: what the host was warned of (warnings.c) */
+    int steps;  /* accepted since the nodes were mapped, up to a few */
     int mute;   /* trials: SPARI_MUTE_* that are switched off */
     spari_node_set set[2];
     spari_layout layout[2]; /* of the host's triples for each set; node 0: packed */
@@ -109,6 +111,9 @@ struct spar_fluid {
     spari_taking *taking;   /* while a file is loaded (restore.c), or after giving up; otherwise NULL */
 };
 
+/* Warnings, once per fluid: at the map, and at the end of an accepted step (warnings.c). */
+void spari_fluid_warn_far(spar_fluid *fluid);
+void spari_fluid_warn_step(spar_fluid *fluid);
 /* Message that begins with caller, fluid and member; returns status. */
 int spari_fluid_refuse(const spar_fluid *fluid, int status, const char *caller, const char *format, ...)
     SPARI_PRINTF(4, 5);

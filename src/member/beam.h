@@ -27,6 +27,8 @@ struct spari_beam {
 int spari_beam_place_nodes(spar_member *member);
 /* Logs a warning if elements have too few nodes for the stiffness of their sections. */
 void spari_beam_tell_locking(const spar_member *member);
+/* Warns if its twist or its estimated first frequency is implausible; logs mass, length and this frequency. */
+void spari_beam_tell_plausible(const spar_member *member);
 /* Builds the body of a checked description. massive: with mass, whatever effects are in force. mu: damping
    coefficients; NULL: none. */
 int spari_beam_build(const spar_member *member, int massive, const double mu[6], spari_body **body);

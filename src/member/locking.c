@@ -8,7 +8,6 @@
 #include "../math/rotation.h"
 
 #include <math.h>
-#include <stdio.h>
 
 enum { ENOUGH = 5 }; /* nodes: the remaining error is below 1.3 % */
 
@@ -70,22 +69,19 @@ static int is_bent(const spar_member *m) {
 
 void spari_beam_tell_locking(const spar_member *m) {
     static const double rounding = 1e15; /* beyond this, bending is below the rounding error of the other stiffnesses */
-    char text[SPARI_MESSAGE_SIZE];
     double whole = 0;
     int element = 0, exact = m->seen != SPARI_SEEN_LINEAR;
     const double ratio = largest_ratio(m, &whole, &element), most = bearable(m->mesh.per_element, exact || is_bent(m));
     if (ratio > most) {
-        (void)snprintf(text, sizeof text,
-                       "member '%s': element %d has %d nodes and locks: axial or shear stiffness is %.2g times its "
-                       "bending stiffness / length^2, so its deflection is too small; use %d nodes per element, or "
-                       "%.3g times as many elements",
-                       m->name, element, m->mesh.per_element, ratio, ENOUGH, ceil(sqrt(ratio / most)));
-        spari_log(m->session, SPAR_LOG_WARNING, text);
+        spari_warn(m->session,
+                   "member '%s': element %d has %d nodes and locks: axial or shear stiffness is %.2g times its "
+                   "bending stiffness / length^2, so its deflection is too small; use %d nodes per element, or "
+                   "%.3g times as many elements",
+                   m->name, element, m->mesh.per_element, ratio, ENOUGH, ceil(sqrt(ratio / most)));
     } else if (whole > rounding && m->beam->pre_count == 0) {
-        (void)snprintf(text, sizeof text,
-                       "member '%s': axial or shear stiffness is %.2g times its bending stiffness / length^2: rounding "
-                       "hides bending for any number of nodes; bring the stiffnesses closer together",
-                       m->name, whole);
-        spari_log(m->session, SPAR_LOG_WARNING, text);
+        spari_warn(m->session,
+                   "member '%s': axial or shear stiffness is %.2g times its bending stiffness / length^2: rounding "
+                   "hides bending for any number of nodes; bring the stiffnesses closer together",
+                   m->name, whole);
     }
 }

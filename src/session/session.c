@@ -79,6 +79,9 @@ void spar_session_destroy(spar_session **session) {
         next = m->next;
         spari_member_free(m);
     }
+    for (int i = 0; i < s->warning_count; i++) {
+        free(s->warnings[i]);
+    }
     spari_threads_free(s);
     spari_workspace_free(&s->workspace);
     spari_comm_destroy(&s->ranks.comm);

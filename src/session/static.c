@@ -390,17 +390,14 @@ static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve,
 
 /* A change of the loads that returns amplified grows in time, even if an accelerated iteration converges. */
 static void warn_of_divergence(const spar_session *s, const char *call) {
-    char text[SPARI_MESSAGE_SIZE];
     int learns = spari_coupling_scheme_of(s->coupling.scheme)->learn != NULL;
     double ratio = learns ? spari_accelerator_ratio(s->own->coupling->accelerator) : 0;
-    if (!s->callbacks.log || ratio >= -1) {
-        return;
-    }
-    (void)snprintf(text, sizeof text,
+    if (ratio < -1) {
+        spari_warn(s,
                    "%s: the fluid amplifies a change of its loads by a factor of %.3g: the equilibrium is unstable "
                    "(static divergence), and a run departs from it",
                    call, -ratio);
-    spari_log(s, SPAR_LOG_WARNING, text);
+    }
 }
 
 /* Whether the shapes were solved with exactly the returned loads; otherwise puts these in use. */

@@ -489,9 +489,11 @@ int spar_member_commit(spar_member *member) {
         return spari_named(s, __func__, agreed);
     }
     member->committed = 1;
-    if (member->kind == SPARI_BEAM && member->row->solved && !member->row->whole &&
-        spari_comm_rank(s->ranks.comm) == 0) {
-        spari_beam_tell_locking(member);
+    if (member->kind == SPARI_BEAM && member->row->solved && spari_comm_rank(s->ranks.comm) == 0) {
+        spari_beam_tell_plausible(member);
+        if (!member->row->whole) {
+            spari_beam_tell_locking(member);
+        }
     }
     return SPAR_OK;
 }

@@ -21,6 +21,7 @@ program test_bindings
   call check(spar_session_create_fcomm(-1_c_int, made) /= SPAR_OK .and. .not. c_associated(made), &
       'spar_session_create_fcomm')
   call check(c_associated(spar_session_message(none)), 'spar_session_message')
+  call check(c_associated(spar_session_get_warning(none, 0_c_int64_t)), 'spar_session_get_warning')
   call refused(spar_session_set_gravity(none), 'spar_session_set_gravity')
   call refused(spar_session_set_integrator(none, 0.0_c_double, 0_c_int), 'spar_session_set_integrator')
   call refused(spar_session_set_newton(none, 0.0_c_double, 0.0_c_double, 0_c_int), 'spar_session_set_newton')

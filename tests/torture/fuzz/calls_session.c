@@ -132,6 +132,12 @@ void do_spar_session_message(call *c) {
     RUN_VOID(c, is_text(spar_session_message(l->s)));
 }
 
+void do_spar_session_get_warning(call *c) {
+    live_session *l = arg_session(c);
+    int64_t i = arg_count(c, 0, 40);
+    RUN_VOID(c, is_text(spar_session_get_warning(l->s, i)));
+}
+
 void do_spar_session_set_gravity(call *c) {
     live_session *l = arg_session(c);
     double *g = arg_reals(c, 3, -10, 10);

@@ -30,7 +30,7 @@
 " spar_rigid_create spar_session_create spar_session_get_iterations spar_session_get_report spar_session_get_time ",
 " spar_session_get_residual spar_session_set_tolerance spar_session_get_tolerance spar_session_get_step_control ",
 " spar_member_estimate_error spar_member_get_iterations ",
-" spar_session_message ",
+" spar_session_message spar_session_get_warning ",
 " spar_session_set_coupling spar_session_set_gravity spar_session_set_integrator spar_session_set_log ",
 " spar_session_set_progress ",
 " spar_session_set_newton spar_session_set_option spar_session_set_predictor spar_session_set_relaxation ",

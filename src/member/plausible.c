@@ -1,0 +1,98 @@
+/* Warns at the commit about beams that are legal and probably wrong: angles in degrees, stiffness or lengths in other
+   units. */
+#include "../base/session.h"
+#include "../math/rotation.h"
+#include "beam.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Means along a beam, by which its first frequency is estimated. */
+typedef struct means {
+    double length, mass;  /* m, kg */
+    double bending;       /* N m^2 */
+    double tension, bed;  /* N, N/m^2 */
+    double weight_length; /* 1/s^2: g / length */
+} means;
+
+/* The smaller bending stiffness of a section: least eigenvalue of its block. */
+static double softer_bending(const double C[36]) {
+    double mean = 0.5 * (C[28] + C[35]), half = 0.5 * (C[28] - C[35]);
+    return mean - hypot(half, C[29]);
+}
+
+static means means_of(const spar_member *m) {
+    enum { PLACES = 16 };
+    const spari_beam *b = m->beam;
+    means a = {.length = spari_member_length(m)};
+    for (int i = 0; i < PLACES; i++) {
+        double C[36], eta = (i + 0.5) / PLACES, pre[6] = {0};
+        spari_beam_section_at(b, b->stiffness, eta, C);
+        a.bending += softer_bending(C) / PLACES;
+        if (b->mass) {
+            spari_beam_section_at(b, b->mass, eta, C);
+            a.mass += C[0] * a.length / PLACES;
+        }
+        if (b->pre_count > 0) {
+            spari_pretension_at(b, eta, pre);
+            a.tension += pre[0] / PLACES;
+        }
+    }
+    for (int64_t i = 0; i < b->point_mass_count; i++) {
+        a.mass += b->point_mass[36 * i];
+    }
+    for (int64_t i = 0; i < b->spring_count; i++) {
+        a.bed += fmin(b->spring[3 * i + 1], b->spring[3 * i + 2]) / (double)b->spring_count;
+    }
+    a.weight_length = m->effects & SPAR_EFFECT_GRAVITY ? spari_norm(m->session->gravity) / a.length : 0;
+    return a;
+}
+
+/* First frequency, Hz, of a uniform beam with these means: bending as a cantilever, or free, and the stiffness of
+   tension, weight and foundation, by Rayleigh's and Dunkerley's bounds. Right to a factor of about 10, which is enough
+   to see another unit. */
+static double first_frequency(const spar_member *m, const means *a) {
+    static const double pi = 3.14159265358979323846;
+    double L = a->length, shape = m->root == SPAR_ROOT_FIXED || m->root == SPAR_ROOT_DRIVEN ? 12.36 : 500.6;
+    double per_length = a->mass / L;
+    double square = shape * a->bending / (per_length * L * L * L * L) + a->weight_length + a->bed / per_length +
+                    fmax(a->tension, 0) * pi * pi / (per_length * L * L);
+    return sqrt(square) / (2 * pi);
+}
+
+static void warn_of_twist(const spar_member *m) {
+    const spari_beam *b = m->beam;
+    for (int64_t i = 1; b->twist && i < b->axis_count; i++) {
+        double change = fabs(b->twist[i] - b->twist[i - 1]);
+        if (change > 3.1416) {
+            spari_warn(
+                m->session,
+                "member '%s': the twist changes by %.4g rad from axis point %lld to %lld, more than half a turn; "
+                "twist is in radians: convert degrees, or add axis points",
+                m->name, change, (long long)(i - 1), (long long)i);
+            return;
+        }
+    }
+}
+
+void spari_beam_tell_plausible(const spar_member *m) {
+    warn_of_twist(m);
+    means a = means_of(m);
+    if (!(a.mass > 0)) {
+        return;
+    }
+    double frequency = first_frequency(m, &a);
+    if (frequency < 1e-4 || frequency > 1e5) {
+        spari_warn(m->session,
+                   "member '%s': its first frequency is about %.1e Hz (length %.3g m, mass %.3g kg, bending stiffness "
+                   "%.3g N m^2); check the units of lengths, stiffness and mass",
+                   m->name, frequency, a.length, a.mass, a.bending);
+    }
+    if (m->session->callbacks.log) {
+        char text[SPARI_MESSAGE_SIZE];
+        (void)snprintf(text, sizeof text,
+                       "member '%s': mass %.4g kg, length %.4g m, first frequency about %.2g Hz (of a uniform beam)",
+                       m->name, a.mass, a.length, frequency);
+        spari_log(m->session, SPAR_LOG_INFO, text);
+    }
+}
