@@ -1,6 +1,6 @@
 /* An assembly: members that joints connect, solved as one system. Each member is factored by itself and condensed to
    its interface nodes (condense.h). The condensed members and the constraints form the linear system of the assembly
-   (system.h).
+   (system.h). A member without joints is an assembly of one component.
 
    Constraints hold at position level, with their loads as multipliers in generalised-alpha (Arnold & Bruls,
    Multibody System Dynamics 18 (2007)). At the end of a step the velocities are projected onto the constraints; in

@@ -1,4 +1,4 @@
-/* Members of an assembly that are linear, or modal, in a frame that goes with their root: the root moves as a body of
+/* Components that are linear, or modal, in a frame that goes with their root: the root moves as a body of
    one node, and the deformation as generalised-alpha has it of vectors. See component.h and floating_root.h. */
 #include "../algebra/cblas.h"
 #include "../base/session.h"

@@ -1,5 +1,4 @@
-/* The motion of a frame: conversion from and to the motion of the nodes, time integration, static equilibrium, saved
-   state, energy. */
+/* The motion of a frame: conversion from and to the motion of the nodes, stages, saved state, energy. */
 #include "frame.h"
 
 #include "../algebra/cblas.h"

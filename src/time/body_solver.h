@@ -1,6 +1,6 @@
-/* The owner's solver of one body: generalised-alpha in time on R^3 x SO(3), static equilibrium. It works on the
-   unknowns' nodes (joints once) and asks the body for forces and tangents: the body of an exact member, or the one node
-   that carries a rigid beam. Of the member it takes how the root is held and driven, effects and settings. */
+/* The owner's solver of one body: the states of its unknowns' nodes (element boundaries once), its factored tangent,
+   and what a step reuses. The body is that of an exact member, or the one node that carries a rigid beam.
+   component_body.c has the operations of a step. */
 #ifndef SPARI_BODY_SOLVER_H
 #define SPARI_BODY_SOLVER_H
 

@@ -1,7 +1,7 @@
-/* A component: a member of an assembly as the assembly sees it. A component has ends, the nodes that joints hold,
-   with their motion and the residual forces on them. A table of operations solves the rest of the member. One table
-   serves members whose unknowns are the motions of their nodes (component_body.c), another one members that are
-   linear in the frame of their root (component_floating.c). */
+/* A component: a member of an assembly as the assembly sees it. A component has ends, the nodes that joints hold (a
+   member without joints has none), with their motion and the residual forces on them. A table of operations solves the
+   rest of the member. One table serves members whose unknowns are the motions of their nodes (component_body.c),
+   another one members that are linear in the frame of their root (component_floating.c). */
 #ifndef SPARI_COMPONENT_H
 #define SPARI_COMPONENT_H
 

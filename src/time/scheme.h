@@ -1,5 +1,5 @@
-/* Time integration by generalised-alpha and TR-BDF2: coefficients, substeps, starting values, corrections,
-   accelerations at t^0, and changes of dt. All members of a session use the same integration, whatever their
+/* Time integration by generalised-alpha and TR-BDF2: coefficients, substeps, starting values, corrections
+   and changes of dt. All members of a session use the same integration, whatever their
    unknowns are. */
 #ifndef SPARI_SCHEME_H
 #define SPARI_SCHEME_H
