@@ -107,7 +107,7 @@ static void map(scene *s) {
     double *weight = room(s->n * s->p);
     MUST(s->session, spar_fluid_get_basis(s->motion, SPAR_NODES_MOTION, NULL, weight));
     MUST(s->session,
-         spar_fluid_get_feet(s->motion, SPAR_NODES_MOTION, NULL, NULL, s->node)); /* arms take the places' place */
+         spar_fluid_get_nearest(s->motion, SPAR_NODES_MOTION, NULL, NULL, s->node)); /* arms take the places' place */
     s->plain = (plain_map){s->n, s->p, weight, s->node, s->xr, s->q, s->v};
 }
 

@@ -151,7 +151,7 @@ contains
     integer :: k
 
     do k = 1, nb
-      call fluid(k)%get_feet(SPAR_NODES_MOTION, foot, con=arm)
+      call fluid(k)%get_nearest(SPAR_NODES_MOTION, foot, con=arm)
       position(:,:,k) = real(foot + arm, ReKi)
     end do
     call AD_Init(position)

@@ -617,7 +617,7 @@ int nrel5mw_create_sections(nrel5mw *data, const nrel5mw_rotor *rotor, int blade
         status = spar_fluid_map(*fluid);
     }
     if (status == SPAR_OK) {
-        status = spar_fluid_get_feet(*fluid, SPAR_NODES_MOTION, x_map, q_map, NULL);
+        status = spar_fluid_get_nearest(*fluid, SPAR_NODES_MOTION, x_map, q_map, NULL);
     }
     if (status == SPAR_OK) {
         fit_sections(data, rotor, blade, x_map, q_map, offset, twist);

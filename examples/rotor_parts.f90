@@ -409,7 +409,7 @@ contains
     call fluid(k)%create(blade(blade_of(k)), name)
     call fluid(k)%set_stations(eta)
     call fluid(k)%map()
-    call fluid(k)%get_feet(SPAR_NODES_MOTION, foot, q)
+    call fluid(k)%get_nearest(SPAR_NODES_MOTION, foot, q)
     do i = 1, ns
       own = frame_of(q(:,i))
       arm = root + span(i) * r(:,1) + sweep(i) * r(:,2) - curve(i) * r(:,3) - foot(:,i)
@@ -418,7 +418,7 @@ contains
     end do
     call fluid(k)%set_stations(eta, offset)
     call fluid(k)%map()
-    call fluid(k)%get_feet(SPAR_NODES_MOTION, foot, con=offset)
+    call fluid(k)%get_nearest(SPAR_NODES_MOTION, foot, con=offset)
     foot = foot + offset
     do i = 1, ns
       loss_radius(i,k) = norm2(cross(shaft, foot(:,i) - hub))

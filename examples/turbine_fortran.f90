@@ -224,7 +224,7 @@ contains
     call sections(b)%create(blade(b), name)
     call sections(b)%set_stations(eta)
     call sections(b)%map()
-    call sections(b)%get_feet(SPAR_NODES_MOTION, foot, q)
+    call sections(b)%get_nearest(SPAR_NODES_MOTION, foot, q)
     do i = 1, ns
       own = frame_of(q(:,i))
       arm = root + span(i) * r(:,1) + sweep(i) * r(:,2) - curve(i) * r(:,3) - foot(:,i)

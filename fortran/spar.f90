@@ -87,9 +87,9 @@ module spar
   integer, parameter, public :: SPAR_RESPONSE_ACCELERATION = 0, SPAR_RESPONSE_VELOCITY = 1
   integer, parameter, public :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
   integer, parameter, public :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
-  integer, parameter, public :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
   integer, parameter, public :: SPAR_KIND_STATIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, &
       SPAR_KIND_FORCES = 8
+  integer, parameter, public :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
   integer, parameter, public :: SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, SPAR_MATRIX_GLOBAL_TO_LOCAL = 1
   integer, parameter, public :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
       SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &
@@ -446,13 +446,15 @@ module spar
     generic :: set_projection => fluid_set_projection, fluid_set_projection_single_1
     procedure, private :: fluid_get_projection, fluid_get_projection_single_1
     generic :: get_projection => fluid_get_projection, fluid_get_projection_single_1
-    procedure :: set_option => fluid_set_option
     procedure :: set_interpolation => fluid_set_interpolation
     procedure :: get_interpolation => fluid_get_interpolation
+    procedure :: set_option => fluid_set_option
     procedure :: get_kind => fluid_get_kind
     procedure :: get_flag_count => fluid_get_flag_count
-    procedure, private :: fluid_get_feet, fluid_get_feet_single_1, fluid_get_feet_single_2, fluid_get_feet_single_3
-    generic :: get_feet => fluid_get_feet, fluid_get_feet_single_1, fluid_get_feet_single_2, fluid_get_feet_single_3
+    procedure, private :: fluid_get_nearest, fluid_get_nearest_single_1, fluid_get_nearest_single_2, &
+        fluid_get_nearest_single_3
+    generic :: get_nearest => fluid_get_nearest, fluid_get_nearest_single_1, fluid_get_nearest_single_2, &
+        fluid_get_nearest_single_3
     procedure, private :: fluid_get_travel, fluid_get_travel_single_1
     generic :: get_travel => fluid_get_travel, fluid_get_travel_single_1
     procedure, private :: fluid_get_positions, fluid_get_positions_single_1, fluid_get_positions_single_2, &
@@ -3677,15 +3679,6 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_projection
 
-  subroutine fluid_set_option(self, key, value, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    character(*), intent(in) :: key, value
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_fluid_set_option(self%handle, c_text(key), c_text(value)), self%session, stat, errmsg)
-  end subroutine fluid_set_option
-
   subroutine fluid_set_interpolation(self, kind, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     integer, intent(in) :: kind
@@ -3706,6 +3699,15 @@ contains
     call hand(status, c_kind, kind)
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_interpolation
+
+  subroutine fluid_set_option(self, key, value, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    character(*), intent(in) :: key, value
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_set_option(self%handle, c_text(key), c_text(value)), self%session, stat, errmsg)
+  end subroutine fluid_set_option
 
   subroutine fluid_get_kind(self, which, kind, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -3730,7 +3732,7 @@ contains
     call finish(spar_fluid_get_flag_count(self%handle, to_c(which), to_c(flag), n), self%session, stat, errmsg)
   end subroutine fluid_get_flag_count
 
-  subroutine fluid_get_feet(self, which, x_map, q_map, con, stat, errmsg)
+  subroutine fluid_get_nearest(self, which, x_map, q_map, con, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     real(c_double), contiguous, intent(inout), optional :: x_map(:,:), q_map(:,:), con(:,:)
@@ -3749,11 +3751,11 @@ contains
     if (present(q_map)) call need(fault, 'q_map', shape(q_map, kind=c_int64_t), [4_c_int64_t, n])
     if (present(con)) call need(fault, 'con', shape(con, kind=c_int64_t), [3_c_int64_t, n])
     if (allocated(fault)) then
-      call refuse('fluid%get_feet', fault, stat, errmsg, self%name)
+      call refuse('fluid%get_nearest', fault, stat, errmsg, self%name)
       return
     end if
-    call finish(spar_fluid_get_feet(self%handle, to_c(which), x_map, q_map, con), self%session, stat, errmsg)
-  end subroutine fluid_get_feet
+    call finish(spar_fluid_get_nearest(self%handle, to_c(which), x_map, q_map, con), self%session, stat, errmsg)
+  end subroutine fluid_get_nearest
 
   subroutine fluid_get_travel(self, largest, node, stat, errmsg)
     class(spar_fluid), intent(in) :: self
@@ -7296,7 +7298,7 @@ contains
     call take(c_max_distance, max_distance)
   end subroutine fluid_get_projection_single_1
 
-  subroutine fluid_get_feet_single_1(self, which, x_map, q_map, con, stat, errmsg)
+  subroutine fluid_get_nearest_single_1(self, which, x_map, q_map, con, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     real(c_float), intent(inout) :: x_map(:,:)
@@ -7311,13 +7313,13 @@ contains
     allocate (c_x_map(ubound(x_map, 1, c_int64_t), ubound(x_map, 2, c_int64_t)), source=untouched)
     if (present(q_map)) allocate (c_q_map(ubound(q_map, 1, c_int64_t), ubound(q_map, 2, c_int64_t)), source=untouched)
     if (present(con)) allocate (c_con(ubound(con, 1, c_int64_t), ubound(con, 2, c_int64_t)), source=untouched)
-    call fluid_get_feet(self, which=which, x_map=c_x_map, q_map=c_q_map, con=c_con, stat=stat, errmsg=errmsg)
+    call fluid_get_nearest(self, which=which, x_map=c_x_map, q_map=c_q_map, con=c_con, stat=stat, errmsg=errmsg)
     call take(c_x_map, x_map)
     call take(c_q_map, q_map)
     call take(c_con, con)
-  end subroutine fluid_get_feet_single_1
+  end subroutine fluid_get_nearest_single_1
 
-  subroutine fluid_get_feet_single_2(self, which, no_x_map, q_map, con, stat, errmsg)
+  subroutine fluid_get_nearest_single_2(self, which, no_x_map, q_map, con, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     type(absent), intent(in), optional :: no_x_map
@@ -7331,12 +7333,12 @@ contains
     allocate (c_q_map(ubound(q_map, 1, c_int64_t), ubound(q_map, 2, c_int64_t)), source=untouched)
     if (present(con)) allocate (c_con(ubound(con, 1, c_int64_t), ubound(con, 2, c_int64_t)), source=untouched)
     if (present(no_x_map)) return
-    call fluid_get_feet(self, which=which, q_map=c_q_map, con=c_con, stat=stat, errmsg=errmsg)
+    call fluid_get_nearest(self, which=which, q_map=c_q_map, con=c_con, stat=stat, errmsg=errmsg)
     call take(c_q_map, q_map)
     call take(c_con, con)
-  end subroutine fluid_get_feet_single_2
+  end subroutine fluid_get_nearest_single_2
 
-  subroutine fluid_get_feet_single_3(self, which, no_x_map, no_q_map, con, stat, errmsg)
+  subroutine fluid_get_nearest_single_3(self, which, no_x_map, no_q_map, con, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     type(absent), intent(in), optional :: no_x_map
@@ -7348,9 +7350,9 @@ contains
 
     allocate (c_con(ubound(con, 1, c_int64_t), ubound(con, 2, c_int64_t)), source=untouched)
     if (present(no_x_map) .or. present(no_q_map)) return
-    call fluid_get_feet(self, which=which, con=c_con, stat=stat, errmsg=errmsg)
+    call fluid_get_nearest(self, which=which, con=c_con, stat=stat, errmsg=errmsg)
     call take(c_con, con)
-  end subroutine fluid_get_feet_single_3
+  end subroutine fluid_get_nearest_single_3
 
   subroutine fluid_get_travel_single_1(self, largest, node, stat, errmsg)
     class(spar_fluid), intent(in) :: self

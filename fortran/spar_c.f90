@@ -1075,6 +1075,20 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_get_projection
 
+    function spar_fluid_set_interpolation(fluid, kind) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), value :: kind
+      integer(c_int) :: status
+    end function spar_fluid_set_interpolation
+
+    function spar_fluid_get_interpolation(fluid, kind) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int), intent(inout), optional :: kind
+      integer(c_int) :: status
+    end function spar_fluid_get_interpolation
+
     function spar_fluid_set_option(fluid, key, value) bind(c) result(status)
       import :: c_char, c_int, c_ptr
       type(c_ptr), value :: fluid
@@ -1090,20 +1104,6 @@ module spar_calls
       character(kind=c_char), intent(inout), optional :: text(*)
       integer(c_int) :: status
     end function spar_fluid_get_option
-
-    function spar_fluid_set_interpolation(fluid, kind) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int), value :: kind
-      integer(c_int) :: status
-    end function spar_fluid_set_interpolation
-
-    function spar_fluid_get_interpolation(fluid, kind) bind(c) result(status)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: fluid
-      integer(c_int), intent(inout), optional :: kind
-      integer(c_int) :: status
-    end function spar_fluid_get_interpolation
 
     function spar_fluid_get_count(fluid, which, n) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
@@ -1138,13 +1138,13 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_get_map
 
-    function spar_fluid_get_feet(fluid, which, x_map, q_map, con) bind(c) result(status)
+    function spar_fluid_get_nearest(fluid, which, x_map, q_map, con) bind(c) result(status)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: fluid
       integer(c_int), value :: which
       real(c_double), intent(inout), optional :: x_map(*), q_map(*), con(*)
       integer(c_int) :: status
-    end function spar_fluid_get_feet
+    end function spar_fluid_get_nearest
 
     function spar_fluid_get_basis(fluid, which, first_node, phi) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
@@ -1695,8 +1695,8 @@ module spar_c
   integer(c_int), parameter :: SPAR_RESPONSE_ACCELERATION = 0, SPAR_RESPONSE_VELOCITY = 1
   integer(c_int), parameter :: SPAR_PROJECT_BOUNDED = 0, SPAR_PROJECT_RPOLY = 1
   integer(c_int), parameter :: SPAR_INTERPOLATE_NODAL = 0, SPAR_INTERPOLATE_CONSISTENT = 1
-  integer(c_int), parameter :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
   integer(c_int), parameter :: SPAR_KIND_STATIONS = 1, SPAR_KIND_SHARED = 2, SPAR_KIND_WEIGHTS = 4, SPAR_KIND_FORCES = 8
+  integer(c_int), parameter :: SPAR_MAP_END = 1, SPAR_MAP_AMBIGUOUS = 2, SPAR_MAP_FAR = 4
   integer(c_int), parameter :: SPAR_MATRIX_LOCAL_TO_GLOBAL = 0, SPAR_MATRIX_GLOBAL_TO_LOCAL = 1
   integer(c_int), parameter :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
       SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &

@@ -180,9 +180,6 @@ call spar_member_set_owner int member|member|value| rank|int|value|
 call spar_member_get_owner int member|member|value| rank|int|out|
 call spar_session_sum_balance int session|session|value| capacity|int64_t|value| members|int64_t|out|[capacity] expected|double|out|[capacity] counted|double|out|[capacity]
 call spar_session_sum int session|session|value| status|int|value| n|int64_t|value| x|double|out|[n]
-constants SPAR_PROJECT_BOUNDED=0 SPAR_PROJECT_RPOLY=1
-constants SPAR_INTERPOLATE_NODAL=0 SPAR_INTERPOLATE_CONSISTENT=1
-constants SPAR_MAP_END=1 SPAR_MAP_AMBIGUOUS=2 SPAR_MAP_FAR=4
 call spar_fluid_get_member int fluid|fluid|value| member|member|out|
 call spar_fluid_get_name text fluid|fluid|value|
 call spar_fluid_set_motion_stations int fluid|fluid|value| n|int64_t|value| eta|double|in|[n] offset|double|in|[n][3]
@@ -191,18 +188,21 @@ call spar_fluid_get_motion_weights int fluid|fluid|value| w|double|out|[n]
 call spar_fluid_fade_motion int fluid|fluid|value| within|double|value| beyond|double|value| n|int64_t|value| distance|double|in|[n] held|int|in|[n]
 call spar_fluid_set_layout int fluid|fluid|value| which|int|value| node|int64_t|value| component|int64_t|value|
 call spar_fluid_get_layout int fluid|fluid|value| which|int|value| node|int64_t|out| component|int64_t|out|
+constants SPAR_PROJECT_BOUNDED=0 SPAR_PROJECT_RPOLY=1
 call spar_fluid_set_projection int fluid|fluid|value| method|int|value| max_distance|double|value|
 call spar_fluid_get_projection int fluid|fluid|value| method|int|out| max_distance|double|out|
-call spar_fluid_set_option int fluid|fluid|value| key|char|in|[] value|char|in|[]
-call spar_fluid_get_option int fluid|fluid|value| key|char|in|[] capacity|int64_t|value| text|char|out|[capacity]
+constants SPAR_INTERPOLATE_NODAL=0 SPAR_INTERPOLATE_CONSISTENT=1
 call spar_fluid_set_interpolation int fluid|fluid|value| kind|int|value|
 call spar_fluid_get_interpolation int fluid|fluid|value| kind|int|out|
+call spar_fluid_set_option int fluid|fluid|value| key|char|in|[] value|char|in|[]
+call spar_fluid_get_option int fluid|fluid|value| key|char|in|[] capacity|int64_t|value| text|char|out|[capacity]
 call spar_fluid_get_count int fluid|fluid|value| which|int|value| n|int64_t|out|
 constants SPAR_KIND_STATIONS=1 SPAR_KIND_SHARED=2 SPAR_KIND_WEIGHTS=4 SPAR_KIND_FORCES=8
 call spar_fluid_get_kind int fluid|fluid|value| which|int|value| kind|int|out|
+constants SPAR_MAP_END=1 SPAR_MAP_AMBIGUOUS=2 SPAR_MAP_FAR=4
 call spar_fluid_get_flag_count int fluid|fluid|value| which|int|value| flag|int|value| n|int64_t|out|
 call spar_fluid_get_map int fluid|fluid|value| which|int|value| eta|double|out|[n] distance|double|out|[n] flags|int|out|[n]
-call spar_fluid_get_feet int fluid|fluid|value| which|int|value| x_map|double|out|[n][3] q_map|double|out|[n][4] con|double|out|[n][3]
+call spar_fluid_get_nearest int fluid|fluid|value| which|int|value| x_map|double|out|[n][3] q_map|double|out|[n][4] con|double|out|[n][3]
 call spar_fluid_get_basis int fluid|fluid|value| which|int|value| first_node|int64_t|out|[n] phi|double|out|[n][P]
 call spar_fluid_get_travel int fluid|fluid|value| largest|double|out| node|int64_t|out|
 call spar_fluid_get_positions int fluid|fluid|value| which|int|value| x|double|out|[n][3] q|double|out|[n][4] v|double|out|[n][3] nearest|double|out|[n][3]

@@ -105,7 +105,7 @@ static int check_blade_fluids(int blades, spar_fluid *const *fluid, const char *
 static int find_centres(spar_aero *aero, const char *call) {
     for (int b = 0; b < aero->blades; b++) {
         double *x = aero->place + 3 * b * aero->n;
-        SPARI_TRY(spar_fluid_get_feet(aero->fluid[b], SPAR_NODES_MOTION, x, NULL, aero->x));
+        SPARI_TRY(spar_fluid_get_nearest(aero->fluid[b], SPAR_NODES_MOTION, x, NULL, aero->x));
         for (int64_t i = 0; i < 3 * aero->n; i++) {
             x[i] += aero->x[i];
         }

@@ -102,7 +102,7 @@ static int find_feet(spar_member *member, const char *name, int64_t n, double *x
     int status = spar_fluid_set_motion_nodes(fluid, n, x);
     status = status == SPAR_OK ? spar_fluid_map(fluid) : status;
     status = status == SPAR_OK ? spar_fluid_get_map(fluid, SPAR_NODES_MOTION, eta, NULL, NULL) : status;
-    status = status == SPAR_OK ? spar_fluid_get_feet(fluid, SPAR_NODES_MOTION, NULL, q, arm) : status;
+    status = status == SPAR_OK ? spar_fluid_get_nearest(fluid, SPAR_NODES_MOTION, NULL, q, arm) : status;
     spar_fluid_destroy(&fluid);
     for (int64_t k = 0; k < n && status == SPAR_OK; k++) {
         double back[4];
@@ -231,7 +231,7 @@ static int find_twists(const spar_aero *aero, const char *call, int b, const spa
     spar_member *member;
     SPARI_TRY(spar_fluid_get_member(aero->fluid[b], &member));
     SPARI_TRY(find_axes(aero->session, call, member, q, root, axes));
-    SPARI_TRY(spar_fluid_get_feet(aero->fluid[b], SPAR_NODES_MOTION, NULL, work, NULL));
+    SPARI_TRY(spar_fluid_get_nearest(aero->fluid[b], SPAR_NODES_MOTION, NULL, work, NULL));
     for (int64_t k = 0; k < aero->n; k++) {
         int i = 0;
         double t = 0, back[4];

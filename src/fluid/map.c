@@ -366,7 +366,7 @@ int spar_fluid_get_map(const spar_fluid *fluid, int which, double *eta, double *
     return SPAR_OK;
 }
 
-int spar_fluid_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con) {
+int spar_fluid_get_nearest(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));

@@ -16,6 +16,7 @@ static const spari_setting options[] = {
     FLUID_WORD("theta", theta_on_group, "average", "group"),
     FLUID_WORD("far", far_refuse, "take", "refuse"),
     FLUID_WORD("audit", audit_off, "on", "off"),
+    FLUID_WORD("velocity", own_velocity, "pulled", "own"),
 };
 
 static const spari_setting *find_fluid_option(const char *key) {
@@ -33,7 +34,8 @@ int spar_fluid_set_option(spar_fluid *fluid, const char *key, const char *value)
     SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, key && value, SPAR_ERR_ARGUMENT, "key or value is NULL");
     const spari_setting *of = find_fluid_option(key);
-    SPARI_FLUID_REQUIRE(fluid, of, SPAR_ERR_ARGUMENT, "there is no option '%s'; give theta, far or audit", key);
+    SPARI_FLUID_REQUIRE(fluid, of, SPAR_ERR_ARGUMENT, "there is no option '%s'; give theta, far, audit or velocity",
+                        key);
     double x;
     SPARI_FLUID_REQUIRE(fluid, spari_setting_read(of, value, &x), SPAR_ERR_ARGUMENT,
                         "option '%s' does not accept '%s'; give %s", key, value, of->range);
@@ -46,6 +48,7 @@ int spar_fluid_get_option(const spar_fluid *fluid, const char *key, int64_t capa
     SPARI_FLUID_HANDLE(fluid);
     SPARI_FLUID_REQUIRE(fluid, key && text, SPAR_ERR_ARGUMENT, "key or text is NULL");
     const spari_setting *of = find_fluid_option(key);
-    SPARI_FLUID_REQUIRE(fluid, of, SPAR_ERR_ARGUMENT, "there is no option '%s'; give theta, far or audit", key);
+    SPARI_FLUID_REQUIRE(fluid, of, SPAR_ERR_ARGUMENT, "there is no option '%s'; give theta, far, audit or velocity",
+                        key);
     return spari_setting_write(fluid->member->session, __func__, of, spari_setting_value(fluid, of), capacity, text);
 }

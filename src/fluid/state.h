@@ -77,6 +77,7 @@ typedef struct spari_fluid_options {
     int theta_on_group; /* theta = average (default) | group */
     int far_refuse;     /* far = take (default) | refuse: nodes beyond max_distance */
     int audit_off;      /* audit = on (default) | off */
+    int own_velocity;   /* velocity = pulled (default) | own: velocities need not be pulled */
 } spari_fluid_options;
 
 struct spar_fluid {

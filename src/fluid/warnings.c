@@ -58,7 +58,7 @@ void spari_fluid_warn_step(spar_fluid *fluid) {
                    fluid->name, m->name, fluid->steps);
     }
     if (fluid->steps == STEPS_WITHOUT_VELOCITY && fluid->asked & SPARI_ASKED_LOADS && looks == SPARI_ASKED_POSITIONS &&
-        !m->external && m->kind != SPARI_POINT && m->effects & SPAR_EFFECT_INERTIA &&
+        !fluid->options.own_velocity && !m->external && m->kind != SPARI_POINT && m->effects & SPAR_EFFECT_INERTIA &&
         !(fluid->warned & WARNED_VELOCITY)) {
         fluid->warned |= WARNED_VELOCITY;
         spari_warn(

@@ -65,7 +65,7 @@ static void test_rotor(void **state) {
         OK(s, spar_fluid_map(fluid[1][b]));
         double x[2][3 * 64], arm[2][3 * 64];
         for (int k = 0; k < 2; k++) {
-            OK(s, spar_fluid_get_feet(fluid[k][b], SPAR_NODES_MOTION, x[k], NULL, arm[k]));
+            OK(s, spar_fluid_get_nearest(fluid[k][b], SPAR_NODES_MOTION, x[k], NULL, arm[k]));
         }
         for (int64_t i = 0; i < 3 * n; i++) {
             NEAR(x[1][i] + arm[1][i], x[0][i] + arm[0][i], 1e-12);
@@ -142,7 +142,7 @@ static void test_between(void **state) {
     OK(s, spar_fluid_map(f));
     OK(s, spar_aero_create(1, &f, &aero));
     OK(s, spar_aero_read_aerodyn(aero, PRIMARY, DATA "blade.dat", to_edge, at));
-    OK(s, spar_fluid_get_feet(f, SPAR_NODES_MOTION, x, q, arm));
+    OK(s, spar_fluid_get_nearest(f, SPAR_NODES_MOTION, x, q, arm));
     OK(s, spar_member_get_placement(m, root, axes));
     for (int i = 0; i < N; i++) {
         const spari_section *section = aero->section + i;
@@ -275,7 +275,7 @@ static void test_frame(void **state) {
     }
     OK(w.s, spar_aero_solve(w.aero, 2, inflow, 0));
     OK(w.s, spar_aero_get_sections(w.aero, alpha, NULL, NULL, NULL, NULL));
-    OK(w.s, spar_fluid_get_feet(w.f, SPAR_NODES_MOTION, x, NULL, arm));
+    OK(w.s, spar_fluid_get_nearest(w.f, SPAR_NODES_MOTION, x, NULL, arm));
     OK(w.s, spar_aero_get_loads(w.aero, load, NULL, NULL));
     for (int i = 0; i < 5; i++) {
         double angle = (90 - degrees[i]) * pi / 180, cm = 0.2 + 0.1 * (90 - degrees[i]) / 90;
@@ -384,7 +384,7 @@ static void test_mistakes(void **state) {
     double before[9], after[9];
     wing w = make_wing();
     read_wing(&w, deck(NULL, NULL, NULL), 0, NULL);
-    OK(w.s, spar_fluid_get_feet(w.f, SPAR_NODES_MOTION, before, NULL, NULL));
+    OK(w.s, spar_fluid_get_nearest(w.f, SPAR_NODES_MOTION, before, NULL, NULL));
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
         const char *path = deck(wrong[k].file, wrong[k].old, wrong[k].new_text);
         spari_section old = w.aero->section[0];
@@ -397,7 +397,7 @@ static void test_mistakes(void **state) {
         assert_memory_equal(&old, &w.aero->section[0], sizeof old);
         if (wrong[k].file[0] != 'a') {
             assert_int_equal(spar_fluid_read_aerodyn(w.f, path, NULL, NULL, 0, NULL), wrong[k].status);
-            OK(w.s, spar_fluid_get_feet(w.f, SPAR_NODES_MOTION, after, NULL, NULL));
+            OK(w.s, spar_fluid_get_nearest(w.f, SPAR_NODES_MOTION, after, NULL, NULL));
             assert_memory_equal(before, after, sizeof before);
         }
     }

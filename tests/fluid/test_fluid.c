@@ -100,7 +100,7 @@ static void map_hangs_together(void **state) {
     OK(spar_fluid_get_count(f, SPAR_NODES_MOTION, &n));
     assert_int_equal(n, N);
     OK(spar_fluid_get_map(f, SPAR_NODES_MOTION, eta, distance, flags));
-    OK(spar_fluid_get_feet(f, SPAR_NODES_MOTION, foot[0], q[0], con[0]));
+    OK(spar_fluid_get_nearest(f, SPAR_NODES_MOTION, foot[0], q[0], con[0]));
     OK(spar_fluid_get_basis(f, SPAR_NODES_MOTION, first, phi[0]));
     for (int j = 0; j < N; j++) {
         double sum = 0, at[3] = {0}, turn[4] = {0};
@@ -152,7 +152,7 @@ static void sections_stand_where_asked(void **state) {
     OK(spar_fluid_map(f));
     for (int which = 0; which < 2; which++) {
         OK(spar_fluid_get_map(f, which, got, distance, flags));
-        OK(spar_fluid_get_feet(f, which, foot[0], q[0], con[0]));
+        OK(spar_fluid_get_nearest(f, which, foot[0], q[0], con[0]));
         for (int j = 0; j < N; j++) {
             CLOSE(got[j], eta[j], 1e-15);
             CLOSE(distance[j], spari_norm(offset[j]), 1e-15);
@@ -203,7 +203,7 @@ static void bodies_carry_their_nodes(void **state) {
         OK(spar_fluid_map(f));
         double con[2][3];
         int flags[2];
-        OK(spar_fluid_get_feet(f, SPAR_NODES_MOTION, x[0], now[0], con[0]));
+        OK(spar_fluid_get_nearest(f, SPAR_NODES_MOTION, x[0], now[0], con[0]));
         OK(spar_fluid_get_map(f, SPAR_NODES_MOTION, NULL, NULL, flags));
         assert_int_equal(flags[0] | flags[1], 0);
         CLOSE(con[0][0], 0.5, 1e-15);

@@ -176,7 +176,7 @@ static void either_set_is_where_asked(void **state) {
     assert_memory_equal(x[0], x[1], sizeof x[0]);
     assert_memory_equal(q[0], q[1], sizeof q[0]);
     assert_memory_equal(v[0], v[1], sizeof v[0]);
-    OK(b.session, spar_fluid_get_feet(both, SPAR_NODES_FORCE, NULL, rest[0], con[0]));
+    OK(b.session, spar_fluid_get_nearest(both, SPAR_NODES_FORCE, NULL, rest[0], con[0]));
     for (int j = 0; j < N; j++) {
         spari_quat_conj(rest[j], back);
         spari_quat_mul(q[0][j], back, turn);

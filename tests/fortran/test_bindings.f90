@@ -159,7 +159,7 @@ program test_bindings
   call refused(spar_fluid_get_count(none, 0_c_int), 'spar_fluid_get_count')
   call refused(spar_fluid_get_flag_count(none, 0_c_int, 0_c_int), 'spar_fluid_get_flag_count')
   call refused(spar_fluid_get_map(none, 0_c_int), 'spar_fluid_get_map')
-  call refused(spar_fluid_get_feet(none, 0_c_int), 'spar_fluid_get_feet')
+  call refused(spar_fluid_get_nearest(none, 0_c_int), 'spar_fluid_get_nearest')
   call refused(spar_fluid_get_basis(none, 0_c_int), 'spar_fluid_get_basis')
   call refused(spar_fluid_pull_motion(none, 0.0_c_double), 'spar_fluid_pull_motion')
   call refused(spar_fluid_pull_poses(none, 0_c_int, 0.0_c_double), 'spar_fluid_pull_poses')

@@ -233,7 +233,7 @@ contains
     call fluid%set_motion_nodes(x)
     call fluid%set_force_nodes(x)
     call fluid%map()
-    call fluid%get_feet(SPAR_NODES_FORCE, con=con)
+    call fluid%get_nearest(SPAR_NODES_FORCE, con=con)
     call check(all(abs(con - reshape([2, 0, 0, 0, 1, 5] * 1.0_c_double, [3, 2])) < 1e-15_c_double), 'from the foot to the node')
     q(:,1) = [0.0_c_double, 0.0_c_double, 10.0_c_double, h, 0.0_c_double, 0.0_c_double, h]
     v(:,1) = [0, 0, 1, 0, 0, 2]

@@ -266,7 +266,7 @@ contains
     call check(stat == SPAR_ERR_ARGUMENT, 'omega of 4 entries')
     call fluid%get_map(SPAR_NODES_MOTION, flags=flags(1:3), stat=stat)
     call check(stat == SPAR_ERR_ARGUMENT, 'flags of three')
-    call fluid%get_feet(SPAR_NODES_MOTION, q_map=x, stat=stat)
+    call fluid%get_nearest(SPAR_NODES_MOTION, q_map=x, stat=stat)
     call check(stat == SPAR_ERR_ARGUMENT, 'orientations of 3 entries')
     call fluid%get_basis(SPAR_NODES_MOTION, first, x, stat)
     call check(stat == SPAR_ERR_ARGUMENT, 'basis of 3 nodes where an element has 1')

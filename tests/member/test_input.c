@@ -306,8 +306,10 @@ static void test_read_back(void **state) {
 static void test_read_members(void **state) {
     (void)state;
     const double place[3] = {1, 2, 3}, q[4] = {0.6, 0, 0.8, 0}, mu[6] = {1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3};
-    static const char *const option[][3] = {
-        {"theta", "average", "group"}, {"far", "take", "refuse"}, {"audit", "on", "off"}};
+    static const char *const option[][3] = {{"theta", "average", "group"},
+                                            {"far", "take", "refuse"},
+                                            {"audit", "on", "off"},
+                                            {"velocity", "pulled", "own"}};
     double C[36], J[36], x[3], r[4], found[6], far;
     char word[32];
     int kind, on, rank, elements, nodes, rule, points, effects, method;
@@ -356,7 +358,7 @@ static void test_read_members(void **state) {
         assert_string_equal(word, option[i][2]);
     }
     REFUSED(s, SPAR_ERR_ARGUMENT, "needs 7 characters; the buffer has 6", spar_fluid_get_option(f, "far", 6, word));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "no option 'fluid.far'; give theta, far or audit",
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no option 'fluid.far'; give theta, far, audit or velocity",
             spar_fluid_get_option(f, "fluid.far", 32, word));
     REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_fluid_set_option(f, "fluid.far", "take"));
     REFUSED(s, SPAR_ERR_ARGUMENT,

@@ -159,6 +159,7 @@ static void habits(void **state) {
         {{NULL, 1, 1, 1}, NULL}, {{NULL, 1, 1, 0}, "no forces were pushed in 2 steps"},
         {{NULL, 0, 0, 0}, NULL}, /* not in use */
         {{NULL, 0, 1, 1}, NULL}, {{NULL, 1, 0, 1}, "pulls positions and no velocities"},
+        {{NULL, 1, 0, 2}, NULL}, /* velocity = own */
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         for (int logs = 0; logs < 2; logs++) {
@@ -173,6 +174,7 @@ static void habits(void **state) {
             OK(s, spar_fluid_set_motion_nodes(h.fluid, 1, x));
             OK(s, spar_fluid_set_force_nodes(h.fluid, 1, x));
             OK(s, spar_fluid_map(h.fluid));
+            OK(s, spar_fluid_set_option(h.fluid, "velocity", h.pushes == 2 ? "own" : "pulled"));
             for (int n = 0; n < 15; n++) {
                 OK(s, spar_step(s, 0.01, flow, &h, NULL));
             }

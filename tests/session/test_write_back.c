@@ -161,8 +161,8 @@ static void fluid_settings(scene *w, spar_fluid *f, int before_map) {
     OK(w->s, spar_fluid_get_interpolation(f, &i));
     WRITE(w, spar_fluid_set_interpolation(f, i));
     keep_one(w, i);
-    for (int k = 0; k < 3; k++) {
-        static const char *const key[3] = {"theta", "far", "audit"};
+    for (int k = 0; k < 4; k++) {
+        static const char *const key[4] = {"theta", "far", "audit", "velocity"};
         char text[32];
         OK(w->s, spar_fluid_get_option(f, key[k], sizeof text, text));
         WRITE(w, spar_fluid_set_option(f, key[k], text));

@@ -429,10 +429,10 @@ int spread_get_map(const spar_fluid *fluid, int which, double *eta, double *dist
     return status;
 }
 
-int spread_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con) {
+int spread_get_nearest(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con) {
     cut c = cut_of(fluid, which);
     double *part[3] = {place_for(&c, 3, x_map), place_for(&c, 4, q_map), place_for(&c, 3, con)};
-    int status = spar_fluid_get_feet(fluid, which, part[0], part[1], part[2]);
+    int status = spar_fluid_get_nearest(fluid, which, part[0], part[1], part[2]);
     return put_together(&c, status, 3, part, (int[]){3, 4, 3}, (double *[]){x_map, q_map, con});
 }
 

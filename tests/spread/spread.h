@@ -29,7 +29,7 @@ int spread_set_motion_weights(spar_fluid *fluid, int64_t n, const double *w);
 int spread_get_count(const spar_fluid *fluid, int which, int64_t *n);
 int spread_get_flag_count(const spar_fluid *fluid, int which, int flag, int64_t *n);
 int spread_get_map(const spar_fluid *fluid, int which, double *eta, double *distance, int *flags);
-int spread_get_feet(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con);
+int spread_get_nearest(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con);
 int spread_get_positions(const spar_fluid *fluid, int which, double *x, double *q, double *v, double *nearest);
 int spread_pull_motion(spar_fluid *fluid, double theta, double *x, double *v);
 int spread_pull_poses(spar_fluid *fluid, int which, double theta, double *x, double *q, double *v, double *omega,
@@ -80,7 +80,7 @@ int spread_remove(const char *path);
 #define spar_fluid_get_count spread_get_count
 #define spar_fluid_get_flag_count spread_get_flag_count
 #define spar_fluid_get_map spread_get_map
-#define spar_fluid_get_feet spread_get_feet
+#define spar_fluid_get_nearest spread_get_nearest
 #define spar_fluid_get_positions spread_get_positions
 #define spar_fluid_pull_motion spread_pull_motion
 #define spar_fluid_pull_poses spread_pull_poses

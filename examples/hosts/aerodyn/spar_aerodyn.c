@@ -127,7 +127,7 @@ static int take_sections(spar_aerodyn *s, int b, int64_t first, int reference) {
         memset(s->omega, 0, (size_t)(3 * n) * sizeof *s->omega);
         memset(s->accel, 0, (size_t)(3 * n) * sizeof *s->accel);
         memset(s->alpha, 0, (size_t)(3 * n) * sizeof *s->alpha);
-        status = spar_fluid_get_feet(s->sections[b], SPAR_NODES_MOTION, s->x, s->q, s->v);
+        status = spar_fluid_get_nearest(s->sections[b], SPAR_NODES_MOTION, s->x, s->q, s->v);
         for (int64_t i = 0; i < 3 * n; i++) { /* from the foot to the node */
             s->x[i] += s->v[i];
             s->v[i] = 0;

@@ -200,12 +200,12 @@ void do_spar_fluid_get_map(call *c) {
     RUN(c, spar_fluid_get_map(f->f, which, eta, distance, flags));
 }
 
-void do_spar_fluid_get_feet(call *c) {
+void do_spar_fluid_get_nearest(call *c) {
     live_fluid *f = arg_fluid(c);
     int which = arg_int(c, 0, 1);
     int64_t n = fluid_count(f, which);
     double *x = OUT_OR_NULL(c, 3 * n), *q = OUT_OR_NULL(c, 4 * n), *con = OUT_OR_NULL(c, 3 * n);
-    RUN(c, spar_fluid_get_feet(f->f, which, x, q, con));
+    RUN(c, spar_fluid_get_nearest(f->f, which, x, q, con));
 }
 
 void do_spar_fluid_get_basis(call *c) {
@@ -385,16 +385,16 @@ void do_spar_fluid_get_interpolation(call *c) {
     RUN(c, spar_fluid_get_interpolation(f->f, kind));
 }
 
-static const char *const option_keys[] = {"theta", "far", "audit"};
+static const char *const option_keys[] = {"theta", "far", "audit", "velocity"};
 
 void do_spar_fluid_set_option(call *c) {
-    static const char *const values[][2] = {{"average", "group"}, {"take", "refuse"}, {"on", "off"}},
+    static const char *const values[][2] = {{"average", "group"}, {"take", "refuse"}, {"on", "off"}, {"pulled", "own"}},
                              *const strange[] = {"", "1", "spar%n", "ON"};
     live_fluid *f = arg_fluid(c);
-    int k = below(c, 3);
+    int k = below(c, 4);
     const char *key = option_keys[k], *value = values[k][below(c, 2)];
     if (odd(c)) {
-        key = chance(c, 30) ? NULL : chance(c, 50) ? "fluid.theta" : option_keys[below(c, 3)];
+        key = chance(c, 30) ? NULL : chance(c, 50) ? "fluid.theta" : option_keys[below(c, 4)];
     }
     if (odd(c)) {
         value = chance(c, 20) ? NULL : strange[below(c, 4)];
@@ -405,7 +405,7 @@ void do_spar_fluid_set_option(call *c) {
 
 void do_spar_fluid_get_option(call *c) {
     live_fluid *f = arg_fluid(c);
-    const char *key = odd(c) ? NULL : option_keys[below(c, 3)];
+    const char *key = odd(c) ? NULL : option_keys[below(c, 4)];
     int64_t n = arg_count(c, 0, 30);
     char *into = arg_out(c, length(n), 1);
     text(c, ", \"%s\"", key ? key : "NULL");

@@ -179,7 +179,7 @@ enum {
     CALL(spar_fluid_get_count, 40, FUZZ_PURE)                                                                          \
     CALL(spar_fluid_get_flag_count, 40, FUZZ_PURE)                                                                     \
     CALL(spar_fluid_get_map, 60, FUZZ_PURE)                                                                            \
-    CALL(spar_fluid_get_feet, 60, FUZZ_PURE)                                                                           \
+    CALL(spar_fluid_get_nearest, 60, FUZZ_PURE)                                                                           \
     CALL(spar_fluid_get_basis, 60, FUZZ_PURE)                                                                          \
     CALL(spar_fluid_pull_motion, 150, FUZZ_PURE)                                                                       \
     CALL(spar_fluid_pull_motion_f32, 60, FUZZ_PURE)                                                                    \

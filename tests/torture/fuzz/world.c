@@ -85,7 +85,7 @@ static void see_fluid(const live_fluid *f, uint64_t *h, uint64_t *of_last_push) 
         add_seen(h, status, 2 * n);
         if (status == SPAR_OK) {
             add(h, seen_flags, (size_t)n * sizeof *seen_flags);
-            add_seen(h, spar_fluid_get_feet(f->f, which, seen, seen + 3 * n, seen + 7 * n), 10 * n);
+            add_seen(h, spar_fluid_get_nearest(f->f, which, seen, seen + 3 * n, seen + 7 * n), 10 * n);
             add_seen(h, spar_fluid_get_basis(f->f, which, seen_index, NULL), 0);
             add(h, seen_index, (size_t)n * sizeof *seen_index);
         }

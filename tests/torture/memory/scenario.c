@@ -539,7 +539,7 @@ static void act_fluids(void) {
     CALL(spar_fluid_get_count, f, SPAR_NODES_FORCE, &count);
     CALL(spar_fluid_get_flag_count, f, SPAR_NODES_FORCE, SPAR_MAP_END, &count);
     CALL(spar_fluid_get_map, f, SPAR_NODES_MOTION, out, w, flags);
-    CALL(spar_fluid_get_feet, f, SPAR_NODES_MOTION, out, q, w);
+    CALL(spar_fluid_get_nearest, f, SPAR_NODES_MOTION, out, q, w);
     if (n > 0) {
         CALL(spar_fluid_get_basis, sections, SPAR_NODES_FORCE, first, out);
     }
@@ -957,7 +957,7 @@ static void act_aerodyn(void) {
         CALL(spar_fluid_create, blade, k ? "fine" : "stations", &f);
         CALL(spar_fluid_read_aerodyn, f, primary, NULL, k ? q : NULL, k ? 3 : 0, k ? span : NULL);
         CALL(spar_fluid_map, f);
-        CALL(spar_fluid_get_feet, f, SPAR_NODES_MOTION, x, NULL, arm);
+        CALL(spar_fluid_get_nearest, f, SPAR_NODES_MOTION, x, NULL, arm);
         NOTE(arm);
         CALL(spar_aero_create, 1, &f, &aero);
         CALL(spar_aero_read_aerodyn, aero, primary, NULL, k ? q : NULL, k ? span : NULL);

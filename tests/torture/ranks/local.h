@@ -8,7 +8,7 @@
 " spar_aero_set_section spar_aero_set_turn spar_aero_solve spar_beam_create spar_beam_evaluate ",
 " spar_beam_read_beamdyn spar_beam_set_axis spar_beam_set_damping spar_beam_set_line_load spar_beam_set_nodes ",
 " spar_beam_set_quadrature spar_beam_set_sections spar_effect_name spar_fluid_check_matrices spar_fluid_create ",
-" spar_fluid_destroy spar_fluid_get_audit spar_fluid_get_basis spar_fluid_get_count spar_fluid_get_feet ",
+" spar_fluid_destroy spar_fluid_get_audit spar_fluid_get_basis spar_fluid_get_count spar_fluid_get_nearest ",
 " spar_fluid_get_flag_count spar_fluid_get_map spar_fluid_map spar_fluid_pull_forces spar_fluid_pull_forces_f32 ",
 " spar_fluid_pull_matrices spar_fluid_pull_motion spar_fluid_pull_motion_f32 spar_fluid_pull_poses ",
 " spar_fluid_pull_poses_f32 spar_fluid_push_forces spar_fluid_push_forces_at ",

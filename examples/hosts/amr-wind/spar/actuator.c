@@ -146,7 +146,7 @@ static int make_points(actuator_machine *a, int b) {
     char name[32];
     snprintf(name, sizeof name, "points%d", b + 1);
     int status = spar_fluid_get_map(t->air[b], SPAR_NODES_MOTION, eta, NULL, NULL);
-    status = status ? status : spar_fluid_get_feet(t->air[b], SPAR_NODES_MOTION, NULL, q, arm);
+    status = status ? status : spar_fluid_get_nearest(t->air[b], SPAR_NODES_MOTION, NULL, q, arm);
     for (int64_t i = 0; status == SPAR_OK && i < 3 * n; i++) {
         matrix(q + 4 * (i / 3), axes);
         for (int64_t k = 0; k < 3; k++) { /* the arm in the section's own axes, which are the matrix's columns */

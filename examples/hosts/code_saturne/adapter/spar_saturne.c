@@ -84,6 +84,8 @@ static void couple_surface(void) {
     saturne_check(spar_fluid_set_motion_nodes(host.surface, host.n_vertices, host.x0));
     saturne_check(spar_fluid_set_force_nodes(host.surface, host.n_faces, centres));
     saturne_check(spar_fluid_map(host.surface));
+    /* code_saturne takes wall velocities from its moving mesh */
+    saturne_check(spar_fluid_set_option(host.surface, "velocity", "own"));
     BFT_FREE(centres);
 }
 

@@ -97,6 +97,7 @@ Foam::sparHost::sparHost
     check(spar_fluid_set_motion_nodes(surface_, x0_.size(), triples(x0_)));
     check(spar_fluid_set_force_nodes(surface_, faceCentres.size(), triples(faceCentres)));
     check(spar_fluid_map(surface_));
+    check(spar_fluid_set_option(surface_, "velocity", "own")); // OpenFOAM takes wall velocities from the moving mesh
 }
 
 Foam::sparHost::~sparHost()
