@@ -133,7 +133,8 @@ SPAR_API int spar_step_begin(spar_session *session, double dt);
 SPAR_API int spar_step_solve(spar_session *session);
 /* Part 8: gathers the loads of all ranks, computes the residual and the loads of the next iteration.
      done: out, 1: accept the step, 0: solve, push and check again
-   SPAR_ERR_NUMERIC: no convergence in max_iterations (spar_session_set_coupling). */
+   SPAR_ERR_NUMERIC: no convergence in max_iterations (spar_session_set_coupling); or the steps have one evaluation of
+   the fluid each, and the error of the predicted loads grows from step to step (option coupling.unstable). */
 SPAR_API int spar_step_check(spar_session *session, int *done);
 /* Accepts the step: the clock moves to t^{n+1}. SPAR_ERR_STATE after a check that failed. */
 SPAR_API int spar_step_accept(spar_session *session);

@@ -69,6 +69,9 @@ SPAR_API int spar_session_get_relaxation(const spar_session *session, double *om
                           between rtol and 1e-7 of the increments. If the time-step error is unknown, balanced is strict
    coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations. Choose accept if the
                           host cannot repeat a step, and look at SPAR_REPORT_UNCONVERGED
+   coupling.unstable      error (default) | accept: what spar_step_check does if the error of the predicted loads has grown
+                          to the size of the loads, in steps with one evaluation of the fluid each: explicit, or accepted
+                          before done. Choose accept to see an instability grow
    coupling.patience      1 to 1000000, default 3: with accept, so many consecutive unconverged steps are an error
    coupling.norm          motion (default) | loads: how the stop test, Aitken's factor and IQN-ILS weigh loads. Motion:
                           by the motion that they cause in the step, so a load on a stiff direction counts little.

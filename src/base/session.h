@@ -54,6 +54,7 @@ typedef struct spari_coupling_settings {
     int max;
     double relaxation;
     int accept_unconverged; /* option coupling.unconverged = accept */
+    int accept_unstable;    /* option coupling.unstable = accept */
     int columns;            /* of IQN-ILS */
     int reuse;              /* of IQN-ILS */
     double filter;

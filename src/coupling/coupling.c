@@ -23,7 +23,7 @@ void spari_coupling_free(spari_coupling **coupling) {
         return;
     }
     double *all[] = {c->length, c->unit,  c->x,         c->g,      c->predicted, c->motion, c->residual,
-                     c->size,   c->image, c->workspace, c->missed, c->shift,     c->settled};
+                     c->size,   c->image, c->workspace, c->missed, c->missing,   c->shift,  c->settled};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }
@@ -53,7 +53,7 @@ static int make_vectors(const spar_session *s, int scheme, spari_coupling *c) {
            (c->g = spari_zalloc(n, sizeof(double))) && (c->predicted = spari_zalloc(n, sizeof(double))) &&
            (c->motion =
                 spari_zalloc(iterated && spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0, sizeof(double))) &&
-           (iterated || (c->missed = spari_zalloc(c->n, sizeof(double)))) &&
+           (c->missed = spari_zalloc(c->n, sizeof(double))) && (c->missing = spari_zalloc(c->n, sizeof(double))) &&
            (c->residual = spari_zalloc(c->most, sizeof(double))) && (c->size = spari_zalloc(c->most, sizeof(double))) &&
            (c->image = spari_zalloc(images + 1, sizeof(double))) &&
            (shifted == 0 || (c->shift = spari_zalloc(shifted, sizeof(double)))) &&
@@ -211,7 +211,7 @@ static void report_added_mass(spari_coupling *c) {
 double spari_coupling_share(const spar_session *s) {
     static const double part = 1e-3, least = 0.05;
     const spari_coupling *c = s->own->coupling;
-    if (!c->accelerator) {
+    if (!c->accelerator || c->idle) {
         return INFINITY;
     }
     double mu = c->report[SPAR_REPORT_ADDED_MASS], goal = s->coupling.rtol;
@@ -228,8 +228,12 @@ void spari_coupling_begin(spar_session *s) {
     c->report[SPAR_REPORT_MOTION_ERROR] = 0;
     if (c->accelerator) {
         double *at = c->predicted;
-        for (const spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next) {
-            memcpy(at, m->load.used, (size_t)(6 * m->nodes) * sizeof *at);
+        c->idle = 1;
+        for (const spar_member *m = s->members; m; m = m->next) {
+            for (int64_t i = 0; i < 6 * m->nodes; i++, at++) {
+                *at = m->load.used[i];
+                c->idle = c->idle && *at == 0;
+            }
         }
         spari_accelerator_begin(c->accelerator, s->clock.dt);
         report_added_mass(c);
@@ -430,6 +434,10 @@ static int measure_residual(spar_session *s, double size, double *residual) {
     spari_coupling *c = s->own->coupling;
     double motion, whole;
     c->weighed = 0;
+    c->idle = c->idle && size == 0;
+    if (c->idle) {
+        return SPAR_OK;
+    }
     /* a step that has changed to the load norm keeps it */
     if (c->weighs && (s->state.iteration == 1 || spari_accelerator_imaged(c->accelerator))) {
         stack(s);
@@ -511,11 +519,123 @@ static int accept_unconverged(spar_session *s, const char *call) {
     return SPAR_OK;
 }
 
+/* ---- stability of explicit steps ---- */
+
+/* Ratio of added mass to mass with which an explicit scheme of this order grows by z per step. */
+static double ratio_of_growth(int order, double z) {
+    return order == 0 ? z : order == 1 ? z * z / (2 * z + 1) : z * z * z / (3 * z * z + 3 * z + 1);
+}
+
+/* Added mass, relative to the mass, up to which an explicit scheme of this order is stable. */
+static const double stable_ratio[3] = {1, 1.0 / 3, 1.0 / 7};
+
+/* Logs what the growth implies: mean, scatter, and the added mass with which an explicit scheme of this order grows
+   so fast. */
+static void tell_alternation(const spar_session *s) {
+    const spari_growth *g = &s->own->coupling->stability.steps;
+    double n = g->count, mean = g->log_sum / n, spread = sqrt(fmax(g->log_square / n - mean * mean, 0));
+    double z = exp(mean), ratio = ratio_of_growth(s->state.order, z);
+    if (s->callbacks.log) {
+        char text[SPARI_MESSAGE_SIZE];
+        (void)snprintf(
+            text, sizeof text,
+            "the coupling is becoming unstable at t = %g: in the last %d steps the error of the predicted loads has "
+            "alternated in sign and grown by a factor of %.3g (+- %.2g) per step: the added mass is about %.2g (+- "
+            "%.1g) of the mass; an explicit scheme with a predictor of order %d is stable up to %.2g; "
+            "iterate "
+            "(spar_session_set_coupling) or lower the order of the predictor",
+            s->clock.time + s->clock.dt, g->count + 1, z, z * spread, ratio,
+            ratio_of_growth(s->state.order, z * exp(spread)) - ratio, s->state.order, stable_ratio[s->state.order]);
+        spari_log(s, SPAR_LOG_WARNING, text);
+    }
+}
+
+/* Whether the step has loads of one evaluation of the fluid: explicit, or accepted before the coupling has converged.
+ */
+static int is_explicit(const spar_session *s) {
+    return !s->own->coupling->accelerator || (s->state.iteration == 1 && s->state.iterating);
+}
+
+/* Compares the predicted loads with the pushed loads, and with the comparison of the step before. */
+static spari_predicted_step see_prediction(const spar_session *s) {
+    spari_coupling *c = s->own->coupling;
+    double error = 0, size = 0, before = 0, turned = 0, predicted = 0, answered = 0;
+    const double *from = c->predicted, *last = c->missed;
+    double *now = c->missing;
+    int k = 0;
+    for (const spar_member *m = s->members; m; m = m->next, k++) {
+        const double *shift = spari_added_shift(m), *used = c->accelerator ? from : m->load.used;
+        for (int64_t i = 0; i < 6 * m->nodes; i++, last++, now++) {
+            double w = i % 6 < 3 ? 1 : 1 / c->length[k], load = w * m->load.pushed[i], guess = w * used[i];
+            *now = load - guess;
+            error += *now * *now;
+            before += *last * *last;
+            turned += *now * *last;
+            predicted += guess * guess;
+            answered += guess * load;
+            load -= shift ? w * shift[i] : 0;
+            size += load * load;
+        }
+        from += c->accelerator ? 6 * m->nodes : 0;
+    }
+    double both = sqrt(error * before), same = sqrt(size * predicted);
+    return (spari_predicted_step){sqrt(error), sqrt(size), sqrt(before), both > 0 ? turned / both : 0,
+                                  same > 0 ? answered / same : 0};
+}
+
+/* SPAR_ERR_NUMERIC if the error of the predicted loads grows from step to step with one evaluation of the fluid. */
+static int check_explicit(spar_session *s, const char *call) {
+    const spari_coupling *c = s->own->coupling;
+    const spari_predicted_step now = see_prediction(s);
+    spari_explicit_stability is = c->stability;
+    double factor = 0;
+    spari_explicit_stability_add(&is, &now);
+    int steps = spari_explicit_is_unstable(&is, &factor);
+    SPARI_REQUIRE(
+        s, steps == 0 || s->coupling.accept_unstable || now.error <= s->coupling.atol, SPAR_ERR_NUMERIC,
+        "%s: explicit coupling, with one evaluation of the fluid per step, is unstable at t = %g: in the last "
+        "%d steps the error of the predicted loads has grown by a factor of %.3g per step, to %.3g N of %.3g "
+        "N, as with an added mass of about %.2g of the mass (a predictor of order %d is stable up to %.2g); "
+        "reject the step and iterate with SPAR_COUPLING_IQN_ILS (spar_session_set_coupling), give the "
+        "fluid's added mass (spar_member_set_added_mass), lower the order of the predictor, or go on with "
+        "the option coupling.unstable = accept",
+        call, s->clock.time + s->clock.dt, steps, factor, now.error, now.size, ratio_of_growth(s->state.order, factor),
+        s->state.order, stable_ratio[s->state.order]);
+    return SPAR_OK;
+}
+
+static void forget_explicit(spari_coupling *c) {
+    if (c->was_explicit) {
+        c->was_explicit = 0;
+        c->stability = (spari_explicit_stability){.steps = {0}};
+    }
+}
+
+static void accept_explicit(spar_session *s) {
+    static const double LARGE = 0.5, SMALL = 0.05;
+    enum { AT_LEAST = 2, SURE = 4 };
+    spari_coupling *c = s->own->coupling;
+    const spari_predicted_step now = see_prediction(s);
+    double *last = c->missed;
+    c->missed = c->missing, c->missing = last;
+    spari_explicit_stability_add(&c->stability, &now);
+    const spari_growth *g = &c->stability.steps;
+    int sure = g->count >= SURE ? now.error > SMALL * now.size : g->count >= AT_LEAST && now.error > LARGE * now.size;
+    c->was_explicit = 1;
+    if (sure && g->log_sum > log(2) && !c->warned) {
+        c->warned = 1;
+        tell_alternation(s);
+    }
+}
+
 int spari_coupling_check(spar_session *s, const char *call, int *done) {
     spari_coupling *c = s->own->coupling;
     int agreed;
     *done = 1;
     SPARI_TRY(spari_named(s, call, spari_coupling_compare(s, &agreed)));
+    if (!s->state.standing && (!c->accelerator || (!agreed && c->was_explicit && s->state.iteration == 1))) {
+        SPARI_TRY(check_explicit(s, call));
+    }
     if (agreed || !c->accelerator) {
         return SPAR_OK;
     }
@@ -557,34 +677,6 @@ static double work_defect(const spar_session *s, double *whole) {
     return defect;
 }
 
-/* Ratio of added mass to mass with which an explicit scheme of this order grows by z per step. */
-static double ratio_of_growth(int order, double z) {
-    return order == 0 ? z : order == 1 ? z * z / (2 * z + 1) : z * z * z / (3 * z * z + 3 * z + 1);
-}
-
-/* Logs what the growth implies: mean, scatter, and the added mass with which an explicit scheme of this order grows
-   so fast, relative to its limit: 1, 1/3, 1/7 of the mass. */
-static void tell_alternation(const spar_session *s) {
-    const spari_coupling *c = s->own->coupling;
-    double mean = c->log_growth / c->alternations,
-           spread = sqrt(fmax(c->log_growth2 / c->alternations - mean * mean, 0));
-    double z = exp(mean), ratio = ratio_of_growth(s->state.order, z);
-    static const double bears[3] = {1, 1.0 / 3, 1.0 / 7};
-    if (s->callbacks.log) {
-        char text[SPARI_MESSAGE_SIZE];
-        (void)snprintf(
-            text, sizeof text,
-            "the coupling is becoming unstable at t = %g: in the last %d steps the error of the predicted loads has "
-            "alternated in sign and grown by a factor of %.3g (+- %.2g) per step: the added mass is about %.2g (+- "
-            "%.1g) of the mass; an explicit scheme with a predictor of order %d is stable up to %.2g; "
-            "iterate "
-            "(spar_session_set_coupling) or lower the order of the predictor",
-            s->clock.time + s->clock.dt, c->alternations + 1, z, z * spread, ratio,
-            ratio_of_growth(s->state.order, z * exp(spread)) - ratio, s->state.order, bears[s->state.order]);
-        spari_log(s, SPAR_LOG_WARNING, text);
-    }
-}
-
 /* In a sound run the defect is a small part of the work. In a run that is about to diverge it has the size of the
    work and grows from step to step. */
 static void watch(spar_session *s) {
@@ -594,7 +686,7 @@ static void watch(spar_session *s) {
     c->grown = fabs(defect) > fabs(c->defect) && fabs(defect) > 0.9 * whole ? c->grown + 1 : 0;
     c->defect = defect;
     c->report[SPAR_REPORT_WORK_DEFECT] = defect;
-    c->steps_unwarned = c->grown == 0 && c->alternations == 0 ? c->steps_unwarned + 1 : 0;
+    c->steps_unwarned = c->grown == 0 && c->stability.steps.count == 0 ? c->steps_unwarned + 1 : 0;
     if (c->steps_unwarned >= LONG_UNWARNED) {
         c->warned = 0;
     }
@@ -613,47 +705,14 @@ static void watch(spar_session *s) {
     }
 }
 
-/* In a sound run predicted loads have small errors, mostly of one sign. In an explicit run with too much added mass
-   the errors alternate in sign and grow by a constant factor: |z| of z^{n+1} + r E(z) = 0, E the extrapolation and r
-   the mass ratio. */
-static void watch_alternation(spar_session *s) {
-    static const double OPPOSITE = -0.8, LARGE = 0.5, SMALL = 0.05;
-    enum { AT_LEAST = 2, SURE = 4 };
-    spari_coupling *c = s->own->coupling;
-    double both = 0, now = 0, before = 0, change, size, *e = c->missed;
-    load_norms(s, NULL, &change, &size);
-    int k = 0;
-    for (const spar_member *m = s->members; m; m = m->next, k++) {
-        for (int64_t i = 0; i < 6 * m->nodes; i++, e++) {
-            double miss = (m->load.pushed[i] - m->load.used[i]) / (i % 6 < 3 ? 1 : c->length[k]);
-            both += miss * *e;
-            now += miss * miss;
-            before += *e * *e;
-            *e = miss;
-        }
-    }
-    double factor = sqrt(now / before);
-    if (!(before > 0) || both > OPPOSITE * sqrt(now * before) || !(factor > 1.02) || !isfinite(factor)) {
-        c->alternations = 0;
-        c->log_growth = c->log_growth2 = 0;
-        return;
-    }
-    c->alternations++;
-    c->log_growth += log(factor);
-    c->log_growth2 += log(factor) * log(factor);
-    int sure = c->alternations >= SURE ? change > SMALL * size : c->alternations >= AT_LEAST && change > LARGE * size;
-    if (sure && c->log_growth > log(2) && !c->warned) {
-        c->warned = 1;
-        tell_alternation(s);
-    }
-}
-
 void spari_coupling_accept(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     c->in_row = c->unconverged ? c->in_row + 1 : 0;
     c->unconverged = 0;
-    if (s->state.phase == SPARI_CHECKED && c->missed) {
-        watch_alternation(s);
+    if (s->state.phase == SPARI_CHECKED && is_explicit(s)) {
+        accept_explicit(s);
+    } else {
+        forget_explicit(c);
     }
     if (s->state.phase == SPARI_CHECKED) {
         estimate_error(s);
@@ -671,6 +730,7 @@ void spari_coupling_accept(spar_session *s) {
 void spari_coupling_reject(spar_session *s) {
     s->own->coupling->unconverged = 0;
     if (s->own->coupling->accelerator) {
+        forget_explicit(s->own->coupling); /* the host may iterate the step now */
         spari_accelerator_reject(s->own->coupling->accelerator);
     }
 }

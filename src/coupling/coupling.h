@@ -3,6 +3,7 @@
 #ifndef SPARI_COUPLING_H
 #define SPARI_COUPLING_H
 
+#include "explicit_stability.h"
 #include "schemes.h"
 
 #include <spar/spar_coupling.h>
@@ -13,6 +14,7 @@ typedef struct spari_coupling {
     int weighs;     /* iterated: loads are measured by the motion they cause */
     int estimates;  /* explicit: the effect of another iteration is estimated (option coupling.estimate) */
     int weighed;    /* the same in the last check: `image` is valid */
+    int idle;       /* all loads of the step are zero so far: no fluid, or one at rest */
     double *length; /* per member: moments are divided by it, rotations multiplied */
     double *unit;   /* per member: power of two closest to 1/length, which scales moments without rounding */
     double *x, *g;  /* iterated: loads used and returned, stacked, moments times unit */
@@ -29,13 +31,14 @@ typedef struct spari_coupling {
     double *residual, *size; /* change of the loads, and the loads, [N], by iteration */
     double moved, travelled; /* motion test: change of the motion in the iteration, and since t^n, [m] */
     double report[SPAR_REPORT_COUNT];
-    double defect;                  /* of the last accepted step */
-    int grown;                      /* consecutive steps in which it has grown */
-    int warned, steps_unwarned;     /* a warning was given; steps since the last reason for one */
-    double *missed;                 /* explicit: pushed minus predicted loads of the last step */
-    int alternations;               /* consecutive steps in which it has grown and changed sign */
-    double log_growth, log_growth2; /* sums of the logarithms of its growth, and of their squares */
-    int unconverged, in_row;        /* the current step is accepted unconverged; number of such steps before it */
+    double defect;              /* of the last accepted step */
+    int grown;                  /* consecutive steps in which it has grown */
+    int warned, steps_unwarned; /* a warning was given; steps since the last reason for one */
+    double *missed;             /* pushed minus predicted loads of the last step with one evaluation of the fluid, */
+    double *missing;            /* and of the step in progress */
+    int was_explicit;           /* the last accepted step was one of them */
+    spari_explicit_stability stability; /* of accepted steps with one evaluation of the fluid */
+    int unconverged, in_row;            /* the current step is accepted unconverged; number of such steps before it */
 } spari_coupling;
 
 /* Allocates for the present settings but this scheme. standing: for a solution that is not a step, in the load norm.

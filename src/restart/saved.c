@@ -298,6 +298,13 @@ static void pass_joint(passage *t, spar_joint *j) {
     pass_int(t, &j->balanced);
 }
 
+static void pass_growth(passage *t, spari_growth *g) {
+    pass_count(t, &g->count);
+    pass(t, &g->log_sum, 1);
+    pass(t, &g->log_square, 1);
+    pass(t, &g->log_last, 1);
+}
+
 /* c: created with the settings of the image; never only checked */
 static void pass_coupling(passage *t, spari_coupling *c) {
     pass_int(t, &c->iterations);
@@ -310,13 +317,25 @@ static void pass_coupling(passage *t, spari_coupling *c) {
     pass(t, &c->defect, 1);
     pass_count(t, &c->grown);
     pass_int(t, &c->warned);
-    pass_count(t, &c->alternations);
     pass_count(t, &c->steps_unwarned);
     pass_int(t, &c->unconverged);
     pass_count(t, &c->in_row);
-    pass(t, &c->log_growth, 1);
-    pass(t, &c->log_growth2, 1);
-    pass(t, c->missed, c->missed ? c->n : 0);
+    pass(t, c->missed, c->n);
+    pass_int(t, &c->was_explicit);
+    pass_growth(t, &c->stability.steps);
+    pass_count(t, &c->stability.opposed);
+    pass(t, &c->stability.error, 1);
+    pass(t, &c->stability.size, 1);
+    for (int k = 0; k < SPARI_GROWTH_BLOCKS; k++) {
+        spari_growth_block *b = &c->stability.block[k];
+        pass_count(t, &b->steps);
+        pass(t, &b->error, 1);
+        pass(t, &b->size, 1);
+        pass(t, &b->cosine, 1);
+        pass(t, &b->last, 1);
+        pass(t, &b->part, 1);
+        pass_growth(t, &b->growth);
+    }
 }
 
 static void put_accelerator(spari_image *image, const spari_coupling *c) {

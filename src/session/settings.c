@@ -81,6 +81,7 @@ static const spari_setting settings[] = {
           SPARI_AGREED),
     OPTION_WORD("newton.stop", newton.strict, "balanced", "strict", SPARI_AGREED | SPARI_VARIED),
     OPTION_WORD("coupling.unconverged", coupling.accept_unconverged, "error", "accept", SPARI_AGREED),
+    OPTION_WORD("coupling.unstable", coupling.accept_unstable, "error", "accept", SPARI_AGREED),
     OPTION_WHOLE("coupling.patience", coupling.patience, 1, 1000000, "a whole number from 1 to 1000000", 3,
                  SPARI_AGREED),
     OPTION_WORD("coupling.norm", coupling.norm_of_loads, "motion", "loads", SPARI_AGREED | SPARI_OF_COUPLING),

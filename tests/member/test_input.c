@@ -237,6 +237,7 @@ static void test_read_back(void **state) {
     (void)state;
     static const char *const option[][3] = {{"newton.stop", "balanced", "strict"},
                                             {"coupling.unconverged", "error", "accept"},
+                                            {"coupling.unstable", "error", "accept"},
                                             {"coupling.patience", "3", "1000000"},
                                             {"coupling.norm", "motion", "loads"},
                                             {"coupling.estimate", "off", "on"},

@@ -232,10 +232,10 @@ void do_spar_session_set_threads(call *c) {
 
 void do_spar_session_set_option(call *c) {
     static const char *const keys[] = {
-        "coupling.unconverged", "advise.dt",      "advise.nodes",    "advise.fidelity",      "advise.coupling",
-        "coupling.columns",     "coupling.reuse", "coupling.filter", "coupling.motion_atol", "coupling.motion_rtol",
-        "advise.fluid_cost",    "advise.limit",   "coupling.norm",   "coupling.patience",    "coupling.estimate",
-        "newton.stop"};
+        "coupling.unconverged", "advise.dt",        "advise.nodes",    "advise.fidelity",      "advise.coupling",
+        "coupling.columns",     "coupling.reuse",   "coupling.filter", "coupling.motion_atol", "coupling.motion_rtol",
+        "advise.fluid_cost",    "advise.limit",     "coupling.norm",   "coupling.patience",    "coupling.estimate",
+        "newton.stop",          "coupling.unstable"};
     static const char *const values[][3] = {{"error", "accept", "accept"},
                                             {"vary", "keep", "keep"},
                                             {"vary", "keep", "keep"},
@@ -251,7 +251,8 @@ void do_spar_session_set_option(call *c) {
                                             {"motion", "loads", "loads"},
                                             {"1", "3", "1000000"},
                                             {"off", "on", "on"},
-                                            {"balanced", "strict", "balanced"}};
+                                            {"balanced", "strict", "balanced"},
+                                            {"error", "accept", "accept"}};
     static const char *const strange[] = {"",   "nan",   "inf",    "-1", "1e999",  "1,5",  "0x10",  " 1",   "1 ",
                                           "%s", "10001", "1e-400", "-0", "accept", "keep", "1e300", "10000"};
     live_session *l = arg_session(c);

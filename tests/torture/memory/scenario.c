@@ -262,6 +262,7 @@ static void settings(spar_session *s) {
     static const double g[3] = {0, 0, -2};
     static const char *const option[][2] = {{"newton.stop", "balanced"},
                                             {"coupling.unconverged", "accept"},
+                                            {"coupling.unstable", "accept"},
                                             {"coupling.patience", "100"},
                                             {"coupling.norm", "motion"},
                                             {"coupling.estimate", "on"},

@@ -765,6 +765,7 @@ static const struct setting {
     {"goals of spar_session_set_goal", NULL, NULL, NULL},
     {"newton.stop", "newton.stop", "strict", "balanced"},
     {"coupling.unconverged", "coupling.unconverged", "accept", "error"},
+    {"coupling.unstable", "coupling.unstable", "accept", "error"},
     {"coupling.patience", "coupling.patience", "9", "3"},
     {"coupling.norm", "coupling.norm", "loads", "motion"},
     {"coupling.estimate", "coupling.estimate", "on", "off"},
