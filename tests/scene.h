@@ -35,6 +35,11 @@ static inline void scene_strict(spar_session *s) {
     OK(s, spar_session_set_option(s, "newton.stop", "strict"));
 }
 
+/* One evaluation of the fluid per step, with predicted loads. */
+static inline void scene_explicit(spar_session *s) {
+    OK(s, spar_session_set_coupling(s, SPAR_COUPLING_EXPLICIT, 1e-9, 1e-6, 50));
+}
+
 static inline spar_session *scene_session(void) {
     spar_session *s = NULL;
     OK(NULL, spar_session_create(&s));

@@ -196,9 +196,13 @@ enum {
     SPAR_COUPLING_AITKEN = 2,      /* fixed-point iteration with Aitken's relaxation */
     SPAR_COUPLING_IQN_ILS = 3      /* interface quasi-Newton, least squares (Degroote, Bathe, Vierendeels 2009) */
 };
-/* How a step is iterated: until the change of the fluid's loads is below atol + rtol |loads|. Both are weighed by the
-   motion that they cause (option coupling.norm), moments by the member's length.
-     scheme: in, SPAR_COUPLING_*; default explicit
+/* A host whose loop cannot repeat a step chooses SPAR_COUPLING_EXPLICIT; others keep the default, IQN-ILS, which is
+   stable with fluids of any added mass. Explicit coupling has one evaluation of the fluid per step. It is stable while
+   the added mass is below 1, 1/3, 1/7 of the mass (predictor order 0, 1, 2); above that spar_step_check refuses the
+   step (option coupling.unstable) unless the added mass is given (spar_member_set_added_mass).
+   A step is iterated until the change of the fluid's loads is below atol + rtol |loads|. Both are weighed by the motion
+   that they cause (option coupling.norm), moments by the member's length.
+     scheme: in, SPAR_COUPLING_*; default SPAR_COUPLING_IQN_ILS
      atol: in, N, >= 0; default 1e-9
      rtol: in, >= 0; default 1e-6
      max_iterations: in, >= 1; after that many spar_step_check answers SPAR_ERR_NUMERIC, or accepts (option

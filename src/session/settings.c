@@ -67,7 +67,7 @@ static const spari_setting settings[] = {
     WHOLE(NEWTON, "newton", "max_iterations", newton.max, 1, INT32_MAX, one_or_more, 50, SPARI_AGREED),
     WHOLE(PREDICTOR, "predictor", "order", coupling.predictor, 0, 2, "0, 1 or 2", 1, SPARI_AGREED | SPARI_VARIED),
     WHOLE(COUPLING, "coupling", "scheme", coupling.scheme, 0, SPARI_SCHEME_COUNT - 1, "a SPAR_COUPLING_*",
-          SPAR_COUPLING_EXPLICIT, SPARI_AGREED | SPARI_OF_COUPLING | SPARI_VARIED),
+          SPAR_COUPLING_IQN_ILS, SPARI_AGREED | SPARI_OF_COUPLING | SPARI_VARIED),
     REAL(COUPLING, "coupling", "atol", coupling.atol, 0, DBL_MAX, not_negative, 1e-9, SPARI_AGREED),
     REAL(COUPLING, "coupling", "rtol", coupling.rtol, 0, DBL_MAX, not_negative, 1e-6, SPARI_AGREED | SPARI_VARIED),
     WHOLE(COUPLING, "coupling", "max_iterations", coupling.max, 1, INT32_MAX, one_or_more, 50,

@@ -11,6 +11,8 @@ static double explicit_run(int order, double ratio, int steps, double dt) {
     pistons p;
     double one[3] = {1, 0, 0};
     pistons_create(&p, 1, &ratio);
+    scene_explicit(p.session);
+    OK(p.session, spar_session_set_option(p.session, "coupling.unstable", "accept"));
     OK(p.session, spar_session_set_predictor(p.session, order));
     OK(p.session, spar_fluid_push_forces(p.fluid[0], one, NULL));
     for (int i = 0; i < steps; i++) {
@@ -185,6 +187,7 @@ static void explicit_error_is_told(void **state) {
             pistons_create(&p[k], 2, r);
             p[k].b[0] = 1, p[k].b[1] = -4;
         }
+        scene_explicit(p[0].session);
         OK(p[0].session, spar_session_set_option(p[0].session, "coupling.estimate", on ? "on" : "off"));
         OK(p[1].session, spar_session_set_coupling(p[1].session, SPAR_COUPLING_FIXED_POINT, 0, 1e-15, 50));
         for (int step = 0; step < 4; step++) {
@@ -467,6 +470,7 @@ static void instability_warning(void **state) {
         p.stiffness = 2;
         p.b[0] = 1;
         warnings = 0;
+        scene_explicit(p.session);
         OK(p.session, spar_session_set_log(p.session, count_warnings, NULL));
         int step = 0;
         for (; step < 200 && !warnings; step++) {

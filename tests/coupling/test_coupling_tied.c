@@ -55,6 +55,7 @@ static void make_pair(pair *p, const kind *k) {
     int body = k->fidelity < 0;
     memset(p, 0, sizeof *p);
     spar_session *s = p->session = scene_session();
+    scene_explicit(s);
     OK(s, spar_session_set_gravity(s, gravity));
     p->drive = k->driven ? 2 : 0;
     p->member[0] = body ? make_body(s, "first", origin) : make_beam(s, "first", origin, k->fidelity);
@@ -265,6 +266,7 @@ static spar_session *make_chain(unsigned long long *random) {
     static const int frees[] = {0, SPAR_FREE_RY, SPAR_FREE_RZ, SPAR_FREE_RX | SPAR_FREE_RY | SPAR_FREE_RZ, SPAR_FREE_Y};
     static const int fidelity[] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL, SPAR_FIDELITY_RIGID};
     spar_session *s = scene_session();
+    scene_explicit(s);
     spar_member *before = NULL, *m = NULL;
     int end = 0;
     for (int k = 0; k < LINKS; k++) {
@@ -403,6 +405,7 @@ static void host_driven(void **state) {
     for (int k = 0; k < 3; k++) { /* both, the host's alone, the body alone */
         double rep[SPAR_REPORT_COUNT], far[3] = {0, 0, 1000}, near[3] = {0, 0, 1}, q[7] = {0, 0, 0, 1}, zero[6] = {0};
         spar_session *s = scene_session();
+        scene_explicit(s);
         spar_member *body = make_body(s, "body", x[0]), *host = make_body(s, "host", x[1]);
         spar_fluid *f[2];
         int done;

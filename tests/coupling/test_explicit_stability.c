@@ -4,6 +4,8 @@
    refused, whatever its loads are. */
 #include "scene.h"
 
+#include "coupling/explicit_stability.h"
+
 #include <stdio.h>
 
 typedef struct sprung {
@@ -246,9 +248,35 @@ static void test_light_fluid(void **state) {
     }
 }
 
+/* The watch alone, with normally distributed loads in each step, whose prediction is worse than none: 10^6 steps. */
+static void test_random_loads(void **state) {
+    (void)state;
+    uint64_t random = 3;
+    for (int order = 0; order <= 2; order++) {
+        spari_explicit_stability is = {.steps = {0}};
+        double f[4] = {0}, error = 0, factor;
+        for (int i = 0; i < 350000; i++) {
+            f[0] = sqrt(-2 * log(draw(&random) + 1e-300)) * cos(2 * pi * draw(&random));
+            double guess = order == 0 ? f[1] : order == 1 ? 2 * f[1] - f[2] : 3 * (f[1] - f[2]) + f[3];
+            double miss = f[0] - guess;
+            const spari_predicted_step step = {fabs(miss), fabs(f[0]), fabs(error), miss * error > 0 ? 1 : -1,
+                                               guess * f[0] > 0 ? 1 : -1};
+            spari_explicit_stability_add(&is, &step);
+            if (spari_explicit_is_unstable(&is, &factor)) {
+                fail_msg("order %d, step %d: taken for an instability", order, i);
+            }
+            error = miss;
+            f[3] = f[2], f[2] = f[1], f[1] = f[0];
+        }
+    }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_limits), cmocka_unit_test(test_after_refusal),
-                                       cmocka_unit_test(test_accepted_before_done), cmocka_unit_test(test_random),
-                                       cmocka_unit_test(test_light_fluid)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_limits),
+                                       cmocka_unit_test(test_after_refusal),
+                                       cmocka_unit_test(test_accepted_before_done),
+                                       cmocka_unit_test(test_random),
+                                       cmocka_unit_test(test_light_fluid),
+                                       cmocka_unit_test(test_random_loads)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

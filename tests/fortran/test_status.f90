@@ -189,6 +189,7 @@ contains
     call check(stat == SPAR_ERR_ARGUMENT .and. all(alike(x, before)), 'theta not a number')
     call session%step_begin(-1.0_c_double, stat)
     call check(stat == SPAR_ERR_ARGUMENT, 'a step back in time')
+    call session%set_coupling(SPAR_COUPLING_EXPLICIT, 1e-9_c_double, 1e-6_c_double, 50)
     call session%step_begin(0.1_c_double)
     call session%step_solve()
     x(2,2) = nan

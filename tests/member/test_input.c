@@ -263,7 +263,7 @@ static void test_read_back(void **state) {
     OK(s, spar_session_get_newton(s, &atol, &rtol, &most));
     assert_true(atol == 1e-15 && rtol == 1e-12 && most == 50);
     OK(s, spar_session_get_coupling(s, &scheme, &atol, &rtol, &most));
-    assert_true(scheme == SPAR_COUPLING_EXPLICIT && atol == 1e-9 && rtol == 1e-6 && most == 50);
+    assert_true(scheme == SPAR_COUPLING_IQN_ILS && atol == 1e-9 && rtol == 1e-6 && most == 50);
     OK(s, spar_session_get_relaxation(s, &omega));
     OK(s, spar_session_get_predictor(s, &order));
     OK(s, spar_session_get_reproducible(s, &on));

@@ -174,6 +174,7 @@ static void test_warning_in_time(void **state) {
         c.scheme = SPAR_COUPLING_EXPLICIT;
         c.predictor = cases[k].order;
         c.steps = 400;
+        c.option[0][0] = "coupling.unstable", c.option[0][1] = "accept"; /* till it dies */
         assert_int_equal(flow_run(&c, &result), SPAR_OK);
         assert_int_equal(result.status, SPAR_ERR_NUMERIC);
         assert_true(result.warned > 0 && 3 * result.warned <= result.steps);

@@ -27,6 +27,7 @@ static void create(scene *c, int nodes, int64_t node, double damping) {
     static const double tip[3] = {4, 0, 0}, hub[3] = {0, 6, 0}, centre[3] = {0.3, 0, 0}, J[3] = {0.1, 0.2, 0.3};
     double K[36], M[36], spring[36] = {0}, damper[36] = {0}, mass[36], place[3 * MOST];
     *c = (scene){.session = scene_session(), .load = 2, .drag = 0.5};
+    scene_explicit(c->session);
     spar_session *s = c->session;
     OK(s, spar_session_set_gravity(s, (double[]){0, 0, -9.81}));
     scene_diagonal(K, 4e4, 4e4, 4e4, 800, 600, 600);

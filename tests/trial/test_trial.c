@@ -54,6 +54,7 @@ static void build_of(scene *c, int with_body, int elements, int nodes, int given
     const double g[3] = {0, 0, -9.81}, J[3] = {1, 2, 3}, zero[3] = {0, 0, 0};
     double K[36], M[36], mass[36], x[3 * NODES];
     c->s = scene_session();
+    scene_explicit(c->s);
     scene_diagonal(K, 1e6, 1e5, 1e5, 100, 120, 400);
     scene_diagonal(M, 1, 1, 1, 2e-3, 1e-3, 1e-3);
     OK(c->s, spar_session_set_gravity(c->s, g));

@@ -65,10 +65,11 @@ static void add_beam(air *w, int root, const double from[3], const double to[3],
     OK(w->s, spar_fluid_map(w->f[k]));
 }
 
-/* Begun as a host begins it: Newton as it is by default. */
+/* Begun as the host of a light fluid begins it: explicit, Newton as it is by default. */
 static air begin(double load, double rate, double drag) {
     air w = {.load = load, .rate = rate, .drag = drag};
     OK(NULL, spar_session_create(&w.s));
+    OK(w.s, spar_session_set_coupling(w.s, SPAR_COUPLING_EXPLICIT, 1e-9, 1e-6, 50));
     return w;
 }
 
