@@ -184,7 +184,7 @@ static int begin_together(void *self, int kept) {
     together_step *t = self;
     t->took = t->a->factored;
     t->a->factored = kept && tangent_serves(t->a);
-    t->a->standing = 0; /* what a solution begins with is not to depend on those before it */
+    t->a->standing = 0; /* the beginning of a solution must not depend on earlier solutions */
     return t->a->factored;
 }
 
@@ -226,7 +226,7 @@ static const char *iterate_together(void *self, double longest, spari_iterate *i
         return "found a singular tangent";
     }
     a->moved += it->correction;
-    /* How places go beside the scheme is not to depend on where the system was factored. */
+    /* Positions must not depend on the state in which the system was factored. */
     a->standing = a->standing && a->moved < near_factored && a->component[0].scheme.rule == SPARI_ALPHA;
     it->tolerance = tolerance(a, it->correction);
     it->small = it->correction < 1e-11;
@@ -310,7 +310,7 @@ static const char *walk_drives_in(spari_assembly *a, double s, double dt, int pa
     return wrong;
 }
 
-/* The last resort; wrong: what went wrong before. */
+/* The last attempt. wrong: reason why the one before failed. */
 static const char *walk_drives(spari_assembly *a, double s, double dt, const char *wrong, int *iterations) {
     int jumps = 0;
     for (int i = 0; i < a->constraints; i++) {
@@ -385,7 +385,7 @@ static int shift_for_alpha(spari_assembly *a, double cv, double time) {
     return spari_system_shift_rates(a, cv, 1, 0);
 }
 
-/* ---- the start ---- */
+/* ---- consistent initial accelerations ---- */
 
 enum { START_REFINEMENTS = 3 };
 
@@ -695,8 +695,8 @@ static int stage_of_all(void *self, const spari_scheme *c, const spari_part *par
     spari_assembly *a = self;
     set_scheme(a, c);
     a->violent = a->rotates_far || c->rule != SPARI_ALPHA;
-    if (c->rule == SPARI_TRAPEZOIDAL) { /* how places go beside the scheme is a matter of the tangent: one that does not
-                                           depend on what has been solved before */
+    if (c->rule == SPARI_TRAPEZOIDAL) { /* positions depend on the tangent here, so it must
+                                           not depend on earlier solutions */
         a->factored = 0;
     }
     for (int i = 0; i < a->components; i++) {
@@ -779,7 +779,7 @@ int spari_lone_advance(spar_member *m, double dt) {
     return m->row->repeat ? m->row->repeat(m, dt, advance_once) : advance_once(m, dt);
 }
 
-/* ---- its answer ---- */
+/* ---- response to loads ---- */
 
 int spari_lone_response(spar_member *m, const double *load, double *motion) {
     spari_component p = spari_component_of(m);
@@ -795,7 +795,7 @@ int spari_lone_response(spar_member *m, const double *load, double *motion) {
     return 0;
 }
 
-/* Where a member's own begin among those of all. */
+/* The part of a member among the numbers of all members. */
 static double *stacked_of(const spar_member *member, double *stacked) {
     for (const spar_member *m = member->session->members; m != member; m = m->next) {
         stacked += 6 * m->nodes;
@@ -816,7 +816,7 @@ static int has_loads(const spari_assembly *a, double *stacked) {
     return 0;
 }
 
-/* One answer of those tangents, stacked. */
+/* One response of these tangents, stacked. */
 static int respond_once(spari_assembly *a, double *stacked) {
     for (int i = 0; i < a->components; i++) {
         a->component[i].row->take_more(a->component + i, stacked_of(a->component[i].member, stacked));
@@ -859,7 +859,7 @@ int spari_assembly_response(spari_assembly *a, int64_t count, int64_t apart, dou
         look_back(a);
     }
     int singular = 0;
-    a->standing = 0; /* that system is of parts a little way from here */
+    a->standing = 0; /* the system was formed at slightly different positions */
     for (int64_t k = 0; k < count && !singular; k++) {
         singular = has_loads(a, stacked + k * apart) && respond_once(a, stacked + k * apart);
     }
@@ -872,7 +872,7 @@ double spari_assembly_mass_response(const spari_assembly *a) {
     return force > 0 ? 1 / force : 0;
 }
 
-/* ---- what the host asks ---- */
+/* ---- calls of the host ---- */
 
 int spar_member_get_iterations(const spar_member *member, int64_t *iterations, double *left) {
     SPARI_GUARD_ENVIRONMENT;

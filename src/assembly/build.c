@@ -55,7 +55,7 @@ static spari_component *part_of(spari_assembly *a, const spar_member *m) {
     return NULL;
 }
 
-/* Where the nodes are in the reference. */
+/* Reference positions of the nodes. */
 static void look_at_reference(spari_constraint *l) {
     const spar_joint *j = l->joint;
     double z[6];
@@ -69,8 +69,8 @@ static void look_at_reference(spari_constraint *l) {
     spari_kinematics_motion(&j->kinematics, &l->pose[0], &l->pose[1], z, l->B);
 }
 
-/* Its members and joints, in the order in which joints reach them. first NULL: of `only`, whose nodes both have
- * prescribed motion. */
+/* Adds its members and joints, in the order in which joints reach them. first NULL: the joint `only`, whose nodes both
+   have prescribed motion. */
 static int assembly_create(spar_session *s, spar_member *first, spar_joint *only) {
     spari_assembly *a = spari_zalloc(1, sizeof *a);
     if (!a) {
@@ -130,9 +130,9 @@ static int make_system(spari_assembly *a) {
     return spari_system_create(a);
 }
 
-/* ---- where it is solved ---- */
+/* ---- owners ---- */
 
-/* Moves the members to the owner. Their former solutions are kept until the end. */
+/* Moves the members to the owner. Their former solutions exist until creation ends. */
 static int move_members(spari_assembly *a) {
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
@@ -144,7 +144,7 @@ static int move_members(spari_assembly *a) {
     return SPAR_OK;
 }
 
-/* ---- all of them ---- */
+/* ---- all assemblies ---- */
 
 static int check_committed(const spar_joint *j, const spar_member *m) {
     SPARI_REQUIRE(j->session, m->committed, SPAR_ERR_STATE,
@@ -203,7 +203,7 @@ static int gather_all(spar_session *s) {
 
 int spari_members_renew_joints(spar_session *s) {
     if (s->joints_stale) {
-        spari_assemblies_free(s); /* they are of what is made anew */
+        spari_assemblies_free(s); /* they refer to solutions that are renewed below */
     }
     for (spar_member *m = s->members; m && s->joints_stale; m = m->next) {
         if (m->committed && m->row->renew_joints) {
@@ -247,7 +247,7 @@ static int make_all(spar_session *s) {
     return status;
 }
 
-/* Whether all ranks have made theirs, of joints that are described alike. */
+/* Whether all ranks have created the assemblies, and their joints agree. */
 static int agree_on_joints(const spar_session *s, const char *call, int status) {
     char what[SPARI_MESSAGE_SIZE / 2];
     for (const spar_joint *j = s->joints; j; j = j->next) {

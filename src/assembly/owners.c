@@ -9,7 +9,7 @@
 
 #include <stdlib.h>
 
-/* ---- what it takes ---- */
+/* ---- estimated cost ---- */
 
 /* Costs in instructions, rounded from callgrind's counts (docs/performance.md, benchmarks/chain.c). Only their
    ratios matter. An iteration of Newton costs a sum over: nodes with six unknowns, quadrature points, nodes that a
@@ -120,9 +120,9 @@ int spari_owners_of_assemblies(spar_session *s) {
 
 typedef struct free_member {
     spar_member *member;
-    int at, owner_before; /* its place in the order of creation */
+    int at, owner_before; /* `at`: its index in the order of creation */
     double expected;
-    void *before; /* what it had; while it moves */
+    void *before; /* its former solution, while it moves */
     int moved;
 } free_member;
 

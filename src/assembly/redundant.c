@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A constraint is redundant when so little of its row is left beside the others: far above what rounding leaves (1e-15
-   times the number of rows), far below what a mechanism's geometry leaves. */
+/* A constraint is redundant if the part of its row that is independent of the others is below this. The limit is far
+   above rounding (1e-15 times the number of rows), and far below the independent part in a mechanism. */
 static const double dependent = 1e-9;
 
 /* The connection of an interface node to the tree, in relative coordinates: u = N z + T u_parent. */
@@ -26,7 +26,7 @@ typedef struct loop_row {
 /* The loops' rows so far, triangular: row[i] begins with coordinate i. */
 typedef struct loop_rows {
     int n;
-    double length; /* of the members: rotations are counted by it */
+    double length; /* of the members: scales rotations */
     tree_step *step;
     loop_row *row;
     double *x; /* the row under way */
@@ -40,7 +40,7 @@ static double norm_of(const double *x, int n) {
     return sqrt(sum);
 }
 
-/* x less its part along the orthonormal y; how large that is. */
+/* Subtracts from x its part along the orthonormal y. Returns the size of that part. */
 static double take_along(const double y[6], double x[6]) {
     double along = 0;
     for (int i = 0; i < 6; i++) {
@@ -52,14 +52,14 @@ static double take_along(const double y[6], double x[6]) {
     return along;
 }
 
-/* N: the complement of the orthonormal Q[held]. */
+/* N: the complement of the orthonormal Q[constrained]. */
 static void complete(double Q[6][6], int constrained, tree_step *step) {
     step->count = 6 - constrained;
     memset(step->N, 0, sizeof step->N);
     for (int column = 0; column < 6 - constrained; column++) {
         int best = 0;
         double most = -1, x[6];
-        for (int pass = 0; pass <= 6; pass++) { /* the axis of which the others leave most, last */
+        for (int pass = 0; pass <= 6; pass++) { /* last: the axis with the largest independent part */
             int axis = pass < 6 ? pass : best;
             for (int i = 0; i < 6; i++) {
                 x[i] = i == axis;
@@ -76,7 +76,8 @@ static void complete(double Q[6][6], int constrained, tree_step *step) {
     }
 }
 
-/* The held rows H = L Q of a node's own motion, Q orthonormal: T = -Q^T L^-1 H_parent, and N is the complement of Q. */
+/* With the constrained rows H = L Q of a node's own motion and Q orthonormal: T = -Q^T L^-1 H_parent, and N is the
+   complement of Q. */
 static void find_step(const loop_rows *all, const spari_assembly *a, const spari_interface *v, tree_step *step) {
     double Q[6][6], own[12];
     const spari_constraint *l = v->constraint < 0 ? NULL : a->constraint + v->constraint;
@@ -99,7 +100,7 @@ static void find_step(const loop_rows *all, const spari_assembly *a, const spari
         for (int j = 0; j < constrained; j++) {
             double along = take_along(Q[j], own);
             for (int i = 0; i < 6; i++) {
-                parent[i] -= along * step->N[j][i]; /* N holds L^-1 H_parent until it is wanted */
+                parent[i] -= along * step->N[j][i]; /* N stores L^-1 H_parent until N is formed */
             }
         }
         double size = norm_of(own, 6);

@@ -67,7 +67,7 @@ static int refuse_rotations(const spari_assembly *a, const prescribed_motion *on
                       other->v[4], other->v[5]);
 }
 
-/* ---- who turns it ---- */
+/* ---- motions that define the rotation ---- */
 
 /* Sets the rotation from a motion, or compares the two. Nodes at rest may carry rotating parts, as the ground does;
    members on roots at rest may not. */
@@ -109,7 +109,7 @@ static int meet_prescribed(spari_assembly *a, prescribed_motion *first) {
     return SPAR_OK;
 }
 
-/* Position and axes of the joint, as the side at rest carries it. */
+/* Position and axes of the joint on the side at rest. */
 static void frame_of_joint(const spar_joint *j, int side, double x[3], double q[4]) {
     spari_node_pose pose[2];
     spari_joint_poses(j, pose);
@@ -146,7 +146,7 @@ static int meet_drive(spari_assembly *a, const spari_constraint *l, prescribed_m
     return meet_motion(a, &t, 0, first);
 }
 
-/* ---- what stands and does not turn with it ---- */
+/* ---- loads fixed in space ---- */
 
 static int refuse_loads_across(const spari_assembly *a, const spar_member *m, const double axis[3]) {
     spar_session *s = a->session;
@@ -205,7 +205,7 @@ int spari_rotation_check_begin(spari_assembly *a) {
         SPARI_TRY(meet_drive(a, a->constraint + i, &first));
     }
     if (a->rotates) {
-        SPARI_TRY(meet_prescribed(a, &first)); /* a joint has begun it: roots that stand do not go along */
+        SPARI_TRY(meet_prescribed(a, &first)); /* a joint drives the rotation: roots at rest do not take part */
         SPARI_TRY(check_parts(a));
         SPARI_TRY(is_free_to_rotate(a));
     }
@@ -218,7 +218,7 @@ void spari_rotation_check_end(spari_assembly *a) {
     a->rotates = 0;
 }
 
-/* ---- what holds it ---- */
+/* ---- constraints to parts that do not rotate ---- */
 
 /* A constraint after a rotation of the whole by some angle: the forces on the rotating side, the constrained rows
    there, and its motion. */
@@ -260,7 +260,7 @@ static void look_at_constraint(const spari_assembly *a, const spari_constraint *
         load[k] = spari_joint_constrained(l->joint) >> k & 1 ? 0 : load[k];
     }
     spari_kinematics_forces(B, load, f);
-    for (int k = 0; k < 6; k++) { /* back into the axes of the beginning */
+    for (int k = 0; k < 6; k++) { /* back into the initial axes */
         memcpy(view->B[k], B[k] + 6 * side, sizeof view->B[k]);
         spari_rotate_back(rotation, view->B[k], view->B[k]);
         spari_rotate_back(rotation, view->B[k] + 3, view->B[k] + 3);
@@ -321,7 +321,7 @@ static int is_same_view(const spari_constraint *l, const constraint_view *now, c
         gap = k == 3 + axis ? remainder(gap, 2 * acos(-1)) : gap;
         same = same && fabs(gap) <= 1e-6 * (k < 3 ? reach : 1);
     }
-    for (int i = 0; i < 36; i++) { /* of a motion of nothing but rounding */
+    for (int i = 0; i < 36; i++) { /* of a motion that is only rounding */
         most = fmax(most, (fabs(j->stiffness[i]) + speed * fabs(j->damping[i])) * (i % 6 < 3 ? reach : 1));
     }
     return same && apart <= 1e-6 * size + 1e-9 * most;

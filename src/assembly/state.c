@@ -9,7 +9,7 @@
 
 enum { RELATIVE = sizeof(spari_relative) / sizeof(double), DRIVEN = sizeof(spari_driven) / sizeof(double) };
 
-/* Of a joint: the motion after, and in the first step what it began with at t^0. */
+/* Of a joint: its motion at the end of the step, and in the first step also that at t^0. */
 enum { SHARED = 1 + 2 * RELATIVE + DRIVEN };
 
 int spari_assembly_owner(const spari_assembly *a) {

@@ -41,7 +41,7 @@ typedef enum outcome { FOUND, FAILED, LOOSE, UNSTABLE, LONG } outcome;
 typedef struct rest {
     spari_assembly *a;
     const double *(*fluid)(const spar_member *);
-    int potential;      /* the loads have one: the stability of an equilibrium can be told */
+    int potential;      /* the loads have one, so the stability of an equilibrium is known */
     spari_linear *path; /* the tangent of a member without joints, if its path is watched */
     int on_path;        /* the last point is on the path */
     char motion[240];   /* that is not constrained or unstable */
@@ -182,7 +182,7 @@ static outcome find_downhill(spari_assembly *a, double f) {
 
 /* ---- a load step ---- */
 
-/* Whether the equilibrium lasts: not a maximum or a saddle, apart from motions without stiffness. */
+/* Whether the equilibrium is stable: no maximum or saddle, apart from motions without stiffness. */
 static outcome judge(const rest *t, double f) {
     spari_assembly *a = t->a;
     if (t->path) {
@@ -240,7 +240,8 @@ static void keep_point(rest *t, int back) {
     }
 }
 
-/* By Newton, and in an assembly downhill where that finds nothing that lasts. first: no point has been found yet. */
+/* Solves a load step by Newton; in an assembly, downhill if Newton finds no stable equilibrium. first: no point has
+   been found yet. */
 static outcome find_point(rest *t, double f, int first) {
     spari_assembly *a = t->a;
     outcome found = find_nearby(t, f), why = found;
@@ -256,7 +257,7 @@ static outcome find_point(rest *t, double f, int first) {
         found = find_downhill(a, f);
         spari_blocks_watch(a->system, 0);
         a->shift = 0;
-        if (found == LOOSE || found == UNSTABLE) { /* where it has come to rest */
+        if (found == LOOSE || found == UNSTABLE) { /* where the downhill iteration has ended */
             why = found;
             spari_system_name_free(a, t->motion, sizeof t->motion);
         }
@@ -326,9 +327,9 @@ static double largest_bend(const spari_component *p) {
     return largest;
 }
 
-/* With a larger rotation between nodes, the shape between them is not determined: a circle of 5 turns on 24 nodes
-   (2.1 rad) is accurate to 5e-4, one of 7 turns (3 rad) is another curve. If Newton has failed, 1 rad suffices for
-   this message: 10 nodes of an element fail at 1.7 rad. */
+/* With a larger rotation between nodes, the shape between them is not determined. A circle of 5 revolutions on 24 nodes
+   (2.1 rad) is accurate to 5e-4, one of 7 revolutions (3 rad) is another curve. If Newton has failed, 1 rad suffices
+   for this message: 10 nodes of an element fail at 1.7 rad. */
 static const double most_bend = 2.2, suspect_bend = 1;
 
 static void say_why_alone(const rest *t, outcome why, char *text, size_t size) {
@@ -414,7 +415,7 @@ int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_m
     return status;
 }
 
-/* ---- of one member ---- */
+/* ---- equilibrium of one member ---- */
 
 /* An equilibrium of the nodes need not be one of the beam. */
 static void warn_of_bend(const spari_component *p) {
@@ -458,7 +459,7 @@ int spari_lone_static(spar_member *m, const double *(*fluid)(const spar_member *
     return SPAR_OK;
 }
 
-/* ---- what has been found ---- */
+/* ---- commit the state ---- */
 
 void spari_assembly_commit_state(spari_assembly *a) {
     for (int i = 0; i < a->constraints; i++) {
@@ -466,7 +467,7 @@ void spari_assembly_commit_state(spari_assembly *a) {
         j->now = j->after;
         memcpy(j->before, j->given, sizeof j->before);
         j->drive[0] = j->drive[1];
-        for (int k = 0; k < 6; k++) { /* of what turns; else 0 */
+        for (int k = 0; k < 6; k++) { /* of driven motions; else 0 */
             j->drive[0].rate[k] = j->driven >> k & 1 ? j->after.rate[k] : 0;
         }
         memset(j->drive[0].acceleration, 0, sizeof j->drive[0].acceleration);

@@ -116,7 +116,7 @@ static int fixed_in(const spari_assembly *a, const spari_interface *v) {
     return a->interface[v->cluster].fixed;
 }
 
-/* f times the stiffness K between interface nodes v and w into the system. */
+/* Adds f times the stiffness K between interface nodes v and w to the system. */
 static void add_stiffness(spari_assembly *a, int v, int w, double f, const double *K, int stride) {
     const spari_interface *row = moving(a, v), *column = moving(a, w);
     if (!row || !column) {
@@ -654,7 +654,7 @@ static int solve_reduced(spari_assembly *a, double cv) {
 }
 
 int spari_system_solve(spari_assembly *a, double cv) {
-    /* first: it says how the parts have turned, which the system goes by */
+    /* first, because the system uses the rotations of the components */
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
         if (p->row->reduce(p, a->x + p->at)) {
@@ -710,7 +710,7 @@ static double slip_of(const spari_constraint *l, const double *x, int k) {
     return fabs(slip) * (k < 3 ? 1 : length);
 }
 
-/* The motion in b to a largest entry of 1, multipliers to 0. */
+/* Scales the motion in b to a largest entry of 1, and sets the multipliers to 0. */
 static void scale_motion(spari_assembly *a) {
     double largest = 0;
     for (int pass = 0; pass < 2; pass++) {
@@ -766,8 +766,8 @@ static int free_motion(spari_assembly *a) {
     return 0;
 }
 
-/* Names the motion by the joints that move. If no joint moves, the whole does, and the member whose node moves
-   farthest names it. */
+/* Names the motion by the joints that move. If no joint moves, the assembly moves as a whole; the member whose node
+   moves farthest then names the motion. */
 void spari_system_name_free(spari_assembly *a, char *text, int size) {
     static const char *const motion[6] = {
         "x", "y", "z", "the rotation about x", "the rotation about y", "the rotation about z"};

@@ -40,7 +40,7 @@ typedef struct spari_interface {
 typedef struct spari_constraint {
     spar_joint *joint;
     spari_component *component[2]; /* NULL: the ground, or a node with prescribed motion */
-    int node[2];                   /* interface nodes; -1: given motion */
+    int node[2];                   /* interface nodes; -1: prescribed motion */
     spari_constraint_role role;
     int block;          /* in the system, if it closes a loop */
     spari_driven drive; /* prescribed motion of the joint at the end of the substep, */
@@ -65,7 +65,7 @@ struct spari_assembly {
     spari_component *component;
     spari_constraint *constraint; /* on every rank; what follows exists on the owner */
     double mass;                  /* of the components */
-    int rotates;                  /* the equilibrium under way is one in steady rotation (rotation_check.h) */
+    int rotates;                  /* the present equilibrium is in steady rotation (rotation_check.h) */
     spari_rotating_frame rotating;
     int interfaces;
     spari_interface *interface;
@@ -73,7 +73,7 @@ struct spari_assembly {
     int clusters;       /* whether any of them has the unknowns of another */
     int loops;          /* whether constraints close loops */
     int solved;         /* the components and constraints are at the end of a step */
-    spari_trace trace;  /* of Newton; with strict tolerances the rate is forgotten */
+    spari_trace trace;  /* of Newton; with strict tolerances its rate is not used */
     int factored_begun; /* these two at the beginning of the step, and the constraints' joint_tangent */
     spari_trace trace_begun;
     spari_snapshot before;
@@ -126,7 +126,7 @@ double spari_system_weakest_pivot(const spari_assembly *a);
 /* The number of negative eigenvalues of that system, apart from those of its multipliers, if the system counts them
    (block_matrix.h). There are none where the potential of the loads has a minimum. */
 int spari_system_count_negative(const spari_assembly *a);
-/* Names the motion with the least stiffness, of a joint or of a member. text stays if the motion cannot be told.
+/* Names the motion with the least stiffness, of a joint or of a member. text stays if the motion is not known.
    Destroys the factors. */
 void spari_system_name_free(spari_assembly *a, char *text, int size);
 /* Computes joint_tangent of the constraints, for the tangents of the components that have just been formed. */

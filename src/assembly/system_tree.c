@@ -132,7 +132,7 @@ static int visit_children(spari_assembly *a, const tree_lists *lists, int v, int
     return visited;
 }
 
-/* Where the tree begins: the ground, nodes that a root condition holds in part, then any. */
+/* The tree begins at the ground, then at nodes that a root condition constrains in part, then at any node. */
 static void visit_all(spari_assembly *a, const tree_lists *lists) {
     enum { UNSEEN = -2 };
     int done = 0, visited = 0;

@@ -1,5 +1,5 @@
-/* Components that are linear, or modal, in a frame that goes with their root: the root moves as a body of
-   one node, and the deformation as generalised-alpha has it of vectors. See component.h and floating_root.h. */
+/* Components that are linear or modal in the frame of their root. The root is integrated as a body of one node, the
+   deformation as a vector by generalised-alpha. See component.h and floating_root.h. */
 #include "../algebra/cblas.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
@@ -22,7 +22,7 @@ static void attach_frame(spari_component *p) {
 }
 
 static const double *rotation_of_frame(const spari_component *p, int node) {
-    (void)node; /* all go with the root */
+    (void)node; /* all nodes use the frame of the root */
     return p->solver->rotation;
 }
 
@@ -30,9 +30,8 @@ static spari_rates deformation_rates(const spari_frame *f, const spari_frame_sta
     return (spari_rates){s->v + f->constrained, s->a + f->constrained, s->b + f->constrained, NULL};
 }
 
-/* The root at the end of the step, and what constraints see of it and of the tied nodes. A prescribed root is there
- * already.
- */
+/* Evaluates the root at the end of the step, and the motion of the root and the interface nodes for the constraints. A
+   prescribed root is at the end of the step already. */
 static void look_at_end_of_step(spari_component *p) {
     spari_frame *f = p->frame;
     spari_floating_root *c = f->floating_root;
@@ -55,7 +54,7 @@ static void look_at_end_of_step(spari_component *p) {
     }
 }
 
-/* What the forces r leave on the ends, in global axes. */
+/* Residual forces on the interface nodes from the forces r, in global axes. */
 static void show_forces(spari_component *p, const spari_frame_state *s) {
     spari_frame *f = p->frame;
     spari_floating_root *c = f->floating_root;
@@ -160,7 +159,7 @@ static int predict_frame(spari_component *p, spari_guess stays) {
     spari_solver *s = p->solver;
     double *x = f->dx + f->constrained;
     int n = f->n - f->constrained;
-    if (stays == SPARI_KEEP_SHAPE) { /* the deformation is linear: nothing leads astray */
+    if (stays == SPARI_KEEP_SHAPE) { /* the deformation is linear: its starting values are safe */
         return 0;
     }
     if (f->floats && p->scheme.still) {
@@ -241,7 +240,7 @@ static int reduce_frame(spari_component *p, double *x) {
     if (spari_condensed_reduce(p->condensed, f->linear, f->dx)) {
         return 1;
     }
-    for (int k = 0; k < M; k++) { /* what the rest of the member puts on the ends */
+    for (int k = 0; k < M; k++) { /* force of the rest of the member on the interface nodes */
         int u = 6 * p->condensed->node[k / 6] + k % 6;
         x[k] = u < p->condensed->fixed ? 0 : f->dx[u] - f->r[u];
     }
@@ -271,7 +270,7 @@ static void expand_frame(spari_component *p, double *x) {
     spari_condensed_expand(p->condensed, f->dx);
 }
 
-/* The largest motion of a node, by the member's length, and turn, of unknowns x. */
+/* The largest displacement of a node, divided by the member's length, or rotation, of the unknowns x. */
 static double size_of_deformation(const spari_component *p, const double *x) {
     const spari_frame *f = p->frame;
     double largest = 0, *own = f->floating_root->x;
@@ -315,7 +314,7 @@ static double way_of_frame(const spari_component *p) {
     return fmax(root + p->stage.ends.carried, size_of_deformation(p, step));
 }
 
-/* ---- an iteration alone ---- */
+/* ---- an iteration of a member without joints ---- */
 
 static int solve_frame(spari_component *p) {
     double none[6] = {0};
@@ -331,7 +330,7 @@ static double advance_frame(spari_component *p, double longest, double *way) {
     *way = 0;
     if (!f->floats && spari_carriage_is_linear(f, p->member) && f->tangent_cm == p->scheme.cm &&
         f->tangent_cv == p->scheme.cv && memcmp(f->tangent_turn, f->turn, sizeof f->turn) == 0) {
-        correct_frame(p, 1); /* one correction with their own tangent solves linear equations */
+        correct_frame(p, 1); /* linear equations: one correction with their own tangent */
         return 0;
     }
     double size = correction_of_frame(p);
@@ -340,7 +339,7 @@ static double advance_frame(spari_component *p, double longest, double *way) {
     return size;
 }
 
-/* The tangent serves while the equations stay. */
+/* The tangent is valid until the equations change. */
 static void end_solution_of_frame(spari_component *p, int iterations, int fresh) {
     (void)p, (void)iterations, (void)fresh;
 }
@@ -376,10 +375,10 @@ static void shift_rates_of_frame(spari_component *p, double v, double a, double 
     look_at_end_of_step(p);
 }
 
-/* ---- its answer ---- */
+/* ---- response to loads ---- */
 
-/* Force and moment of loads [6 nodes] of the whole about the root, arms deformed: modal unknowns have those of the
-   reference already. */
+/* Resultant force and moment of the loads [6 nodes] about the root, with lever arms of the deformed member. The modal
+   unknowns contain those of the reference already. */
 static void sum_about_root(const spari_component *p, const double *load, double sum[6]) {
     const spari_frame *f = p->frame;
     const double *x = spari_frame_nodal(f, f->to.y, f->floating_root->x);
@@ -399,7 +398,7 @@ static void sum_about_root(const spari_component *p, const double *load, double 
     }
 }
 
-/* As forces r and on the ends. */
+/* Adds loads to the forces r and to those on the interface nodes. */
 static void take_more_of_frame(spari_component *p, const double *load) {
     spari_frame *f = p->frame;
     double *own = f->turned;
@@ -415,7 +414,7 @@ static void take_more_of_frame(spari_component *p, const double *load) {
     show_forces(p, &f->to);
 }
 
-/* motion [6 nodes] += that of a root which carries the nodes where they are */
+/* motion [6 nodes] += rigid motion of the present nodes with the root */
 static void add_motion_of_root(const spari_component *p, const double *root, double *motion) {
     const spari_frame *f = p->frame;
     const double *q = f->to.root.q + 3, *x = spari_frame_nodal(f, f->to.y, f->floating_root->x);
@@ -454,7 +453,7 @@ static void look_back_at_frame(spari_component *p) {
     look_at_end_of_step(p);
 }
 
-/* ---- the start ---- */
+/* ---- consistent initial accelerations ---- */
 
 static int start_of_frame(spari_component *p) {
     spari_frame *f = p->frame;
@@ -466,7 +465,7 @@ static int start_of_frame(spari_component *p) {
         memset(s->begin.v, 0, (size_t)end * sizeof(double));
     }
     f->steps.started = 0;
-    copy_to(f); /* the rates are shifted at the end, which is the beginning */
+    copy_to(f); /* the rates are shifted at the end of the step, which equals its beginning here */
     p->stage.ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
     memcpy(f->steps.load, f->steps.load0, (size_t)(6 * f->nodes) * sizeof *f->steps.load);
     look_at_end_of_step(p);
@@ -513,7 +512,7 @@ static void shift_start_of_frame(spari_component *p) {
     memcpy(f->begin.v, f->to.v, (size_t)f->n * sizeof *f->to.v);
 }
 
-/* ---- at rest ---- */
+/* ---- equilibrium ---- */
 
 static void rest_frame(spari_component *p, const double *fluid, int onward) {
     spari_frame *f = p->frame;
@@ -535,7 +534,7 @@ static void rest_frame(spari_component *p, const double *fluid, int onward) {
     look_at_end_of_step(p);
 }
 
-/* The root turns with the whole, and with it the frame and what rests in that. */
+/* The root rotates with the member; frame and deformation rotate with the root. */
 static void rotate_root(spari_component *p, double factor) {
     const spar_member *m = p->member;
     spari_frame *f = p->frame;
@@ -573,7 +572,7 @@ static double balance_frame_at_rest(spari_component *p, double factor) {
 
 static int tangent_of_frame_at_rest(spari_component *p, double factor) {
     const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    (void)factor; /* that of the forces at rest */
+    (void)factor; /* the factor of the latest forces applies */
     int singular = spari_floating_root_tangent(p->frame, p->member, &p->frame->to, 0, 0, unit, p->frame->r);
     p->frame->floating_root->steady = 0;
     return singular;

@@ -62,7 +62,7 @@ static int allocate_work(spari_frame *f, const spar_member *m) {
     ok = ok && (f->nodal = spari_zalloc(18 * (int64_t)f->nodes, sizeof(double)));
     ok = ok && (f->turned = spari_zalloc(19 * (int64_t)f->nodes, sizeof(double)));
     ok = ok && (f->element = spari_zalloc((int64_t)f->block * f->block, sizeof(double)));
-    if (f->N[0] || f->D) { /* else the sums are K and nothing */
+    if (f->N[0] || f->D) { /* else the sums are K and 0 */
         ok = ok && (f->sumC = spari_zalloc(f->size, sizeof(double)));
     }
     if (f->N[0]) {
@@ -101,7 +101,7 @@ static void frame_free(void *solution) {
     free(f);
 }
 
-/* Arms [nodes][3] of the unknowns' nodes from the root. */
+/* Lever arms [nodes][3] of the unknowns' nodes from the root. */
 static double *arms_of(const spar_member *m) {
     double *arm = spari_zalloc(3 * (int64_t)m->body->unique, sizeof *arm);
     if (arm) {
@@ -167,7 +167,7 @@ static int frame_create(spar_member *m) {
     f->size = (int64_t)f->elements * f->block * f->block;
     int status = spari_floating_root_create(f, m);
     status = status == SPAR_OK ? fill_frame(f, m) : status;
-    f->factors = 0; /* those of the set-up do not count */
+    f->factors = 0; /* factorisations of the set-up do not count */
     SPARI_REQUIRE(m->session, status == SPAR_OK || status == SPAR_ERR_MEMORY, status,
                   "member '%s': its stiffness is not positive definite, or it has fewer modes with mass than "
                   "requested; give every section mass and rotary inertia, or request fewer modes",
@@ -175,7 +175,7 @@ static int frame_create(spar_member *m) {
     return status;
 }
 
-/* ---- what the description must have ---- */
+/* ---- requirements on the description ---- */
 
 static int modal_check(const spar_member *m) {
     int constrained = spari_member_constrained(m);
@@ -192,7 +192,7 @@ static int modal_check(const spar_member *m) {
     return SPAR_OK;
 }
 
-/* ---- the rest of the rows ---- */
+/* ---- further operations of the rows ---- */
 
 static int64_t frame_unknowns(const spar_member *m) {
     const spari_frame *f = m->solution;
@@ -210,7 +210,7 @@ static void frame_effort(const spar_member *m, spari_effort *e) {
                         .band = spari_effort_band(f->n, f->block)};
 }
 
-/* Joints have come, or have changed: it is made anew for them. */
+/* Creates the frame again if joints were added or have changed. */
 static int frame_renew_joints(spar_member *m) {
     const spari_frame *f = m->solution;
     int had = f->floating_root->condensed->ends > 0;
@@ -233,7 +233,7 @@ static int frame_renew_joints(spar_member *m) {
     return SPAR_OK;
 }
 
-/* What the two rows share. */
+/* Operations that the two rows share. */
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .create = frame_create, .free = frame_free,                    \
     .remass = spari_frame_remass, .restart = spari_frame_restart, .felt = spari_frame_felt,                            \

@@ -1,4 +1,4 @@
-/* Forces of a frame whose root joints hold, and their tangent: see floating_root.h. */
+/* Forces of a floating frame, and their tangent: see floating_root.h. */
 #include "../algebra/cblas.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
@@ -12,7 +12,8 @@ enum { ROTATION_PARTS = 1, GYRO_PARTS = 7, EULER_PARTS = 10, ALL_PARTS = 13 };
 
 /* ---- loads ---- */
 
-/* Whether the forces are those of a step: at rest, and in what begins at t^0, the guess has no part. */
+/* Whether the forces are those of a step. At an equilibrium, and before the first step, the added mass does not
+   count. */
 static int steps_on(const spari_frame *f) {
     return !f->floating_root->still && !f->floating_root->steady && f->steps.started;
 }
@@ -21,7 +22,7 @@ int spari_carriage_is_linear(const spari_frame *f, const spar_member *m) {
     return !m->load.applied && !(m->added && steps_on(f));
 }
 
-/* The latest iterate, for loads that depend on it. */
+/* Stores the latest iterate, for loads that depend on it. */
 static void look_at_iterate(spari_frame *f, const spari_frame_state *s) {
     spari_floating_root *c = f->floating_root;
     const double *x = spari_frame_nodal(f, s->y, c->x);
@@ -31,8 +32,8 @@ static void look_at_iterate(spari_frame *f, const spari_frame_state *s) {
     }
 }
 
-/* Nodal loads, global axes; those that follow where the state has put the nodes, and with a root that moves so what the
-   guess of the fluid's added mass takes of their accelerations. */
+/* Nodal loads in global axes: follower loads at the present nodes, and the forces of the fluid's added mass on the
+   accelerations of the nodes if the root moves as `root`. */
 static void gather_loads_of(spari_frame *f, const spar_member *m, const spari_pose *root) {
     spari_floating_root *c = f->floating_root;
     int n = f->nodes, n6 = 6 * n, guessed = m->added && steps_on(f);
@@ -56,8 +57,8 @@ static void gather_loads_of(spari_frame *f, const spar_member *m, const spari_po
     }
 }
 
-/* out += M R (a - g, alpha) - loads, of the unknowns, in the axes of the frame. rate: what turns and accelerates the
-   frame there; load [6 nodes]: the loads there. */
+/* out += M R (a - g, alpha) - loads, on the unknowns, in the axes of the frame. Also in these axes: rate: acceleration
+   less gravity, and angular acceleration, of the frame. load [6 nodes]: the loads. */
 static void add_weight_and_loads(spari_frame *f, const spar_member *m, const spari_pose *root, double rate[6],
                                  double *load, double *out) {
     const spari_floating_root *c = f->floating_root;
@@ -89,7 +90,7 @@ static double largest_force(int n, const double *x) {
     return most;
 }
 
-/* One sum of the matrices for the turn of the root. */
+/* Forces from one sum of the matrices for the rotation rates of the root. */
 static double forces_of_prescribed(spari_frame *f, const spar_member *m, const spari_frame_state *s, double *r) {
     spari_floating_root *c = f->floating_root;
     double rate[6], turn[6] = {0};
@@ -135,7 +136,7 @@ static void product_into(spari_frame *f, int k, const double *X, const double *y
     }
 }
 
-/* K + S(w, w), which stays for the substep. */
+/* c->stiff := K + S(w, w), constant in the substep. */
 static void combine_stretch(spari_frame *f) {
     spari_floating_root *c = f->floating_root;
     memcpy(c->stiff, f->K, (size_t)f->size * sizeof *c->stiff);
@@ -163,7 +164,7 @@ void spari_floating_root_rotate(spari_frame *f, const spari_frame_state *s, doub
     combine_stretch(f);
 }
 
-/* E_k y among the parts, and the products of rates with it. */
+/* E_k y into the parts, and its products with the rates. */
 static void gather_euler(spari_frame *f, int k, const spari_frame_state *s) {
     spari_floating_root *c = f->floating_root;
     const double *part = c->parts + (int64_t)(EULER_PARTS + k) * f->n + 6;
@@ -174,7 +175,7 @@ static void gather_euler(spari_frame *f, int k, const spari_frame_state *s) {
     c->seconds.aEy[k] = cblas_ddot(f->n - 6, s->a + 6, 1, part, 1);
 }
 
-/* What does not depend on how the root moves. */
+/* The terms that do not depend on the motion of the root. */
 static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
     spari_floating_root *c = f->floating_root;
     product_into(f, 0, c->still ? NULL : f->M, s->a);
@@ -202,7 +203,7 @@ static void gather_parts_of(spari_frame *f, const spari_frame_state *s) {
     look_at_iterate(f, s);
 }
 
-/* out += what turning of the frame adds */
+/* out += forces of the frame's rotation */
 static void add_rotation_forces(const spari_frame *f, const spari_pose *root, double *out) {
     const double *parts = f->floating_root->parts;
     double omega[3], alpha[3], c[SPARI_SPIN_PRODUCTS], less[ALL_PARTS - ROTATION_PARTS];
@@ -231,7 +232,7 @@ static void add_heavy(spari_frame *f, const spar_member *m, const spari_pose *ro
     }
     spari_rotate_back(root->q + 3, root->v + 3, omega);
     for (int k = 0; k < SPARI_SPIN_PRODUCTS && f->S[0] && !c->still;
-         k++) { /* of those on the unknowns it is among the parts */
+         k++) { /* on the unknowns it is among the parts already */
         cblas_daxpy(n6, omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]], c->spin[k], 1, c->heavy, 1);
     }
     for (int k = 0; k < 6 && f->rigid[0]; k++) {
@@ -239,8 +240,8 @@ static void add_heavy(spari_frame *f, const spar_member *m, const spari_pose *ro
     }
 }
 
-/* Force and moment of the whole about the root, arms deformed, into the first six of out; the elastic forces, which
-   have none, come to the others. */
+/* Puts the resultant force and moment about the root into the first six of out, with lever arms of the deformed member.
+   Adds the elastic forces, which have no resultant, to the others. */
 static void gather_whole(const spari_frame *f, const spar_member *m, double *out) {
     const spari_floating_root *c = f->floating_root;
     double sum[6] = {0};
@@ -268,7 +269,8 @@ static void gather_whole(const spari_frame *f, const spar_member *m, double *out
     }
 }
 
-/* The whole has moments as they are: less m x theta / 2, which N and E have on the unknowns. */
+/* Subtracts m x theta / 2 from the resultant moment: N and E contain it for the unknowns, but the resultant has the
+   moments themselves. */
 static void take_half_moments_off(const spari_frame *f, const spari_pose *root, double moment[3]) {
     const spari_floating_root *c = f->floating_root;
     double omega[3], alpha[3], by[SPARI_SPIN_PRODUCTS];
@@ -292,8 +294,8 @@ static void take_half_moments_off(const spari_frame *f, const spari_pose *root, 
     }
 }
 
-/* Of second order in the deformation, the moment that goes with N and E: the motion's Lagrangian has
-   omega_k y' . E_k y - y . N(omega, omega) y / 2, and the momentum of the turn is its derivative by omega. */
+/* Adds the moment of second order in the deformation that belongs to N and E. The Lagrangian has the terms
+   omega_k y' . E_k y - y . N(omega, omega) y / 2; the angular momentum is its derivative by omega. */
 static void add_seconds(const spari_frame *f, const spari_pose *root, double moment[3]) {
     const spari_seconds *s = &f->floating_root->seconds;
     double omega[3], alpha[3], p[3], turn[3];
@@ -316,7 +318,7 @@ static void add_seconds(const spari_frame *f, const spari_pose *root, double mom
     }
 }
 
-/* The forces with a root that moves so; the rest is gathered. */
+/* The forces if the root moves as `root`; all other terms are gathered. */
 static void forces_at(spari_frame *f, const spar_member *m, const spari_pose *root, double *out) {
     memcpy(out, f->floating_root->parts, (size_t)f->n * sizeof *out);
     if (m->added) {
@@ -354,9 +356,9 @@ double spari_floating_root_forces(spari_frame *f, const spar_member *m, const sp
     return scale;
 }
 
-/* ---- the ends, seen from the root ---- */
+/* ---- interface nodes relative to the root ---- */
 
-/* Where tied node e (from 1) is from the root, and the inverse tangent operator of its rotation. */
+/* Lever arm d from the root to interface node e (from 1), and the inverse tangent operator T of its rotation. */
 static void look_at_end(const spari_frame *f, const spar_member *m, const double *y, int e, double d[3], double T[9]) {
     const double *x = y + spari_floating_root_at(f, e);
     spari_member_arm(m, f->floating_root->node[e - 1], d);
@@ -396,7 +398,7 @@ void spari_floating_root_absolute(const spari_frame *f, const spar_member *m, co
 
 /* ---- the tangent ---- */
 
-/* The root moved by `by` along k, in the axes of the frame, with the rates that go along. */
+/* The root displaced by `by` along k, in the axes of the frame, with the corresponding change of its rates. */
 static spari_pose moved_root(const spari_floating_root *c, const spari_pose *root, int k, double by, double cm,
                              double cv, const double tinv[9]) {
     spari_pose p = *root;
@@ -423,7 +425,8 @@ static spari_pose moved_root(const spari_floating_root *c, const spari_pose *roo
     return p;
 }
 
-/* Columns of the root: by differences, of forces that are linear in its accelerations and of low order in all else. */
+/* Columns of the root, by central differences. The forces are linear in its accelerations and of low order in its
+   other rates and its rotation. */
 static void form_columns(spari_frame *f, const spar_member *m, const spari_pose *root, double cm, double cv,
                          const double tinv[9]) {
     spari_floating_root *c = f->floating_root;
@@ -438,17 +441,17 @@ static void form_columns(spari_frame *f, const spar_member *m, const spari_pose 
             column[i] = (c->out[i] - c->out[f->n + i]) / (2 * by);
         }
     }
-    forces_at(f, m, root, c->out); /* `heavy` is of the root as it is */
+    forces_at(f, m, root, c->out); /* leaves `heavy` for the present root */
 }
 
-/* Rows of the whole: rigid motions times the tangent S of element e. */
+/* Adds to the rows of the resultants: rigid motions times the tangent S of element e. */
 static void add_rows(const spari_frame *f, const spar_member *m, int e, const double *S) {
     double *rows = f->floating_root->border;
     int first = e * (f->block - f->overlap);
     for (int i = 0; i < f->block && (!f->basis || i < 6); i++) {
         double arm[3], weight[6] = {0};
         weight[f->basis ? i : (first + i) % 6] = 1;
-        if (!f->basis && i % 6 < 3) { /* its moment about the root: arm x unit */
+        if (!f->basis && i % 6 < 3) { /* moment of the force about the root */
             double unit[3] = {weight[0], weight[1], weight[2]};
             spari_member_arm(m, (first + i) / 6, arm);
             spari_cross(arm, unit, weight + 3);
@@ -461,7 +464,7 @@ static void add_rows(const spari_frame *f, const spar_member *m, int e, const do
     }
 }
 
-/* And of the arms, that change: dx x heavy. */
+/* Adds to these rows the change of the lever arms: dx x heavy. */
 static void add_arms_to_rows(const spari_frame *f) {
     const spari_floating_root *c = f->floating_root;
     for (int i = 0; i < f->nodes; i++) {
@@ -478,7 +481,7 @@ static void add_arms_to_rows(const spari_frame *f) {
     }
 }
 
-/* The tangent of element e, of the sums that there are. */
+/* The tangent of element e, from the sums that exist. */
 static void form_element(spari_frame *f, int e, double cm, double cv) {
     const int64_t mm = (int64_t)f->block * f->block, at = mm * e;
     const double *K = (f->sumK ? f->sumK : f->K) + at, *C = f->sumC ? f->sumC + at : NULL, *M = f->M ? f->M + at : NULL,
@@ -489,7 +492,7 @@ static void form_element(spari_frame *f, int e, double cm, double cv) {
     }
 }
 
-/* Of y x M y'', in the rows of the whole. */
+/* Adds y x M y'' to the rows of the resultants. */
 static void add_euler_to_rows(const spari_frame *f, double cm) {
     const spari_floating_root *c = f->floating_root;
     int m = f->block, step = f->block - f->overlap;
@@ -503,7 +506,7 @@ static void add_euler_to_rows(const spari_frame *f, double cm) {
     }
 }
 
-/* The tangent of the unknowns into the linear system, and the rows of the whole. */
+/* Puts the tangent of the unknowns into the linear system, and forms the rows of the resultants. */
 static void form_chain(spari_frame *f, const spar_member *m, const spari_pose *root, double cm, double cv) {
     spari_floating_root *c = f->floating_root;
     int64_t mm = (int64_t)f->block * f->block;
@@ -517,10 +520,10 @@ static void form_chain(spari_frame *f, const spar_member *m, const spari_pose *r
     memset(c->border, 0, (size_t)(6 * f->n) * sizeof *c->border);
     for (int e = 0; e < f->elements; e++) {
         form_element(f, e, cm, cv);
-        for (int k = 0; k < 3 && f->E[0] && !c->still; k++) { /* internal forces of the stretch apart */
+        for (int k = 0; k < 3 && f->E[0] && !c->still; k++) { /* internal forces of the stretch are added separately */
             cblas_daxpy((int)mm, alpha[k], f->E[k] + mm * e, 1, f->element, 1);
         }
-        /* pretension's stiffness is not blind to rigid motions: the whole has it by the arms of the ends */
+        /* rigid motions strain the stiffness of pretension: the resultants contain it through the lever arms */
         cblas_daxpy(f->pull ? (int)mm : 0, -1, f->K + mm * e, 1, f->element, 1);
         add_rows(f, m, e, f->element);
         cblas_daxpy(f->pull ? (int)mm : 0, 1, f->K + mm * e, 1, f->element, 1);
@@ -533,7 +536,7 @@ static void form_chain(spari_frame *f, const spar_member *m, const spari_pose *r
     add_arms_to_rows(f);
 }
 
-/* Puts the root's rows and columns where the chain had none. */
+/* Inserts the rows and columns of the root, which the chain does not have. */
 static void put_border(spari_frame *f, const spar_member *m) {
     const spari_floating_root *c = f->floating_root;
     spari_condensed *d = c->condensed;
@@ -544,7 +547,7 @@ static void put_border(spari_frame *f, const spar_member *m) {
         memcpy(column, c->border + (int64_t)n * (6 + j), (size_t)n * sizeof *row);
         for (int k = spari_member_constrained(m); k < M; k++) {
             int u = 6 * d->node[k / 6] + k % 6;
-            d->K[M * j + k] = k < 6 ? column[u] : row[u]; /* of the root with itself: as the differences have it */
+            d->K[M * j + k] = k < 6 ? column[u] : row[u]; /* root with root: from the differences, below */
             if (k >= 6) {
                 d->K[M * k + j] = column[u];
             }
@@ -560,8 +563,8 @@ static void put_border(spari_frame *f, const spar_member *m) {
     }
 }
 
-/* What remains at the ends, from motions seen from the root to absolute ones, in global axes: K := T^T K T, and what
-   the turning of the forces there adds. r: the forces. */
+/* Transforms the condensed matrix from motions relative to the root to absolute ones: K := T^T K T, plus the terms of
+   the rotation of the forces r at the interface nodes. */
 static void take_ends_out(spari_frame *f, const spar_member *m, const spari_frame_state *s, const double *r,
                           double *workspace) {
     const spari_floating_root *c = f->floating_root;
@@ -580,14 +583,14 @@ static void take_ends_out(spari_frame *f, const spar_member *m, const spari_fram
         cblas_dgemv(CblasRowMajor, CblasNoTrans, M, M, 1, d->K, M, z, 1, 0, g, 1);
         memset(g, 0, (size_t)constrained * sizeof *g);
         spari_floating_root_absolute(f, m, s->y, g);
-        for (int e = 1; e < d->ends; e++) { /* the arm of its force moves */
+        for (int e = 1; e < d->ends; e++) { /* the lever arm of its force changes */
             double turn[3];
             spari_cross(z + 6 * e, force + 6 * e, turn);
             for (int k = 0; k < 3; k++) {
                 g[3 + k] -= turn[k];
             }
         }
-        for (int k = 0; k < M && j >= 3 && j < 6; k += 3) { /* the frame turns, and with it the forces */
+        for (int k = 0; k < M && j >= 3 && j < 6; k += 3) { /* the forces rotate with the frame */
             double unit[3] = {j == 3, j == 4, j == 5}, turn[3];
             spari_cross(unit, force + k, turn);
             for (int i = 0; i < 3; i++) {
@@ -604,7 +607,7 @@ static void take_ends_out(spari_frame *f, const spar_member *m, const spari_fram
     memcpy(d->K, K, (size_t)(M * M) * sizeof *K);
 }
 
-/* K [M][M], blocks of three, into global axes */
+/* Rotates K [M][M], in blocks of three, into global axes. */
 static void rotate_ends(const double q[4], int M, double *K) {
     for (int side = 0; side < 2; side++) {
         for (int i = 0; i < M; i++) {

@@ -39,7 +39,7 @@ int spari_floating_root_create(spari_frame *f, spar_member *m) {
     return c->root ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-/* (R^T M R)^-1 X for six right-hand sides in rows, X [6][n], by elimination; motions without mass give nothing. */
+/* (R^T M R)^-1 X for six right-hand sides in rows, X [6][n], by elimination. Motions without mass give 0. */
 static void solve_whole(double A[6][6], int n, double *X) {
     for (int p = 0; p < 6; p++) {
         double size = 0;
@@ -137,7 +137,7 @@ int spari_floating_root_finish(spari_frame *f, const spar_member *m) {
     c->seen = (spari_state){c->block, c->block + 7 * ends, c->block + 13 * ends, c->block + 19 * ends};
     c->force = c->block + 25 * ends;
     if (size > 0) {
-        memcpy(c->stiff, f->K, (size_t)size * sizeof *c->stiff); /* it stands */
+        memcpy(c->stiff, f->K, (size_t)size * sizeof *c->stiff); /* no rotation yet */
     }
     return f->S[0] ? find_mean(f, m) : SPAR_OK;
 }
@@ -173,7 +173,7 @@ int spari_floating_root_end_of(const spar_member *m, int node) {
     return node > 0 ? 1 + e : 0;
 }
 
-/* ---- modal: amplitudes of tied nodes ---- */
+/* ---- modal: amplitudes of interface nodes ---- */
 
 int spari_floating_root_split(const spari_frame *f, double *x, double *y) {
     const spari_floating_root *c = f->floating_root;
@@ -190,7 +190,7 @@ int spari_floating_root_split(const spari_frame *f, double *x, double *y) {
 void spari_floating_root_take_rigid(const spari_frame *f, const spar_member *m, const double J[6], double *y) {
     const spari_floating_root *c = f->floating_root;
     int first = 6 + 6 * c->ends;
-    for (int k = first; k < f->n; k++) { /* of the rigid motion what is left beside the tied nodes' shapes */
+    for (int k = first; k < f->n; k++) { /* the part of the rigid motion beside the shapes of the interface nodes */
         const double *row = f->M + (int64_t)f->n * k;
         y[k] -= cblas_ddot(6, row, 1, J, 1);
         for (int e = 0; e < c->ends; e++) {

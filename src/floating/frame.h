@@ -5,22 +5,23 @@
       M x'' + (D + G(omega)) x' + (K + N(omega, omega) + E(alpha)) x
           = loads - M (rigid acceleration - weight) - f(omega, omega)
 
-   where G holds the Coriolis and gyroscopic terms, E those of the root's angular acceleration, N what turning with
-   omega adds to the stiffness: centrifugal softening, the turned inertia of the sections, and the geometric stiffness S
-   of the axial forces that hold the centrifugal ones. All matrices come from the exact member's own tangents at
-   the reference, so that the answer is its limit for small deformation. N and E are those of rotation vectors: N is
-   symmetric. Neglected: terms of second order in x, and the
-   geometric stiffness of weight, of fluid loads and of the root's acceleration.
+   G has the Coriolis and gyroscopic terms, E those of the root's angular acceleration. N is the stiffness that the
+   rotation omega adds: centrifugal softening, the rotated inertia of the sections, and the geometric stiffness S of the
+   axial forces that balance the centrifugal ones. All matrices come from the tangents of the exact member at the
+   reference, so the response is that of the exact member in the limit of small deformation. N and E are those of
+   rotation vectors, so N is symmetric. Neglected are terms of second order in x, and the geometric stiffness of weight,
+   of fluid loads and of the root's acceleration.
 
-   Where joints tie a member whose root is free or pinned (floating_root.h), the frame goes with the root: the root's
-   motion is unknown too, and the six equations of force and moment of the whole go with it. In all other cases the
-   motion of the frame is prescribed.
+   If joints tie a member whose root is free or pinned (floating_root.h), the frame moves with the root. The motion of
+   the root is unknown too, and the resultant force and moment give six more equations. In all other cases the motion of
+   the frame is prescribed.
 
    The time integration and the equilibrium are those of a component (time/component.h), alone or in an assembly.
 
-   The modal member has the same equations in modes of M and K. Its unknowns are amplitudes of the six rigid motions
-   about the root, of which the root condition sets some to zero, and amplitudes of modes. If the root holds all six,
-   these are the lowest modes of the beam clamped at its root, else those of the beam that is free, or pinned, there. */
+   The modal member has the same equations in modes of M and K. Its unknowns are the amplitudes of the six rigid motions
+   about the root, some of which the root condition sets to zero, and the amplitudes of modes. These are the lowest
+   modes of the beam that is clamped at its root if all six are constrained. Otherwise they are those of the beam that
+   is free or pinned there. */
 #ifndef SPARI_FRAME_H
 #define SPARI_FRAME_H
 
@@ -34,7 +35,7 @@ struct spari_pencil;
 
 enum { SPARI_SPIN_PRODUCTS = 6 }; /* products omega_i omega_j */
 
-/* Deformation at one time, [n] each: amplitudes, rates, true and algorithmic accelerations; and the root. */
+/* Deformation at one time, [n] each: amplitudes, rates, true and algorithmic accelerations. And the root. */
 typedef struct spari_frame_state {
     double *y, *v, *a, *b;
     spari_pose root;
@@ -42,21 +43,21 @@ typedef struct spari_frame_state {
 
 typedef struct spari_frame {
     int nodes;                                 /* unique nodes */
-    int constrained;                           /* of the root's six unknowns, the first that stay zero */
+    int constrained;                           /* so many of the root's six unknowns, the first ones, are zero */
     int floats;                                /* joints move the root; else the motion of the frame is prescribed */
     struct spari_floating_root *floating_root; /* the root, and the nodes that joints tie */
     int elements, block, overlap;              /* of the matrices */
     int n;                                     /* unknowns, the root's six first */
     int64_t size;                              /* doubles of one matrix: elements * block * block */
-    double *gram;  /* modal: [n][n] products of the basis' columns, factored, once spari_frame_felt has been asked */
-    double *basis; /* modal: [6 nodes][n]; NULL: the unknowns are those of the nodes */
+    double *gram;      /* modal: [n][n] products of the basis' columns, factored, once spari_frame_felt was called */
+    double *basis;     /* modal: [6 nodes][n]; NULL: the unknowns are those of the nodes */
     double *K, *M, *D; /* [elements][block][block]; M, D NULL: none */
-    double *A;         /* the guess of the fluid's added mass, likewise */
-    double *dense_A;   /* where that is learned: [block][block + n] of the nodes' blocks */
+    double *A;         /* the fluid's added mass, likewise */
+    double *dense_A;   /* if it is learned: [block][block + n] of the nodes' blocks */
     double *N[SPARI_SPIN_PRODUCTS], *G[3],
-        *f[SPARI_SPIN_PRODUCTS];    /* NULL where the frame cannot turn or there is no inertia */
-    double *S[SPARI_SPIN_PRODUCTS]; /* of the axial forces, where it is not in N */
-    double *E[3];                   /* of the root's angular acceleration, where N is */
+        *f[SPARI_SPIN_PRODUCTS];    /* NULL if the frame cannot rotate or there is no inertia */
+    double *S[SPARI_SPIN_PRODUCTS]; /* of the axial forces, if it is not in N */
+    double *E[3];                   /* of the root's angular acceleration, if there is N */
     double *pull;                   /* forces of pretension at the reference, likewise; NULL: none */
     double *rigid[6];               /* M times the rigid accelerations of the frame; NULL: none */
     double turn[6];                 /* angular velocity and acceleration that the three sums below were formed for */
@@ -68,7 +69,7 @@ typedef struct spari_frame {
     struct {
         int factored;
         double cm, cv, turn[6];
-    } begun;               /* the same as the step began, */
+    } begun;               /* the same at the beginning of the step, */
     spari_snapshot before; /* and the factors */
     spari_frame_state begin, from, to;
     spari_steps steps;
@@ -87,9 +88,10 @@ void spari_frame_accept(spar_member *member);
 void spari_frame_reject(spar_member *member);
 int spari_frame_felt(spar_member *member, double *load);
 void spari_frame_publish(spar_member *member);
-/* Strain x^T K x / 2 of the frame's own equations; of a frame that stands also their kinetic energy and potential. */
+/* Strain energy x^T K x / 2 of the frame's equations. If the frame is fixed, also their kinetic energy and potential.
+ */
 int spari_frame_energy(const spar_member *member, double energy[4]);
-/* K + N of the turn that the root of member->after has, and M. */
+/* K + N of the angular velocity of the root of member->after, and M. */
 int spari_frame_problem(const spar_member *member, double *K, double *M);
 int spari_frame_linearise(const spar_member *member, const double w[3], struct spari_pencil *to);
 void spari_frame_shape(const spar_member *member, const double *x, double *workspace, double *nodes);
@@ -98,43 +100,43 @@ void spari_frame_save(const spar_member *member, double *state);
 int spari_frame_is_state(const spar_member *member, const double *state, int64_t count);
 void spari_frame_load(spar_member *member, const double *state);
 
-/* A solution begins: nothing that its work space has is to be used (base/poison.h). */
+/* Overwrites the workspace at the beginning of a solution (base/poison.h). */
 void spari_frame_poison(spari_frame *frame);
-/* Before the factors are overwritten. */
+/* Saves the factors before they are overwritten. */
 void spari_frame_keep_factors(spari_frame *frame);
 
-/* ---- what matrices, modes and time share ---- */
+/* ---- shared by the frame_*.c files ---- */
 
-/* Which two components of the turn are multiplied in each of the SPARI_SPIN_PRODUCTS products. */
+/* The two components of omega in each of the SPARI_SPIN_PRODUCTS products. */
 extern const int spari_frame_pair[SPARI_SPIN_PRODUCTS][2];
 
-/* Forms the matrices of the nodes, for which there is memory. arm [nodes][3] from the root. A status without a message.
- */
+/* Forms the matrices of the nodes in the memory allocated for them. arm [nodes][3] from the root. Returns a status
+   without a message. */
 int spari_frame_form(spari_frame *f, const spari_body *body, const double *arm);
 /* y [n] += factor * X x for a matrix of the frame */
 void spari_frame_add_times(const spari_frame *f, const double *X, const double *x, double factor, double *y);
 
-/* K + N + E, D + G and f of an angular velocity and acceleration in the frame's axes; formed anew only when these have
-   changed. */
+/* K + N + E, D + G and f of an angular velocity and acceleration in the frame's axes. They are formed only if these
+   have changed. */
 void spari_frame_combine(spari_frame *f, const double turn[6]);
-/* Motion of a node of the unknowns of which the deformation is x, its rates xd and xdd. */
+/* Motion q, v, a of a node with the deformation x and its rates xd and xdd. */
 void spari_frame_node(const spar_member *m, const spari_pose *root, int node, const double x[6], const double xd[6],
                       const double xdd[6], double q[7], double v[6], double a[6]);
-/* x [6 nodes] := those of the unknowns y; or y itself, where they are the same. */
+/* x [6 nodes] := deformation of the unknowns y. Returns x, or y if the unknowns are those of the nodes. */
 const double *spari_frame_nodal(const spari_frame *f, const double *y, double *x);
-/* out [n] := nodal loads x [6 nodes], in the frame's axes, on the unknowns. */
+/* out [n] := loads on the unknowns of the nodal loads x [6 nodes], in the frame's axes. */
 void spari_frame_gather(const spari_frame *f, const double *x, double *out);
-/* A stage of a substep begins, at whose end a driven root is at `root`; a root that is not driven stays. */
+/* Begins a stage of a substep. A driven root is at `root` at the end of the stage; other roots stay. */
 void spari_frame_stage(spari_frame *f, const spar_member *m, const spari_scheme *c, const spari_part *part,
                        const spari_pose *root);
-/* The rates of the state become those of the published motion at t^n. */
+/* Sets the rates of the state from the published motion at t^n. */
 void spari_frame_take_velocities(spari_frame *f, const spar_member *m, spari_frame_state *state);
 double spari_frame_damped_power(spari_frame *f, const spari_frame_state *s);
-/* Columns of the basis: the six rigid motions about the root, of which the first `held` stay zero, then the shapes of
-   tied nodes, then the lowest modes; those that are free are orthonormal in the norm of the mass, tied nodes' and where
-   those are the rigid ones apart. arm [nodes][3] from the root. */
+/* Columns of the basis: the six rigid motions about the root, of which the first `constrained` are zero, then the
+   shapes of interface nodes, then the lowest modes. The free columns are orthonormal in the norm of the mass, except
+   the shapes of interface nodes and, if there are such, the rigid motions. arm [nodes][3] from the root. */
 int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols);
-/* The matrices and vectors of the nodes become those of the basis. 1: no memory. */
+/* Projects the matrices and vectors of the nodes onto the basis. 1: no memory. */
 int spari_frame_project(spari_frame *f, const spar_member *m, int cols);
 
 #endif

@@ -53,8 +53,8 @@ static void rigid_motion(const spari_frame *f, const double *arm, const double o
     }
 }
 
-/* Work of the set-up: the reference as a state, its arms from the root, velocities and accelerations of a rigid turn,
- * four element matrices, a field of the nodes. */
+/* Workspace of the set-up: the reference as a state, its lever arms from the root, velocities and accelerations of a
+   rigid rotation, four element matrices, a field of the nodes. */
 typedef struct setup {
     const spari_body *body;
     int m; /* 6 P */
@@ -62,9 +62,9 @@ typedef struct setup {
     double *q, *v, *a, *S[4], *field;
 } setup;
 
-/* What a turn with omega adds: matrices of the place (into N, element after element) and of the rate (into G). A frame
-   that turns gives du-dot = omega x u, d(u-ddot) = 2 omega x u-dot + omega x (omega x u), d(alpha) = omega x theta-dot.
- */
+/* Adds the matrices of a rotation with omega: those of the position into N, element after element, and those of the
+   rate into G. A rotating frame gives du-dot = omega x u, d(u-ddot) = 2 omega x u-dot + omega x (omega x u), d(alpha) =
+   omega x theta-dot. */
 static void rotation_matrices(const spari_frame *f, const setup *w, const double omega[3], double *N, double *G) {
     int m = w->m;
     int64_t mm = (int64_t)m * m;
@@ -94,7 +94,7 @@ static void rotation_matrices(const spari_frame *f, const setup *w, const double
     }
 }
 
-/* What an angular acceleration adds: d(u-ddot) = alpha x u, and the sections' inertia, turned. */
+/* Adds the matrix of an angular acceleration: d(u-ddot) = alpha x u, and the rotated inertia of the sections. */
 static void euler_matrices(const spari_frame *f, const setup *w, const double alpha[3], double *E) {
     int m = w->m;
     int64_t mm = (int64_t)m * m;
@@ -115,7 +115,7 @@ static void euler_matrices(const spari_frame *f, const setup *w, const double al
     }
 }
 
-/* What of N and f belongs to omega_i omega_j alone. */
+/* Reduces N and f to the part of omega_i omega_j alone. */
 static void polarise(spari_frame *f) {
     for (int k = 3; k < SPARI_SPIN_PRODUCTS; k++) {
         for (int side = 0; side < 2; side++) {
@@ -126,7 +126,7 @@ static void polarise(spari_frame *f) {
     }
 }
 
-/* Acceleration of an arm d in the product k of turns: omega_i omega_j = 1. */
+/* Acceleration at the lever arm d in the product k of rotation rates: omega_i omega_j = 1. */
 static void centripetal(int k, const double d[3], double a[3]) {
     const int i = spari_frame_pair[k][0], j = spari_frame_pair[k][1];
     memset(a, 0, 3 * sizeof *a);
@@ -141,7 +141,7 @@ static void centripetal(int k, const double d[3], double a[3]) {
     }
 }
 
-/* What turning pulls at a point of element e, and where the point is on the element. */
+/* Centrifugal force at a point of element e, and the position of the point on the element. */
 static double point_pull(const setup *w, int k, int e, int point, double force[3]) {
     const spari_body *b = w->body;
     const int P = b->per_element;
@@ -171,8 +171,8 @@ static int is_point_mass(const spari_body *b, int64_t slot) {
     return *SPARI_BLOCK(b->C, 36, slot) == 0;
 }
 
-/* The axial force that product k of turns puts into element e, into b->pre: of all that is beyond each point. beyond:
-   the force beyond the element, then beyond its beginning. */
+/* Puts the axial force in element e from product k of rotation rates into b->pre: at each point the forces on all that
+   lies beyond it. beyond: the force beyond the end of the element; on return, beyond its beginning. */
 static void element_tension(const setup *w, const spari_body *b, int k, int e, double beyond[3]) {
     const int P = b->per_element, points = b->first[e + 1] - b->first[e];
     double x[SPARI_MAX_NODES], share[SPARI_MAX_NODES], load[3 * SPARI_MAX_NODES] = {0}, force[3];
@@ -184,7 +184,7 @@ static void element_tension(const setup *w, const spari_body *b, int k, int e, d
             cblas_daxpy(3, phi[l], force, 1, load + 3 * l, 1);
         }
     }
-    for (int i = 0; i < points && !is_point_mass(b, b->slot[e] + i); i++) { /* point masses are the last */
+    for (int i = 0; i < points && !is_point_mass(b, b->slot[e] + i); i++) { /* the point masses come last */
         double sum[3] = {beyond[0], beyond[1], beyond[2]}, pre[6] = {0}, t[3];
         const double xi = point_pull(w, k, e, i, force);
         spari_share_beyond(P, x, xi, share);
@@ -206,10 +206,10 @@ static void element_tension(const setup *w, const spari_body *b, int k, int e, d
     }
 }
 
-/* Geometric stiffness of the axial forces that each product of turns puts into the member. The deformation under these
-   forces has no part in it: it bends, and bending without its shortening, which is of second order, stretches. */
+/* Geometric stiffness of the axial forces from each product of rotation rates. The deformation under these forces does
+   not enter. It bends the member, and bending without its shortening, which is of second order, stretches it. */
 static int stretch_terms(spari_frame *f, const setup *w) {
-    const double large = 0x1p60; /* as in spari_body_rates: what is subtracted takes no digits */
+    const double large = 0x1p60; /* as in spari_body_rates: the subtraction loses no digits */
     const int64_t mm = (int64_t)w->m * w->m;
     spari_body tense = *w->body;
     if (spari_body_set_pre(&tense)) {
@@ -230,13 +230,13 @@ static int stretch_terms(spari_frame *f, const setup *w) {
     return SPAR_OK;
 }
 
-/* X += m x theta / 2 on the rotation theta of each node, for the moments m there: the tangents are those of moments
-   under small rotations, the equations those of rotation vectors, on which a moment m works as m + m x theta / 2. So N
-   is symmetric. */
+/* X += m x theta / 2 on the rotation theta of each node, for the moments m there. The tangents are those of moments
+   under small rotations, the equations those of rotation vectors, on which a moment m acts as m + m x theta / 2. This
+   makes N symmetric. */
 static void add_half_moments(const spari_frame *f, const setup *w, const double *moments, double *X) {
     const int P = w->m / 6;
     for (int e = 0; e < f->elements; e++) {
-        for (int l = e > 0; l < P; l++) { /* a node of two elements once */
+        for (int l = e > 0; l < P; l++) { /* a node of two elements counts once */
             double W[9];
             spari_skew(moments + 6 * (e * (P - 1) + l) + 3, W);
             for (int k = 0; k < 9; k++) {
@@ -288,7 +288,7 @@ static void rigid_forces(spari_frame *f, const setup *w) {
 
 int spari_frame_form(spari_frame *f, const spari_body *damped, const double *arm) {
     spari_body undragged = *damped, *body = &undragged;
-    body->drag = 0; /* of the deformation alone, in the end */
+    body->drag = 0; /* it is added to D below, for the deformation alone */
     setup w = {.body = body, .m = 6 * body->per_element, .arm = arm};
     int64_t mm = (int64_t)w.m * w.m, n = f->nodes;
     w.q = spari_zalloc(7 * n + 13 * n + 4 * mm + 6 * n, sizeof *w.q);
@@ -302,7 +302,7 @@ int spari_frame_form(spari_frame *f, const spari_body *damped, const double *arm
     for (int64_t i = 0; i < n; i++) {
         w.q[7 * i + 3] = 1;
     }
-    for (int e = 0; e < body->elements; e++) { /* at rest and unloaded the tangent is K + cv D + cm M */
+    for (int e = 0; e < body->elements; e++) { /* without motion and loads the tangent is K + cv D + cm M */
         int64_t at = (int64_t)w.m * w.m * e;
         spari_body_tangent(body, e, w.q, NULL, NULL, 0, 0, 0, NULL, f->K + at);
         spari_body_rates(body, e, w.q, NULL, NULL, 0, f->K + at, f->D ? f->D + at : NULL, f->M ? f->M + at : NULL);

@@ -44,8 +44,8 @@ static void image_of(const spari_frame *f, int cols, int k, double *x, double *i
     spari_frame_add_times(f, f->M, x, 1, image);
 }
 
-/* The columns [from, end) orthonormal in the norm of the mass, to each other and to those from `first` on before them;
-   a second pass takes out what rounding leaves. work: [12 nodes]. 1: a column without mass. */
+/* Makes the columns [from, end) orthonormal in the norm of the mass, to each other and to those from `first` on before
+   them. A second pass removes rounding errors. work: [12 nodes]. 1: a column without mass. */
 static int orthonormalise(spari_frame *f, int cols, int first, int from, int end, double *work) {
     int n = 6 * f->nodes;
     double *x = work, *image = work + n;
@@ -74,7 +74,7 @@ static int is_joint_node(const spari_frame *f, int node) {
     return found;
 }
 
-/* Takes rows and columns of tied nodes out of A over the nodes beside the root; how many are left. */
+/* Removes the rows and columns of interface nodes from A over the nodes beside the root. Returns how many remain. */
 static int leave_out_joint_nodes(const spari_frame *f, double *A) {
     int n = 6 * f->nodes - 6, left = 0;
     double *to = A;
@@ -89,10 +89,10 @@ static int leave_out_joint_nodes(const spari_frame *f, double *A) {
     return left;
 }
 
-/* The lowest modes seen from the root, as columns from `first` on: K z = lambda (M - M R R^T M) z over the nodes beside
-   it, where R are the rigid motions that the root leaves free, orthonormal: what those take on is no inertia of the
-   deformation. Nodes that joints tie are held too. Beams that nothing holds have a singular K, but not here: rigid
-   motions are columns of their own. Solved for 1 / lambda, in which the low modes keep their digits. */
+/* The lowest modes relative to the root, as columns from `first` on: K z = lambda (M - M R R^T M) z over the nodes
+   beside the root. R are the orthonormal rigid motions that the root leaves free; their inertia is not that of the
+   deformation. Interface nodes are constrained too. K is not singular here even for a free beam, because rigid motions
+   are separate columns. Solved for 1 / lambda, in which the low modes keep their digits. */
 static int elastic_columns(spari_frame *f, int cols, int first, double *work) {
     int n = 6 * f->nodes - 6, left = n;
     int64_t size = (int64_t)n * n;
@@ -121,7 +121,8 @@ static int elastic_columns(spari_frame *f, int cols, int first, double *work) {
     return status;
 }
 
-/* The shapes of the tied nodes: each moves by one in a direction, the root and the others do not, K x = 0 between. */
+/* The shapes of the interface nodes: one node moves by 1 in one direction, the root and the other interface nodes do
+   not move, and K x = 0 between. */
 static int joint_columns(spari_frame *f, int cols, double *work) {
     int ends = f->floating_root->ends, n = 6 * f->nodes;
     double *column = spari_zalloc((int64_t)6 * ends * n, sizeof *column);
@@ -196,7 +197,7 @@ static int project_matrix(const spari_frame *f, int cols, double **X) {
     return 0;
 }
 
-/* Rigid motions strain nothing: not by rounding either. */
+/* Makes the strain of rigid motions exactly 0. */
 static void no_strain(const spari_frame *f, double *X) {
     for (int i = 0; i < f->n && X; i++) {
         for (int j = 0; j < f->n; j++) {
@@ -233,9 +234,9 @@ int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
     free(part);
     f->elements = 1, f->block = cols, f->overlap = 6, f->n = cols;
     f->size = (int64_t)cols * cols;
-    no_strain(f, m->load.foundation || f->pull ? NULL : f->K); /* or what holds them is strained already */
+    no_strain(f, m->load.foundation || f->pull ? NULL : f->K); /* else they strain foundation or pretension */
     no_strain(f, f->D);
-    for (int i = 0; i < cols && m->body->drag > 0 && !bad; i++) { /* but damping by mass brakes them */
+    for (int i = 0; i < cols && m->body->drag > 0 && !bad; i++) { /* mass-proportional damping acts on them */
         for (int j = 0; j < cols; j++) {
             f->D[(int64_t)cols * i + j] += i < 6 || j < 6 ? m->body->drag * f->M[(int64_t)cols * i + j] : 0;
         }
@@ -285,7 +286,7 @@ int spari_frame_problem(const spar_member *m, double *K, double *M) {
     return SPAR_OK;
 }
 
-/* Small deformation is seen from the root, which must turn as the frame does. */
+/* Small deformation is relative to the root, so the root must rotate as the frame does. */
 int spari_frame_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
     const spari_frame *f = m->solution;
     double apart[3], own = spari_norm(m->after.v + 3);

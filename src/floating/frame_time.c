@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- between the nodes' motion and the frame ---- */
+/* ---- conversion between nodal motion and unknowns ---- */
 
 static void matvec3(const double T[9], const double x[3], double y[3]) {
     for (int k = 0; k < 3; k++) {
@@ -26,7 +26,7 @@ static void matvec3(const double T[9], const double x[3], double y[3]) {
     }
 }
 
-/* Deformation and rates of the nodes' motion, seen from the frame, as unknowns. */
+/* Deformation and rates of the nodal motion relative to the frame, as unknowns. */
 static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion *nodes, double *y, double *rate) {
     double *x = f->nodal, *xd = x + 6 * (int64_t)f->nodes;
     const spari_pose pose = spari_member_pose(m, nodes);
@@ -39,8 +39,8 @@ static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion 
         memcpy(rate, xd, (size_t)f->n * sizeof *y);
         return;
     }
-    /* modal: the nearest in the norm of the mass, Phi^T M x; M of the nodes is gone, but the body has it as forces of
-     * accelerations at the reference */
+    /* modal: the projection in the norm of the mass, Phi^T M x. The mass matrix of the nodes no longer exists; the
+     * body gives its products as the forces of accelerations at the reference */
     double *in[2] = {x, xd};
     double *out[2] = {y, rate}, *still = f->turned, *zero = still + 7 * (int64_t)f->nodes,
            *force = zero + 6 * (int64_t)f->nodes;
@@ -137,7 +137,7 @@ void spari_frame_publish(spar_member *m) {
 
 /* ---- time ---- */
 
-/* The same turn but for rounding, which accelerations have of omega squared. */
+/* Whether two rotation rates are the same except for rounding; that of accelerations is relative to omega squared. */
 static int is_turn(const double kept[6], const double turn[6]) {
     const double speed = spari_norm(turn), rate = spari_norm(turn + 3) + speed * speed;
     double change[6];
@@ -198,8 +198,8 @@ static void rotate_loads(const spari_frame *f, const double q[4], double *x, dou
     spari_frame_gather(f, x, out);
 }
 
-/* Where the root jumps (hosts that give no accelerations, a sudden start) the nodes keep place and velocity: seen from
-   it they lose the jump; modal ones to the nearest, in the norm of the mass. */
+/* If the root jumps (hosts that give no accelerations, an impulsive start), the nodes keep position and velocity.
+   Relative to the root the jump is subtracted; modal unknowns take its projection in the norm of the mass. */
 static void take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
                       const spari_frame_state *to) {
     double jump[2][6], *rows[2] = {from->v, from->y};
@@ -232,7 +232,7 @@ void spari_frame_stage(spari_frame *f, const spar_member *m, const spari_scheme 
         memcpy(f->from.b, f->to.a, size);
     }
     f->to.root = m->root == SPAR_ROOT_DRIVEN ? *root : f->begin.root;
-    if (c->rule != SPARI_BACKWARD && m->root == SPAR_ROOT_DRIVEN && !c->still) { /* the stage has lost it already */
+    if (c->rule != SPARI_BACKWARD && m->root == SPAR_ROOT_DRIVEN && !c->still) { /* once in a substep */
         take_jump(f, m, c->span, &f->from, &f->to);
     }
 }
@@ -263,7 +263,7 @@ void spari_frame_poison(spari_frame *f) {
     spari_poison(f->to.y, 4 * (int64_t)f->n);
 }
 
-/* The products of the columns that are free, of which none is made of others, factored. */
+/* The factored products of the free columns, which are linearly independent. */
 static int factor_gram(spari_frame *f) {
     int n = f->n;
     if (f->gram) {
@@ -285,7 +285,7 @@ static int factor_gram(spari_frame *f) {
     return SPAR_OK;
 }
 
-/* With phi the basis, phi (phi^T phi)^-1 phi^T load: of all loads that do the same to the modes the smallest. */
+/* phi (phi^T phi)^-1 phi^T load, with phi the basis: the smallest load with the same modal loads. */
 int spari_frame_felt(spar_member *m, double *load) {
     spari_frame *f = m->solution;
     const double *root = f->to.root.q;
@@ -307,7 +307,7 @@ int spari_frame_felt(spar_member *m, double *load) {
         spari_rotate(root + 3, f->nodal + i, f->turned + i);
     }
     spari_member_from_unique(m, 6, f->turned, load);
-    for (int64_t e = 1; e < m->mesh.elements; e++) { /* its ends bear half of it each */
+    for (int64_t e = 1; e < m->mesh.elements; e++) { /* each of its two nodes takes half */
         double *left = load + 6 * (e * m->mesh.per_element - 1);
         for (int k = 0; k < 12; k++) {
             left[k] *= 0.5;
@@ -316,7 +316,7 @@ int spari_frame_felt(spar_member *m, double *load) {
     return SPAR_OK;
 }
 
-/* Factors, the root's orientation that they belong to, and what remains at the ends. */
+/* Factors, the orientation of the root that they belong to, and the condensed matrix of the interface nodes. */
 static int64_t factors_size(const spari_frame *f) {
     return spari_linear_state_size(f->linear) + 4 + spari_condensed_state_size(f->floating_root->condensed);
 }
@@ -386,12 +386,12 @@ void spari_frame_restart(spar_member *m) {
 
 enum { STATE_HEAD = 27, STATE_ROTATION = 6, STATE_BEGUN = 18, STATE_ROOT = sizeof(spari_pose) / sizeof(double) };
 
-/* The head, and the states at either end of the step. */
+/* Size of the head and of the states at both ends of the step. */
 static int64_t ends_size(const spari_frame *f) {
     return STATE_HEAD + 2 * (STATE_ROOT + 4 * (int64_t)f->n);
 }
 
-/* Then what the step began with, the root, and the factors if there are any. */
+/* After these come the data of the beginning of the step, the root, and the factors if there are any. */
 int64_t spari_frame_state_size(const spar_member *m) {
     const spari_frame *f = m->solution;
     return ends_size(f) + spari_snapshot_size(&f->before) + spari_solver_state_size(f->floating_root->root) +
@@ -438,7 +438,7 @@ int spari_frame_is_state(const spar_member *m, const double *state, int64_t coun
            (factors == 0 || spari_linear_is_state(f->linear, state + at + before + own));
 }
 
-/* The sums are those of the turn that they were formed for, to the last bit. */
+/* Forms the sums for the saved rotation rates again, with the same bits. */
 void spari_frame_load(spar_member *m, const double *state) {
     spari_frame *f = m->solution;
     spari_solver *root = f->floating_root->root;
@@ -484,7 +484,7 @@ int spari_frame_energy(const spar_member *m, double energy[4]) {
     from_nodes(f, m, &m->after, y, rate);
     energy[1] = half_form(f, f->K, y) + (f->pull ? cblas_ddot(f->n, f->pull, 1, y, 1) : 0);
     energy[1] -= m->load.foundation ? spari_foundation_energy(m, m->after.q) : 0;
-    if (m->root != SPAR_ROOT_DRIVEN && !m->floats) { /* the frame stands: these are what the equations keep */
+    if (m->root != SPAR_ROOT_DRIVEN && !m->floats) { /* the frame is fixed: the equations conserve these */
         energy[0] = f->M && (m->effects & SPAR_EFFECT_INERTIA) ? half_form(f, f->M, rate) : 0;
         energy[2] = 0;
         for (int k = 0; k < 3 && f->M; k++) {

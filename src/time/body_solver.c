@@ -100,7 +100,7 @@ void spari_solver_poison(spari_solver *s) {
     double *const sixes[] = {s->increment, s->steps.load, s->r, s->dx, s->stage_v};
     int64_t n = s->n, spans = (n + SPARI_SPAN - 1) / SPARI_SPAN, block = 6 * (int64_t)s->body->per_element;
     for (size_t k = 0; k < sizeof sixes / sizeof *sixes; k++) {
-        spari_poison(sixes[k], 6 * n); /* what lies behind is read with vectors, and is zero */
+        spari_poison(sixes[k], 6 * n); /* vectors also read the numbers behind, which are zero */
     }
     spari_poison(s->tinv, 9 * n);
     spari_poison(s->rotation, 4 * n);
@@ -122,7 +122,7 @@ static int64_t before_size(const spari_solver *s) {
            (s->condensed ? spari_condensed_state_size(s->condensed) : 0);
 }
 
-/* Before the factors are overwritten. */
+/* Saves the factors before they are overwritten. */
 static void keep_factors(spari_solver *s) {
     int64_t own = 4 * (int64_t)s->n, factors = spari_linear_state_size(s->linear);
     double *to = s->begun.factored ? spari_snapshot_take(&s->before, before_size(s)) : NULL;
@@ -163,7 +163,7 @@ void spari_solver_accept(spari_solver *s) {
     s->power_begin = s->power;
 }
 
-/* What the tangents of elements are formed of. */
+/* The data from which the tangents of elements are formed. */
 typedef struct tangent_state {
     const spari_solver *s;
     const spar_member *member;
@@ -188,21 +188,21 @@ static void add_tangents(const spari_body *body, int tile, int from, int to, voi
         if (s->offset_loads && t->factor != 0) {
             spari_offset_loads_tangent(s->offset_loads, t->q + 3, body->matrix);
         }
-        if (t->tinv && m->added) { /* it belongs to the balance of a step, not to what begins one */
+        if (t->tinv && m->added) { /* part of the balance of a step, not of the initial one */
             spari_added_tangent(m, e, t->cm, t->tinv, body->matrix);
         }
         spari_linear_add(s->linear, e, body->matrix);
     }
 }
 
-/* With the columns of the interface nodes apart, and the root condition. */
+/* Forms the tangent with separate columns of the interface nodes, and with the root condition. */
 void spari_solver_form(spari_solver *s, const spar_member *member, const spari_tangent_at *at) {
     tangent_state t = {s, member, at};
     int end = spari_member_constrained(member);
     keep_factors(s);
     s->factored = 0;
     spari_linear_zero(s->linear);
-    if (at->rotation) { /* `mass` is there once */
+    if (at->rotation) { /* no threads: there is only one `mass` */
         add_tangents(s->body, 0, 0, s->body->elements, &t);
     } else {
         spari_body_sweep(s->body, add_tangents, &t);

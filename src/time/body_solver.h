@@ -15,7 +15,7 @@
 #include "tangent_snapshot.h"
 
 /* State at one time, [unique][...]: q 7, v 6, true acceleration a 6, algorithmic acceleration b 6. One block of 25
- * doubles a node. With a driven root b is that of the motion seen from it. */
+ * doubles a node. With a driven root b is relative to the root. */
 typedef struct spari_state {
     double *q, *v, *a, *b;
 } spari_state;
@@ -25,7 +25,7 @@ typedef struct spari_reuse {
     int factored;
     double cm, cv;         /* the tangent's coefficients */
     int64_t served, spent; /* solutions with it, and what they and the tangent itself took, in iterations */
-    spari_trace trace;     /* of Newton; strict it forgets the rate */
+    spari_trace trace;     /* of Newton; strict: its rate is not used */
 } spari_reuse;
 
 typedef struct spari_solver spari_solver;
@@ -45,17 +45,17 @@ struct spari_solver {
     double *best;           /* static: state to go back to */
     double *most, *most_by; /* [spans of nodes] the largest of each (spari_solver_most), and of their corrections */
     spari_linear *linear;
-    spari_anderson *anderson;   /* of a solution's corrections; nothing of it lasts longer */
+    spari_anderson *anderson;   /* of the corrections of one solution */
     spari_condensed *condensed; /* of a member that joints tie to others; NULL: none */
-    /* the factored tangent, kept while it contracts */
+    /* the factored tangent, reused while it contracts */
     int factored;
     double tangent_cm, tangent_cv; /* its coefficients */
     double *tangent_q;             /* [n][4] rotation of the nodes when it was formed */
     double *rotation;              /* [n][4] their rotation since */
     int64_t served, spent;         /* solutions with it, and what they and the tangent itself took, in iterations */
     double power, power_begin;     /* that damping takes out, at the last forces computed and at t^n */
-    spari_trace trace;             /* of Newton; strict it forgets the rate */
-    spari_reuse begun;             /* the same as the step began, */
+    spari_trace trace;             /* of Newton; strict: its rate is not used */
+    spari_reuse begun;             /* the same at the beginning of the step, */
     spari_snapshot before;         /* and its factors */
     int64_t newton, factors;       /* totals: iterations, factorisations */
 };
@@ -65,14 +65,14 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
 void spari_solver_free(spari_solver *solver);
 /* A state in a block of 25 doubles for each of n nodes. */
 spari_state spari_state_in(double *block, int n);
-/* begin.q, v, a have been set anew. */
+/* Call it after begin.q, v, a have been set. */
 void spari_solver_restart(spari_solver *solver);
 /* A step begins. It is accepted: t^{n+1} becomes t^n. It is rejected: the tangent is again the one that it began with.
  */
 void spari_solver_begin(spari_solver *solver);
 void spari_solver_accept(spari_solver *solver);
 void spari_solver_reject(spari_solver *solver);
-/* Its effort so far. */
+/* The effort so far. */
 void spari_solver_effort(const spari_solver *solver, spari_effort *effort);
 
 /* All that the next steps depend on, to the last bit, as doubles, for save and load; the reused tangent is part of it.
@@ -83,19 +83,19 @@ int spari_solver_is_state(const spari_solver *solver, const double *state, int64
 void spari_solver_load(spari_solver *solver, const double *state);
 
 /* Shared by the files of the solver */
-/* A solution begins: nothing that its work space has is to be used (base/poison.h). */
+/* Overwrites the workspace at the beginning of a solution (base/poison.h). */
 void spari_solver_poison(spari_solver *solver);
-/* Loads that follow the body's own nodes or stand along its line are there. */
+/* Whether there are follower loads of the body's nodes, or distributed loads. */
 static inline int spari_solver_has_applied(const spari_solver *solver, const spar_member *member) {
     return (member->load.applied || member->load.foundation) && !solver->offset_loads;
 }
-/* The solver's nodes in spans, by whoever there is to work on them: span number from / SPARI_SPAN writes to its own
-   nodes and most[number]. */
+/* Runs over the solver's nodes in spans, on the worker threads if there are any. Span number from / SPARI_SPAN writes
+   to its own nodes and to most[number]. */
 enum { SPARI_SPAN = 256 };
 static inline void spari_solver_spread(const spari_solver *solver, spari_span work, void *context) {
     spari_thread_pool_spread(solver->body->pool ? *solver->body->pool : NULL, solver->n, SPARI_SPAN, work, context);
 }
-/* The largest of the spans'. */
+/* The maximum over the spans. */
 static inline double spari_solver_largest(const spari_solver *solver, const double *spans) {
     double most = spans[0];
     for (int k = 1; k < (solver->n + SPARI_SPAN - 1) / SPARI_SPAN; k++) {

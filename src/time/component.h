@@ -1,7 +1,7 @@
-/* A component: a member of an assembly as the assembly sees it. A component has ends, the nodes that joints hold (a
-   member without joints has none), with their motion and the residual forces on them. A table of operations solves the
-   rest of the member. One table serves members whose unknowns are the motions of their nodes (component_body.c),
-   another one members that are linear in the frame of their root (component_floating.c). */
+/* A component: a member of an assembly, as the assembly uses it. A component has ends, its interface nodes, which
+   joints tie (a member without joints has none), with their motion and the residual forces on them. A table of
+   operations solves the rest of the member. One table serves members whose unknowns are the motions of their nodes
+   (component_body.c), another one members that are linear in the frame of their root (component_floating.c). */
 #ifndef SPARI_COMPONENT_H
 #define SPARI_COMPONENT_H
 
@@ -43,7 +43,7 @@ typedef struct spari_component_row {
     int (*tangent)(struct spari_component *p);
     /* Whether the reused tangent can serve this step. */
     int (*serves)(const struct spari_component *p);
-    /* What is left of the forces at the ends, x [6 ends], global axes. 0 or 1. */
+    /* Computes the condensed residual at the ends, x [6 ends], global axes. Returns 0 or 1. */
     int (*reduce)(struct spari_component *p, double *x);
     /* Computes the corrections of all unknowns from those of the ends. */
     void (*expand)(struct spari_component *p, double *x);
@@ -80,17 +80,17 @@ typedef struct spari_component_row {
     void (*unbalance)(struct spari_component *p);
     void (*correct_start)(struct spari_component *p);
     void (*end_start)(struct spari_component *p);
-    /* Velocities have been shifted afterwards. NULL: nothing is to be done. */
+    /* Called after velocities were shifted. NULL: does nothing. */
     void (*shift_start)(struct spari_component *p);
 
     /* Equilibrium under dead and `fluid` loads [nodes][6]. rest: begins from the last shape (onward), else from t^n.
        balance_rest, tangent_rest: residual and tangent at the load factor f. shift: subtracts the part `cut` of the
-       corrections. keep_positions: saves the positions, or restores them (back). discard_rest: gives the equilibrium
-       up. end_rest: accepts it. */
+       corrections. keep_positions: saves the positions, or restores them (back). discard_rest: discards the
+       equilibrium. end_rest: accepts it. */
     void (*rest)(struct spari_component *p, const double *fluid, int onward);
     double (*balance_rest)(struct spari_component *p, double f);
     int (*tangent_rest)(struct spari_component *p, double f);
-    /* Whether the tangent at rest is positive definite: as spari_linear_definite. NULL: not known. */
+    /* Whether the tangent of the equilibrium is positive definite: as spari_linear_definite. NULL: not known. */
     int (*definite_rest)(struct spari_component *p, double f);
     void (*shift)(struct spari_component *p, double cut);
     void (*keep_positions)(struct spari_component *p, int back);
@@ -117,7 +117,7 @@ typedef struct spari_component {
     const spari_state *state;   /* motion of those nodes */
     spari_scheme alpha, scheme; /* of a substep, and of the stage under way */
     spari_stage stage;
-    const spari_rotating_frame *rotating; /* equilibrium in a frame that turns; NULL: at rest */
+    const spari_rotating_frame *rotating; /* equilibrium in a rotating frame; NULL: in one at rest */
     double moved_in_step;                 /* of a component without ends: the motion of the stage; 0: not known */
     double correction_size,
         allowed;             /* of the latest correction: its size, and the remaining correction that is allowed */
@@ -149,7 +149,8 @@ int spari_component_solve(spari_component *p);
 /* Its motion at the end of a stage. Returns NULL, or the reason of a failure. */
 const char *spari_component_newton(spari_component *p, int *iterations);
 
-/* The nodes of a member's unknowns that joints hold, in increasing order (node has room for two a joint); how many. */
+/* The nodes of a member's unknowns that joints tie, in increasing order. node: capacity of two per joint. Returns how
+   many there are. */
 int spari_component_joint_nodes(const spar_member *member, int *node);
 int spari_component_joint_count(const spar_member *member);
 

@@ -13,13 +13,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- its ends ---- */
+/* ---- interface nodes ---- */
 
 int spari_component_joint_nodes(const spar_member *m, int *node) {
     int n = 0;
     for (const spar_joint *j = m->session->joints; j; j = j->next) {
         for (int side = 0; side < 2; side++) {
-            if (j->member[side] != m || j->node[side] >= m->nodes) { /* of a trial: not yet where it will be tied */
+            if (j->member[side] != m || j->node[side] >= m->nodes) { /* of a trial: not yet tied to its final node */
                 continue;
             }
             int at = 0, joint_node = m->row->whole ? 0 : spari_member_unique(m, j->node[side]);
@@ -259,7 +259,7 @@ static void correct_nodes(spari_component *p, double cut) {
     s->newton++;
 }
 
-/* ---- an iteration alone ---- */
+/* ---- an iteration of a member without joints ---- */
 
 static int solve_nodes(spari_component *p) {
     const spari_solver *s = p->solver;
@@ -286,10 +286,11 @@ static double advance_nodes(spari_component *p, double longest, double *way) {
 enum { PATIENCE = 5, PRICE = 10 };
 
 /* Whether the tangent is reused after a solution of so many iterations. fresh: it was formed in this solution. If
-   Newton stops earlier (newton_stop.h), a solution takes fewer iterations, hardly so for the sake of a coupling. */
+   Newton stops earlier (newton_stop.h), a solution takes fewer iterations; an early stop for a coupling saves hardly
+   any. */
 static int serves_on(spari_solver *s, const spar_session *session, int iterations, int fresh) {
     int patience = session->newton.strict || isfinite(session->newton.share) ? PATIENCE : PATIENCE - 2;
-    if (fresh) { /* of the iterations the first few may have been without it */
+    if (fresh) { /* the first iterations may have used another tangent */
         s->served = 1;
         s->spent = PRICE + (iterations < patience ? iterations : patience);
         return 1;
@@ -337,7 +338,7 @@ static void shift_rates_of_nodes(spari_component *p, double v, double a, double 
     spari_root_show(s, p->member, &p->stage.ends);
 }
 
-/* ---- its answer ---- */
+/* ---- response to loads ---- */
 
 static void take_more_of_nodes(spari_component *p, const double *load) {
     p->member->row->take_more(p->member, load, p->solver->r);
@@ -355,7 +356,7 @@ static void look_back_at_nodes(spari_component *p) {
     p->state = &p->stage.ends.seen;
 }
 
-/* ---- the start ---- */
+/* ---- consistent initial accelerations ---- */
 
 static int start_nodes(spari_component *p) {
     spari_solver *s = p->solver;
@@ -369,7 +370,7 @@ static int start_nodes(spari_component *p) {
     return spari_solver_factor(s, p->member, &(spari_tangent_at){.q = s->begin.q, .cm = p->scheme.cm});
 }
 
-/* At t^0; and the power that damping takes. */
+/* At t^0. Also computes the damping power. */
 static void unbalance_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     const spari_state *b = &s->begin;
@@ -401,7 +402,7 @@ static void end_start_of_nodes(spari_component *p) {
     s->factored = 0;
 }
 
-/* ---- at rest ---- */
+/* ---- equilibrium ---- */
 
 static void rest_nodes(spari_component *p, const double *fluid, int onward) {
     spari_solver *s = p->solver;
@@ -414,7 +415,7 @@ static void rest_nodes(spari_component *p, const double *fluid, int onward) {
     p->stage.ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
 }
 
-/* Rates of the nodes at their present positions, in the rotation of the whole. */
+/* Rates of the nodes at their present positions, in the steady rotation of the member. */
 static void rotate_nodes(spari_component *p, double f) {
     const spari_state *to = &p->solver->to;
     if (p->rotating) {

@@ -1,4 +1,4 @@
-/* The motion of a driven root within a step, and where it jumps. */
+/* The motion of a driven root within a step, and its jumps. */
 #include "driven_root.h"
 
 #include "../math/rotation.h"
@@ -9,7 +9,7 @@ spari_pose spari_drive_at(const spar_member *member, double s, double dt) {
 
 /* Cubic Hermite in u and in the rotation vector from t^n, whose rate is T^-1 omega. */
 spari_pose spari_drive_between(const spari_pose *a, const spari_pose *b, double s, double dt) {
-    if (s <= 0 || s >= 1) { /* the start of a run asks without a dt */
+    if (s <= 0 || s >= 1) { /* the initial accelerations have no dt */
         return s <= 0 ? *a : *b;
     }
     double h00 = 1 - s * s * (3 - 2 * s), h01 = s * s * (3 - 2 * s), h10 = s * (1 - s) * (1 - s),

@@ -1,4 +1,4 @@
-/* The motion of a driven root within a step, and where it jumps. */
+/* The motion of a driven root within a step, and its jumps. */
 #ifndef SPARI_DRIVEN_ROOT_H
 #define SPARI_DRIVEN_ROOT_H
 

@@ -1,5 +1,5 @@
-/* The fidelities of a member, as a table with one row each. Code calls the operations of the row and does not ask
-   which fidelity it is. To add a fidelity, write a file with its row, name it in SPARI_FIDELITIES, and give it a
+/* The fidelities of a member, as a table with one row each. Code calls the operations of the row and does not
+   distinguish fidelities. To add a fidelity, write a file with its row, name it in SPARI_FIDELITIES, and give it a
    number in spar.h. */
 #ifndef SPARI_FIDELITY_H
 #define SPARI_FIDELITY_H
@@ -17,7 +17,7 @@ typedef struct spari_fidelity {
     int moves;           /* spar finds the motion; else the host gives it */
     int solved;          /* by equations: there is a body, and its owner sends the motion; else all ranks compute it */
     int massive;         /* the body has its mass whatever effects are in force */
-    int takes_modes;     /* it is asked for with a number of modes */
+    int takes_modes;     /* it has a number of modes */
     int prescribed_root; /* it needs a root that is fixed or driven */
     int lower;           /* the next simpler SPAR_FIDELITY_*, which advice tries; 0: none */
     int whole;           /* one rigid body at the root carries all nodes */
@@ -42,7 +42,7 @@ typedef struct spari_fidelity {
     /* repeats `advance`, a solution under the loads at the last motion, until the loads that depend on the motion
        stay; NULL: once is enough */
     int (*repeat)(spar_member *m, double dt, int (*advance)(spar_member *m, double dt));
-    /* replaces load [nodes][6] by the part of it that moves the member: without the part that the root holds, that
+    /* replaces load [nodes][6] by the part of it that moves the member: without the part that the root takes, that
        cancels between the ends of two elements, or that a rigid body or modes do not represent. Returns 0 or
        SPAR_ERR_MEMORY. NULL: all loads move the member. felt_here: only the rank that finds the motion can call it;
        else every rank can, without a motion */
@@ -55,7 +55,7 @@ typedef struct spari_fidelity {
     void (*reject)(spar_member *m);
     /* the effort since the member was made; NULL: negligible */
     void (*effort)(const spar_member *m, spari_effort *effort);
-    /* its equilibrium, where that is the same under all loads */
+    /* finds its equilibrium, if this is the same under all loads */
     void (*rest)(spar_member *m);
 
     /* every rank: the reaction of the root in m->after (NULL: none), with a workspace of so many doubles, which
@@ -113,11 +113,11 @@ typedef struct spari_fidelity {
 SPARI_FIDELITIES(SPARI_DECLARE_FIDELITY)
 extern const spari_fidelity spari_fidelity_given; /* points and external members */
 
-/* What a fidelity is called: "exact". */
+/* The name of a fidelity: "exact". */
 const char *spari_fidelity_name(int fidelity);
-/* The row of a fidelity that there is. */
+/* The row of an existing fidelity. */
 const spari_fidelity *spari_fidelity_row(int fidelity);
-/* The row that the description of a member asks for. */
+/* The row for the description of a member. */
 const spari_fidelity *spari_fidelity_of(const spar_member *member);
 /* Refuses a description that the row cannot serve: a status and a message. */
 int spari_fidelity_check(const spar_member *member);

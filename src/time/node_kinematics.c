@@ -1,16 +1,16 @@
-/* Generalised-alpha node by node: which kernels serve, and for which nodes. */
+/* Generalised-alpha on nodes: chooses the kernels, and their nodes. */
 #include "node_kinematics_kernels.h"
 
 #include <math.h>
 
-/* For so many nodes: no wider than they are many. */
+/* For so many nodes: no wider than the number of nodes. */
 static const spari_node_kernels *kernels_of(int lanes, int64_t count) {
     int most = lanes ? lanes : 8, fit = count > 4 ? 8 : count > 2 ? 4 : 2;
     return spari_node_kernels_for(most < fit ? most : fit);
 }
 
-/* The kernels for nodes from `from` on, and where they leave off: what is left over beyond whole vectors goes to
-   narrower ones where it fits. */
+/* The kernels for the nodes from `from` on, and the node at which they end. The nodes after the last whole vector go to
+   narrower vectors if they fit. */
 static const spari_node_kernels *kernels_from(int lanes, int64_t from, int64_t to, int64_t *end) {
     const spari_node_kernels *kernel = kernels_of(lanes, to - from);
     int64_t rest = (to - from) % kernel->width;

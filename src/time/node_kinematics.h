@@ -14,23 +14,23 @@ typedef struct spari_node_work {
     const double *stage;          /* [n][6] velocities at the end of a trapezoidal stage, for the next one */
     double *x, *dx;               /* [n][6] increments and their correction */
     double cut;                   /* how much of the correction is applied */
-    const double *q, *kept;       /* [n][7] now; [n][4] how nodes were turned when the tangent was formed */
-    double *rotation;             /* [n][4] their turn since; NULL: the correction is not in the axes of the tangent */
+    const double *q, *kept;       /* [n][7] now; [n][4] rotations when the tangent was formed */
+    double *rotation;             /* [n][4] rotation since; NULL: the correction is not in the axes of the tangent */
     const double *r;              /* [n][6] forces */
-    const double *R;              /* [9] how a driven root is turned; NULL: there is none */
+    const double *R;              /* [9] orientation of a driven root; NULL: there is none */
 } spari_node_work;
 
-/* A root, and nodes on either side of it. */
+/* A root, and the motion of nodes relative to it and in global axes. */
 typedef struct spari_root_view {
     int lanes;
     const spar_member *member;
     const spari_pose *root;
-    const double *R;               /* [9] how it is turned */
+    const double *R;               /* [9] its orientation */
     const double *omega, *alpha;   /* its angular velocity and acceleration in its own axes */
-    const spari_state *own, *seen; /* as it sees them, and from outside */
+    const spari_state *own, *seen; /* relative to the root, and absolute */
 } spari_root_view;
 
-/* The jump of a root, in its axes (driven_root.h), which nodes do not follow. */
+/* The jump of a root, in its axes (driven_root.h). The nodes do not follow it. */
 typedef struct spari_root_jump {
     int lanes;
     const spar_member *member;
@@ -48,12 +48,13 @@ typedef struct spari_node_size {
 double spari_nodes_rotate_back(const spari_node_work *t, int64_t from, int64_t to);
 /* dx := dx rotated to the present axes. */
 void spari_nodes_rotate_forth(const spari_node_work *t, int64_t from, int64_t to);
-/* dx := what x has to lose: turned forth, into the axes of the root, rotations through the inverse tangent operator of
-   the rotation vector and the inverse of d psi / d x = I - k omega^n~, k = h^2 cv / 12. */
+/* dx := the part to subtract from x. It is rotated to the present axes, then into the axes of the root. Rotations also
+   pass the inverse tangent operator of the rotation vector and the inverse of d psi / d x = I - k omega^n~,
+   k = h^2 cv / 12. */
 spari_node_size spari_nodes_take(const spari_node_work *t, int64_t from, int64_t to);
 /* Starting values of a substep: x and the rates (spari_scheme_predict). */
 void spari_nodes_predict(const spari_node_work *t, spari_guess stays, int64_t from, int64_t to);
-/* x and the rates less cut dx. */
+/* Subtracts cut dx from x, and the corresponding changes from the rates. */
 void spari_nodes_correct(const spari_node_work *t, int64_t from, int64_t to);
 /* Positions from the increments x, and without inertia also the rates. The rotation vector is the increment plus
    h^2/12 omega^{n+1} x omega^n, the next term of Magnus' series for a rate that changes linearly. The scheme stays

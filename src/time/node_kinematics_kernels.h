@@ -5,7 +5,7 @@
 #include "../math/lanes.h"
 #include "node_kinematics.h"
 
-/* Passes over nodes that tell how large their motions are. */
+/* Passes over nodes that return the size of their motions. */
 enum { SPARI_SIZED_BY_TAKE, SPARI_SIZED_BY_PLACE, SPARI_SIZED_BY_SIZE, SPARI_SIZED };
 
 typedef struct spari_node_kernels {

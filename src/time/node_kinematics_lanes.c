@@ -1,7 +1,7 @@
-/* What generalised-alpha does of W nodes at once: one in each lane of a vector, for one width of vectors
-   (math/lanes.h). docs/theory.md, "Time".
+/* Generalised-alpha on W nodes at once, one in each lane of a vector, for one vector width (math/lanes.h).
+   docs/theory.md, "Time".
 
-   Lanes do not see each other and nothing is fused: a node's numbers have the same bits at every width. */
+   Lanes are independent and nothing is fused, so the numbers of a node have the same bits at every width. */
 #include "node_kinematics_kernels.h"
 
 #include "../base/status.h"
@@ -14,8 +14,9 @@
 
 #include "../math/rotation_lanes.h"
 
-/* Up to an angle of 1 series in its square are exact to rounding: the cosine of half of it, half the sine by the half,
-   and the second order of the inverse tangent operator, |B_2k| / (2k)! with Bernoulli's numbers. */
+/* Coefficients of series in the square of the angle, exact to rounding up to an angle of 1: the cosine of half the
+   angle, half the sine of the half divided by it, and the second order of the inverse tangent operator, |B_2k| / (2k)!
+   with Bernoulli's numbers. */
 #define SMALL_ROTATION 1.0
 static const double cosine_series[] = {1,           -1.0 / 2,       1.0 / 24,        -1.0 / 720,
                                        1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600, -1.0 / 87178291200};
@@ -32,7 +33,7 @@ static const double inverse_series[] = {1.0 / 12,
                                         43867.0 / 5109094217170944000,
                                         174611.0 / 802857662698291200000.0};
 
-/* All nodes of a span: whole vectors of them, and what is left over. */
+/* All nodes of a span: whole vectors, then the remaining nodes. */
 #undef EACH_BLOCK
 #define EACH_BLOCK(from, to, work)                                                                                     \
     for (int64_t i = (from), at[W]; i < (to); i += W) {                                                                \
@@ -45,7 +46,7 @@ static const double inverse_series[] = {1.0 / 12,
 
 /* ---- the exponential map ---- */
 
-/* c[0] + c[1] x + c[2] x^2 + ..., in pairs, and pairs of them: a vector waits for four products in a row, not for n. */
+/* c[0] + c[1] x + c[2] x^2 + ..., in pairs and pairs of pairs: a vector waits for four products in a row, not for n. */
 HERE L NAME(series)(const int n, const double *c, L x) {
     L y[5], power = x;
     SPARI_UNROLL
@@ -180,7 +181,7 @@ TARGET static void NAME(corrections_forth)(const spari_node_work *t, int64_t fro
 
 /* ---- corrections ---- */
 
-/* psi of the increment and the rates at both ends, which are not looked at without inertia. */
+/* psi of the increment and of the rates at both ends, which without inertia are not read. */
 HERE void NAME(rotations)(const spari_scheme *c, const L *x, const L *rate, const L *before, L *psi) {
     const double part = c->span * c->span / 12;
     L rotation[3];
@@ -262,7 +263,7 @@ TARGET static spari_node_size NAME(take)(const spari_node_work *t, int64_t from,
     return NAME(size_of)(size);
 }
 
-/* What is next to each other, all of it. */
+/* Adds by step to W contiguous numbers. */
 HERE void NAME(add_step)(double by, L step, double *x) {
     NAME(put)(x, NAME(get)(x) + by * step);
 }
@@ -290,8 +291,8 @@ TARGET static void NAME(correct)(const spari_node_work *t, int64_t from, int64_t
 
 /* ---- starting values ---- */
 
-/* Of the unknowns from..to, whole vectors of them: the acceleration stays (scheme.c has the same for one). Where it
-   leaves off. */
+/* Starting values of constant acceleration for whole vectors of the unknowns from..to (scheme.c: the same for one
+   unknown). Returns where it ends. */
 TARGET static int64_t NAME(predict)(const spari_node_work *t, int64_t from, int64_t to) {
     const spari_scheme *c = t->c;
     const double h = c->h, half = 0.5 - c->beta, beta = c->beta, before = 1 - c->gamma, gamma = c->gamma;
@@ -310,9 +311,9 @@ TARGET static int64_t NAME(predict)(const spari_node_work *t, int64_t from, int6
     return i;
 }
 
-/* ---- places ---- */
+/* ---- positions ---- */
 
-/* Where increments x with rotation vectors psi lead. */
+/* Positions after the increments x with rotation vectors psi. */
 HERE void NAME(put_places)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, const L *x,
                            const L *psi) {
     L p[4], from[7], q[7];
@@ -350,9 +351,9 @@ TARGET static spari_node_size NAME(place)(const spari_node_work *t, int64_t from
     return NAME(size_of)(size);
 }
 
-/* ---- all of a correction ---- */
+/* ---- a whole correction ---- */
 
-/* Adds by step to what nodes have six of. */
+/* Adds by step to arrays of six numbers per node. */
 HERE void NAME(add_to_rows)(const int whole, const int64_t *at, double by, const L *step, double *to, L *x) {
     NAME(pick_rows)(whole, at, 6, 6, to, x);
     for (int k = 0; k < 6; k++) {
@@ -361,7 +362,7 @@ HERE void NAME(add_to_rows)(const int whole, const int64_t *at, double by, const
     NAME(drop_rows)(whole, at, 6, 6, to, x);
 }
 
-/* take_block, correct and place_block at once, nothing of the correction cut. */
+/* take_block, correct and place_block at once, for the full correction. */
 HERE void NAME(advance_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *by, L *way) {
     const spari_scheme *c = t->c;
     const spari_state *to = t->to;
@@ -410,7 +411,7 @@ TARGET static spari_node_size NAME(size)(const spari_node_work *t, int64_t from,
     return NAME(size_of)(size);
 }
 
-/* ---- seen from outside ---- */
+/* ---- absolute motion ---- */
 
 HERE void NAME(splat3)(const double *x, L *y) {
     for (int k = 0; k < 3; k++) {
@@ -418,7 +419,7 @@ HERE void NAME(splat3)(const double *x, L *y) {
     }
 }
 
-/* Rates v and accelerations a at d from the root, in its axes: what it sees, and its own motion. */
+/* Adds the motion of the root to the relative rates v and accelerations a at d from the root, in its axes. */
 HERE void NAME(add_root_motion)(const L *omega, const L *alpha, const L *d, L *v, L *a) {
     L c1[3], c2[3], c3[3];
     NAME(cross)(omega, d, c1);
@@ -437,7 +438,7 @@ HERE void NAME(add_root_motion)(const L *omega, const L *alpha, const L *d, L *v
     }
 }
 
-/* From the root of the reference to the nodes from i on. */
+/* Reference lever arms from the root to the nodes from i on. */
 HERE void NAME(arms_of)(const int whole, const int64_t *at, const spar_member *member, int64_t i, L *r) {
     double arm[3 * W];
     for (int l = 0; l < W; l++) {
@@ -489,9 +490,9 @@ TARGET static void NAME(show)(const spari_root_view *t, int64_t from, int64_t to
     memcpy(t->seen->b + 6 * from, t->own->b + 6 * from, (size_t)(6 * (to - from)) * sizeof *t->own->b);
 }
 
-/* ---- seen from a root ---- */
+/* ---- motion relative to a root ---- */
 
-/* Rates v and accelerations a of nodes at d from the root, all in its axes: less its own, what it sees. */
+/* Subtracts the motion of the root from the rates v and accelerations a of nodes at d from the root, in its axes. */
 HERE void NAME(less_root_motion)(const L *omega, const L *alpha, const L *d, L *v, L *a) {
     L c1[3], c2[3], c3[3];
     NAME(cross)(omega, d, c1);

@@ -9,7 +9,7 @@ typedef struct spari_offset_loads {
     double *gravity;
 } spari_offset_loads;
 void spari_offset_loads_at(spari_offset_loads *offset_loads, double s);
-/* r[3] -= the moment at orientation q */
+/* r[3] -= the moment at orientation q. */
 void spari_offset_loads_residual(const spari_offset_loads *offset_loads, const double q[4], double r[3]);
 /* Adds its tangent to S [6][6]. */
 void spari_offset_loads_tangent(const spari_offset_loads *offset_loads, const double q[4], double S[36]);

@@ -43,7 +43,7 @@ static void lose_of_nodes(void *context, int64_t from, int64_t to) {
     spari_nodes_lose(context, from > 0 ? from : 1, to);
 }
 
-/* If the root jumps, the nodes keep position and velocity: relative to the root they lose the jump. */
+/* If the root jumps, the nodes keep position and velocity: relative to the root, the jump is subtracted. */
 static void lose_jump(const spari_solver *solver, const spar_member *m, double h, const spari_pose *from,
                       const spari_pose *to, const spari_state *own) {
     spari_root_jump t = {.lanes = solver->body->lanes, .member = m, .own = own};
@@ -104,7 +104,7 @@ void spari_stage_enter(spari_solver *s) {
     s->to = t;
 }
 
-/* ---- a rigid motion to be seen from ---- */
+/* ---- reference rigid motion ---- */
 
 double spari_stage_rotation_rate(const spari_solver *s, const spar_member *m) {
     double w[3] = {0};
@@ -170,7 +170,7 @@ static spari_ends ends_from_rigid(const spari_solver *s, const spar_member *m, c
     return e;
 }
 
-/* ---- from one scheme to the other ---- */
+/* ---- change of the scheme ---- */
 
 /* Position of node i from `pivot`. */
 static void arm_from(const spari_solver *s, const spar_member *m, int i, const double pivot[3], double r[3]) {
@@ -361,7 +361,7 @@ void spari_stage_restart(const spari_solver *s, const spar_member *m, const spar
         return;
     }
     spari_scheme_restart(c, 6 * s->n, driven ? e->from.a : s->from.a, driven ? e->to.a : e->seen.a, e->seen.b);
-    if (e->root) { /* what is shown anew takes it from there */
+    if (e->root) { /* the function that shows the motion reads it there */
         memcpy(e->to.b, e->seen.b, (size_t)(6 * s->n) * sizeof *e->to.b);
     }
 }

@@ -35,12 +35,12 @@ void spari_stage_enter(spari_solver *solver);
 /* Loads, root and ends of a stage. SPAR_OK or SPAR_ERR_MEMORY. */
 int spari_stage_begin(spari_solver *solver, const spar_member *member, const spari_scheme *scheme,
                       const spari_part *part, spari_stage *stage);
-/* A driven root alone. */
+/* The driven root only. */
 void spari_stage_drive(const spar_member *member, const spari_scheme *scheme, const spari_part *part,
                        spari_stage *stage);
 /* How far a root moves the member: rotation, and displacement relative to its length. */
 double spari_carried(const spari_pose *from, const spari_pose *to, double length);
-/* The root and ends alone. */
+/* The root and the ends only. */
 int spari_stage_root(spari_solver *solver, const spar_member *member, const spari_scheme *scheme,
                      const spari_part *part, spari_stage *stage);
 /* Sets the state from which generalised-alpha would continue after the substep. */

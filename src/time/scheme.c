@@ -229,7 +229,7 @@ static int run_substep(const spari_stepper *how, void *self, const spari_scheme 
         part.to = at + size == PARTS ? to : from + (to - from) * (at + size) / PARTS;
         part.alpha = again ? 0 : pattern->even == SPARI_EVEN ? pattern->h : tried;
         part.ratio = pattern->h > 0 ? alpha.h / pattern->h : 0;
-        int tries_anew = again || tried > 0; /* the first try has spent the algorithmic accelerations */
+        int tries_anew = again || tried > 0; /* the first try has overwritten the algorithmic accelerations */
         if (!tries_anew) {
             how->enter(self, &part);
         }
@@ -320,7 +320,7 @@ void spari_scheme_predict(const spari_scheme *c, spari_guess stays, int n, spari
         if (stays == SPARI_KEEP_ACCELERATION) {
             to.a[k] = a;
             next = (a - c->alpha_m * b) / (1 - c->alpha_m);
-        } else { /* the b that makes x = h v or 0, and the a that goes with it */
+        } else { /* the b for which x = h v or 0, and the corresponding a */
             next = (1 - 0.5 / c->beta) * b - (stays == SPARI_KEEP_POSITION ? v / (h * c->beta) : 0);
             to.a[k] = ((1 - c->alpha_m) * next + c->alpha_m * b - c->alpha_f * a) / (1 - c->alpha_f);
         }

@@ -27,7 +27,7 @@ typedef struct spari_scheme {
 typedef struct spari_trace {
     double rate, left;
 } spari_trace;
-/* Whether two numbers of a file can be that. */
+/* Whether two numbers of a file can be such values. */
 static inline int spari_trace_is(const double *x) {
     return x[0] >= 0 && x[0] < 1 && x[1] >= 0 && x[1] <= DBL_MAX;
 }
@@ -40,7 +40,7 @@ typedef struct spari_pattern {
     int even;
 } spari_pattern;
 enum { SPARI_EVEN = 2 };
-/* Whether two numbers of a file can be that. */
+/* Whether two numbers of a file can be such values. */
 static inline int spari_pattern_is(double h, double even) {
     return h >= 0 && h <= DBL_MAX && (even == 0 || even == 1 || even == 2);
 }
@@ -67,7 +67,7 @@ typedef struct spari_part {
 typedef struct spari_stepper {
     /* The end of the last substep becomes the beginning of the next one. */
     void (*enter)(void *self, const spari_part *part);
-    /* The largest mean angular velocity of stiff members that turn freely; NULL: there are none. */
+    /* The largest mean angular velocity of stiff members that rotate freely; NULL: there are none. */
     double (*rotation_rate)(const void *self);
     /* Solves a stage. Returns a status, with a message. */
     int (*solve)(void *self, const spari_scheme *c, const spari_part *part);
@@ -142,10 +142,11 @@ typedef struct spari_rates {
 
 /* Starting values with inertia: increments x and the rates they come with. */
 void spari_scheme_predict(const spari_scheme *c, spari_guess stays, int n, spari_rates from, double *x, spari_rates to);
-/* x and what hangs on it less `cut` times the correction dx. */
+/* Subtracts `cut` times the correction dx from x, and the corresponding changes from its rates. */
 void spari_scheme_correct(const spari_scheme *c, double cut, int n, const double *dx, double *x, spari_rates to);
 
-/* After a substep, for the energy that damping takes: *before is the power at its beginning, becomes `power`. */
+/* Called after a substep, for the energy that damping dissipates. *before is the power at its beginning, and becomes
+   `power`. */
 void spari_scheme_dissipate(spar_member *member, const spari_scheme *c, double *before, double power);
 
 #endif

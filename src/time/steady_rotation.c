@@ -94,7 +94,7 @@ void spari_steady_rotation_tangent(const spari_body *damped, const spari_steady_
     }
 }
 
-/* to [n][n] += X T, X [n][n], T the same 3 x 3 block for each vector of a node's that begins at `from` */
+/* to [n][n] += X T, X [n][n], with the same 3 x 3 block T for the vector of each node that begins at `from` */
 static void add_by_blocks(int n, const double *X, int from, double T[3][3], double *to) {
     for (int i = 0; i < n; i++) {
         for (int l = from; l < n; l += 6) {
@@ -115,7 +115,7 @@ void spari_steady_rotation_pencil(const spari_body *body, const double w[3], con
     if (!v) {
         return;
     }
-    /* dv = x' + w x and x' - s x, da = x'' + 2 w x' + w w x and x'' + (w - s) x' - w s x, of places and turns */
+    /* dv = x' + w x and x' - s x, da = x'' + 2 w x' + w w x and x'' + (w - s) x' - w s x, of positions and rotations */
     double W[3][3], S[3][3], WW[3][3], WS[3][3], two[3][3], less[3][3], back[3][3];
     double s[3] = {own[0] - w[0], own[1] - w[1], own[2] - w[2]};
     spari_skew(w, *W);
@@ -128,7 +128,7 @@ void spari_steady_rotation_pencil(const spari_body *body, const double w[3], con
         less[r][c] = W[r][c] - S[r][c];
         back[r][c] = -S[r][c];
     }
-    if (body->drag > 0 && body->node_position) { /* damping by mass is seen from the frame itself */
+    if (body->drag > 0 && body->node_position) { /* mass-proportional damping acts relative to the frame */
         double still[3][3];
         for (int i = 0; i < 9; i++) {
             still[i / 3][i % 3] = -body->drag * W[i / 3][i % 3];

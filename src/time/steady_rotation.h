@@ -1,4 +1,4 @@
-/* A member in steady rotation with its root, seen from the rotating frame. A shape at rest in that frame moves as a
+/* A member in steady rotation with its root, in the rotating frame. A shape at rest in that frame moves as a
    rigid body: every section has the angular velocity W of the root and no angular acceleration. A node at x has
    u-dot = v0 + W x (x - x0) and u-ddot = a0 + W x (W x (x - x0)). A change of shape (du, dtheta) changes the
    accelerations by W x (W x du) and no rates of rotation.

@@ -10,7 +10,7 @@
 
 /* ---- one substep ---- */
 
-/* What is done node by node, in spans of them. */
+/* An operation on nodes, in spans. */
 typedef struct alpha_nodes {
     const spari_solver *s;
     spari_node_work work;
@@ -18,7 +18,7 @@ typedef struct alpha_nodes {
     int shifted;
 } alpha_nodes;
 
-/* Of a substep's increments. */
+/* The work on a substep's increments. */
 static spari_node_work alpha_work_on(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double *x) {
     return (spari_node_work){.lanes = s->body->lanes,
                              .c = c,
@@ -35,7 +35,7 @@ static double size_of_span(const alpha_nodes *t, spari_node_size size) {
     return fmax(sqrt(size.way) / t->s->body->length, sqrt(size.rotation));
 }
 
-/* What a span says of its largest. */
+/* Stores the largest size of a span. */
 static void put_size(const alpha_nodes *t, int64_t from, spari_node_size size) {
     t->s->most[from / SPARI_SPAN] = size_of_span(t, size);
 }
@@ -107,11 +107,11 @@ void spari_alpha_carry(const spari_solver *s, const spar_member *member, const s
     (void)spari_nodes_positions(&work, 0, s->n);
 }
 
-/* A driven root goes where it is told. */
+/* Prescribes the motion of a driven root. */
 void spari_alpha_impose_root(const spar_member *member, const spari_pose *root, const spari_ends *e, double *x) {
     const spari_state *from = &e->from, *to = &e->to;
     int end = spari_member_constrained(member);
-    if (end == 0 || e->root) { /* seen from itself a root does not move */
+    if (end == 0 || e->root) { /* relative to itself a root does not move */
         return;
     }
     double p[4];
@@ -120,7 +120,7 @@ void spari_alpha_impose_root(const spar_member *member, const spari_pose *root, 
         memcpy(to->v, root->v, sizeof root->v);
         memcpy(to->a, root->a, sizeof root->a);
         memcpy(to->b, root->a, sizeof root->a);
-    } else { /* held where it is */
+    } else { /* fixed or pinned: it stays */
         memcpy(to->q, from->q, (size_t)(end == 6 ? 7 : 3) * sizeof *to->q);
         memset(to->v, 0, (size_t)end * sizeof *to->v);
         memset(to->a, 0, (size_t)end * sizeof *to->a);
@@ -200,7 +200,7 @@ static void correct_span(void *context, int64_t from, int64_t to) {
     put_size(t, from, spari_nodes_positions(&t->work, from, to));
 }
 
-/* Both at once where nothing is cut. */
+/* Both at once if nothing is cut. */
 static void advance_span(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
     spari_node_size by, way;
@@ -231,7 +231,7 @@ spari_corrected spari_alpha_correct(const spari_solver *s, const spar_member *me
 }
 
 /* A position depends on the increment and, in the term of Magnus' series, on the velocity of its node. The increment
-   gets the part that the velocity loses. */
+   gets the part that is subtracted from the velocity. */
 void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double v, double a,
                              double b) {
     for (int i = 0; i < s->n; i++) {

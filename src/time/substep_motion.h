@@ -21,7 +21,7 @@ typedef struct spari_corrected {
     double by, way;
 } spari_corrected;
 /* x -= the correction dx, in global axes, shortened to `longest`, rotations through the inverse tangent operator.
-   rotation: rotates the correction forth first; NULL: not. */
+   rotation: first rotates the correction to the present axes; NULL: does not. */
 spari_corrected spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c,
                                     spari_ends *e, double *rotation, double longest, double *x, double *dx);
 /* Subtracts the corrections, times v, a and b, from velocities, accelerations and algorithmic accelerations at the

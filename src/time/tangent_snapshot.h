@@ -6,14 +6,14 @@
 #include <stdint.h>
 
 typedef struct spari_snapshot {
-    int open;      /* a step is under way, and what it began with is of use */
-    int saved;     /* the step has overwritten it: `data` holds it, or, -1, there was no memory for that */
-    int64_t count; /* so many numbers */
+    int open;      /* a step has begun, and its initial tangent is of use */
+    int saved;     /* the step has overwritten it: `data` has it; -1: there was no memory for a copy */
+    int64_t count; /* number of doubles */
     double *data;
     int64_t capacity;
 } spari_snapshot;
 
-/* A step begins. useful: there is something to come back to. */
+/* A step begins. useful: there is a tangent to restore. */
 void spari_snapshot_open(spari_snapshot *s, int useful);
 /* Before the first change: where to copy `count` doubles. NULL: nothing is to be copied. */
 double *spari_snapshot_take(spari_snapshot *s, int64_t count);
@@ -21,8 +21,8 @@ void spari_snapshot_close(spari_snapshot *s);
 void spari_snapshot_free(spari_snapshot *s);
 
 /* The same as doubles, for save and load: these three, and the numbers. is: whether they begin with one of the length
-   `count` that has `expected` numbers, or none. there: load has found what is not copied yet; else it cannot come back.
- */
+   `count` that has `expected` numbers, or none. there: load has found
+   the numbers that are not copied yet; else they cannot be restored. */
 enum { SPARI_SNAPSHOT_HEAD = 3 };
 int64_t spari_snapshot_size(const spari_snapshot *s);
 void spari_snapshot_save(const spari_snapshot *s, double *state);
