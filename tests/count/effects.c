@@ -322,9 +322,8 @@ static void make(scene *s, const setting *is) {
     if (is->predictor & GIVEN) {
         MUST(spar_session_set_predictor(s->session, is->predictor & ~GIVEN));
     }
-    if (is->scheme & GIVEN) {
-        MUST(spar_session_set_coupling(s->session, is->scheme & ~GIVEN, 1e-9, 1e-9, 20));
-    }
+    const int scheme = is->scheme & GIVEN ? is->scheme & ~GIVEN : SPAR_COUPLING_EXPLICIT;
+    MUST(spar_session_set_coupling(s->session, scheme, 1e-9, 1e-9, 20));
     if (is->reproducible & GIVEN) {
         MUST(spar_session_set_reproducible(s->session, is->reproducible & ~GIVEN));
     }
