@@ -508,14 +508,10 @@ static int accept_unconverged(spar_session *s, const char *call) {
     }
     c->unconverged = 1;
     c->report[SPAR_REPORT_UNCONVERGED] += 1;
-    if (s->callbacks.log) {
-        char text[SPARI_MESSAGE_SIZE];
-        (void)snprintf(text, sizeof text,
-                       "the coupling has not converged in %d iterations in the step from t = %g (loads change by %.3g "
-                       "N of %.3g N); the step continues unconverged (option coupling.unconverged = accept)",
-                       s->state.iteration, s->clock.time, c->residual[last], c->size[last]);
-        spari_log(s, SPAR_LOG_WARNING, text);
-    }
+    spari_warn(s,
+               "the coupling has not converged in %d iterations in the step from t = %g (loads change by %.3g "
+               "N of %.3g N); the step continues unconverged (option coupling.unconverged = accept)",
+               s->state.iteration, s->clock.time, c->residual[last], c->size[last]);
     return SPAR_OK;
 }
 
@@ -535,19 +531,14 @@ static void tell_alternation(const spar_session *s) {
     const spari_growth *g = &s->own->coupling->stability.steps;
     double n = g->count, mean = g->log_sum / n, spread = sqrt(fmax(g->log_square / n - mean * mean, 0));
     double z = exp(mean), ratio = ratio_of_growth(s->state.order, z);
-    if (s->callbacks.log) {
-        char text[SPARI_MESSAGE_SIZE];
-        (void)snprintf(
-            text, sizeof text,
-            "the coupling is becoming unstable at t = %g: in the last %d steps the error of the predicted loads has "
-            "alternated in sign and grown by a factor of %.3g (+- %.2g) per step: the added mass is about %.2g (+- "
-            "%.1g) of the mass; an explicit scheme with a predictor of order %d is stable up to %.2g; "
-            "iterate "
-            "(spar_session_set_coupling) or lower the order of the predictor",
-            s->clock.time + s->clock.dt, g->count + 1, z, z * spread, ratio,
-            ratio_of_growth(s->state.order, z * exp(spread)) - ratio, s->state.order, stable_ratio[s->state.order]);
-        spari_log(s, SPAR_LOG_WARNING, text);
-    }
+    spari_warn(s,
+               "the coupling is becoming unstable at t = %g: in the last %d steps the error of the predicted loads has "
+               "alternated in sign and grown by a factor of %.3g (+- %.2g) per step: the added mass is about %.2g (+- "
+               "%.1g) of the mass; an explicit scheme with a predictor of order %d is stable up to %.2g; "
+               "iterate "
+               "(spar_session_set_coupling) or lower the order of the predictor",
+               s->clock.time + s->clock.dt, g->count + 1, z, z * spread, ratio,
+               ratio_of_growth(s->state.order, z * exp(spread)) - ratio, s->state.order, stable_ratio[s->state.order]);
 }
 
 /* Whether the step has loads of one evaluation of the fluid: explicit, or accepted before the coupling has converged.
@@ -692,16 +683,11 @@ static void watch(spar_session *s) {
     }
     if (c->grown >= GROWING_STEPS && !c->warned) {
         c->warned = 1;
-        if (s->callbacks.log) {
-            char text[SPARI_MESSAGE_SIZE];
-            (void)snprintf(
-                text, sizeof text,
-                "the coupling is becoming unstable at t = %g: fluid and structure differ by %.3g J of %.3g J "
-                "of work in this step, and the difference has grown for %d steps; iterate (spar_session_set_"
-                "coupling) or lower the order of the predictor",
-                s->clock.time + s->clock.dt, fabs(defect), whole, c->grown);
-            spari_log(s, SPAR_LOG_WARNING, text);
-        }
+        spari_warn(s,
+                   "the coupling is becoming unstable at t = %g: fluid and structure differ by %.3g J of %.3g J "
+                   "of work in this step, and the difference has grown for %d steps; iterate (spar_session_set_"
+                   "coupling) or lower the order of the predictor",
+                   s->clock.time + s->clock.dt, fabs(defect), whole, c->grown);
     }
 }
 
