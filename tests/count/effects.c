@@ -436,7 +436,7 @@ static const effect effects[] = {
      {0}},
     {"pretension", "", NEVER, {.strung = 1}, {.strung = 1, .effects = ALL}, {0}},
     {"joints",
-     "spari_assembly_advance spari_assembly_balance spari_assembly_answer spari_joint_hold spari_joint_spring "
+     "spari_constraint_find spari_constraint_times spari_constraint_gap spari_constraints_add_forces spari_joint_spring "
      "spari_joint_accept spari_joints_on",
      0,
      {.sprung = 1},
