@@ -1,4 +1,4 @@
-/* Whether advice is kept: on each scene spar_session_advise is asked for some tolerances, the scene is built to what it
+/* Whether advice is kept: on each scene spar_trial_advise is asked for some tolerances, the scene is built to what it
    says, run over its whole time and compared with a converged run; its cost with the cheapest of 120 settings such as
    one would choose by hand, both timed in turn. advice [--scene name] [--tolerance x] [--part x] [--out file.csv]
    [--elements n] [--nodes n] [--scan] [--verbose]. part: of the scene's time that trials see, default 1/2; elements,
@@ -97,36 +97,36 @@ static const choice *best_by_hand(const choice hand[CHOICES], double tolerance) 
 
 /* ---- by advice ---- */
 
-static knobs advised(const scene *s, const scene_run *run, const double *advice) {
+static knobs advised(const scene *s, const scene_run *run, const spar_trial *trial) {
     knobs k = s->standard;
-    int fidelity = 0, nodes = 0, points = 0;
-    int64_t modes = 0;
-    (void)spar_member_get_advice(run->member, &fidelity, &modes, &nodes, &points);
-    k.dt = scene_dt(s, advice[SPAR_ADVICE_DT] * (1 + 1e-9));
-    k.substeps = (int)advice[SPAR_ADVICE_SUBSTEPS];
-    k.scheme = (int)advice[SPAR_ADVICE_SCHEME];
-    k.tolerance = advice[SPAR_ADVICE_COUPLING_RTOL];
-    k.predictor = (int)advice[SPAR_ADVICE_PREDICTOR];
-    k.newton = advice[SPAR_ADVICE_NEWTON_RTOL];
-    k.fidelity = fidelity, k.modes = modes, k.nodes = nodes;
-    k.rule = points > 0 ? SPAR_QUADRATURE_SECTIONS : k.rule;
-    k.points = points;
-    k.elements = (int)advice[SPAR_ADVICE_ELEMENTS];
+    double dt = 0;
+    (void)spar_trial_get_settings(trial, &dt, &k.substeps, &k.scheme, &k.tolerance, &k.predictor, &k.newton);
+    (void)spar_trial_get_beam(trial, run->member, &k.fidelity, &k.modes, &k.elements, &k.nodes, &k.points);
+    k.dt = scene_dt(s, dt * (1 + 1e-9));
+    k.rule = k.points > 0 ? SPAR_QUADRATURE_SECTIONS : k.rule;
     return k;
 }
 
-static int ask(const scene *s, double tolerance, double part, double *advice, knobs *k) {
+/* error: that the advice expects; runs: that it took */
+static int ask(const scene *s, double tolerance, double part, double *error, int64_t *runs, knobs *k) {
     scene_run *run;
+    spar_trial *trial = NULL;
     double dt = s->standard.dt;
     int64_t steps = SAMPLES_OF_TRIALS * llround(part * s->T / dt / SAMPLES_OF_TRIALS);
     int status = scene_build(s, &s->standard, &run);
     if (status == SPAR_OK) {
         (void)spar_session_set_log(run->session, show, NULL);
-        status = spar_session_advise(run->session, tolerance, dt, steps, s->T, run->before, run->solve, run->context,
-                                     SPAR_ADVICE_COUNT, advice);
+        status = spar_trial_create(run->session, &trial);
     }
     if (status == SPAR_OK) {
-        *k = advised(s, run, advice);
+        (void)spar_trial_set_callbacks(trial, run->before, run->context, run->solve, run->context);
+        status = spar_trial_set_steps(trial, dt, steps);
+    }
+    status = status == SPAR_OK ? spar_trial_advise(trial, tolerance, s->T) : status;
+    if (status == SPAR_OK) {
+        *k = advised(s, run, trial);
+        (void)spar_trial_get_outcome(trial, error, NULL, NULL, NULL);
+        (void)spar_trial_get_search(trial, runs, NULL, NULL, NULL, NULL);
     } else {
         printf("%-6s %-9.3g %s\n", s->name, tolerance, spar_session_message(run->session));
     }
@@ -190,11 +190,12 @@ static void keep(const scene *s, const char *what, double tolerance, const choic
 
 static int check(const scene *s, const scene_reference *reference, const choice by_hand[CHOICES],
                  const choice *standard, double tolerance, double part) {
-    double advice[SPAR_ADVICE_COUNT], since = now(), took, least[2] = {INFINITY, INFINITY};
+    double expected = 0, since = now(), took, least[2] = {INFINITY, INFINITY};
+    int64_t runs = 0;
     char text[160];
     const choice *best = best_by_hand(by_hand, tolerance);
     choice mine, hand;
-    if (ask(s, tolerance, part, advice, &mine.k) != SPAR_OK) {
+    if (ask(s, tolerance, part, &expected, &runs, &mine.k) != SPAR_OK) {
         return 1;
     }
     took = now() - since;
@@ -208,10 +209,9 @@ static int check(const scene *s, const scene_reference *reference, const choice 
     }
     mine.seconds = least[0], hand.seconds = least[1];
     int kept = mine.error <= tolerance, cheap = !best || mine.seconds <= 2 * hand.seconds;
-    printf("%-6s %-9.3g %9.2e %9.2e %6.2f %8.3f %8.3f %5.0f %7.1f  %s%s\n", s->name, tolerance,
-           advice[SPAR_ADVICE_ERROR], mine.error, mine.seconds / hand.seconds, mine.seconds / standard->seconds,
-           hand.seconds / standard->seconds, advice[SPAR_ADVICE_TRIALS], took, kept ? "" : "NOT KEPT ",
-           cheap ? "" : "DEAR");
+    printf("%-6s %-9.3g %9.2e %9.2e %6.2f %8.3f %8.3f %5d %7.1f  %s%s\n", s->name, tolerance, expected, mine.error,
+           mine.seconds / hand.seconds, mine.seconds / standard->seconds, hand.seconds / standard->seconds, (int)runs,
+           took, kept ? "" : "NOT KEPT ", cheap ? "" : "DEAR");
     printf("       advice: %s\n", words(&mine.k, text, sizeof text));
     if (best) {
         printf("       hand:   %s, error %.2e\n", words(&hand.k, text, sizeof text), hand.error);

@@ -78,26 +78,35 @@ static void show(const spar_session *s, int level, const char *text, void *conte
     }
 }
 
+static int advise(world *w, int k, double tolerance, spar_trial **trial) {
+    int status = spar_trial_create(w->s, trial);
+    status = status ? status : spar_trial_set_steps(*trial, worlds[k].dt, worlds[k].steps);
+    status = status ? status : spar_trial_set_callbacks(*trial, world_before, w, world_solve, w);
+    return status ? status : spar_trial_advise(*trial, tolerance, TIMES * worlds[k].dt * (double)worlds[k].steps);
+}
+
 static int check(int k, double tolerance, const double *truth) {
     world w;
-    double advice[SPAR_ADVICE_COUNT], dt, error = INFINITY, T = worlds[k].dt * (double)worlds[k].steps;
+    spar_trial *trial = NULL;
+    double dt, error = INFINITY, expected, cost, present, asking, showing, saved;
+    int fails;
+    int64_t runs, skipped;
     int status = world_create(k, 8, 0, &w);
     status = status ? status : spar_session_set_log(w.s, show, NULL);
-    status = status ? status
-                    : spar_session_advise(w.s, tolerance, worlds[k].dt, worlds[k].steps, TIMES * T, world_before,
-                                          world_solve, &w, SPAR_ADVICE_COUNT, advice);
+    status = status ? status : advise(&w, k, tolerance, &trial);
     if (status) {
         printf("%-9s %-7.3g refused: %s\n", worlds[k].name, tolerance, spar_session_message(w.s));
         spar_session_destroy(&w.s);
         return 0;
     }
-    status = spar_session_apply_advice(w.s, &dt);
+    (void)spar_trial_get_outcome(trial, &expected, &cost, &fails, &present);
+    (void)spar_trial_get_search(trial, &runs, &skipped, &asking, &showing, &saved);
+    status = spar_trial_apply(trial, &dt);
     status = status ? status : march(&w, k, dt, truth, &error);
-    double asking = advice[SPAR_ADVICE_WORK], showing = advice[SPAR_ADVICE_SHOWING], cost = advice[SPAR_ADVICE_COST];
-    int keeps = advice[SPAR_ADVICE_PRESENT_ERROR] <= 0.9 * tolerance;
-    printf("%-9s %-7.3g %9.2e %9.2e %8.4g %5.0f %5.0f %7.3f %7.1f %7.1f %7.1f %7.1f %7.1f %s\n", worlds[k].name,
-           tolerance, advice[SPAR_ADVICE_ERROR], error, dt, advice[SPAR_ADVICE_TRIALS], advice[SPAR_ADVICE_SKIPPED],
-           cost, asking, keeps ? TIMES * (1 - cost) : NAN, showing, asking - showing, advice[SPAR_ADVICE_SAVES],
+    int keeps = !fails && present <= 0.9 * tolerance;
+    printf("%-9s %-7.3g %9.2e %9.2e %8.4g %5d %5d %7.3f %7.1f %7.1f %7.1f %7.1f %7.1f %s\n", worlds[k].name, tolerance,
+           expected, error, dt, (int)runs, (int)skipped, cost, asking, keeps ? TIMES * (1 - cost) : NAN, showing,
+           asking - showing, saved,
            status               ? spar_session_message(w.s)
            : error <= tolerance ? ""
                                 : "NOT KEPT");

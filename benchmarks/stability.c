@@ -143,6 +143,16 @@ static void end_wing(wing *w) {
     spar_session_destroy(&w->s);
 }
 
+/* Trials of the wing's small motions in its wind. */
+static spar_trial *begin_trial(wing *w, double dt, int64_t modes, int64_t memory) {
+    spar_trial *trial = NULL;
+    MUST(w->s, spar_trial_create(w->s, &trial));
+    MUST(w->s, spar_trial_set_steps(trial, dt, 1));
+    MUST(w->s, spar_trial_set_callbacks(trial, NULL, NULL, blow, w));
+    MUST(w->s, spar_trial_set_motion(trial, modes, 0, memory));
+    return trial;
+}
+
 static void goland(void) {
     static const wing_data data = {6.096,   1.8288, -0.17, -0.17 + 0.183 / 1.8288, 35.71, 8.64, 9.77e6,
                                    0.987e6, 9.77e8, 1.225};
@@ -151,8 +161,8 @@ static void goland(void) {
         double value[BRANCHES][2];
         wing w;
         begin_wing(&w, &data, speed, 0);
-        MUST(w.s, spar_session_solve_eigenvalues(w.s, 1e-3, 60, 0, NULL, blow, &w, 8, BRANCHES, NULL, &value[0][0], 0,
-                                                 NULL, NULL));
+        spar_trial *trial = begin_trial(&w, 1e-3, 8, 60);
+        MUST(w.s, spar_trial_solve_eigenvalues(trial, BRANCHES, NULL, &value[0][0], 0, NULL, NULL));
         for (int i = 0; i < BRANCHES; i++) {
             if (value[i][1] > 0 && value[i][1] < 150) {
                 printf("%g,%.8g,%.8g\n", speed, value[i][0], value[i][1]);
@@ -174,8 +184,8 @@ static void bent(void) {
             begin_wing(&w, &data, speed, angle[k] * 3.14159265358979323846 / 180);
             MUST(w.s, spar_session_solve_static(w.s, 4, blow, &w, NULL));
             MUST(w.s, spar_member_get_motion(w.beam, q, NULL, NULL));
-            MUST(w.s, spar_session_solve_eigenvalues(w.s, 4e-3, 80, 0, NULL, blow, &w, 12, 4, shift, &value[0][0], 0,
-                                                     NULL, NULL));
+            spar_trial *trial = begin_trial(&w, 4e-3, 12, 80);
+            MUST(w.s, spar_trial_solve_eigenvalues(trial, 4, shift, &value[0][0], 0, NULL, NULL));
             for (int i = 0; i < 4; i++) { /* what moves along the chord alone is not in the air */
                 int flies = value[i][1] > 1 && !(angle[k] == 0 && fabs(value[i][1] - 31.62) < 0.01);
                 most = flies && (most < 0 || value[i][0] > value[most][0]) ? i : most;

@@ -4,7 +4,7 @@
 # type: int, int64_t, double, float, char, context, the callback's or the handle's (session, member, ...). pass: value, in or out
 # (by address), list (of handles, in), callback. shape: [n][3], "" of a single number.
 # Whether an address is an array's, the comments say: "x[n][3]: out" is one, "t: out" a single number; what is said of a name
-# holds until something else is. A capacity has the constant that counts its entries: "report[capacity]: out, by SPAR_TRY_*".
+# holds until something else is. A capacity has the constant that counts its entries: "report[capacity]: out, by SPAR_REPORT_*".
 # With -v null=1 each parameter has a fifth part: null, where its comment says what NULL means.
 #   awk -f interface.awk <header>
 
@@ -27,7 +27,7 @@ function hear(said,   list, n, word, i, p, own, each) {
     }
 }
 
-# "[rows][columns]" by "SPAR_ROW_* and SPAR_COLUMN_*"
+# "[capacity]" by "SPAR_REPORT_*"
 function counted(shape, said,   by) {
     sub(/^[^S]*/, "", said)
     while (match(said, /^SPAR_[A-Z_]+\*/)) {

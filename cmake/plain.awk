@@ -224,7 +224,7 @@ FNR == NR {
 }
 
 $1 == "call" {
-    if ($2 in BY_HAND || $2 == "spar_member_get_session") next # a session has one variable, which owns it
+    if ($2 in BY_HAND || $2 ~ /^spar_(member|trial)_get_session$/) next # a session has one variable, which owns it
     f = $2
     sub(/^spar_/, "c_", f)
     sub(/^c_vtk_/, "c_", f)

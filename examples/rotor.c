@@ -543,7 +543,7 @@ static int solve_step(spar_session *session, double t, double dt, int iteration,
     return solve_aero(context, t, dt);
 }
 
-static rotor_trial begin_trials(scene *s, double turns) {
+static int begin_trials(scene *s, double turns, rotor_trial *t) {
     const rotor_options *o = &s->options;
     double turn = s->report.speed > 0 ? 2 * pi / s->report.speed : 6,
            seconds = isfinite(o->trial) ? o->trial : turns * turn;
@@ -552,11 +552,15 @@ static rotor_trial begin_trials(scene *s, double turns) {
     s->trials = 0;
     spar_session_get_time(s->session, &s->trials_from, NULL, NULL);
     spar_session_set_log(s->session, hear, s);
-    return (rotor_trial){s->session, s->aero, s->blade[0], o->dt, rotor_trial_steps(seconds, o->dt), before_step,
-                         solve_step, s};
+    *t = (rotor_trial){.aero = s->aero, .blade = s->blade[0]};
+    TRY(spar_trial_create(s->session, &t->trial));
+    TRY(spar_trial_set_steps(t->trial, o->dt, rotor_trial_steps(seconds, o->dt)));
+    TRY(spar_trial_set_callbacks(t->trial, before_step, s, solve_step, s));
+    return SPAR_OK;
 }
 
-static void end_trials(scene *s) {
+static void end_trials(scene *s, rotor_trial *t) {
+    spar_trial_destroy(&t->trial);
     spar_session_set_log(s->session, NULL, NULL);
     if (s->trials_shown > 0 && isatty(STDERR_FILENO)) {
         fprintf(stderr, "\r\033[K");
@@ -564,20 +568,21 @@ static void end_trials(scene *s) {
 }
 
 static int show_effects(scene *s) {
-    rotor_trial t = begin_trials(s, 0.5);
+    rotor_trial t;
+    TRY(begin_trials(s, 0.5, &t));
     int status = rotor_view_effects(&t, s->options.csv, s->rank == 0);
-    end_trials(s);
+    end_trials(s, &t);
     TRY(status);
     return SPAR_OK;
 }
 
 static int ask_advice(scene *s) {
-    rotor_trial t = begin_trials(s, 1);
-    spar_session_set_progress(s->session, hear_progress, s);
+    rotor_trial t;
+    TRY(begin_trials(s, 1, &t));
+    TRY(spar_trial_set_progress(t.trial, hear_progress, s));
     int status = rotor_view_advice(&t, &s->options, s->rank == 0);
-    spar_session_set_progress(s->session, NULL, NULL);
     s->trials_part = 0;
-    end_trials(s);
+    end_trials(s, &t);
     TRY(status);
     return SPAR_OK;
 }

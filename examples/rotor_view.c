@@ -14,19 +14,19 @@ enum { ROWS = SPAR_ROW_COUNT + SPAR_AERO_ROW_COUNT };
 
 typedef struct line {
     const char *name, *kind;
-    const double *value; /* [SPAR_COLUMN_COUNT] */
+    int in_force, fails;
+    double size, motion, reaction, share;
 } line;
 
-static double worst(const double *value) {
-    double motion = value[SPAR_COLUMN_MOTION], reaction = value[SPAR_COLUMN_REACTION];
-    return motion < 0 ? INFINITY : fmax(motion, reaction);
+static double worst(const line *l) {
+    return l->fails ? INFINITY : fmax(l->motion, l->reaction);
 }
 
 /* What is in force first, the largest error on top. */
 static int by_error(const void *a, const void *b) {
-    const double *x = ((const line *)a)->value, *y = ((const line *)b)->value;
-    if (x[SPAR_COLUMN_IN_FORCE] != y[SPAR_COLUMN_IN_FORCE]) {
-        return x[SPAR_COLUMN_IN_FORCE] < y[SPAR_COLUMN_IN_FORCE] ? 1 : -1;
+    const line *x = a, *y = b;
+    if (x->in_force != y->in_force) {
+        return x->in_force < y->in_force ? 1 : -1;
     }
     return worst(x) < worst(y) ? 1 : worst(x) > worst(y) ? -1 : 0;
 }
@@ -47,13 +47,13 @@ static const char *percent(double part, char text[32]) {
 
 static void print_words(const line *l) {
     char loads[32];
-    double share = l->value[SPAR_COLUMN_SHARE];
+    double share = l->share;
     printf("   leave %s out: ", l->name);
-    if (l->value[SPAR_COLUMN_MOTION] < 0) {
+    if (l->fails) {
         printf("the run fails\n");
         return;
     }
-    printf("%s of the root loads, ", percent(l->value[SPAR_COLUMN_REACTION], loads));
+    printf("%s of the root loads, ", percent(l->reaction, loads));
     if (fabs(share) < 0.005) {
         printf("saves nothing\n");
     } else {
@@ -63,23 +63,25 @@ static void print_words(const line *l) {
 
 static void print_line(const line *l) {
     char motion[32], loads[32];
-    printf("  %-18s %9.2g", l->name, l->value[SPAR_COLUMN_SIZE]);
-    if (l->value[SPAR_COLUMN_MOTION] < 0) {
+    printf("  %-18s %9.2g", l->name, l->size);
+    if (l->fails) {
         printf(" %11s %11s %8s", "fails", "fails", "");
     } else {
-        printf(" %11s %11s %6.0f %%", percent(l->value[SPAR_COLUMN_MOTION], motion),
-               percent(l->value[SPAR_COLUMN_REACTION], loads),
-               round(100 * l->value[SPAR_COLUMN_SHARE]) + 0.0); /* no -0 */
+        printf(" %11s %11s %6.0f %%", percent(l->motion, motion), percent(l->reaction, loads),
+               round(100 * l->share) + 0.0); /* no -0 */
     }
     print_words(l);
 }
 
 static void print_table(const line *lines, const rotor_trial *t) {
-    printf("What effects are worth over %.3g s from here (%lld steps of %g s):\n\n", t->dt * (double)t->steps,
-           (long long)t->steps, t->dt);
+    double dt = 0;
+    int64_t steps = 0;
+    (void)spar_trial_get_steps(t->trial, &dt, &steps);
+    printf("What effects are worth over %.3g s from here (%lld steps of %g s):\n\n", dt * (double)steps,
+           (long long)steps, dt);
     printf("  %-18s %9s %11s %11s %8s\n", "effect", "size", "deflection", "root loads", "time");
     int k = 0;
-    for (; k < ROWS && lines[k].value[SPAR_COLUMN_IN_FORCE] > 0; k++) {
+    for (; k < ROWS && lines[k].in_force; k++) {
         print_line(lines + k);
     }
     printf("\n  not in force:");
@@ -92,31 +94,30 @@ static void print_table(const line *lines, const rotor_trial *t) {
 static void print_csv(const line *lines) {
     printf("effect,of,in_force,size,deflection_error,root_load_error,share_of_time\n");
     for (int k = 0; k < ROWS; k++) {
-        printf("%s,%s", lines[k].name, lines[k].kind);
-        for (int c = 0; c < SPAR_COLUMN_COUNT; c++) {
-            printf(",%.6g", lines[k].value[c]);
-        }
-        printf("\n");
+        const line *l = lines + k;
+        printf("%s,%s,%d,%.6g,%.6g,%.6g,%.6g\n", l->name, l->kind, l->in_force, l->size, l->fails ? -1 : l->motion,
+               l->fails ? -1 : l->reaction, l->share);
     }
 }
 
 int rotor_view_effects(const rotor_trial *t, int csv, int show) {
-    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], aero[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT];
     line lines[ROWS];
-    int status = spar_session_report_effects(t->session, t->dt, t->steps, t->before, t->solve, t->context,
-                                             SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]);
+    int status = spar_trial_report_effects(t->trial);
     if (status == SPAR_OK) {
-        status = spar_aero_report_effects(t->aero, t->session, t->dt, t->steps, t->before, t->solve, t->context,
-                                          SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, aero[0]);
+        status = spar_aero_report_effects(t->aero, t->trial);
     }
     if (status != SPAR_OK || !show) {
         return status;
     }
     for (int r = 0; r < SPAR_ROW_COUNT; r++) {
-        lines[r] = (line){spar_effect_name(r), "coupling", table[r]};
+        line *l = lines + r;
+        *l = (line){.name = spar_effect_name(r), .kind = "coupling"};
+        spar_trial_get_effect(t->trial, r, &l->in_force, &l->fails, &l->size, &l->motion, &l->reaction, &l->share);
     }
     for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
-        lines[SPAR_ROW_COUNT + r] = (line){spar_aero_effect_name(r), "blade element", aero[r]};
+        line *l = lines + SPAR_ROW_COUNT + r;
+        *l = (line){.name = spar_aero_effect_name(r), .kind = "blade element"};
+        spar_aero_get_effect(t->aero, r, &l->in_force, &l->fails, &l->size, &l->motion, &l->reaction, &l->share);
     }
     qsort(lines, ROWS, sizeof *lines, by_error);
     if (csv) {
@@ -129,25 +130,30 @@ int rotor_view_effects(const rotor_trial *t, int csv, int show) {
 
 /* ---- advice ---- */
 
-static void take_advice(const double *advice, int fidelity, int64_t modes, int nodes, int points, rotor_options *o) {
-    o->dt = advice[SPAR_ADVICE_DT];
-    o->substeps = (int)advice[SPAR_ADVICE_SUBSTEPS];
-    o->scheme = (int)advice[SPAR_ADVICE_SCHEME];
-    o->coupling_tolerance = advice[SPAR_ADVICE_COUPLING_RTOL];
-    o->predictor = (int)advice[SPAR_ADVICE_PREDICTOR];
-    o->newton = advice[SPAR_ADVICE_NEWTON_RTOL];
-    if (!o->rigid) {
+static int take_advice(const rotor_trial *t, rotor_options *o) {
+    int fidelity = 0, nodes = 0, points = 0;
+    int64_t modes = 0;
+    int status = spar_trial_get_settings(t->trial, &o->dt, &o->substeps, &o->scheme, &o->coupling_tolerance,
+                                         &o->predictor, &o->newton);
+    if (status == SPAR_OK) {
+        status = spar_trial_get_beam(t->trial, t->blade, &fidelity, &modes, NULL, &nodes, &points);
+    }
+    if (status == SPAR_OK && !o->rigid) {
         o->fidelity = fidelity;
         o->modes = (int)modes;
         o->nodes = nodes;
         o->quadrature = points > 0 ? points : o->quadrature;
     }
+    return status;
 }
 
-static void print_advice(const double *advice, const rotor_options *o, const rotor_trial *t) {
-    double present = advice[SPAR_ADVICE_PRESENT_ERROR], cost = advice[SPAR_ADVICE_COST];
-    printf("Settings for a tolerance of %g, from %d trials of %.3g s:\n\n", o->tolerance,
-           (int)advice[SPAR_ADVICE_TRIALS], t->dt * (double)t->steps);
+static void print_advice(const rotor_options *o, const rotor_trial *t, double length) {
+    double error = 0, cost = 0, present = 0;
+    int fails = 0;
+    int64_t runs = 0;
+    (void)spar_trial_get_outcome(t->trial, &error, &cost, &fails, &present);
+    (void)spar_trial_get_search(t->trial, &runs, NULL, NULL, NULL, NULL);
+    printf("Settings for a tolerance of %g, from %d trials of %.3g s:\n\n", o->tolerance, (int)runs, length);
     printf("  time step          %.4g s", o->dt);
     if (o->substeps > 1) {
         printf(" in %d substeps", o->substeps);
@@ -171,8 +177,8 @@ static void print_advice(const double *advice, const rotor_options *o, const rot
         printf(", to %.2g of the loads", o->coupling_tolerance);
     }
     printf("\n  predictor          order %d\n  Newton             to %.2g\n", o->predictor, o->newton);
-    printf("  estimated error    %.2g of the deflection", advice[SPAR_ADVICE_ERROR]);
-    if (present >= 0) {
+    printf("  estimated error    %.2g of the deflection", error);
+    if (!fails) {
         printf(" (as given: %.2g)\n  cost               %.2g of what it is as given\n", present, cost);
     } else {
         printf(" (as given it fails)\n");
@@ -183,21 +189,16 @@ static void print_advice(const double *advice, const rotor_options *o, const rot
 }
 
 int rotor_view_advice(const rotor_trial *t, rotor_options *o, int show) {
-    double advice[SPAR_ADVICE_COUNT];
-    int fidelity = 0, nodes = 0, points = 0;
-    int64_t modes = 0;
-    int status =
-        spar_session_advise(t->session, o->tolerance, t->dt, t->steps, fmax(o->seconds, (double)t->steps * t->dt),
-                            t->before, t->solve, t->context, SPAR_ADVICE_COUNT, advice);
+    double dt = 0;
+    int64_t steps = 0;
+    (void)spar_trial_get_steps(t->trial, &dt, &steps);
+    double length = dt * (double)steps;
+    int status = spar_trial_advise(t->trial, o->tolerance, fmax(o->seconds, length));
     if (status == SPAR_OK) {
-        status = spar_member_get_advice(t->blade, &fidelity, &modes, &nodes, &points);
+        status = take_advice(t, o);
     }
-    if (status != SPAR_OK) {
-        return status;
+    if (status == SPAR_OK && show) {
+        print_advice(o, t, length);
     }
-    take_advice(advice, fidelity, modes, nodes, points, o);
-    if (show) {
-        print_advice(advice, o, t);
-    }
-    return SPAR_OK;
+    return status;
 }

@@ -9,16 +9,11 @@
 extern "C" {
 #endif
 
-/* The scene as it stands, and the host's calls that its steps are made of. */
+/* The scene as it stands: a trial with steps and callbacks. */
 typedef struct rotor_trial {
-    spar_session *session;
+    spar_trial *trial;
     spar_aero *aero;
     spar_member *blade; /* one of them: they are described alike */
-    double dt;
-    int64_t steps;
-    spar_before_step before;
-    spar_fluid_solver solve;
-    void *context; /* of the two */
 } rotor_trial;
 
 /* Steps of dt for trials that last about so long: a multiple of 8. */

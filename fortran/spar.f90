@@ -15,7 +15,8 @@
 ! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam, spar_link_create and
 ! spar_link_set_spring joint%create_link and %set_link_spring, spar_spring_create joint%create_spring; a joint to the ground is
 ! created without b. spar_status_text, spar_version, spar_has, spar_effect_name, spar_aero_effect_name and spar_vtk_series_add
-! keep their names. A session has one variable, which owns it: spar_member_get_session is left to hosts that use spar_c.
+! keep their names. A session has one variable, which owns it: spar_member_get_session and spar_trial_get_session are left to hosts
+! that use spar_c.
 !
 ! Status. Every call takes stat and errmsg, optional and last, as allocate does. stat is 0 or a SPAR_ERR_*; errmsg is set only
 ! where something failed, to what went wrong, where, and the cure. Without stat a failure stops the program with that message.
@@ -32,15 +33,15 @@
 ! are. The host's own procedures (spar_fluid_solver, spar_before_step) get times as real(c_double). Integers, logicals and the constants SPAR_* have the default kind: a host whose integers
 ! have 8 bytes compiles this file and spar_c.f90 with its own options (-fdefault-integer-8). A count may have 4 or 8 bytes in
 ! any case; one too large for C is refused as any other that is out of range.
-! Figures that C names by constants from 0 (SPAR_REPORT_*, SPAR_TRY_*, SPAR_ADVICE_*, SPAR_COLUMN_* by SPAR_ROW_*) are found under
-! these names in arrays declared from 0: table(0:SPAR_COLUMN_COUNT-1, 0:SPAR_ROW_COUNT-1). Such an array may have any length:
-! its entries are set as far as it goes, those that the library does not know to 0.
+! Figures that C names by constants from 0 (SPAR_REPORT_*) are found under these names in arrays declared from 0:
+! report(0:SPAR_REPORT_COUNT-1). Such an array may have any length: its entries are set as far as it goes, those that the library
+! does not know to 0.
 !
 ! Life. A session, a polar and an aero object are owned by their variables: destroyed by `destroy`, or at the latest when the
 ! variable goes out of existence (which a variable of the main program never does). Destroy a session before MPI_Finalize.
-! To destroy twice, or what was never created, does nothing. Members and fluids belong to their session and go with it: their
-! variables are views, are not finalised, and must not be used when the session is gone; fluid%destroy takes a fluid out of
-! a living session. The variable of a member or a joint may be copied. To assign any of the others stops the program, since two owners
+! To destroy twice, or what was never created, does nothing. Members, fluids and trials belong to their session and go with it:
+! their variables are views, are not finalised, and must not be used when the session is gone; fluid%destroy and trial%destroy take
+! one out of a living session. The variable of a member or a joint may be copied. To assign any of the others stops the program, since two owners
 ! would destroy one thing: pass it as an argument, point to it, or keep it in an array. allocate with source= copies without
 ! asking; do not use it on them. To create a session, polar or aero object that exists is refused.
 module spar
@@ -51,7 +52,7 @@ module spar
   implicit none
   private
 
-  public :: spar_session, spar_member, spar_joint, spar_fluid, spar_polar, spar_aero
+  public :: spar_session, spar_member, spar_joint, spar_fluid, spar_trial, spar_polar, spar_aero
   public :: spar_fluid_solver, spar_before_step, spar_log, spar_progress
   public :: spar_status_text, spar_version, spar_has, spar_effect_name, spar_aero_effect_name, spar_vtk_series_add
 
@@ -94,21 +95,12 @@ module spar
   integer, parameter, public :: SPAR_AUDIT_FORCE = 0, SPAR_AUDIT_MOMENT = 1, SPAR_AUDIT_POWER = 2, &
       SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &
       SPAR_AUDIT_NODES = 7, SPAR_AUDIT_COUNT = 8
-  integer, parameter, public :: SPAR_TRY_MOTION = 0, SPAR_TRY_REACTION = 1, SPAR_TRY_LOAD = 2, SPAR_TRY_SECONDS = 3, &
-      SPAR_TRY_SOLUTIONS = 4, SPAR_TRY_COUNT = 5
   integer, parameter, public :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &
       SPAR_ROW_DAMPING = 3, SPAR_ROW_FLUID_MOMENT = 4, SPAR_ROW_FLUID_VELOCITY = 5, SPAR_ROW_FLUID_POSES = 6, &
       SPAR_ROW_FLUID_HISTORY = 7, SPAR_ROW_PREDICTOR = 8, SPAR_ROW_ITERATION = 9, SPAR_ROW_HALF_STEP = 10, &
       SPAR_ROW_MASSES = 11, SPAR_ROW_FOUNDATION = 12, SPAR_ROW_PRETENSION = 13, SPAR_ROW_COUNT = 14
-  integer, parameter, public :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
-      SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
   integer, parameter, public :: SPAR_GOAL_MOTION = 1, SPAR_GOAL_REACTION = 2, SPAR_GOAL_SECTION = 4, &
       SPAR_GOAL_LOAD = 8, SPAR_GOAL_NUMBERS = 16
-  integer, parameter, public :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
-      SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
-      SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_WORK = 10, &
-      SPAR_ADVICE_SHOWING = 11, SPAR_ADVICE_SAVES = 12, SPAR_ADVICE_SKIPPED = 13, SPAR_ADVICE_ELEMENTS = 14, &
-      SPAR_ADVICE_COUNT = 15
   integer, parameter, public :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
       SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32, SPAR_AERO_SHEAR = 64, SPAR_AERO_TOWER = 128, &
       SPAR_AERO_INFLOW = 256, SPAR_AERO_STALL = 512, SPAR_AERO_UNSTEADY = 1024
@@ -126,7 +118,7 @@ module spar
     private
     type(c_ptr) :: handle = c_null_ptr
     type(log_record), pointer :: log => null()
-    type(progress_record), pointer :: progress => null()
+    type(trial_record), pointer :: trials => null()
   contains
     procedure, private :: session_step_begin, session_step_begin_single_1
     generic :: step_begin => session_step_begin, session_step_begin_single_1
@@ -178,10 +170,6 @@ module spar
     procedure :: get_reproducible => session_get_reproducible
     procedure :: set_threads => session_set_threads
     procedure :: get_threads => session_get_threads
-    procedure :: set_goal => session_set_goal
-    procedure :: get_goal => session_get_goal
-    procedure, private :: session_push_numbers, session_push_numbers_single_1
-    generic :: push_numbers => session_push_numbers, session_push_numbers_single_1
     procedure :: create => session_create
     procedure :: destroy => session_destroy
     procedure :: exists => session_exists
@@ -189,7 +177,6 @@ module spar
     procedure :: message => session_message
     procedure :: get_warning => session_get_warning
     procedure :: set_log => session_set_log
-    procedure :: set_progress => session_set_progress
     procedure, private :: session_sum_balance, session_sum_balance_single_1, session_sum_balance_single_2
     generic :: sum_balance => session_sum_balance, session_sum_balance_single_1, session_sum_balance_single_2
     procedure, private :: session_sum, session_sum_single_1
@@ -206,41 +193,6 @@ module spar
     generic :: solve_initial => session_solve_initial, session_solve_initial_single_1
     procedure, private :: session_step_adaptive, session_step_adaptive_single_1
     generic :: step_adaptive => session_step_adaptive, session_step_adaptive_single_1
-    procedure, private :: session_try_64, session_try_32
-    procedure, private :: session_try_64_single_1, session_try_64_single_2, session_try_64_single_3, &
-        session_try_32_single_1, session_try_32_single_2, session_try_32_single_3
-    generic :: try => session_try_64, session_try_32, session_try_64_single_1, session_try_64_single_2, &
-        session_try_64_single_3, session_try_32_single_1, session_try_32_single_2, session_try_32_single_3
-    procedure, private :: session_report_effects_64, session_report_effects_32
-    procedure, private :: session_report_effects_64_single_1, session_report_effects_64_single_2, &
-        session_report_effects_64_single_3, session_report_effects_32_single_1, session_report_effects_32_single_2, &
-        session_report_effects_32_single_3
-    generic :: report_effects => session_report_effects_64, session_report_effects_32, &
-        session_report_effects_64_single_1, session_report_effects_64_single_2, session_report_effects_64_single_3, &
-        session_report_effects_32_single_1, session_report_effects_32_single_2, session_report_effects_32_single_3
-    procedure, private :: session_solve_eigenvalues_64, session_solve_eigenvalues_32
-    procedure, private :: session_solve_eigenvalues_64_single_1, session_solve_eigenvalues_64_single_2, &
-        session_solve_eigenvalues_64_single_3, session_solve_eigenvalues_32_single_1, &
-        session_solve_eigenvalues_32_single_2, session_solve_eigenvalues_32_single_3
-    generic :: solve_eigenvalues => session_solve_eigenvalues_64, session_solve_eigenvalues_32, &
-        session_solve_eigenvalues_64_single_1, session_solve_eigenvalues_64_single_2, &
-        session_solve_eigenvalues_64_single_3, session_solve_eigenvalues_32_single_1, &
-        session_solve_eigenvalues_32_single_2, session_solve_eigenvalues_32_single_3
-    procedure, private :: session_solve_floquet_64, session_solve_floquet_32
-    procedure, private :: session_solve_floquet_64_single_1, session_solve_floquet_64_single_2, &
-        session_solve_floquet_64_single_3, session_solve_floquet_32_single_1, session_solve_floquet_32_single_2, &
-        session_solve_floquet_32_single_3
-    generic :: solve_floquet => session_solve_floquet_64, session_solve_floquet_32, &
-        session_solve_floquet_64_single_1, session_solve_floquet_64_single_2, session_solve_floquet_64_single_3, &
-        session_solve_floquet_32_single_1, session_solve_floquet_32_single_2, session_solve_floquet_32_single_3
-    procedure, private :: session_advise_64, session_advise_32
-    procedure, private :: session_advise_64_single_1, session_advise_64_single_2, session_advise_64_single_3, &
-        session_advise_32_single_1, session_advise_32_single_2, session_advise_32_single_3
-    generic :: advise => session_advise_64, session_advise_32, session_advise_64_single_1, &
-        session_advise_64_single_2, session_advise_64_single_3, session_advise_32_single_1, &
-        session_advise_32_single_2, session_advise_32_single_3
-    procedure, private :: session_apply_advice, session_apply_advice_single_1
-    generic :: apply_advice => session_apply_advice, session_apply_advice_single_1
     procedure, private :: session_assign
     generic :: assignment(=) => session_assign
     final :: session_final
@@ -326,7 +278,6 @@ module spar
     procedure :: get_owner => member_get_owner
     procedure, private :: member_estimate_error, member_estimate_error_single_1, member_estimate_error_single_2
     generic :: estimate_error => member_estimate_error, member_estimate_error_single_1, member_estimate_error_single_2
-    procedure :: get_advice => member_get_advice
     procedure :: write_vtk => member_write_vtk
     procedure, private :: member_create_point, member_create_point_single_1
     generic :: create_point => member_create_point, member_create_point_single_1
@@ -528,6 +479,72 @@ module spar
     generic :: assignment(=) => fluid_assign
   end type spar_fluid
 
+  type :: spar_trial
+    private
+    type(c_ptr) :: handle = c_null_ptr, session = c_null_ptr
+    type(trial_record), pointer :: record => null()
+  contains
+    procedure, private :: trial_get_steps, trial_get_steps_single_1
+    generic :: get_steps => trial_get_steps, trial_get_steps_single_1
+    procedure, private :: trial_get_errors, trial_get_errors_single_1, trial_get_errors_single_2, &
+        trial_get_errors_single_3
+    generic :: get_errors => trial_get_errors, trial_get_errors_single_1, trial_get_errors_single_2, &
+        trial_get_errors_single_3
+    procedure, private :: trial_get_cost, trial_get_cost_single_1
+    generic :: get_cost => trial_get_cost, trial_get_cost_single_1
+    procedure :: report_effects => trial_report_effects
+    procedure, private :: trial_get_effect, trial_get_effect_single_1, trial_get_effect_single_2, &
+        trial_get_effect_single_3, trial_get_effect_single_4
+    generic :: get_effect => trial_get_effect, trial_get_effect_single_1, trial_get_effect_single_2, &
+        trial_get_effect_single_3, trial_get_effect_single_4
+    procedure :: set_goals => trial_set_goals
+    procedure :: get_goals => trial_get_goals
+    procedure, private :: trial_push_numbers, trial_push_numbers_single_1
+    generic :: push_numbers => trial_push_numbers, trial_push_numbers_single_1
+    procedure :: set_option => trial_set_option
+    procedure, private :: trial_advise, trial_advise_single_1
+    generic :: advise => trial_advise, trial_advise_single_1
+    procedure, private :: trial_get_settings, trial_get_settings_single_1, trial_get_settings_single_2, &
+        trial_get_settings_single_3
+    generic :: get_settings => trial_get_settings, trial_get_settings_single_1, trial_get_settings_single_2, &
+        trial_get_settings_single_3
+    procedure, private :: trial_get_outcome, trial_get_outcome_single_1, trial_get_outcome_single_2, &
+        trial_get_outcome_single_3
+    generic :: get_outcome => trial_get_outcome, trial_get_outcome_single_1, trial_get_outcome_single_2, &
+        trial_get_outcome_single_3
+    procedure, private :: trial_get_search, trial_get_search_single_1, trial_get_search_single_2, &
+        trial_get_search_single_3
+    generic :: get_search => trial_get_search, trial_get_search_single_1, trial_get_search_single_2, &
+        trial_get_search_single_3
+    procedure, private :: trial_get_motion, trial_get_motion_single_1
+    generic :: get_motion => trial_get_motion, trial_get_motion_single_1
+    procedure, private :: trial_solve_floquet, trial_solve_floquet_single_1
+    generic :: solve_floquet => trial_solve_floquet, trial_solve_floquet_single_1
+    procedure :: create => trial_create
+    procedure :: destroy => trial_destroy
+    procedure :: exists => trial_exists
+    procedure :: c_handle => trial_handle
+    procedure, private :: trial_set_steps_64, trial_set_steps_32
+    procedure, private :: trial_set_steps_64_single_1, trial_set_steps_32_single_1
+    generic :: set_steps => trial_set_steps_64, trial_set_steps_32, trial_set_steps_64_single_1, &
+        trial_set_steps_32_single_1
+    procedure :: set_callbacks => trial_set_callbacks
+    procedure :: set_progress => trial_set_progress
+    procedure :: get_option => trial_get_option
+    procedure :: run => trial_run
+    procedure :: get_beam => trial_get_beam
+    procedure, private :: trial_apply, trial_apply_single_1
+    generic :: apply => trial_apply, trial_apply_single_1
+    procedure, private :: trial_set_motion_64, trial_set_motion_32
+    procedure, private :: trial_set_motion_64_single_1, trial_set_motion_32_single_1
+    generic :: set_motion => trial_set_motion_64, trial_set_motion_32, trial_set_motion_64_single_1, &
+        trial_set_motion_32_single_1
+    procedure, private :: trial_solve_eigenvalues, trial_solve_eigenvalues_single_1
+    generic :: solve_eigenvalues => trial_solve_eigenvalues, trial_solve_eigenvalues_single_1
+    procedure, private :: trial_assign
+    generic :: assignment(=) => trial_assign
+  end type spar_trial
+
   type :: spar_polar
     private
     type(c_ptr) :: handle = c_null_ptr
@@ -571,6 +588,10 @@ module spar
         aero_get_sections_single_3, aero_get_sections_single_4, aero_get_sections_single_5
     procedure, private :: aero_get_loads, aero_get_loads_single_1, aero_get_loads_single_2, aero_get_loads_single_3
     generic :: get_loads => aero_get_loads, aero_get_loads_single_1, aero_get_loads_single_2, aero_get_loads_single_3
+    procedure, private :: aero_get_effect, aero_get_effect_single_1, aero_get_effect_single_2, &
+        aero_get_effect_single_3, aero_get_effect_single_4
+    generic :: get_effect => aero_get_effect, aero_get_effect_single_1, aero_get_effect_single_2, &
+        aero_get_effect_single_3, aero_get_effect_single_4
     procedure :: create => aero_create
     procedure :: destroy => aero_destroy
     procedure :: exists => aero_exists
@@ -582,13 +603,7 @@ module spar
     procedure, private :: aero_read_aerodyn, aero_read_aerodyn_single_1, aero_read_aerodyn_single_2
     generic :: read_aerodyn => aero_read_aerodyn, aero_read_aerodyn_single_1, aero_read_aerodyn_single_2
     procedure :: get_flags => aero_get_flags
-    procedure, private :: aero_report_effects_64, aero_report_effects_32
-    procedure, private :: aero_report_effects_64_single_1, aero_report_effects_64_single_2, &
-        aero_report_effects_64_single_3, aero_report_effects_32_single_1, aero_report_effects_32_single_2, &
-        aero_report_effects_32_single_3
-    generic :: report_effects => aero_report_effects_64, aero_report_effects_32, aero_report_effects_64_single_1, &
-        aero_report_effects_64_single_2, aero_report_effects_64_single_3, aero_report_effects_32_single_1, &
-        aero_report_effects_32_single_2, aero_report_effects_32_single_3
+    procedure :: report_effects => aero_report_effects
     procedure, private :: aero_assign
     generic :: assignment(=) => aero_assign
     final :: aero_final
@@ -622,7 +637,7 @@ module spar
       class(*), intent(inout), optional :: context
     end subroutine spar_log
 
-    ! Hears how far a call that makes trials is, see session%set_progress; stat other than SPAR_OK (as it comes in) ends the call.
+    ! Hears how far a call with many runs of a trial is, see trial%set_progress. stat is 0 on entry; any other value ends the call.
     subroutine spar_progress(done, expected, context, stat)
       import :: c_double
       real(c_double), intent(in) :: done, expected
@@ -644,10 +659,15 @@ module spar
     class(*), pointer :: context => null()
   end type log_record
 
-  type :: progress_record
+  ! What a trial keeps of the host; of its session, which frees it at the latest.
+  type :: trial_record
+    class(spar_session), pointer :: session => null()
+    procedure(spar_before_step), pointer, nopass :: before => null()
+    procedure(spar_fluid_solver), pointer, nopass :: solve => null()
     procedure(spar_progress), pointer, nopass :: progress => null()
-    class(*), pointer :: context => null()
-  end type progress_record
+    class(*), pointer :: before_context => null(), solve_context => null(), progress_context => null()
+    type(trial_record), pointer :: next => null()
+  end type trial_record
 
   interface spar_status_text
     procedure :: status_text
@@ -714,10 +734,15 @@ contains
 
   subroutine session_destroy(self)
     class(spar_session), intent(inout) :: self
+    type(trial_record), pointer :: record
 
     call spar_session_destroy(self%handle)
     if (associated(self%log)) deallocate (self%log)
-    if (associated(self%progress)) deallocate (self%progress)
+    do while (associated(self%trials))
+      record => self%trials
+      self%trials => record%next
+      deallocate (record)
+    end do
   end subroutine session_destroy
 
   impure elemental subroutine session_final(self)
@@ -840,54 +865,6 @@ contains
       call record%log(int(level), words)
     end if
   end subroutine call_log
-
-  ! progress is called ahead of each run of advise and report_effects; without it nothing is. What is given is kept as by set_log,
-  ! and is not to be set anew from progress itself.
-  subroutine session_set_progress(self, progress, context, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    procedure(spar_progress), optional :: progress
-    class(*), pointer, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    type(progress_record), pointer :: record
-    integer(c_int) :: status
-
-    nullify (record)
-    if (present(progress)) then
-      allocate (record)
-      record%progress => progress
-      if (present(context)) record%context => context
-      status = spar_session_set_progress(self%handle, c_funloc(call_progress), c_loc(record))
-    else
-      status = spar_session_set_progress(self%handle, c_null_funptr, c_null_ptr)
-    end if
-    if (status /= SPAR_OK) then
-      if (associated(record)) deallocate (record)
-    else
-      if (associated(self%progress)) deallocate (self%progress)
-      self%progress => record
-    end if
-    call finish(status, self%handle, stat, errmsg)
-  end subroutine session_set_progress
-
-  function call_progress(session, done, expected, context) bind(c, name='') result(answer)
-    type(c_ptr), value :: session, context
-    real(c_double), value :: done, expected
-    integer(c_int) :: answer
-    integer :: stat
-    type(progress_record), pointer :: record
-
-    answer = SPAR_ERR_ARGUMENT
-    if (.not. c_associated(session)) return
-    call c_f_pointer(context, record)
-    stat = SPAR_OK
-    if (associated(record%context)) then
-      call record%progress(done, expected, record%context, stat=stat)
-    else
-      call record%progress(done, expected, stat=stat)
-    end if
-    answer = to_c(stat)
-  end function call_progress
 
   ! value is as long as what is set.
   subroutine session_get_option(self, key, value, stat, errmsg)
@@ -1095,99 +1072,311 @@ contains
     answer = to_c(stat)
   end function call_before
 
-  subroutine session_try_64(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: report(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    logical, intent(in), optional :: compare ! with the last one that did not
+  ! ---- trials ----
+
+  ! The session's variable must be a target and stay in place while the trial lives: callbacks are handed it.
+  subroutine trial_create(self, session, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    class(spar_session), intent(inout), target :: session
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    type(step_record), target :: record
-    type(c_funptr) :: to_solver, to_before
+    type(c_ptr) :: made
+    integer(c_int) :: status
+
+    if (c_associated(self%handle)) then
+      call occupied('trial%create', stat, errmsg)
+      return
+    end if
+    made = c_null_ptr
+    status = spar_trial_create(session%handle, made)
+    if (status == SPAR_OK) then
+      self%handle = made
+      self%session = session%handle
+      allocate (self%record)
+      self%record%session => session
+      self%record%next => session%trials
+      session%trials => self%record
+    end if
+    call finish(status, session%handle, stat, errmsg)
+  end subroutine trial_create
+
+  ! Takes the trial out of its session, which must still be there.
+  subroutine trial_destroy(self)
+    class(spar_trial), intent(inout) :: self
+    class(spar_session), pointer :: session
+    type(trial_record), pointer :: before
+
+    if (.not. c_associated(self%handle)) return
+    call spar_trial_destroy(self%handle)
+    session => self%record%session
+    if (associated(session%trials, self%record)) then
+      session%trials => self%record%next
+    else
+      before => session%trials
+      do while (.not. associated(before%next, self%record))
+        before => before%next
+      end do
+      before%next => self%record%next
+    end if
+    deallocate (self%record)
+    self%session = c_null_ptr
+  end subroutine trial_destroy
+
+  impure elemental subroutine trial_assign(left, right)
+    class(spar_trial), intent(inout) :: left
+    type(spar_trial), intent(in) :: right
+
+    call forbid_copy('a trial', left%handle, right%handle)
+  end subroutine trial_assign
+
+  logical function trial_exists(self) result(there)
+    class(spar_trial), intent(in) :: self
+
+    there = c_associated(self%handle)
+  end function trial_exists
+
+  type(c_ptr) function trial_handle(self) result(handle)
+    class(spar_trial), intent(in) :: self
+
+    handle = self%handle
+  end function trial_handle
+
+  subroutine trial_set_steps_64(self, dt, steps, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int64_t), intent(in) :: steps
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_trial_set_steps(self%handle, dt, steps), self%session, stat, errmsg)
+  end subroutine trial_set_steps_64
+
+  subroutine trial_set_steps_32(self, dt, steps, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    real(c_double), intent(in) :: dt
+    integer(c_int), intent(in) :: steps
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call self%set_steps(dt, int(steps, c_int64_t), stat, errmsg)
+  end subroutine trial_set_steps_32
+
+  ! What is given is kept: procedures must be module procedures or external ones, and contexts live as long as the trial, or until
+  ! the next set_callbacks.
+  subroutine trial_set_callbacks(self, before, before_context, solve, solve_context, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    procedure(spar_before_step), optional :: before
+    class(*), pointer, optional :: before_context
+    procedure(spar_fluid_solver), optional :: solve
+    class(*), pointer, optional :: solve_context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(c_funptr) :: to_before, to_solver
+    type(c_ptr) :: context
+    integer(c_int) :: status
+
+    to_before = c_null_funptr
+    to_solver = c_null_funptr
+    context = c_null_ptr
+    if (present(before)) to_before = c_funloc(call_trial_before)
+    if (present(solve)) to_solver = c_funloc(call_trial_solver)
+    if (associated(self%record)) context = c_loc(self%record)
+    status = spar_trial_set_callbacks(self%handle, to_before, context, to_solver, context)
+    if (status == SPAR_OK) then
+      nullify (self%record%before, self%record%before_context, self%record%solve, self%record%solve_context)
+      if (present(before)) self%record%before => before
+      if (present(before_context)) self%record%before_context => before_context
+      if (present(solve)) self%record%solve => solve
+      if (present(solve_context)) self%record%solve_context => solve_context
+    end if
+    call finish(status, self%session, stat, errmsg)
+  end subroutine trial_set_callbacks
+
+  ! progress and context are kept as by set_callbacks; without progress nothing is told.
+  subroutine trial_set_progress(self, progress, context, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    procedure(spar_progress), optional :: progress
+    class(*), pointer, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status
+
+    if (present(progress) .and. associated(self%record)) then
+      status = spar_trial_set_progress(self%handle, c_funloc(call_trial_progress), c_loc(self%record))
+    else
+      status = spar_trial_set_progress(self%handle, c_null_funptr, c_null_ptr)
+    end if
+    if (status == SPAR_OK) then
+      nullify (self%record%progress, self%record%progress_context)
+      if (present(progress)) self%record%progress => progress
+      if (present(context)) self%record%progress_context => context
+    end if
+    call finish(status, self%session, stat, errmsg)
+  end subroutine trial_set_progress
+
+  function call_trial_before(session, t, dt, context) bind(c, name='') result(answer)
+    type(c_ptr), value :: session, context
+    real(c_double), value :: t, dt
+    integer(c_int) :: answer
+    integer :: stat
+    type(trial_record), pointer :: record
+
+    answer = SPAR_ERR_ARGUMENT
+    if (.not. c_associated(session)) return
+    call c_f_pointer(context, record)
+    stat = SPAR_OK
+    if (associated(record%before_context)) then
+      call record%before(record%session, t, dt, record%before_context, stat=stat)
+    else
+      call record%before(record%session, t, dt, stat=stat)
+    end if
+    answer = to_c(stat)
+  end function call_trial_before
+
+  function call_trial_solver(session, t, dt, iteration, context) bind(c, name='') result(answer)
+    type(c_ptr), value :: session, context
+    real(c_double), value :: t, dt
+    integer(c_int), value :: iteration
+    integer(c_int) :: answer
+    integer :: stat
+    type(trial_record), pointer :: record
+
+    answer = SPAR_ERR_ARGUMENT
+    if (.not. c_associated(session)) return
+    call c_f_pointer(context, record)
+    stat = SPAR_OK
+    if (associated(record%solve_context)) then
+      call record%solve(record%session, t, dt, int(iteration), record%solve_context, stat=stat)
+    else
+      call record%solve(record%session, t, dt, int(iteration), stat=stat)
+    end if
+    answer = to_c(stat)
+  end function call_trial_solver
+
+  function call_trial_progress(session, done, expected, context) bind(c, name='') result(answer)
+    type(c_ptr), value :: session, context
+    real(c_double), value :: done, expected
+    integer(c_int) :: answer
+    integer :: stat
+    type(trial_record), pointer :: record
+
+    answer = SPAR_ERR_ARGUMENT
+    if (.not. c_associated(session)) return
+    call c_f_pointer(context, record)
+    stat = SPAR_OK
+    if (associated(record%progress_context)) then
+      call record%progress(done, expected, record%progress_context, stat=stat)
+    else
+      call record%progress(done, expected, stat=stat)
+    end if
+    answer = to_c(stat)
+  end function call_trial_progress
+
+  ! value is as long as what is set.
+  subroutine trial_get_option(self, key, value, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    character(*), intent(in) :: key
+    character(:), allocatable, intent(inout) :: value
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer, parameter :: room = 64
+    character(kind=c_char) :: text(room)
+    integer(c_int) :: status
+    integer :: i
+
+    status = spar_trial_get_option(self%handle, c_text(key), int(room, c_int64_t), text)
+    if (status == SPAR_OK) then
+      value = ''
+      do i = 1, room
+        if (text(i) == c_null_char) exit
+        value = value // text(i)
+      end do
+    end if
+    call finish(status, self%session, stat, errmsg)
+  end subroutine trial_get_option
+
+  ! compare: with the last run that did not.
+  subroutine trial_run(self, compare, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    logical, intent(in), optional :: compare
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
     logical :: compared
 
     compared = .false.
     if (present(compare)) compared = compare
-    call fill_record(self, record, to_solver, to_before, solve, before, context)
-    call finish(spar_session_try(self%handle, dt, steps, to_before, to_solver, c_loc(record), flag(compared), &
-        size(report, kind=c_int64_t), report), self%handle, stat, errmsg)
-  end subroutine session_try_64
+    call finish(spar_trial_run(self%handle, flag(compared)), self%session, stat, errmsg)
+  end subroutine trial_run
 
-  subroutine session_try_32(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: report(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    logical, intent(in), optional :: compare ! with the last one that did not
+  subroutine trial_get_beam(self, member, fidelity, modes, elements, nodes_per_element, points, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    class(spar_member), intent(in) :: member
+    integer, intent(inout), optional :: fidelity, elements, nodes_per_element, points
+    integer(c_int64_t), intent(inout), optional :: modes
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_fidelity, c_elements, c_nodes_per_element, c_points
+
+    status = spar_trial_get_beam(self%handle, member%handle, c_fidelity, modes, c_elements, c_nodes_per_element, c_points)
+    call hand(status, c_fidelity, fidelity)
+    call hand(status, c_elements, elements)
+    call hand(status, c_nodes_per_element, nodes_per_element)
+    call hand(status, c_points, points)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine trial_get_beam
+
+  subroutine trial_apply(self, dt, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    real(c_double), intent(inout), optional :: dt
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call self%try(dt, int(steps, c_int64_t), report, before, solve, context, compare, stat, errmsg)
-  end subroutine session_try_32
+    call finish(spar_trial_apply(self%handle, dt), self%session, stat, errmsg)
+  end subroutine trial_apply
 
-  subroutine session_report_effects_64(self, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
+  subroutine trial_set_motion_64(self, modes, amplitude, memory, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: modes
+    real(c_double), intent(in), optional :: amplitude ! left out: 0
+    integer(c_int64_t), intent(in), optional :: memory ! left out: 0
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    type(step_record), target :: record
-    type(c_funptr) :: to_solver, to_before
+    real(c_double) :: c_amplitude
+    integer(c_int64_t) :: c_memory
 
-    call fill_record(self, record, to_solver, to_before, solve, before, context)
-    call finish(spar_session_report_effects(self%handle, dt, steps, to_before, to_solver, c_loc(record), &
-        size(table, 2, c_int64_t), size(table, 1, c_int64_t), table), self%handle, stat, errmsg)
-  end subroutine session_report_effects_64
+    c_amplitude = 0
+    c_memory = 0
+    if (present(amplitude)) c_amplitude = amplitude
+    if (present(memory)) c_memory = memory
+    call finish(spar_trial_set_motion(self%handle, modes, c_amplitude, c_memory), self%session, stat, errmsg)
+  end subroutine trial_set_motion_64
 
-  subroutine session_report_effects_32(self, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
+  subroutine trial_set_motion_32(self, modes, amplitude, memory, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    integer(c_int), intent(in) :: modes
+    real(c_double), intent(in), optional :: amplitude
+    integer(c_int), intent(in), optional :: memory
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: c_memory
 
-    call self%report_effects(dt, int(steps, c_int64_t), table, before, solve, context, stat, errmsg)
-  end subroutine session_report_effects_32
+    c_memory = 0
+    if (present(memory)) c_memory = memory
+    call self%set_motion(int(modes, c_int64_t), amplitude, c_memory, stat, errmsg)
+  end subroutine trial_set_motion_32
 
   ! shift(2), eigenvalue(2,n): growth rate and angular frequency; shapes(2,6,nodes of all members,n)
-  subroutine session_solve_eigenvalues_64(self, dt, memory, modes, shift, eigenvalue, amplitude, before, solve, context, &
-      shapes, frame, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: memory, modes
-    real(c_double), intent(in) :: shift(2)
+  subroutine trial_solve_eigenvalues(self, shift, eigenvalue, shapes, frame, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    real(c_double), intent(in), optional :: shift(2)
     real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
-    real(c_double), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
     real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:,:)
     real(c_double), intent(inout), optional :: frame(3)
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
-    type(step_record), target :: record
-    type(c_funptr) :: to_solver, to_before
     character(:), allocatable :: fault
     integer(c_int64_t) :: n, nodes
-    real(c_double) :: size_of_motion
 
-    size_of_motion = 0
-    if (present(amplitude)) size_of_motion = amplitude
     n = size(eigenvalue, 2, kind=c_int64_t)
     nodes = 0
     call need(fault, 'eigenvalue', shape(eigenvalue, kind=c_int64_t), [2_c_int64_t, n])
@@ -1196,121 +1385,12 @@ contains
       call need(fault, 'shapes', shape(shapes, kind=c_int64_t), [2_c_int64_t, 6_c_int64_t, nodes, n])
     end if
     if (allocated(fault)) then
-      call refuse('session%solve_eigenvalues', fault, stat, errmsg)
+      call refuse('trial%solve_eigenvalues', fault, stat, errmsg)
       return
     end if
-    call fill_record(self, record, to_solver, to_before, solve, before, context)
-    call finish(spar_session_solve_eigenvalues(self%handle, dt, memory, size_of_motion, to_before, to_solver, &
-        c_loc(record), modes, n, shift, eigenvalue, nodes, shapes, frame), self%handle, stat, errmsg)
-  end subroutine session_solve_eigenvalues_64
-
-  subroutine session_solve_eigenvalues_32(self, dt, memory, modes, shift, eigenvalue, amplitude, before, solve, context, &
-      shapes, frame, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int), intent(in) :: memory, modes
-    real(c_double), intent(in) :: shift(2)
-    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
-    real(c_double), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:,:)
-    real(c_double), intent(inout), optional :: frame(3)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call self%solve_eigenvalues(dt, int(memory, c_int64_t), int(modes, c_int64_t), shift, eigenvalue, amplitude, before, &
-        solve, context, shapes, frame, stat, errmsg)
-  end subroutine session_solve_eigenvalues_32
-
-  ! eigenvalue(2,n): growth rate and angular frequency
-  subroutine session_solve_floquet_64(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps, modes
-    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
-    real(c_double), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    type(step_record), target :: record
-    type(c_funptr) :: to_solver, to_before
-    character(:), allocatable :: fault
-    integer(c_int64_t) :: n
-    real(c_double) :: size_of_motion
-
-    size_of_motion = 0
-    if (present(amplitude)) size_of_motion = amplitude
-    n = size(eigenvalue, 2, kind=c_int64_t)
-    call need(fault, 'eigenvalue', shape(eigenvalue, kind=c_int64_t), [2_c_int64_t, n])
-    if (allocated(fault)) then
-      call refuse('session%solve_floquet', fault, stat, errmsg)
-      return
-    end if
-    call fill_record(self, record, to_solver, to_before, solve, before, context)
-    call finish(spar_session_solve_floquet(self%handle, dt, steps, size_of_motion, to_before, to_solver, c_loc(record), &
-        modes, n, eigenvalue), self%handle, stat, errmsg)
-  end subroutine session_solve_floquet_64
-
-  subroutine session_solve_floquet_32(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int), intent(in) :: steps, modes
-    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
-    real(c_double), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call self%solve_floquet(dt, int(steps, c_int64_t), int(modes, c_int64_t), eigenvalue, amplitude, before, solve, &
-        context, stat, errmsg)
-  end subroutine session_solve_floquet_32
-
-  subroutine session_advise_64(self, tolerance, dt, steps, length, advice, before, solve, context, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: tolerance, dt, length
-    integer(c_int64_t), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: advice(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    type(step_record), target :: record
-    type(c_funptr) :: to_solver, to_before
-
-    call fill_record(self, record, to_solver, to_before, solve, before, context)
-    call finish(spar_session_advise(self%handle, tolerance, dt, steps, length, to_before, to_solver, c_loc(record), &
-        size(advice, kind=c_int64_t), advice), self%handle, stat, errmsg)
-  end subroutine session_advise_64
-
-  subroutine session_advise_32(self, tolerance, dt, steps, length, advice, before, solve, context, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: tolerance, dt, length
-    integer(c_int), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: advice(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call self%advise(tolerance, dt, int(steps, c_int64_t), length, advice, before, solve, context, stat, errmsg)
-  end subroutine session_advise_32
-
-  subroutine session_apply_advice(self, dt, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    real(c_double), intent(inout), optional :: dt
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_apply_advice(self%handle, dt), self%handle, stat, errmsg)
-  end subroutine session_apply_advice
+    call finish(spar_trial_solve_eigenvalues(self%handle, n, shift, eigenvalue, nodes, shapes, frame), self%session, stat, &
+        errmsg)
+  end subroutine trial_solve_eigenvalues
 
   ! ---- members ----
 
@@ -2447,39 +2527,14 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine aero_get_flags
 
-  subroutine aero_report_effects_64(self, session, dt, steps, table, before, solve, context, stat, errmsg)
+  subroutine aero_report_effects(self, trial, stat, errmsg)
     class(spar_aero), intent(inout) :: self
-    class(spar_session), intent(inout), target :: session
-    real(c_double), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    type(step_record), target :: record
-    type(c_funptr) :: to_solver, to_before
-
-    call fill_record(session, record, to_solver, to_before, solve, before, context)
-    call finish(spar_aero_report_effects(self%handle, session%handle, dt, steps, to_before, to_solver, c_loc(record), &
-        size(table, 2, c_int64_t), size(table, 1, c_int64_t), table), session%handle, stat, errmsg)
-  end subroutine aero_report_effects_64
-
-  subroutine aero_report_effects_32(self, session, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    class(spar_session), intent(inout), target :: session
-    real(c_double), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
+    class(spar_trial), intent(inout) :: trial
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call self%report_effects(session, dt, int(steps, c_int64_t), table, before, solve, context, stat, errmsg)
-  end subroutine aero_report_effects_32
+    call finish(spar_aero_report_effects(self%handle, trial%handle), trial%session, stat, errmsg)
+  end subroutine aero_report_effects
 
   ! ---- what needs no thought ----
 
@@ -2801,37 +2856,6 @@ contains
     call hand(status, c_threads, threads)
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_threads
-
-  subroutine session_set_goal(self, goals, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    integer, intent(in) :: goals
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_set_goal(self%handle, to_c(goals)), self%handle, stat, errmsg)
-  end subroutine session_set_goal
-
-  subroutine session_get_goal(self, goals, stat, errmsg)
-    class(spar_session), intent(in) :: self
-    integer, intent(inout) :: goals
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_goals
-
-    status = spar_session_get_goal(self%handle, c_goals)
-    call hand(status, c_goals, goals)
-    call finish(status, self%handle, stat, errmsg)
-  end subroutine session_get_goal
-
-  subroutine session_push_numbers(self, numbers, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: numbers(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_session_push_numbers(self%handle, size(numbers, kind=c_int64_t), numbers), self%handle, stat, &
-        errmsg)
-  end subroutine session_push_numbers
 
   ! Written by cmake/make-bindings.sh.
 
@@ -3372,22 +3396,6 @@ contains
 
     call finish(spar_member_estimate_error(self%handle, step, nodes), self%session, stat, errmsg)
   end subroutine member_estimate_error
-
-  subroutine member_get_advice(self, fidelity, modes, nodes_per_element, points, stat, errmsg)
-    class(spar_member), intent(in) :: self
-    integer, intent(inout), optional :: fidelity
-    integer(c_int64_t), intent(inout), optional :: modes
-    integer, intent(inout), optional :: nodes_per_element, points
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_fidelity, c_nodes_per_element, c_points
-
-    status = spar_member_get_advice(self%handle, c_fidelity, modes, c_nodes_per_element, c_points)
-    call hand(status, c_fidelity, fidelity)
-    call hand(status, c_nodes_per_element, nodes_per_element)
-    call hand(status, c_points, points)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine member_get_advice
 
   subroutine member_write_vtk(self, path, stat, errmsg)
     class(spar_member), intent(in) :: self
@@ -4010,6 +4018,179 @@ contains
 
   ! Written by cmake/make-bindings.sh.
 
+  subroutine trial_get_steps(self, dt, steps, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    real(c_double), intent(inout), optional :: dt
+    integer(c_int64_t), intent(inout), optional :: steps
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_trial_get_steps(self%handle, dt, steps), self%session, stat, errmsg)
+  end subroutine trial_get_steps
+
+  subroutine trial_get_errors(self, motion, reaction, load, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    real(c_double), intent(inout), optional :: motion, reaction, load
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_trial_get_errors(self%handle, motion, reaction, load), self%session, stat, errmsg)
+  end subroutine trial_get_errors
+
+  subroutine trial_get_cost(self, seconds, evaluations, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    real(c_double), intent(inout), optional :: seconds
+    integer(c_int64_t), intent(inout), optional :: evaluations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_trial_get_cost(self%handle, seconds, evaluations), self%session, stat, errmsg)
+  end subroutine trial_get_cost
+
+  subroutine trial_report_effects(self, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_trial_report_effects(self%handle), self%session, stat, errmsg)
+  end subroutine trial_report_effects
+
+  subroutine trial_get_effect(self, row, in_force, fails, size, motion, reaction, share, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    integer, intent(in) :: row
+    integer, intent(inout), optional :: in_force, fails
+    real(c_double), intent(inout), optional :: size, motion, reaction, share
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_in_force, c_fails
+
+    status = spar_trial_get_effect(self%handle, to_c(row), c_in_force, c_fails, size, motion, reaction, share)
+    call hand(status, c_in_force, in_force)
+    call hand(status, c_fails, fails)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine trial_get_effect
+
+  subroutine trial_set_goals(self, goals, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    integer, intent(in) :: goals
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_trial_set_goals(self%handle, to_c(goals)), self%session, stat, errmsg)
+  end subroutine trial_set_goals
+
+  subroutine trial_get_goals(self, goals, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    integer, intent(inout) :: goals
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_goals
+
+    status = spar_trial_get_goals(self%handle, c_goals)
+    call hand(status, c_goals, goals)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine trial_get_goals
+
+  subroutine trial_push_numbers(self, numbers, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: numbers(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_trial_push_numbers(self%handle, size(numbers, kind=c_int64_t), numbers), self%session, stat, &
+        errmsg)
+  end subroutine trial_push_numbers
+
+  subroutine trial_set_option(self, key, value, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    character(*), intent(in) :: key, value
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_trial_set_option(self%handle, c_text(key), c_text(value)), self%session, stat, errmsg)
+  end subroutine trial_set_option
+
+  subroutine trial_advise(self, tolerance, length, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    real(c_double), intent(in) :: tolerance, length
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_trial_advise(self%handle, tolerance, length), self%session, stat, errmsg)
+  end subroutine trial_advise
+
+  subroutine trial_get_settings(self, dt, substeps, scheme, coupling_rtol, predictor, newton_rtol, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    real(c_double), intent(inout), optional :: dt
+    integer, intent(inout), optional :: substeps, scheme
+    real(c_double), intent(inout), optional :: coupling_rtol
+    integer, intent(inout), optional :: predictor
+    real(c_double), intent(inout), optional :: newton_rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_substeps, c_scheme, c_predictor
+
+    status = spar_trial_get_settings(self%handle, dt, c_substeps, c_scheme, coupling_rtol, c_predictor, newton_rtol)
+    call hand(status, c_substeps, substeps)
+    call hand(status, c_scheme, scheme)
+    call hand(status, c_predictor, predictor)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine trial_get_settings
+
+  subroutine trial_get_outcome(self, error, cost, present_fails, present_error, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    real(c_double), intent(inout), optional :: error, cost
+    integer, intent(inout), optional :: present_fails
+    real(c_double), intent(inout), optional :: present_error
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_present_fails
+
+    status = spar_trial_get_outcome(self%handle, error, cost, c_present_fails, present_error)
+    call hand(status, c_present_fails, present_fails)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine trial_get_outcome
+
+  subroutine trial_get_search(self, runs, skipped, work, shown, saved, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: runs, skipped
+    real(c_double), intent(inout), optional :: work, shown, saved
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_trial_get_search(self%handle, runs, skipped, work, shown, saved), self%session, stat, errmsg)
+  end subroutine trial_get_search
+
+  subroutine trial_get_motion(self, modes, amplitude, memory, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: modes
+    real(c_double), intent(inout), optional :: amplitude
+    integer(c_int64_t), intent(inout), optional :: memory
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_trial_get_motion(self%handle, modes, amplitude, memory), self%session, stat, errmsg)
+  end subroutine trial_get_motion
+
+  subroutine trial_solve_floquet(self, eigenvalue, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'eigenvalue', shape(eigenvalue, kind=c_int64_t), [2_c_int64_t, size(eigenvalue, 2, &
+        kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('trial%solve_floquet', fault, stat, errmsg)
+      return
+    end if
+    call finish(spar_trial_solve_floquet(self%handle, size(eigenvalue, 2, kind=c_int64_t), eigenvalue), self%session, &
+        stat, errmsg)
+  end subroutine trial_solve_floquet
+
+  ! Written by cmake/make-bindings.sh.
+
   subroutine polar_set_interpolation(self, kind, stat, errmsg)
     class(spar_polar), intent(inout) :: self
     integer, intent(in) :: kind
@@ -4158,6 +4339,21 @@ contains
     call finish(spar_aero_get_loads(self%handle, per_length, force, moment), self%session, stat, errmsg)
   end subroutine aero_get_loads
 
+  subroutine aero_get_effect(self, row, in_force, fails, size, motion, reaction, share, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    integer, intent(in) :: row
+    integer, intent(inout), optional :: in_force, fails
+    real(c_double), intent(inout), optional :: size, motion, reaction, share
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_in_force, c_fails
+
+    status = spar_aero_get_effect(self%handle, to_c(row), c_in_force, c_fails, size, motion, reaction, share)
+    call hand(status, c_in_force, in_force)
+    call hand(status, c_fails, fails)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine aero_get_effect
+
   ! ---- calls that need no object ----
 
   function status_text(status) result(text)
@@ -4180,7 +4376,7 @@ contains
     there = c_has(c_text(feature)) /= 0
   end function has_feature
 
-  ! Of a row of report_effects, from 0 as SPAR_ROW_*; '' for what is no row.
+  ! Of a row of trial%report_effects, from 0 as SPAR_ROW_*; '' for what is no row.
   function effect_name(row) result(name)
     integer, intent(in) :: row
     character(:), allocatable :: name
@@ -4334,659 +4530,86 @@ contains
         stat=stat, errmsg=errmsg)
   end subroutine session_solve_initial_single_1
 
-  subroutine session_try_64_single_1(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
+  subroutine trial_set_steps_64_single_1(self, dt, steps, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
     real(c_float), intent(in) :: dt
     integer(c_int64_t), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: report(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    logical, intent(in), optional :: compare
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call session_try_64(self, dt=real(dt, c_double), steps=steps, report=report, before=before, solve=solve, &
-        context=context, compare=compare, stat=stat, errmsg=errmsg)
-  end subroutine session_try_64_single_1
+    call trial_set_steps_64(self, dt=real(dt, c_double), steps=steps, stat=stat, errmsg=errmsg)
+  end subroutine trial_set_steps_64_single_1
 
-  subroutine session_try_64_single_2(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_float), intent(inout) :: report(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    logical, intent(in), optional :: compare
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_report(:)
-
-    allocate (c_report(ubound(report, 1, c_int64_t)), source=untouched)
-    call session_try_64(self, dt=dt, steps=steps, report=c_report, before=before, solve=solve, context=context, &
-        compare=compare, stat=stat, errmsg=errmsg)
-    call take(c_report, report)
-  end subroutine session_try_64_single_2
-
-  subroutine session_try_64_single_3(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_float), intent(inout) :: report(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    logical, intent(in), optional :: compare
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_report(:)
-
-    allocate (c_report(ubound(report, 1, c_int64_t)), source=untouched)
-    call session_try_64(self, dt=real(dt, c_double), steps=steps, report=c_report, before=before, solve=solve, &
-        context=context, compare=compare, stat=stat, errmsg=errmsg)
-    call take(c_report, report)
-  end subroutine session_try_64_single_3
-
-  subroutine session_try_32_single_1(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
+  subroutine trial_set_steps_32_single_1(self, dt, steps, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
     real(c_float), intent(in) :: dt
     integer(c_int), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: report(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    logical, intent(in), optional :: compare
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call session_try_32(self, dt=real(dt, c_double), steps=steps, report=report, before=before, solve=solve, &
-        context=context, compare=compare, stat=stat, errmsg=errmsg)
-  end subroutine session_try_32_single_1
+    call trial_set_steps_32(self, dt=real(dt, c_double), steps=steps, stat=stat, errmsg=errmsg)
+  end subroutine trial_set_steps_32_single_1
 
-  subroutine session_try_32_single_2(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_float), intent(inout) :: report(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    logical, intent(in), optional :: compare
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_report(:)
-
-    allocate (c_report(ubound(report, 1, c_int64_t)), source=untouched)
-    call session_try_32(self, dt=dt, steps=steps, report=c_report, before=before, solve=solve, context=context, &
-        compare=compare, stat=stat, errmsg=errmsg)
-    call take(c_report, report)
-  end subroutine session_try_32_single_2
-
-  subroutine session_try_32_single_3(self, dt, steps, report, before, solve, context, compare, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_float), intent(inout) :: report(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    logical, intent(in), optional :: compare
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_report(:)
-
-    allocate (c_report(ubound(report, 1, c_int64_t)), source=untouched)
-    call session_try_32(self, dt=real(dt, c_double), steps=steps, report=c_report, before=before, solve=solve, &
-        context=context, compare=compare, stat=stat, errmsg=errmsg)
-    call take(c_report, report)
-  end subroutine session_try_32_single_3
-
-  subroutine session_report_effects_64_single_1(self, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call session_report_effects_64(self, dt=real(dt, c_double), steps=steps, table=table, before=before, solve=solve, &
-        context=context, stat=stat, errmsg=errmsg)
-  end subroutine session_report_effects_64_single_1
-
-  subroutine session_report_effects_64_single_2(self, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_float), intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_table(:,:)
-
-    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
-    call session_report_effects_64(self, dt=dt, steps=steps, table=c_table, before=before, solve=solve, &
-        context=context, stat=stat, errmsg=errmsg)
-    call take(c_table, table)
-  end subroutine session_report_effects_64_single_2
-
-  subroutine session_report_effects_64_single_3(self, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_float), intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_table(:,:)
-
-    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
-    call session_report_effects_64(self, dt=real(dt, c_double), steps=steps, table=c_table, before=before, &
-        solve=solve, context=context, stat=stat, errmsg=errmsg)
-    call take(c_table, table)
-  end subroutine session_report_effects_64_single_3
-
-  subroutine session_report_effects_32_single_1(self, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call session_report_effects_32(self, dt=real(dt, c_double), steps=steps, table=table, before=before, solve=solve, &
-        context=context, stat=stat, errmsg=errmsg)
-  end subroutine session_report_effects_32_single_1
-
-  subroutine session_report_effects_32_single_2(self, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_float), intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_table(:,:)
-
-    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
-    call session_report_effects_32(self, dt=dt, steps=steps, table=c_table, before=before, solve=solve, &
-        context=context, stat=stat, errmsg=errmsg)
-    call take(c_table, table)
-  end subroutine session_report_effects_32_single_2
-
-  subroutine session_report_effects_32_single_3(self, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_float), intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_table(:,:)
-
-    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
-    call session_report_effects_32(self, dt=real(dt, c_double), steps=steps, table=c_table, before=before, &
-        solve=solve, context=context, stat=stat, errmsg=errmsg)
-    call take(c_table, table)
-  end subroutine session_report_effects_32_single_3
-
-  subroutine session_solve_eigenvalues_64_single_1(self, dt, memory, modes, shift, eigenvalue, amplitude, before, &
-      solve, context, shapes, frame, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: memory
-    integer(c_int64_t), intent(in) :: modes
-    real(c_double), intent(in) :: shift(2)
-    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
-    real(c_float), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:,:)
-    real(c_double), intent(inout), optional :: frame(3)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_amplitude
-
-    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
-    call session_solve_eigenvalues_64(self, dt=real(dt, c_double), memory=memory, modes=modes, shift=shift, &
-        eigenvalue=eigenvalue, amplitude=c_amplitude, before=before, solve=solve, context=context, shapes=shapes, &
-        frame=frame, stat=stat, errmsg=errmsg)
-  end subroutine session_solve_eigenvalues_64_single_1
-
-  subroutine session_solve_eigenvalues_64_single_2(self, dt, memory, modes, shift, eigenvalue, amplitude, before, &
-      solve, context, shapes, frame, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: memory
-    integer(c_int64_t), intent(in) :: modes
-    real(c_float), intent(in) :: shift(2)
-    real(c_float), intent(inout) :: eigenvalue(:,:)
-    real(c_double), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    real(c_float), intent(inout), optional :: shapes(:,:,:,:)
-    real(c_float), intent(inout), optional :: frame(3)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_eigenvalue(:,:)
-    real(c_double), allocatable :: c_shapes(:,:,:,:)
-    real(c_double), allocatable :: c_frame(:)
-
-    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
-    if (present(shapes)) allocate (c_shapes(ubound(shapes, 1, c_int64_t), ubound(shapes, 2, c_int64_t), &
-        ubound(shapes, 3, c_int64_t), ubound(shapes, 4, c_int64_t)), source=untouched)
-    if (present(frame)) allocate (c_frame(ubound(frame, 1, c_int64_t)), source=untouched)
-    call session_solve_eigenvalues_64(self, dt=dt, memory=memory, modes=modes, shift=real(shift, c_double), &
-        eigenvalue=c_eigenvalue, amplitude=amplitude, before=before, solve=solve, context=context, shapes=c_shapes, &
-        frame=c_frame, stat=stat, errmsg=errmsg)
-    call take(c_eigenvalue, eigenvalue)
-    call take(c_shapes, shapes)
-    call take(c_frame, frame)
-  end subroutine session_solve_eigenvalues_64_single_2
-
-  subroutine session_solve_eigenvalues_64_single_3(self, dt, memory, modes, shift, eigenvalue, amplitude, before, &
-      solve, context, shapes, frame, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: memory
-    integer(c_int64_t), intent(in) :: modes
-    real(c_float), intent(in) :: shift(2)
-    real(c_float), intent(inout) :: eigenvalue(:,:)
-    real(c_float), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    real(c_float), intent(inout), optional :: shapes(:,:,:,:)
-    real(c_float), intent(inout), optional :: frame(3)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_eigenvalue(:,:)
-    real(c_double), allocatable :: c_amplitude
-    real(c_double), allocatable :: c_shapes(:,:,:,:)
-    real(c_double), allocatable :: c_frame(:)
-
-    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
-    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
-    if (present(shapes)) allocate (c_shapes(ubound(shapes, 1, c_int64_t), ubound(shapes, 2, c_int64_t), &
-        ubound(shapes, 3, c_int64_t), ubound(shapes, 4, c_int64_t)), source=untouched)
-    if (present(frame)) allocate (c_frame(ubound(frame, 1, c_int64_t)), source=untouched)
-    call session_solve_eigenvalues_64(self, dt=real(dt, c_double), memory=memory, modes=modes, shift=real(shift, &
-        c_double), eigenvalue=c_eigenvalue, amplitude=c_amplitude, before=before, solve=solve, context=context, &
-        shapes=c_shapes, frame=c_frame, stat=stat, errmsg=errmsg)
-    call take(c_eigenvalue, eigenvalue)
-    call take(c_shapes, shapes)
-    call take(c_frame, frame)
-  end subroutine session_solve_eigenvalues_64_single_3
-
-  subroutine session_solve_eigenvalues_32_single_1(self, dt, memory, modes, shift, eigenvalue, amplitude, before, &
-      solve, context, shapes, frame, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int), intent(in) :: memory
-    integer(c_int), intent(in) :: modes
-    real(c_double), intent(in) :: shift(2)
-    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
-    real(c_float), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:,:)
-    real(c_double), intent(inout), optional :: frame(3)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_amplitude
-
-    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
-    call session_solve_eigenvalues_32(self, dt=real(dt, c_double), memory=memory, modes=modes, shift=shift, &
-        eigenvalue=eigenvalue, amplitude=c_amplitude, before=before, solve=solve, context=context, shapes=shapes, &
-        frame=frame, stat=stat, errmsg=errmsg)
-  end subroutine session_solve_eigenvalues_32_single_1
-
-  subroutine session_solve_eigenvalues_32_single_2(self, dt, memory, modes, shift, eigenvalue, amplitude, before, &
-      solve, context, shapes, frame, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int), intent(in) :: memory
-    integer(c_int), intent(in) :: modes
-    real(c_float), intent(in) :: shift(2)
-    real(c_float), intent(inout) :: eigenvalue(:,:)
-    real(c_double), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    real(c_float), intent(inout), optional :: shapes(:,:,:,:)
-    real(c_float), intent(inout), optional :: frame(3)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_eigenvalue(:,:)
-    real(c_double), allocatable :: c_shapes(:,:,:,:)
-    real(c_double), allocatable :: c_frame(:)
-
-    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
-    if (present(shapes)) allocate (c_shapes(ubound(shapes, 1, c_int64_t), ubound(shapes, 2, c_int64_t), &
-        ubound(shapes, 3, c_int64_t), ubound(shapes, 4, c_int64_t)), source=untouched)
-    if (present(frame)) allocate (c_frame(ubound(frame, 1, c_int64_t)), source=untouched)
-    call session_solve_eigenvalues_32(self, dt=dt, memory=memory, modes=modes, shift=real(shift, c_double), &
-        eigenvalue=c_eigenvalue, amplitude=amplitude, before=before, solve=solve, context=context, shapes=c_shapes, &
-        frame=c_frame, stat=stat, errmsg=errmsg)
-    call take(c_eigenvalue, eigenvalue)
-    call take(c_shapes, shapes)
-    call take(c_frame, frame)
-  end subroutine session_solve_eigenvalues_32_single_2
-
-  subroutine session_solve_eigenvalues_32_single_3(self, dt, memory, modes, shift, eigenvalue, amplitude, before, &
-      solve, context, shapes, frame, stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int), intent(in) :: memory
-    integer(c_int), intent(in) :: modes
-    real(c_float), intent(in) :: shift(2)
-    real(c_float), intent(inout) :: eigenvalue(:,:)
-    real(c_float), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    real(c_float), intent(inout), optional :: shapes(:,:,:,:)
-    real(c_float), intent(inout), optional :: frame(3)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_eigenvalue(:,:)
-    real(c_double), allocatable :: c_amplitude
-    real(c_double), allocatable :: c_shapes(:,:,:,:)
-    real(c_double), allocatable :: c_frame(:)
-
-    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
-    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
-    if (present(shapes)) allocate (c_shapes(ubound(shapes, 1, c_int64_t), ubound(shapes, 2, c_int64_t), &
-        ubound(shapes, 3, c_int64_t), ubound(shapes, 4, c_int64_t)), source=untouched)
-    if (present(frame)) allocate (c_frame(ubound(frame, 1, c_int64_t)), source=untouched)
-    call session_solve_eigenvalues_32(self, dt=real(dt, c_double), memory=memory, modes=modes, shift=real(shift, &
-        c_double), eigenvalue=c_eigenvalue, amplitude=c_amplitude, before=before, solve=solve, context=context, &
-        shapes=c_shapes, frame=c_frame, stat=stat, errmsg=errmsg)
-    call take(c_eigenvalue, eigenvalue)
-    call take(c_shapes, shapes)
-    call take(c_frame, frame)
-  end subroutine session_solve_eigenvalues_32_single_3
-
-  subroutine session_solve_floquet_64_single_1(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, &
-      stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    integer(c_int64_t), intent(in) :: modes
-    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
-    real(c_float), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_amplitude
-
-    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
-    call session_solve_floquet_64(self, dt=real(dt, c_double), steps=steps, modes=modes, eigenvalue=eigenvalue, &
-        amplitude=c_amplitude, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
-  end subroutine session_solve_floquet_64_single_1
-
-  subroutine session_solve_floquet_64_single_2(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, &
-      stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    integer(c_int64_t), intent(in) :: modes
-    real(c_float), intent(inout) :: eigenvalue(:,:)
-    real(c_double), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_eigenvalue(:,:)
-
-    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
-    call session_solve_floquet_64(self, dt=dt, steps=steps, modes=modes, eigenvalue=c_eigenvalue, &
-        amplitude=amplitude, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
-    call take(c_eigenvalue, eigenvalue)
-  end subroutine session_solve_floquet_64_single_2
-
-  subroutine session_solve_floquet_64_single_3(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, &
-      stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    integer(c_int64_t), intent(in) :: modes
-    real(c_float), intent(inout) :: eigenvalue(:,:)
-    real(c_float), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_eigenvalue(:,:)
-    real(c_double), allocatable :: c_amplitude
-
-    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
-    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
-    call session_solve_floquet_64(self, dt=real(dt, c_double), steps=steps, modes=modes, eigenvalue=c_eigenvalue, &
-        amplitude=c_amplitude, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
-    call take(c_eigenvalue, eigenvalue)
-  end subroutine session_solve_floquet_64_single_3
-
-  subroutine session_solve_floquet_32_single_1(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, &
-      stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    integer(c_int), intent(in) :: modes
-    real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
-    real(c_float), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_amplitude
-
-    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
-    call session_solve_floquet_32(self, dt=real(dt, c_double), steps=steps, modes=modes, eigenvalue=eigenvalue, &
-        amplitude=c_amplitude, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
-  end subroutine session_solve_floquet_32_single_1
-
-  subroutine session_solve_floquet_32_single_2(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, &
-      stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    integer(c_int), intent(in) :: modes
-    real(c_float), intent(inout) :: eigenvalue(:,:)
-    real(c_double), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_eigenvalue(:,:)
-
-    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
-    call session_solve_floquet_32(self, dt=dt, steps=steps, modes=modes, eigenvalue=c_eigenvalue, &
-        amplitude=amplitude, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
-    call take(c_eigenvalue, eigenvalue)
-  end subroutine session_solve_floquet_32_single_2
-
-  subroutine session_solve_floquet_32_single_3(self, dt, steps, modes, eigenvalue, amplitude, before, solve, context, &
-      stat, errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    integer(c_int), intent(in) :: modes
-    real(c_float), intent(inout) :: eigenvalue(:,:)
-    real(c_float), intent(in), optional :: amplitude
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_eigenvalue(:,:)
-    real(c_double), allocatable :: c_amplitude
-
-    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
-    if (present(amplitude)) allocate (c_amplitude, source=real(amplitude, c_double))
-    call session_solve_floquet_32(self, dt=real(dt, c_double), steps=steps, modes=modes, eigenvalue=c_eigenvalue, &
-        amplitude=c_amplitude, before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
-    call take(c_eigenvalue, eigenvalue)
-  end subroutine session_solve_floquet_32_single_3
-
-  subroutine session_advise_64_single_1(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
-      errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: tolerance
-    real(c_float), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_float), intent(in) :: length
-    real(c_double), contiguous, intent(inout) :: advice(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call session_advise_64(self, tolerance=real(tolerance, c_double), dt=real(dt, c_double), steps=steps, &
-        length=real(length, c_double), advice=advice, before=before, solve=solve, context=context, stat=stat, &
-        errmsg=errmsg)
-  end subroutine session_advise_64_single_1
-
-  subroutine session_advise_64_single_2(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
-      errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: tolerance
-    real(c_double), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_double), intent(in) :: length
-    real(c_float), intent(inout) :: advice(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_advice(:)
-
-    allocate (c_advice(ubound(advice, 1, c_int64_t)), source=untouched)
-    call session_advise_64(self, tolerance=tolerance, dt=dt, steps=steps, length=length, advice=c_advice, &
-        before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
-    call take(c_advice, advice)
-  end subroutine session_advise_64_single_2
-
-  subroutine session_advise_64_single_3(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
-      errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: tolerance
-    real(c_float), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_float), intent(in) :: length
-    real(c_float), intent(inout) :: advice(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_advice(:)
-
-    allocate (c_advice(ubound(advice, 1, c_int64_t)), source=untouched)
-    call session_advise_64(self, tolerance=real(tolerance, c_double), dt=real(dt, c_double), steps=steps, &
-        length=real(length, c_double), advice=c_advice, before=before, solve=solve, context=context, stat=stat, &
-        errmsg=errmsg)
-    call take(c_advice, advice)
-  end subroutine session_advise_64_single_3
-
-  subroutine session_advise_32_single_1(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
-      errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: tolerance
-    real(c_float), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_float), intent(in) :: length
-    real(c_double), contiguous, intent(inout) :: advice(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call session_advise_32(self, tolerance=real(tolerance, c_double), dt=real(dt, c_double), steps=steps, &
-        length=real(length, c_double), advice=advice, before=before, solve=solve, context=context, stat=stat, &
-        errmsg=errmsg)
-  end subroutine session_advise_32_single_1
-
-  subroutine session_advise_32_single_2(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
-      errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_double), intent(in) :: tolerance
-    real(c_double), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_double), intent(in) :: length
-    real(c_float), intent(inout) :: advice(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_advice(:)
-
-    allocate (c_advice(ubound(advice, 1, c_int64_t)), source=untouched)
-    call session_advise_32(self, tolerance=tolerance, dt=dt, steps=steps, length=length, advice=c_advice, &
-        before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
-    call take(c_advice, advice)
-  end subroutine session_advise_32_single_2
-
-  subroutine session_advise_32_single_3(self, tolerance, dt, steps, length, advice, before, solve, context, stat, &
-      errmsg)
-    class(spar_session), intent(inout), target :: self
-    real(c_float), intent(in) :: tolerance
-    real(c_float), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_float), intent(in) :: length
-    real(c_float), intent(inout) :: advice(:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_advice(:)
-
-    allocate (c_advice(ubound(advice, 1, c_int64_t)), source=untouched)
-    call session_advise_32(self, tolerance=real(tolerance, c_double), dt=real(dt, c_double), steps=steps, &
-        length=real(length, c_double), advice=c_advice, before=before, solve=solve, context=context, stat=stat, &
-        errmsg=errmsg)
-    call take(c_advice, advice)
-  end subroutine session_advise_32_single_3
-
-  subroutine session_apply_advice_single_1(self, dt, stat, errmsg)
-    class(spar_session), intent(in) :: self
+  subroutine trial_apply_single_1(self, dt, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
     real(c_float), intent(inout) :: dt
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
     real(c_double), allocatable :: c_dt
 
     allocate (c_dt, source=untouched)
-    call session_apply_advice(self, dt=c_dt, stat=stat, errmsg=errmsg)
+    call trial_apply(self, dt=c_dt, stat=stat, errmsg=errmsg)
     call take(c_dt, dt)
-  end subroutine session_apply_advice_single_1
+  end subroutine trial_apply_single_1
+
+  subroutine trial_set_motion_64_single_1(self, modes, amplitude, memory, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: modes
+    real(c_float), intent(in) :: amplitude
+    integer(c_int64_t), intent(in), optional :: memory
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call trial_set_motion_64(self, modes=modes, amplitude=real(amplitude, c_double), memory=memory, stat=stat, &
+        errmsg=errmsg)
+  end subroutine trial_set_motion_64_single_1
+
+  subroutine trial_set_motion_32_single_1(self, modes, amplitude, memory, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    integer(c_int), intent(in) :: modes
+    real(c_float), intent(in) :: amplitude
+    integer(c_int), intent(in), optional :: memory
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call trial_set_motion_32(self, modes=modes, amplitude=real(amplitude, c_double), memory=memory, stat=stat, &
+        errmsg=errmsg)
+  end subroutine trial_set_motion_32_single_1
+
+  subroutine trial_solve_eigenvalues_single_1(self, shift, eigenvalue, shapes, frame, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    real(c_float), intent(in), optional :: shift(2)
+    real(c_float), intent(inout) :: eigenvalue(:,:)
+    real(c_float), intent(inout), optional :: shapes(:,:,:,:)
+    real(c_float), intent(inout), optional :: frame(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_shift(:)
+    real(c_double), allocatable :: c_eigenvalue(:,:)
+    real(c_double), allocatable :: c_shapes(:,:,:,:)
+    real(c_double), allocatable :: c_frame(:)
+
+    if (present(shift)) allocate (c_shift, source=real(shift, c_double))
+    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
+    if (present(shapes)) allocate (c_shapes(ubound(shapes, 1, c_int64_t), ubound(shapes, 2, c_int64_t), &
+        ubound(shapes, 3, c_int64_t), ubound(shapes, 4, c_int64_t)), source=untouched)
+    if (present(frame)) allocate (c_frame(ubound(frame, 1, c_int64_t)), source=untouched)
+    call trial_solve_eigenvalues(self, shift=c_shift, eigenvalue=c_eigenvalue, shapes=c_shapes, frame=c_frame, &
+        stat=stat, errmsg=errmsg)
+    call take(c_eigenvalue, eigenvalue)
+    call take(c_shapes, shapes)
+    call take(c_frame, frame)
+  end subroutine trial_solve_eigenvalues_single_1
 
   subroutine member_create_point_single_1(self, session, name, x, q, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -5871,114 +5494,6 @@ contains
         stat=stat, errmsg=errmsg)
   end subroutine aero_read_aerodyn_single_2
 
-  subroutine aero_report_effects_64_single_1(self, session, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    class(spar_session), intent(inout), target :: session
-    real(c_float), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call aero_report_effects_64(self, session=session, dt=real(dt, c_double), steps=steps, table=table, &
-        before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
-  end subroutine aero_report_effects_64_single_1
-
-  subroutine aero_report_effects_64_single_2(self, session, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    class(spar_session), intent(inout), target :: session
-    real(c_double), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_float), intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_table(:,:)
-
-    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
-    call aero_report_effects_64(self, session=session, dt=dt, steps=steps, table=c_table, before=before, solve=solve, &
-        context=context, stat=stat, errmsg=errmsg)
-    call take(c_table, table)
-  end subroutine aero_report_effects_64_single_2
-
-  subroutine aero_report_effects_64_single_3(self, session, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    class(spar_session), intent(inout), target :: session
-    real(c_float), intent(in) :: dt
-    integer(c_int64_t), intent(in) :: steps
-    real(c_float), intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_table(:,:)
-
-    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
-    call aero_report_effects_64(self, session=session, dt=real(dt, c_double), steps=steps, table=c_table, &
-        before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
-    call take(c_table, table)
-  end subroutine aero_report_effects_64_single_3
-
-  subroutine aero_report_effects_32_single_1(self, session, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    class(spar_session), intent(inout), target :: session
-    real(c_float), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_double), contiguous, intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call aero_report_effects_32(self, session=session, dt=real(dt, c_double), steps=steps, table=table, &
-        before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
-  end subroutine aero_report_effects_32_single_1
-
-  subroutine aero_report_effects_32_single_2(self, session, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    class(spar_session), intent(inout), target :: session
-    real(c_double), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_float), intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_table(:,:)
-
-    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
-    call aero_report_effects_32(self, session=session, dt=dt, steps=steps, table=c_table, before=before, solve=solve, &
-        context=context, stat=stat, errmsg=errmsg)
-    call take(c_table, table)
-  end subroutine aero_report_effects_32_single_2
-
-  subroutine aero_report_effects_32_single_3(self, session, dt, steps, table, before, solve, context, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    class(spar_session), intent(inout), target :: session
-    real(c_float), intent(in) :: dt
-    integer(c_int), intent(in) :: steps
-    real(c_float), intent(inout) :: table(:,:)
-    procedure(spar_before_step), optional :: before
-    procedure(spar_fluid_solver), optional :: solve
-    class(*), intent(inout), target, optional :: context
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    real(c_double), allocatable :: c_table(:,:)
-
-    allocate (c_table(ubound(table, 1, c_int64_t), ubound(table, 2, c_int64_t)), source=untouched)
-    call aero_report_effects_32(self, session=session, dt=real(dt, c_double), steps=steps, table=c_table, &
-        before=before, solve=solve, context=context, stat=stat, errmsg=errmsg)
-    call take(c_table, table)
-  end subroutine aero_report_effects_32_single_3
-
   subroutine session_step_begin_single_1(self, dt, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_float), intent(in) :: dt
@@ -6284,15 +5799,6 @@ contains
     call session_get_step_control(self, next_dt=c_next_dt, reject=reject, rejected=rejected, stat=stat, errmsg=errmsg)
     call take(c_next_dt, next_dt)
   end subroutine session_get_step_control_single_2
-
-  subroutine session_push_numbers_single_1(self, numbers, stat, errmsg)
-    class(spar_session), intent(inout) :: self
-    real(c_float), intent(in) :: numbers(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call session_push_numbers(self, numbers=real(numbers, c_double), stat=stat, errmsg=errmsg)
-  end subroutine session_push_numbers_single_1
 
   subroutine member_set_axis_single_1(self, eta, xyz, twist, stat, errmsg)
     class(spar_member), intent(inout) :: self
@@ -7633,6 +7139,413 @@ contains
     call take(c_moment, moment)
   end subroutine fluid_sum_loads_single_3
 
+  subroutine trial_get_steps_single_1(self, dt, steps, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    real(c_float), intent(inout) :: dt
+    integer(c_int64_t), intent(inout), optional :: steps
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_dt
+
+    allocate (c_dt, source=untouched)
+    call trial_get_steps(self, dt=c_dt, steps=steps, stat=stat, errmsg=errmsg)
+    call take(c_dt, dt)
+  end subroutine trial_get_steps_single_1
+
+  subroutine trial_get_errors_single_1(self, motion, reaction, load, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    real(c_float), intent(inout) :: motion
+    real(c_float), intent(inout), optional :: reaction
+    real(c_float), intent(inout), optional :: load
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_motion
+    real(c_double), allocatable :: c_reaction
+    real(c_double), allocatable :: c_load
+
+    allocate (c_motion, source=untouched)
+    if (present(reaction)) allocate (c_reaction, source=untouched)
+    if (present(load)) allocate (c_load, source=untouched)
+    call trial_get_errors(self, motion=c_motion, reaction=c_reaction, load=c_load, stat=stat, errmsg=errmsg)
+    call take(c_motion, motion)
+    call take(c_reaction, reaction)
+    call take(c_load, load)
+  end subroutine trial_get_errors_single_1
+
+  subroutine trial_get_errors_single_2(self, no_motion, reaction, load, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    type(absent), intent(in), optional :: no_motion
+    real(c_float), intent(inout) :: reaction
+    real(c_float), intent(inout), optional :: load
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_reaction
+    real(c_double), allocatable :: c_load
+
+    allocate (c_reaction, source=untouched)
+    if (present(load)) allocate (c_load, source=untouched)
+    if (present(no_motion)) return
+    call trial_get_errors(self, reaction=c_reaction, load=c_load, stat=stat, errmsg=errmsg)
+    call take(c_reaction, reaction)
+    call take(c_load, load)
+  end subroutine trial_get_errors_single_2
+
+  subroutine trial_get_errors_single_3(self, no_motion, no_reaction, load, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    type(absent), intent(in), optional :: no_motion
+    type(absent), intent(in), optional :: no_reaction
+    real(c_float), intent(inout) :: load
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_load
+
+    allocate (c_load, source=untouched)
+    if (present(no_motion) .or. present(no_reaction)) return
+    call trial_get_errors(self, load=c_load, stat=stat, errmsg=errmsg)
+    call take(c_load, load)
+  end subroutine trial_get_errors_single_3
+
+  subroutine trial_get_cost_single_1(self, seconds, evaluations, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    real(c_float), intent(inout) :: seconds
+    integer(c_int64_t), intent(inout), optional :: evaluations
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_seconds
+
+    allocate (c_seconds, source=untouched)
+    call trial_get_cost(self, seconds=c_seconds, evaluations=evaluations, stat=stat, errmsg=errmsg)
+    call take(c_seconds, seconds)
+  end subroutine trial_get_cost_single_1
+
+  subroutine trial_get_effect_single_1(self, row, in_force, fails, size, motion, reaction, share, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    integer, intent(in) :: row
+    integer, intent(inout), optional :: in_force
+    integer, intent(inout), optional :: fails
+    real(c_float), intent(inout) :: size
+    real(c_float), intent(inout), optional :: motion
+    real(c_float), intent(inout), optional :: reaction
+    real(c_float), intent(inout), optional :: share
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_size
+    real(c_double), allocatable :: c_motion
+    real(c_double), allocatable :: c_reaction
+    real(c_double), allocatable :: c_share
+
+    allocate (c_size, source=untouched)
+    if (present(motion)) allocate (c_motion, source=untouched)
+    if (present(reaction)) allocate (c_reaction, source=untouched)
+    if (present(share)) allocate (c_share, source=untouched)
+    call trial_get_effect(self, row=row, in_force=in_force, fails=fails, size=c_size, motion=c_motion, &
+        reaction=c_reaction, share=c_share, stat=stat, errmsg=errmsg)
+    call take(c_size, size)
+    call take(c_motion, motion)
+    call take(c_reaction, reaction)
+    call take(c_share, share)
+  end subroutine trial_get_effect_single_1
+
+  subroutine trial_get_effect_single_2(self, row, in_force, fails, no_size, motion, reaction, share, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    integer, intent(in) :: row
+    integer, intent(inout), optional :: in_force
+    integer, intent(inout), optional :: fails
+    type(absent), intent(in), optional :: no_size
+    real(c_float), intent(inout) :: motion
+    real(c_float), intent(inout), optional :: reaction
+    real(c_float), intent(inout), optional :: share
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_motion
+    real(c_double), allocatable :: c_reaction
+    real(c_double), allocatable :: c_share
+
+    allocate (c_motion, source=untouched)
+    if (present(reaction)) allocate (c_reaction, source=untouched)
+    if (present(share)) allocate (c_share, source=untouched)
+    if (present(no_size)) return
+    call trial_get_effect(self, row=row, in_force=in_force, fails=fails, motion=c_motion, reaction=c_reaction, &
+        share=c_share, stat=stat, errmsg=errmsg)
+    call take(c_motion, motion)
+    call take(c_reaction, reaction)
+    call take(c_share, share)
+  end subroutine trial_get_effect_single_2
+
+  subroutine trial_get_effect_single_3(self, row, in_force, fails, no_size, no_motion, reaction, share, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    integer, intent(in) :: row
+    integer, intent(inout), optional :: in_force
+    integer, intent(inout), optional :: fails
+    type(absent), intent(in), optional :: no_size
+    type(absent), intent(in), optional :: no_motion
+    real(c_float), intent(inout) :: reaction
+    real(c_float), intent(inout), optional :: share
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_reaction
+    real(c_double), allocatable :: c_share
+
+    allocate (c_reaction, source=untouched)
+    if (present(share)) allocate (c_share, source=untouched)
+    if (present(no_size) .or. present(no_motion)) return
+    call trial_get_effect(self, row=row, in_force=in_force, fails=fails, reaction=c_reaction, share=c_share, &
+        stat=stat, errmsg=errmsg)
+    call take(c_reaction, reaction)
+    call take(c_share, share)
+  end subroutine trial_get_effect_single_3
+
+  subroutine trial_get_effect_single_4(self, row, in_force, fails, no_size, no_motion, no_reaction, share, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    integer, intent(in) :: row
+    integer, intent(inout), optional :: in_force
+    integer, intent(inout), optional :: fails
+    type(absent), intent(in), optional :: no_size
+    type(absent), intent(in), optional :: no_motion
+    type(absent), intent(in), optional :: no_reaction
+    real(c_float), intent(inout) :: share
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_share
+
+    allocate (c_share, source=untouched)
+    if (present(no_size) .or. present(no_motion) .or. present(no_reaction)) return
+    call trial_get_effect(self, row=row, in_force=in_force, fails=fails, share=c_share, stat=stat, errmsg=errmsg)
+    call take(c_share, share)
+  end subroutine trial_get_effect_single_4
+
+  subroutine trial_push_numbers_single_1(self, numbers, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    real(c_float), intent(in) :: numbers(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call trial_push_numbers(self, numbers=real(numbers, c_double), stat=stat, errmsg=errmsg)
+  end subroutine trial_push_numbers_single_1
+
+  subroutine trial_advise_single_1(self, tolerance, length, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    real(c_float), intent(in) :: tolerance
+    real(c_float), intent(in) :: length
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call trial_advise(self, tolerance=real(tolerance, c_double), length=real(length, c_double), stat=stat, &
+        errmsg=errmsg)
+  end subroutine trial_advise_single_1
+
+  subroutine trial_get_settings_single_1(self, dt, substeps, scheme, coupling_rtol, predictor, newton_rtol, stat, &
+      errmsg)
+    class(spar_trial), intent(in) :: self
+    real(c_float), intent(inout) :: dt
+    integer, intent(inout), optional :: substeps
+    integer, intent(inout), optional :: scheme
+    real(c_float), intent(inout), optional :: coupling_rtol
+    integer, intent(inout), optional :: predictor
+    real(c_float), intent(inout), optional :: newton_rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_dt
+    real(c_double), allocatable :: c_coupling_rtol
+    real(c_double), allocatable :: c_newton_rtol
+
+    allocate (c_dt, source=untouched)
+    if (present(coupling_rtol)) allocate (c_coupling_rtol, source=untouched)
+    if (present(newton_rtol)) allocate (c_newton_rtol, source=untouched)
+    call trial_get_settings(self, dt=c_dt, substeps=substeps, scheme=scheme, coupling_rtol=c_coupling_rtol, &
+        predictor=predictor, newton_rtol=c_newton_rtol, stat=stat, errmsg=errmsg)
+    call take(c_dt, dt)
+    call take(c_coupling_rtol, coupling_rtol)
+    call take(c_newton_rtol, newton_rtol)
+  end subroutine trial_get_settings_single_1
+
+  subroutine trial_get_settings_single_2(self, no_dt, substeps, scheme, coupling_rtol, predictor, newton_rtol, stat, &
+      errmsg)
+    class(spar_trial), intent(in) :: self
+    type(absent), intent(in), optional :: no_dt
+    integer, intent(inout), optional :: substeps
+    integer, intent(inout), optional :: scheme
+    real(c_float), intent(inout) :: coupling_rtol
+    integer, intent(inout), optional :: predictor
+    real(c_float), intent(inout), optional :: newton_rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_coupling_rtol
+    real(c_double), allocatable :: c_newton_rtol
+
+    allocate (c_coupling_rtol, source=untouched)
+    if (present(newton_rtol)) allocate (c_newton_rtol, source=untouched)
+    if (present(no_dt)) return
+    call trial_get_settings(self, substeps=substeps, scheme=scheme, coupling_rtol=c_coupling_rtol, &
+        predictor=predictor, newton_rtol=c_newton_rtol, stat=stat, errmsg=errmsg)
+    call take(c_coupling_rtol, coupling_rtol)
+    call take(c_newton_rtol, newton_rtol)
+  end subroutine trial_get_settings_single_2
+
+  subroutine trial_get_settings_single_3(self, no_dt, substeps, scheme, no_coupling_rtol, predictor, newton_rtol, &
+      stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    type(absent), intent(in), optional :: no_dt
+    integer, intent(inout), optional :: substeps
+    integer, intent(inout), optional :: scheme
+    type(absent), intent(in), optional :: no_coupling_rtol
+    integer, intent(inout), optional :: predictor
+    real(c_float), intent(inout) :: newton_rtol
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_newton_rtol
+
+    allocate (c_newton_rtol, source=untouched)
+    if (present(no_dt) .or. present(no_coupling_rtol)) return
+    call trial_get_settings(self, substeps=substeps, scheme=scheme, predictor=predictor, newton_rtol=c_newton_rtol, &
+        stat=stat, errmsg=errmsg)
+    call take(c_newton_rtol, newton_rtol)
+  end subroutine trial_get_settings_single_3
+
+  subroutine trial_get_outcome_single_1(self, error, cost, present_fails, present_error, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    real(c_float), intent(inout) :: error
+    real(c_float), intent(inout), optional :: cost
+    integer, intent(inout), optional :: present_fails
+    real(c_float), intent(inout), optional :: present_error
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_error
+    real(c_double), allocatable :: c_cost
+    real(c_double), allocatable :: c_present_error
+
+    allocate (c_error, source=untouched)
+    if (present(cost)) allocate (c_cost, source=untouched)
+    if (present(present_error)) allocate (c_present_error, source=untouched)
+    call trial_get_outcome(self, error=c_error, cost=c_cost, present_fails=present_fails, &
+        present_error=c_present_error, stat=stat, errmsg=errmsg)
+    call take(c_error, error)
+    call take(c_cost, cost)
+    call take(c_present_error, present_error)
+  end subroutine trial_get_outcome_single_1
+
+  subroutine trial_get_outcome_single_2(self, no_error, cost, present_fails, present_error, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    type(absent), intent(in), optional :: no_error
+    real(c_float), intent(inout) :: cost
+    integer, intent(inout), optional :: present_fails
+    real(c_float), intent(inout), optional :: present_error
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_cost
+    real(c_double), allocatable :: c_present_error
+
+    allocate (c_cost, source=untouched)
+    if (present(present_error)) allocate (c_present_error, source=untouched)
+    if (present(no_error)) return
+    call trial_get_outcome(self, cost=c_cost, present_fails=present_fails, present_error=c_present_error, stat=stat, &
+        errmsg=errmsg)
+    call take(c_cost, cost)
+    call take(c_present_error, present_error)
+  end subroutine trial_get_outcome_single_2
+
+  subroutine trial_get_outcome_single_3(self, no_error, no_cost, present_fails, present_error, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    type(absent), intent(in), optional :: no_error
+    type(absent), intent(in), optional :: no_cost
+    integer, intent(inout), optional :: present_fails
+    real(c_float), intent(inout) :: present_error
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_present_error
+
+    allocate (c_present_error, source=untouched)
+    if (present(no_error) .or. present(no_cost)) return
+    call trial_get_outcome(self, present_fails=present_fails, present_error=c_present_error, stat=stat, errmsg=errmsg)
+    call take(c_present_error, present_error)
+  end subroutine trial_get_outcome_single_3
+
+  subroutine trial_get_search_single_1(self, runs, skipped, work, shown, saved, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: runs
+    integer(c_int64_t), intent(inout), optional :: skipped
+    real(c_float), intent(inout) :: work
+    real(c_float), intent(inout), optional :: shown
+    real(c_float), intent(inout), optional :: saved
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_work
+    real(c_double), allocatable :: c_shown
+    real(c_double), allocatable :: c_saved
+
+    allocate (c_work, source=untouched)
+    if (present(shown)) allocate (c_shown, source=untouched)
+    if (present(saved)) allocate (c_saved, source=untouched)
+    call trial_get_search(self, runs=runs, skipped=skipped, work=c_work, shown=c_shown, saved=c_saved, stat=stat, &
+        errmsg=errmsg)
+    call take(c_work, work)
+    call take(c_shown, shown)
+    call take(c_saved, saved)
+  end subroutine trial_get_search_single_1
+
+  subroutine trial_get_search_single_2(self, runs, skipped, no_work, shown, saved, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: runs
+    integer(c_int64_t), intent(inout), optional :: skipped
+    type(absent), intent(in), optional :: no_work
+    real(c_float), intent(inout) :: shown
+    real(c_float), intent(inout), optional :: saved
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_shown
+    real(c_double), allocatable :: c_saved
+
+    allocate (c_shown, source=untouched)
+    if (present(saved)) allocate (c_saved, source=untouched)
+    if (present(no_work)) return
+    call trial_get_search(self, runs=runs, skipped=skipped, shown=c_shown, saved=c_saved, stat=stat, errmsg=errmsg)
+    call take(c_shown, shown)
+    call take(c_saved, saved)
+  end subroutine trial_get_search_single_2
+
+  subroutine trial_get_search_single_3(self, runs, skipped, no_work, no_shown, saved, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: runs
+    integer(c_int64_t), intent(inout), optional :: skipped
+    type(absent), intent(in), optional :: no_work
+    type(absent), intent(in), optional :: no_shown
+    real(c_float), intent(inout) :: saved
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_saved
+
+    allocate (c_saved, source=untouched)
+    if (present(no_work) .or. present(no_shown)) return
+    call trial_get_search(self, runs=runs, skipped=skipped, saved=c_saved, stat=stat, errmsg=errmsg)
+    call take(c_saved, saved)
+  end subroutine trial_get_search_single_3
+
+  subroutine trial_get_motion_single_1(self, modes, amplitude, memory, stat, errmsg)
+    class(spar_trial), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: modes
+    real(c_float), intent(inout) :: amplitude
+    integer(c_int64_t), intent(inout), optional :: memory
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_amplitude
+
+    allocate (c_amplitude, source=untouched)
+    call trial_get_motion(self, modes=modes, amplitude=c_amplitude, memory=memory, stat=stat, errmsg=errmsg)
+    call take(c_amplitude, amplitude)
+  end subroutine trial_get_motion_single_1
+
+  subroutine trial_solve_floquet_single_1(self, eigenvalue, stat, errmsg)
+    class(spar_trial), intent(inout) :: self
+    real(c_float), intent(inout) :: eigenvalue(:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_eigenvalue(:,:)
+
+    allocate (c_eigenvalue(ubound(eigenvalue, 1, c_int64_t), ubound(eigenvalue, 2, c_int64_t)), source=untouched)
+    call trial_solve_floquet(self, eigenvalue=c_eigenvalue, stat=stat, errmsg=errmsg)
+    call take(c_eigenvalue, eigenvalue)
+  end subroutine trial_solve_floquet_single_1
+
   subroutine aero_get_chord_single_1(self, chord, twist, stat, errmsg)
     class(spar_aero), intent(in) :: self
     real(c_float), intent(inout) :: chord(:)
@@ -8048,6 +7961,102 @@ contains
     call aero_get_loads(self, moment=c_moment, stat=stat, errmsg=errmsg)
     call take(c_moment, moment)
   end subroutine aero_get_loads_single_3
+
+  subroutine aero_get_effect_single_1(self, row, in_force, fails, size, motion, reaction, share, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    integer, intent(in) :: row
+    integer, intent(inout), optional :: in_force
+    integer, intent(inout), optional :: fails
+    real(c_float), intent(inout) :: size
+    real(c_float), intent(inout), optional :: motion
+    real(c_float), intent(inout), optional :: reaction
+    real(c_float), intent(inout), optional :: share
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_size
+    real(c_double), allocatable :: c_motion
+    real(c_double), allocatable :: c_reaction
+    real(c_double), allocatable :: c_share
+
+    allocate (c_size, source=untouched)
+    if (present(motion)) allocate (c_motion, source=untouched)
+    if (present(reaction)) allocate (c_reaction, source=untouched)
+    if (present(share)) allocate (c_share, source=untouched)
+    call aero_get_effect(self, row=row, in_force=in_force, fails=fails, size=c_size, motion=c_motion, &
+        reaction=c_reaction, share=c_share, stat=stat, errmsg=errmsg)
+    call take(c_size, size)
+    call take(c_motion, motion)
+    call take(c_reaction, reaction)
+    call take(c_share, share)
+  end subroutine aero_get_effect_single_1
+
+  subroutine aero_get_effect_single_2(self, row, in_force, fails, no_size, motion, reaction, share, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    integer, intent(in) :: row
+    integer, intent(inout), optional :: in_force
+    integer, intent(inout), optional :: fails
+    type(absent), intent(in), optional :: no_size
+    real(c_float), intent(inout) :: motion
+    real(c_float), intent(inout), optional :: reaction
+    real(c_float), intent(inout), optional :: share
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_motion
+    real(c_double), allocatable :: c_reaction
+    real(c_double), allocatable :: c_share
+
+    allocate (c_motion, source=untouched)
+    if (present(reaction)) allocate (c_reaction, source=untouched)
+    if (present(share)) allocate (c_share, source=untouched)
+    if (present(no_size)) return
+    call aero_get_effect(self, row=row, in_force=in_force, fails=fails, motion=c_motion, reaction=c_reaction, &
+        share=c_share, stat=stat, errmsg=errmsg)
+    call take(c_motion, motion)
+    call take(c_reaction, reaction)
+    call take(c_share, share)
+  end subroutine aero_get_effect_single_2
+
+  subroutine aero_get_effect_single_3(self, row, in_force, fails, no_size, no_motion, reaction, share, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    integer, intent(in) :: row
+    integer, intent(inout), optional :: in_force
+    integer, intent(inout), optional :: fails
+    type(absent), intent(in), optional :: no_size
+    type(absent), intent(in), optional :: no_motion
+    real(c_float), intent(inout) :: reaction
+    real(c_float), intent(inout), optional :: share
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_reaction
+    real(c_double), allocatable :: c_share
+
+    allocate (c_reaction, source=untouched)
+    if (present(share)) allocate (c_share, source=untouched)
+    if (present(no_size) .or. present(no_motion)) return
+    call aero_get_effect(self, row=row, in_force=in_force, fails=fails, reaction=c_reaction, share=c_share, &
+        stat=stat, errmsg=errmsg)
+    call take(c_reaction, reaction)
+    call take(c_share, share)
+  end subroutine aero_get_effect_single_3
+
+  subroutine aero_get_effect_single_4(self, row, in_force, fails, no_size, no_motion, no_reaction, share, stat, errmsg)
+    class(spar_aero), intent(in) :: self
+    integer, intent(in) :: row
+    integer, intent(inout), optional :: in_force
+    integer, intent(inout), optional :: fails
+    type(absent), intent(in), optional :: no_size
+    type(absent), intent(in), optional :: no_motion
+    type(absent), intent(in), optional :: no_reaction
+    real(c_float), intent(inout) :: share
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double), allocatable :: c_share
+
+    allocate (c_share, source=untouched)
+    if (present(no_size) .or. present(no_motion) .or. present(no_reaction)) return
+    call aero_get_effect(self, row=row, in_force=in_force, fails=fails, share=c_share, stat=stat, errmsg=errmsg)
+    call take(c_share, share)
+  end subroutine aero_get_effect_single_4
 
   subroutine series_add_single_1(path, time, part, file, stat, errmsg)
     character(*), intent(in) :: path

@@ -1325,58 +1325,80 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_get_learned_added_mass
 
-    function spar_session_set_progress(session, progress, context) bind(c) result(status)
-      import :: c_funptr, c_int, c_ptr
+    function spar_trial_create(session, trial) bind(c) result(status)
+      import :: c_int, c_ptr
       type(c_ptr), value :: session
+      type(c_ptr), intent(inout), optional :: trial
+      integer(c_int) :: status
+    end function spar_trial_create
+
+    subroutine spar_trial_destroy(trial) bind(c)
+      import :: c_ptr
+      type(c_ptr), intent(inout), optional :: trial
+    end subroutine spar_trial_destroy
+
+    function spar_trial_get_session(trial, session) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: trial
+      type(c_ptr), intent(inout), optional :: session
+      integer(c_int) :: status
+    end function spar_trial_get_session
+
+    function spar_trial_set_steps(trial, dt, steps) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: trial
+      real(c_double), value :: dt
+      integer(c_int64_t), value :: steps
+      integer(c_int) :: status
+    end function spar_trial_set_steps
+
+    function spar_trial_get_steps(trial, dt, steps) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: trial
+      real(c_double), intent(inout), optional :: dt
+      integer(c_int64_t), intent(inout), optional :: steps
+      integer(c_int) :: status
+    end function spar_trial_get_steps
+
+    function spar_trial_set_callbacks(trial, before, before_context, solve, solve_context) bind(c) result(status)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: trial
+      type(c_funptr), value :: before
+      type(c_ptr), value :: before_context
+      type(c_funptr), value :: solve
+      type(c_ptr), value :: solve_context
+      integer(c_int) :: status
+    end function spar_trial_set_callbacks
+
+    function spar_trial_set_progress(trial, progress, context) bind(c) result(status)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: trial
       type(c_funptr), value :: progress
       type(c_ptr), value :: context
       integer(c_int) :: status
-    end function spar_session_set_progress
+    end function spar_trial_set_progress
 
-    function spar_session_try(session, dt, steps, before, solve, context, compare, capacity, report) bind(c) &
-        result(status)
-      import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: dt
-      integer(c_int64_t), value :: steps
-      type(c_funptr), value :: before, solve
-      type(c_ptr), value :: context
+    function spar_trial_run(trial, compare) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: trial
       integer(c_int), value :: compare
-      integer(c_int64_t), value :: capacity
-      real(c_double), intent(inout), optional :: report(*)
       integer(c_int) :: status
-    end function spar_session_try
+    end function spar_trial_run
 
-    function spar_session_solve_eigenvalues(session, dt, memory, amplitude, before, solve, context, modes, n, shift, &
-        eigenvalue, nodes, shapes, frame) bind(c) result(status)
-      import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: dt
-      integer(c_int64_t), value :: memory
-      real(c_double), value :: amplitude
-      type(c_funptr), value :: before, solve
-      type(c_ptr), value :: context
-      integer(c_int64_t), value :: modes, n
-      real(c_double), intent(in), optional :: shift(2)
-      real(c_double), intent(inout), optional :: eigenvalue(*)
-      integer(c_int64_t), value :: nodes
-      real(c_double), intent(inout), optional :: shapes(*), frame(3)
+    function spar_trial_get_errors(trial, motion, reaction, load) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: trial
+      real(c_double), intent(inout), optional :: motion, reaction, load
       integer(c_int) :: status
-    end function spar_session_solve_eigenvalues
+    end function spar_trial_get_errors
 
-    function spar_session_solve_floquet(session, dt, steps, amplitude, before, solve, context, modes, n, eigenvalue) &
-        bind(c) result(status)
-      import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: dt
-      integer(c_int64_t), value :: steps
-      real(c_double), value :: amplitude
-      type(c_funptr), value :: before, solve
-      type(c_ptr), value :: context
-      integer(c_int64_t), value :: modes, n
-      real(c_double), intent(inout), optional :: eigenvalue(*)
+    function spar_trial_get_cost(trial, seconds, evaluations) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: trial
+      real(c_double), intent(inout), optional :: seconds
+      integer(c_int64_t), intent(inout), optional :: evaluations
       integer(c_int) :: status
-    end function spar_session_solve_floquet
+    end function spar_trial_get_cost
 
     function spar_effect_name(row) bind(c) result(text)
       import :: c_int, c_ptr
@@ -1384,70 +1406,148 @@ module spar_calls
       type(c_ptr) :: text
     end function spar_effect_name
 
-    function spar_session_report_effects(session, dt, steps, before, solve, context, rows, columns, table) bind(c) &
-        result(status)
-      import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: dt
-      integer(c_int64_t), value :: steps
-      type(c_funptr), value :: before, solve
-      type(c_ptr), value :: context
-      integer(c_int64_t), value :: rows, columns
-      real(c_double), intent(inout), optional :: table(*)
-      integer(c_int) :: status
-    end function spar_session_report_effects
-
-    function spar_session_set_goal(session, goals) bind(c) result(status)
+    function spar_trial_report_effects(trial) bind(c) result(status)
       import :: c_int, c_ptr
-      type(c_ptr), value :: session
+      type(c_ptr), value :: trial
+      integer(c_int) :: status
+    end function spar_trial_report_effects
+
+    function spar_trial_get_effect(trial, row, in_force, fails, size, motion, reaction, share) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: trial
+      integer(c_int), value :: row
+      integer(c_int), intent(inout), optional :: in_force, fails
+      real(c_double), intent(inout), optional :: size, motion, reaction, share
+      integer(c_int) :: status
+    end function spar_trial_get_effect
+
+    function spar_trial_set_goals(trial, goals) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: trial
       integer(c_int), value :: goals
       integer(c_int) :: status
-    end function spar_session_set_goal
+    end function spar_trial_set_goals
 
-    function spar_session_get_goal(session, goals) bind(c) result(status)
+    function spar_trial_get_goals(trial, goals) bind(c) result(status)
       import :: c_int, c_ptr
-      type(c_ptr), value :: session
+      type(c_ptr), value :: trial
       integer(c_int), intent(inout), optional :: goals
       integer(c_int) :: status
-    end function spar_session_get_goal
+    end function spar_trial_get_goals
 
-    function spar_session_push_numbers(session, n, numbers) bind(c) result(status)
+    function spar_trial_push_numbers(trial, n, numbers) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
+      type(c_ptr), value :: trial
       integer(c_int64_t), value :: n
       real(c_double), intent(in), optional :: numbers(*)
       integer(c_int) :: status
-    end function spar_session_push_numbers
+    end function spar_trial_push_numbers
 
-    function spar_session_advise(session, tolerance, dt, steps, length, before, solve, context, capacity, advice) &
-        bind(c) result(status)
-      import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), value :: tolerance, dt
-      integer(c_int64_t), value :: steps
-      real(c_double), value :: length
-      type(c_funptr), value :: before, solve
-      type(c_ptr), value :: context
+    function spar_trial_set_option(trial, key, value) bind(c) result(status)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: trial
+      character(kind=c_char), intent(in), optional :: key(*), value(*)
+      integer(c_int) :: status
+    end function spar_trial_set_option
+
+    function spar_trial_get_option(trial, key, capacity, text) bind(c) result(status)
+      import :: c_char, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: trial
+      character(kind=c_char), intent(in), optional :: key(*)
       integer(c_int64_t), value :: capacity
-      real(c_double), intent(inout), optional :: advice(*)
+      character(kind=c_char), intent(inout), optional :: text(*)
       integer(c_int) :: status
-    end function spar_session_advise
+    end function spar_trial_get_option
 
-    function spar_session_apply_advice(session, dt) bind(c) result(status)
+    function spar_trial_advise(trial, tolerance, length) bind(c) result(status)
       import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: session
-      real(c_double), intent(inout), optional :: dt
+      type(c_ptr), value :: trial
+      real(c_double), value :: tolerance, length
       integer(c_int) :: status
-    end function spar_session_apply_advice
+    end function spar_trial_advise
 
-    function spar_member_get_advice(member, fidelity, modes, nodes_per_element, points) bind(c) result(status)
+    function spar_trial_get_settings(trial, dt, substeps, scheme, coupling_rtol, predictor, newton_rtol) bind(c) &
+        result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: trial
+      real(c_double), intent(inout), optional :: dt
+      integer(c_int), intent(inout), optional :: substeps, scheme
+      real(c_double), intent(inout), optional :: coupling_rtol
+      integer(c_int), intent(inout), optional :: predictor
+      real(c_double), intent(inout), optional :: newton_rtol
+      integer(c_int) :: status
+    end function spar_trial_get_settings
+
+    function spar_trial_get_beam(trial, member, fidelity, modes, elements, nodes_per_element, points) bind(c) &
+        result(status)
       import :: c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: member
+      type(c_ptr), value :: trial, member
       integer(c_int), intent(inout), optional :: fidelity
       integer(c_int64_t), intent(inout), optional :: modes
-      integer(c_int), intent(inout), optional :: nodes_per_element, points
+      integer(c_int), intent(inout), optional :: elements, nodes_per_element, points
       integer(c_int) :: status
-    end function spar_member_get_advice
+    end function spar_trial_get_beam
+
+    function spar_trial_get_outcome(trial, error, cost, present_fails, present_error) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: trial
+      real(c_double), intent(inout), optional :: error, cost
+      integer(c_int), intent(inout), optional :: present_fails
+      real(c_double), intent(inout), optional :: present_error
+      integer(c_int) :: status
+    end function spar_trial_get_outcome
+
+    function spar_trial_get_search(trial, runs, skipped, work, shown, saved) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: trial
+      integer(c_int64_t), intent(inout), optional :: runs, skipped
+      real(c_double), intent(inout), optional :: work, shown, saved
+      integer(c_int) :: status
+    end function spar_trial_get_search
+
+    function spar_trial_apply(trial, dt) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: trial
+      real(c_double), intent(inout), optional :: dt
+      integer(c_int) :: status
+    end function spar_trial_apply
+
+    function spar_trial_set_motion(trial, modes, amplitude, memory) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: trial
+      integer(c_int64_t), value :: modes
+      real(c_double), value :: amplitude
+      integer(c_int64_t), value :: memory
+      integer(c_int) :: status
+    end function spar_trial_set_motion
+
+    function spar_trial_get_motion(trial, modes, amplitude, memory) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: trial
+      integer(c_int64_t), intent(inout), optional :: modes
+      real(c_double), intent(inout), optional :: amplitude
+      integer(c_int64_t), intent(inout), optional :: memory
+      integer(c_int) :: status
+    end function spar_trial_get_motion
+
+    function spar_trial_solve_eigenvalues(trial, n, shift, eigenvalue, nodes, shapes, frame) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: trial
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: shift(2)
+      real(c_double), intent(inout), optional :: eigenvalue(*)
+      integer(c_int64_t), value :: nodes
+      real(c_double), intent(inout), optional :: shapes(*), frame(3)
+      integer(c_int) :: status
+    end function spar_trial_solve_eigenvalues
+
+    function spar_trial_solve_floquet(trial, n, eigenvalue) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: trial
+      integer(c_int64_t), value :: n
+      real(c_double), intent(inout), optional :: eigenvalue(*)
+      integer(c_int) :: status
+    end function spar_trial_solve_floquet
 
     ! spar_aero.h
     function spar_polar_create(n, alpha_rad, cl, cd, cm, polar) bind(c) result(status)
@@ -1615,18 +1715,20 @@ module spar_calls
       type(c_ptr) :: text
     end function spar_aero_effect_name
 
-    function spar_aero_report_effects(aero, session, dt, steps, before, solve, context, rows, columns, table) bind(c) &
-        result(status)
-      import :: c_double, c_funptr, c_int, c_int64_t, c_ptr
-      type(c_ptr), value :: aero, session
-      real(c_double), value :: dt
-      integer(c_int64_t), value :: steps
-      type(c_funptr), value :: before, solve
-      type(c_ptr), value :: context
-      integer(c_int64_t), value :: rows, columns
-      real(c_double), intent(inout), optional :: table(*)
+    function spar_aero_report_effects(aero, trial) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: aero, trial
       integer(c_int) :: status
     end function spar_aero_report_effects
+
+    function spar_aero_get_effect(aero, row, in_force, fails, size, motion, reaction, share) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: aero
+      integer(c_int), value :: row
+      integer(c_int), intent(inout), optional :: in_force, fails
+      real(c_double), intent(inout), optional :: size, motion, reaction, share
+      integer(c_int) :: status
+    end function spar_aero_get_effect
 
     ! spar_output.h
     function spar_member_write_vtk(member, path) bind(c) result(status)
@@ -1702,21 +1804,12 @@ module spar_c
       SPAR_AUDIT_FORCE_ERROR = 3, SPAR_AUDIT_MOMENT_ERROR = 4, SPAR_AUDIT_POWER_ERROR = 5, SPAR_AUDIT_FARTHEST = 6, &
       SPAR_AUDIT_NODES = 7, SPAR_AUDIT_COUNT = 8
   ! spar_analysis.h
-  integer(c_int), parameter :: SPAR_TRY_MOTION = 0, SPAR_TRY_REACTION = 1, SPAR_TRY_LOAD = 2, SPAR_TRY_SECONDS = 3, &
-      SPAR_TRY_SOLUTIONS = 4, SPAR_TRY_COUNT = 5
   integer(c_int), parameter :: SPAR_ROW_INERTIA = 0, SPAR_ROW_GYROSCOPIC = 1, SPAR_ROW_GRAVITY = 2, &
       SPAR_ROW_DAMPING = 3, SPAR_ROW_FLUID_MOMENT = 4, SPAR_ROW_FLUID_VELOCITY = 5, SPAR_ROW_FLUID_POSES = 6, &
       SPAR_ROW_FLUID_HISTORY = 7, SPAR_ROW_PREDICTOR = 8, SPAR_ROW_ITERATION = 9, SPAR_ROW_HALF_STEP = 10, &
       SPAR_ROW_MASSES = 11, SPAR_ROW_FOUNDATION = 12, SPAR_ROW_PRETENSION = 13, SPAR_ROW_COUNT = 14
-  integer(c_int), parameter :: SPAR_COLUMN_IN_FORCE = 0, SPAR_COLUMN_SIZE = 1, SPAR_COLUMN_MOTION = 2, &
-      SPAR_COLUMN_REACTION = 3, SPAR_COLUMN_SHARE = 4, SPAR_COLUMN_COUNT = 5
   integer(c_int), parameter :: SPAR_GOAL_MOTION = 1, SPAR_GOAL_REACTION = 2, SPAR_GOAL_SECTION = 4, &
       SPAR_GOAL_LOAD = 8, SPAR_GOAL_NUMBERS = 16
-  integer(c_int), parameter :: SPAR_ADVICE_DT = 0, SPAR_ADVICE_SUBSTEPS = 1, SPAR_ADVICE_SCHEME = 2, &
-      SPAR_ADVICE_COUPLING_RTOL = 3, SPAR_ADVICE_PREDICTOR = 4, SPAR_ADVICE_NEWTON_RTOL = 5, SPAR_ADVICE_ERROR = 6, &
-      SPAR_ADVICE_COST = 7, SPAR_ADVICE_PRESENT_ERROR = 8, SPAR_ADVICE_TRIALS = 9, SPAR_ADVICE_WORK = 10, &
-      SPAR_ADVICE_SHOWING = 11, SPAR_ADVICE_SAVES = 12, SPAR_ADVICE_SKIPPED = 13, SPAR_ADVICE_ELEMENTS = 14, &
-      SPAR_ADVICE_COUNT = 15
   ! spar_aero.h
   integer(c_int), parameter :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
       SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32, SPAR_AERO_SHEAR = 64, SPAR_AERO_TOWER = 128, &

@@ -22,8 +22,10 @@ The headers under include/spar say what each call does; here is what is differen
 - Failures raise spar.Error with the library's message, .status is its SPAR_ERR_*.
 - A fluid's solver is a function of (session, t, dt, iteration), what is called before the steps of trials one of
   (session, t, dt), a log one of (level, text), a progress one of (done, expected), which answers 0 or None to go on. What
-  they raise ends the step, or the call that tells progress, and is raised again.
-- A session is closed by `with`, close(), or at the latest when nothing refers to it; members, joints and fluids keep it.
+  they raise ends the step, or the trial's call, and is raised again.
+- A trial is made by session.trial_create(), and keeps its callbacks.
+- A session is closed by `with`, close(), or at the latest when nothing refers to it; members, joints, fluids and trials
+  keep it.
   What belonged to it is closed with it: further calls raise spar.Error. Nothing of spar can be copied or pickled.
 - Several ranks: spar.Session(comm) with an mpi4py communicator or its Fortran integer.
 The library is sought as SPAR_LIBRARY says, else where the loader finds libspar.so.1.
@@ -227,23 +229,36 @@ call spar_fluid_check_loads int fluid|fluid|value| point|double|in|[3] force|dou
 call spar_member_estimate_error int member|member|value| step|double|out| nodes|double|out|
 call spar_member_learn_added_mass int member|member|value| n|int64_t|value| eta|double|in|[n]
 call spar_member_get_learned_added_mass int member|member|value| used|int|out| spread|double|out| n|int64_t|out| capacity|int64_t|value| eta|double|out|[capacity] mass|double|out|[capacity][36]
-constants SPAR_TRY_MOTION=0 SPAR_TRY_REACTION=1 SPAR_TRY_LOAD=2 SPAR_TRY_SECONDS=3 SPAR_TRY_SOLUTIONS=4 SPAR_TRY_COUNT=5
-call spar_session_set_progress int session|session|value| progress|progress|callback| context|context|value|
-call spar_session_try int session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| compare|int|value| capacity|int64_t|value| report|double|out|[SPAR_TRY_COUNT]
-call spar_session_solve_eigenvalues int session|session|value| dt|double|value| memory|int64_t|value| amplitude|double|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| modes|int64_t|value| n|int64_t|value| shift|double|in|[2] eigenvalue|double|out|[n][2] nodes|int64_t|value| shapes|double|out|[n][nodes][6][2] frame|double|out|[3]
-call spar_session_solve_floquet int session|session|value| dt|double|value| steps|int64_t|value| amplitude|double|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| modes|int64_t|value| n|int64_t|value| eigenvalue|double|out|[n][2]
+call spar_trial_create int session|session|value| trial|trial|out|
+call spar_trial_destroy none trial|trial|out|
+call spar_trial_get_session int trial|trial|value| session|session|out|
+call spar_trial_set_steps int trial|trial|value| dt|double|value| steps|int64_t|value|
+call spar_trial_get_steps int trial|trial|value| dt|double|out| steps|int64_t|out|
+call spar_trial_set_callbacks int trial|trial|value| before|before_step|callback| before_context|context|value| solve|fluid_solver|callback| solve_context|context|value|
+call spar_trial_set_progress int trial|trial|value| progress|progress|callback| context|context|value|
+call spar_trial_run int trial|trial|value| compare|int|value|
+call spar_trial_get_errors int trial|trial|value| motion|double|out| reaction|double|out| load|double|out|
+call spar_trial_get_cost int trial|trial|value| seconds|double|out| evaluations|int64_t|out|
 constants SPAR_ROW_INERTIA=0 SPAR_ROW_GYROSCOPIC=1 SPAR_ROW_GRAVITY=2 SPAR_ROW_DAMPING=3 SPAR_ROW_FLUID_MOMENT=4 SPAR_ROW_FLUID_VELOCITY=5 SPAR_ROW_FLUID_POSES=6 SPAR_ROW_FLUID_HISTORY=7 SPAR_ROW_PREDICTOR=8 SPAR_ROW_ITERATION=9 SPAR_ROW_HALF_STEP=10 SPAR_ROW_MASSES=11 SPAR_ROW_FOUNDATION=12 SPAR_ROW_PRETENSION=13 SPAR_ROW_COUNT=14
-constants SPAR_COLUMN_IN_FORCE=0 SPAR_COLUMN_SIZE=1 SPAR_COLUMN_MOTION=2 SPAR_COLUMN_REACTION=3 SPAR_COLUMN_SHARE=4 SPAR_COLUMN_COUNT=5
 call spar_effect_name text row|int|value|
-call spar_session_report_effects int session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| rows|int64_t|value| columns|int64_t|value| table|double|out|[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT]
+call spar_trial_report_effects int trial|trial|value|
+call spar_trial_get_effect int trial|trial|value| row|int|value| in_force|int|out| fails|int|out| size|double|out| motion|double|out| reaction|double|out| share|double|out|
 constants SPAR_GOAL_MOTION=1 SPAR_GOAL_REACTION=2 SPAR_GOAL_SECTION=4 SPAR_GOAL_LOAD=8 SPAR_GOAL_NUMBERS=16
-call spar_session_set_goal int session|session|value| goals|int|value|
-call spar_session_get_goal int session|session|value| goals|int|out|
-call spar_session_push_numbers int session|session|value| n|int64_t|value| numbers|double|in|[n]
-constants SPAR_ADVICE_DT=0 SPAR_ADVICE_SUBSTEPS=1 SPAR_ADVICE_SCHEME=2 SPAR_ADVICE_COUPLING_RTOL=3 SPAR_ADVICE_PREDICTOR=4 SPAR_ADVICE_NEWTON_RTOL=5 SPAR_ADVICE_ERROR=6 SPAR_ADVICE_COST=7 SPAR_ADVICE_PRESENT_ERROR=8 SPAR_ADVICE_TRIALS=9 SPAR_ADVICE_WORK=10 SPAR_ADVICE_SHOWING=11 SPAR_ADVICE_SAVES=12 SPAR_ADVICE_SKIPPED=13 SPAR_ADVICE_ELEMENTS=14 SPAR_ADVICE_COUNT=15
-call spar_session_advise int session|session|value| tolerance|double|value| dt|double|value| steps|int64_t|value| length|double|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| capacity|int64_t|value| advice|double|out|[SPAR_ADVICE_COUNT]
-call spar_session_apply_advice int session|session|value| dt|double|out|
-call spar_member_get_advice int member|member|value| fidelity|int|out| modes|int64_t|out| nodes_per_element|int|out| points|int|out|
+call spar_trial_set_goals int trial|trial|value| goals|int|value|
+call spar_trial_get_goals int trial|trial|value| goals|int|out|
+call spar_trial_push_numbers int trial|trial|value| n|int64_t|value| numbers|double|in|[n]
+call spar_trial_set_option int trial|trial|value| key|char|in|[] value|char|in|[]
+call spar_trial_get_option int trial|trial|value| key|char|in|[] capacity|int64_t|value| text|char|out|[capacity]
+call spar_trial_advise int trial|trial|value| tolerance|double|value| length|double|value|
+call spar_trial_get_settings int trial|trial|value| dt|double|out| substeps|int|out| scheme|int|out| coupling_rtol|double|out| predictor|int|out| newton_rtol|double|out|
+call spar_trial_get_beam int trial|trial|value| member|member|value| fidelity|int|out| modes|int64_t|out| elements|int|out| nodes_per_element|int|out| points|int|out|
+call spar_trial_get_outcome int trial|trial|value| error|double|out| cost|double|out| present_fails|int|out| present_error|double|out|
+call spar_trial_get_search int trial|trial|value| runs|int64_t|out| skipped|int64_t|out| work|double|out| shown|double|out| saved|double|out|
+call spar_trial_apply int trial|trial|value| dt|double|out|
+call spar_trial_set_motion int trial|trial|value| modes|int64_t|value| amplitude|double|value| memory|int64_t|value|
+call spar_trial_get_motion int trial|trial|value| modes|int64_t|out| amplitude|double|out| memory|int64_t|out|
+call spar_trial_solve_eigenvalues int trial|trial|value| n|int64_t|value| shift|double|in|[2] eigenvalue|double|out|[n][2] nodes|int64_t|value| shapes|double|out|[n][nodes][6][2] frame|double|out|[3]
+call spar_trial_solve_floquet int trial|trial|value| n|int64_t|value| eigenvalue|double|out|[n][2]
 constants SPAR_AERO_INDUCTION=1 SPAR_AERO_TIP_LOSS=2 SPAR_AERO_HUB_LOSS=4 SPAR_AERO_SWIRL=8 SPAR_AERO_DRAG=16 SPAR_AERO_MOMENT=32 SPAR_AERO_SHEAR=64 SPAR_AERO_TOWER=128 SPAR_AERO_INFLOW=256 SPAR_AERO_STALL=512 SPAR_AERO_UNSTEADY=1024
 constants SPAR_SHEAR_POWER=0 SPAR_SHEAR_LOG=1 SPAR_SHEAR_LINEAR=2
 constants SPAR_POLAR_LINEAR=0 SPAR_POLAR_AKIMA=1 SPAR_POLAR_CUBIC=2
@@ -271,7 +286,8 @@ call spar_aero_get_flags int aero|aero|value| flags|int|out|[blades][n] no_root|
 call spar_aero_get_loads int aero|aero|value| per_length|double|out|[blades][n][6] force|double|out|[blades][n][3] moment|double|out|[blades][n][3]
 constants SPAR_AERO_ROW_INDUCTION=0 SPAR_AERO_ROW_TIP_LOSS=1 SPAR_AERO_ROW_HUB_LOSS=2 SPAR_AERO_ROW_SWIRL=3 SPAR_AERO_ROW_DRAG=4 SPAR_AERO_ROW_MOMENT=5 SPAR_AERO_ROW_SHEAR=6 SPAR_AERO_ROW_TOWER=7 SPAR_AERO_ROW_INFLOW=8 SPAR_AERO_ROW_STALL=9 SPAR_AERO_ROW_UNSTEADY=10 SPAR_AERO_ROW_COUNT=11
 call spar_aero_effect_name text row|int|value|
-call spar_aero_report_effects int aero|aero|value| session|session|value| dt|double|value| steps|int64_t|value| before|before_step|callback| solve|fluid_solver|callback| context|context|value| rows|int64_t|value| columns|int64_t|value| table|double|out|[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT]
+call spar_aero_report_effects int aero|aero|value| trial|trial|value|
+call spar_aero_get_effect int aero|aero|value| row|int|value| in_force|int|out| fails|int|out| size|double|out| motion|double|out| reaction|double|out| share|double|out|
 call spar_member_write_vtk int member|member|value| path|char|in|[]
 call spar_fluid_write_vtk int fluid|fluid|value| path|char|in|[]
 call spar_vtk_series_add int path|char|in|[] time|double|value| part|int|value| file|char|in|[]
@@ -369,7 +385,7 @@ class _Running:
 
     def __init__(self, call, owner, given):
         self.call, self.owner, self.given = call, owner, given
-        self.sizes, self.results, self.raised, self.keep = {}, [], [], []
+        self.sizes, self.results, self.raised, self.keep, self.callbacks = {}, [], [], [], {}
 
     def run(self):
         for p in self.call.parameters:
@@ -378,30 +394,40 @@ class _Running:
             elif p.how == 'list':
                 self.sizes['blades' if self.call.name == 'spar_aero_create' else p.dims[0]] = len(self.given[p.name])
         arguments = [self._argument(p) for p in self.call.parameters]
-        answer = self.call.function(*arguments)
+        answer = self._called(arguments)
         if self.call.answer == 'text':
             return (answer or b'').decode()
         if self.call.name == 'spar_has':
             return bool(answer)
         if self.call.answer == 'int' and answer != 0:
-            raised = self.raised + self._stopped()
-            if raised:
-                raise raised[0]
+            if self.raised:
+                raise self.raised[0]
             raise Error(answer, self._message())
+        if isinstance(self.owner, Trial):
+            self.owner.callbacks.update(self.callbacks)
         results = [r() for r in self.results]
         return results[0] if len(results) == 1 else tuple(results) or None
 
-    def _stopped(self):
-        session = self.owner.session if self.owner is not None else None
-        if session is None:
-            return []
-        raised = session.stopped[:]
-        session.stopped.clear()
-        return raised
+    def _session(self):
+        """The session of the call's owner, else of what is given; None: there is none."""
+        things = [self.owner] + [value for value in self.given.values() if isinstance(value, _Thing)]
+        return next((thing.session for thing in things if thing is not None and thing.session is not None), None)
+
+    def _called(self, arguments):
+        """Calls C. What callbacks of a trial raise meanwhile is this call's."""
+        trials = [thing for thing in (self.owner, *self.given.values()) if isinstance(thing, Trial)]
+        before = [trial.raised for trial in trials]
+        for trial in trials:
+            trial.raised = self.raised
+        try:
+            return self.call.function(*arguments)
+        finally:
+            for trial, raised in zip(trials, before):
+                trial.raised = raised
 
     def _message(self):
-        session = self.owner.session.handle if self.owner is not None and self.owner.session is not None else None
-        return _calls['spar_session_message'].function(session).decode()
+        session = self._session()
+        return _calls['spar_session_message'].function(session.handle if session is not None else None).decode()
 
     def _array_given(self, p):
         """An array of the caller's, as C reads it; what it shows of the sizes."""
@@ -530,40 +556,30 @@ class _Running:
         self.results.append(lambda: number.value)
         return ctypes.addressof(number)
 
-    def _progress(self, kind, function):
-        """What is raised there ends the call that it is of, which raises it again."""
-        stopped = self.owner.stopped
-
-        def called(_session, done, expected, _context):
-            try:
-                return int(function(done, expected) or 0)
-            except BaseException as fault:  # pylint: disable=broad-except
-                stopped.append(fault)
-                return 1
-        self.owner.progress.append(kind(called))  # kept as long as the session: it may be set anew from within
-        return self.owner.progress[-1]
-
     def _callback(self, p, function):
         kind = _CALLBACKS[p.type]
-        if function is None:
-            return kind()
-        if p.type == 'log':
+        if p.type == 'log' and function is not None:
             def called(_session, level, text, _context):
                 function(level, text.decode(errors='replace'))
             self.owner.log = kind(called)  # kept as long as the session
             return self.owner.log
-        if p.type == 'progress':
-            return self._progress(kind, function)
+        made = kind() if function is None else kind(self._calling(p, function))
+        self.keep.append(made)
+        self.callbacks[p.name] = made  # a trial keeps it until the next
+        return made
+
+    def _calling(self, p, function):
+        """What C calls. What is raised there ends the call under way, which raises it again."""
+        owner, raised = self.owner, self.raised
 
         def called(_session, *rest):
             try:
-                return int(function(self.owner.session, *rest[:-1]) or 0)
+                arguments = rest[:-1] if p.type == 'progress' else (owner.session, *rest[:-1])
+                return int(function(*arguments) or 0)
             except BaseException as fault:  # pylint: disable=broad-except
-                self.raised.append(fault)
+                (owner.raised if isinstance(owner, Trial) else raised).append(fault)
                 return 1
-        made = kind(called)
-        self.keep.append(made)
-        return made
+        return called
 
 
 # ---- what calls belong to ----
@@ -628,7 +644,6 @@ class Session(_Thing):
 
     def __init__(self, comm=None):
         super().__init__(None)
-        self.progress, self.stopped = [], []  # of set_progress: what C calls, and what was raised there
         made = ctypes.c_void_p()
         if comm is None:
             status = _calls['spar_session_create'].function(ctypes.addressof(made))
@@ -665,6 +680,15 @@ class Fluid(_Thing):
         return None
 
 
+class Trial(_Thing):
+    kind, owned = 'trial', True
+
+    def __init__(self, handle, session=None):
+        super().__init__(handle, session)
+        self.callbacks = {}  # what C calls, by the names of the arguments
+        self.raised = []  # by its callbacks, in the call under way
+
+
 class Polar(_Thing):
     kind, owned = 'polar', True
 
@@ -696,7 +720,7 @@ class _Made(_Thing):
     """What a call has made, on its way to the class that owns it."""
 
 
-_CLASSES = {'session': Session, 'member': Member, 'joint': Joint, 'fluid': Fluid, 'polar': _Made, 'aero': _Made}
+_CLASSES = {'session': Session, 'member': Member, 'joint': Joint, 'fluid': Fluid, 'trial': Trial, 'polar': _Made, 'aero': _Made}
 _constants, _calls = {}, {}
 for _line in TABLE.split('\n'):
     _words = _line.split()

@@ -214,22 +214,24 @@ enum {
 };
 /* Name of a row, "tip loss"; static storage; "" for what is no row. */
 SPAR_API const char *spar_aero_effect_name(int row);
-/* What each effect of this object is worth in the scene as it stands, by trials as of spar_session_try with the effect
-   and without it. Collective over the session.
-     session: in, that of the blades, which a rank without blades cannot tell
-     dt, steps, before, context: in, as of spar_session_try
-     solve: in, the host's, which calls spar_aero_solve on this object
-     rows, columns: in, the capacity of the table
-     table[rows][columns]: out, by SPAR_AERO_ROW_* and SPAR_COLUMN_*, Fortran (columns, rows), NULL: not wanted
-   Columns are as of spar_session_report_effects; size: change of the fluid's loads in the run, as
-   SPAR_TRY_LOAD. In force on all ranks where on any: what is on and has something to do (losses and swirl with
-   induction, hub loss with a hub radius, moments with polars that have some). The effects are as before afterwards,
-   also after a failure; the results of the last solve are then those of a trial, and spar_session_try compares with the
-   run that had all effects. Where a run fails without an effect its motion and reaction are -1; spar_session_message
-   says why. */
-SPAR_API int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, int64_t steps,
-                                      spar_before_step before, spar_fluid_solver solve, void *context, int64_t rows,
-                                      int64_t columns, double *table);
+/* Finds what each effect of this object contributes, by runs of a trial with the effect and without it
+   (spar_trial_run). An effect is in force on all ranks where it is in force on any: it is on, and has something to do
+   (losses and swirl with induction, hub loss with a hub radius, moments with polars that have some). The effects are
+   the same afterwards, also after a failure. The results of the last solve are those of a run. The trial compares later
+   runs with the one with all effects. Collective over the session of the trial.
+     trial: in, with steps and callbacks; its fluid solver calls spar_aero_solve on this object
+   SPAR_ERR_STATE: its fluid solver does not. Other failures as of spar_trial_run. */
+SPAR_API int spar_aero_report_effects(spar_aero *aero, spar_trial *trial);
+/* One effect in the last report. Figures of an effect that is not in force are 0. Local. SPAR_ERR_STATE: no report.
+     row: in, SPAR_AERO_ROW_*
+     in_force: out, 1: the object has this effect, 0: not, NULL: not wanted
+     fails: out, 1: the run fails without it, and all figures are 0; 0: it does not; NULL: not wanted
+     size: out, change of the fluid's loads without it, as load of spar_trial_get_errors, NULL: not wanted
+     motion: out, error of the motion without it, likewise, NULL: not wanted
+     reaction: out, error of the reactions without it, likewise, NULL: not wanted
+     share: out, part of the time of a solution that is saved without it, below 0: it costs more, NULL: not wanted */
+SPAR_API int spar_aero_get_effect(const spar_aero *aero, int row, int *in_force, int *fails, double *size,
+                                  double *motion, double *reaction, double *share);
 
 #ifdef __cplusplus
 }

@@ -16,7 +16,7 @@ extern "C" {
    over a run that of steps is true to a factor of 3, that of nodes to a factor of 4 where the run forgets within some
    periods (docs/advice.md has what that was measured on); a single one may be off by more. Too few nodes also have
    frequencies that are a little off: where nothing damps that adds up as phase, and only trials see it
-   (spar_session_advise). Each NULL: not wanted. Local, the same on all ranks.
+   (spar_trial_advise). Each NULL: not wanted. Local, the same on all ranks.
      step: out, what the last step added, or what the step under way adds once it is solved, as the tolerance takes it:
            SPAR_ERR_STATE where none is set
      nodes: out, how far the motion between steps, and the loads there, would take a beam with four more nodes an
@@ -49,250 +49,284 @@ SPAR_API int spar_member_learn_added_mass(spar_member *member, int64_t n, const 
 SPAR_API int spar_member_get_learned_added_mass(const spar_member *member, int *used, double *spread, int64_t *n,
                                                 int64_t capacity, double *eta, double *mass);
 
-/* ---- trials -------------------------------------------------------------------------------------------------------- */
+/* ---- trials ------------------------------------------------------------------------------------------------------ */
 
-/* ---- what if ----------------------------------------------------------------------------------------------------- */
+/* A trial answers "what if". The session runs some steps from its present state, with other settings or without an
+   effect. Then it returns to the present state, to the last bit. A trial holds the steps of such runs, the callbacks of
+   the host, settings and results.
 
-/* Trial runs: the session runs some steps from where it stands and goes back, to the last bit: what an effect is worth,
-   or what settings do, is found by trying. They are the host's own steps, with its own fluid: `solve` as in spar_step,
-   and `before`, called ahead of each step for what the host does there (drive roots, set loads, keep what its fluid had
-   at t^n). Both must be repeatable: the same motion and time give the same loads, whatever ran before, and nothing else
-   of the host's is changed for good. They may use members and fluids in all ways, but not create or map them;
-   where nodes are varied (spar_session_advise), they ask for counts anew (spar_member_get_count). A trial begins with
-   accelerations from the balance of forces. All calls here are collective, between steps; before and
-   solve are given on all ranks or on none; SPAR_ERR_STATE within a trial. steps: in, a multiple of 8. Runs are
-   compared at 128 times, evenly spread, between steps by cubics. The seconds of a run are the processor time of its
-   steps, the fluid's included, on all ranks; advice goes by counted work, not by them. */
+   The steps are the host's own, with its own fluid. The callbacks must be repeatable: the same motion and time give the
+   same loads, whatever ran before. They may use members and fluids in all ways, but not create or map them. Nothing
+   else of the host may change for good. Where spar_trial_advise varies nodes, the callbacks get the counts anew
+   (spar_member_get_count). A run begins with accelerations from the balance of forces.
 
-/* What a trial says. Errors are roots of the mean square over members, places along them and the times. */
-enum {
-    SPAR_TRY_MOTION = 0,   /* change of the motion, relative to the motion beyond that of a fixed or driven root (else
-                              since the beginning of the run) */
-    SPAR_TRY_REACTION = 1, /* change of what the roots give the members, moments by their lengths, relative to that */
-    SPAR_TRY_LOAD = 2,     /* change of the fluid's loads, after the first step and at 8 even times, relative to them */
-    SPAR_TRY_SECONDS = 3,  /* processor time of the steps, s */
-    SPAR_TRY_SOLUTIONS = 4, /* solutions of the fluid */
-    SPAR_TRY_COUNT = 5
-};
+   All ranks create the same trials in the same order. A collective call compares the settings of its trial across the
+   ranks (SPAR_ERR_COMM). It is made between steps, with all members committed, and not within a run of a trial
+   (SPAR_ERR_STATE). The settings of a trial are fixed while it runs (SPAR_ERR_STATE). After a failure the session and
+   the results of the trial are as before. */
+typedef struct spar_trial spar_trial; /* runs of a session, which is restored after each */
+/* Creates a trial of the session. The session destroys it at the latest when it is destroyed itself. Local.
+     session: in, of the trial
+     trial: out, handle */
+SPAR_API int spar_trial_create(spar_session *session, spar_trial **trial);
+/* Destroys a trial, and sets the handle to NULL. A trial that runs ends its run first. Local.
+     trial: in, out, NULL: nothing to do */
+SPAR_API void spar_trial_destroy(spar_trial **trial);
+/* Local.
+     session: out, of the trial */
+SPAR_API int spar_trial_get_session(const spar_trial *trial, spar_session **session);
 
-/* How far a call that makes many trials is (spar_session_advise, spar_session_report_effects,
-   spar_session_solve_eigenvalues, spar_session_solve_floquet): called before each of its runs, between which the
-   session is as it was. It may read the session, and changes nothing of it. Answer 0 to go on; anything else ends the
-   call: SPAR_ERR_USER, and all is as it was.
-     done: what has been run so far, from 0, in trials with the session as it is: of advice counted, as
-           SPAR_ADVICE_WORK, or runs where the session as it is fails; of effects, eigenvalues and multipliers runs
-     expected: what it will come to, at first by what such calls have come to, later by what the runs show; never below
-           done, nor, unless done is, above the option advise.limit */
+/* Sets the steps of a run. Without them the collective calls are SPAR_ERR_STATE. Local.
+     dt: in, s, length of a step, >= 1e-100; 0 with steps 0: not set (default)
+     steps: in, number of steps, >= 1; spar_trial_run, _report_effects and _advise take multiples of 8 */
+SPAR_API int spar_trial_set_steps(spar_trial *trial, double dt, int64_t steps);
+/* Local.
+     dt: out, s, 0: not set, NULL: not wanted
+     steps: out, 0: not set, NULL: not wanted */
+SPAR_API int spar_trial_get_steps(const spar_trial *trial, double *dt, int64_t *steps);
+/* Sets the callbacks of the host, on all ranks or on none. Each has a context of its own. Local.
+     before: in, called before each step from t: drives roots, sets loads, keeps the fluid's state at t^n; NULL: none
+     before_context: in, handed to before, must live as long as the trial uses it
+     solve: in, the fluid solver, as in spar_step; NULL: no fluid, the present loads stay
+     solve_context: in, handed to solve, must live as long as the trial uses it */
+SPAR_API int spar_trial_set_callbacks(spar_trial *trial, spar_before_step before, void *before_context,
+                                      spar_fluid_solver solve, void *solve_context);
+/* Tells the host how far a call with many runs is, before each run (spar_trial_advise, _report_effects,
+   _solve_eigenvalues, _solve_floquet). Between the runs the session is in its present state. The callback may read the
+   session, and changes nothing. If it returns 0, the call goes on. Otherwise the call ends with SPAR_ERR_USER.
+     session: of the trial
+     done: runs made so far, from 0. For advice: their counted cost, in runs with the session as it is
+     expected: what done is expected to reach, never below done, nor above the option limit of the trial
+     context: of spar_trial_set_progress */
 typedef int (*spar_progress)(spar_session *session, double done, double expected, void *context);
-/* Who is told. Local, at any time; from within a call it holds for the next.
-     progress: in, NULL: nobody (default). On all ranks or on none; where one rank stops the others answer
-           SPAR_ERR_PEER
-     context: in, handed to progress; must live as long as the session uses it */
-SPAR_API int spar_session_set_progress(spar_session *session, spar_progress progress, void *context);
-/* One trial with the session as it is, for hosts that compare settings of their own. Failures as of spar_step.
-     dt: in, s
-     steps: in, a multiple of 8
-     before, solve: in, NULL: none (without solve the loads stay as they are)
-     context: in, handed to both
-     compare: in, 0: what later trials are compared with (errors come out 0); 1: compared with that run, over the same
-           time, with any dt
-     capacity: in, of the report
-     report[capacity]: out, by SPAR_TRY_*, NULL: not wanted
-   SPAR_ERR_STATE: nothing to compare with. */
-SPAR_API int spar_session_try(spar_session *session, double dt, int64_t steps, spar_before_step before,
-                              spar_fluid_solver solve, void *context, int compare, int64_t capacity, double *report);
-/* Eigenvalues of structure and fluid together: those of spar_member_solve_eigenvalues with the fluid's answer to small
-   motions about the present state, one of equilibrium with the loads in use (spar_session_solve_static, or a run that
-   has come to rest or turns steadily). A wing flutters where the largest growth rate, over the speed of the wind,
-   passes 0, with no run in time. All that spar solves for is seen in its lowest undamped modes; along each of these the
-   members are moved in trials, with an amplitude and its opposite, and nothing is solved: the host's solver gives the
-   loads. The session goes back after each, to the last bit. A fluid without a memory is called 6 modes times, once a
-   trial: its loads by displacements, velocities and accelerations, which it may also make of the places at both ends of
-   the step. One with a memory is called 2 modes (22 + memory) times: the motion is a pulse of a few steps, the loads
-   are watched until so many steps behind it, and what they do beyond is the decay of the linear system that they show.
-   What joints hold or drive stands still; what `before` drives or loads does not move (docs/stability.md).
-     dt: in, s, of the trials' steps, as the fluid is run; with a memory eigenvalues are found up to |lambda| dt = 1
-     memory: in, steps that loads answer for once the motion has ended, 0 to 1000000, until they are on their way to
-           rest; 0: none, and no fluid has states (spar_fluid_set_states)
-     amplitude: in, of the motion: displacement of a node over its member's length, and turn, rad, to 0.1; 0: 1e-5. A
-           fluid that is solved to r of its loads needs about sqrt(r)
-     before, solve, context: in, as of spar_session_try, repeatable; called with this dt
-     modes: in, 1 to 200: more until the answer stays
-     n: in, how many eigenvalues, at most 2 modes
-     shift[2]: in, growth rate, 1/s, and angular frequency, rad/s: those nearest to it are found; NULL: zero, the lowest
-     eigenvalue[n][2]: out, growth rate and angular frequency, >= 0, by their distance from the shift. Those of the
-           fluid alone (its wake's) are left out unless they grow
-     nodes: in, of the array shapes: those of all members; 0 where it is NULL
-     shapes[n][nodes][6][2]: out, displacement and rotation of the nodes, member by member as they were created, real
-           and imaginary part, of unit x^H M x, NULL: not wanted
-     frame[3]: out, rad/s, as of spar_member_solve_eigenvalues, NULL: not wanted
-   The structure is exact in time: steps show these growth rates to the order of their integrator. A rotor's eigenvalues
-   are those in a fluid that is steady as seen from it. Collective. SPAR_ERR_STATE: no equilibrium, or one with other
-   loads; SPAR_ERR_NUMERIC: the fluid does not come to rest in this memory, or fewer than n were found;
-   SPAR_ERR_UNSUPPORTED: as of members. */
-SPAR_API int spar_session_solve_eigenvalues(spar_session *session, double dt, int64_t memory, double amplitude,
-                                            spar_before_step before, spar_fluid_solver solve, void *context,
-                                            int64_t modes, int64_t n, const double shift[2], double *eigenvalue,
-                                            int64_t nodes, double *shapes, double frame[3]);
-/* Stability of a state that is periodic in time: a rotor of two blades, or on a tower, or under its weight, whose small
-   motions have coefficients that change with the angle. The eigenvalues of the map of small motions over one period
-   (Floquet's multipliers mu), found by trials: beyond the present state, which has to repeat, all that spar solves for
-   is moved along each of its lowest undamped modes, and given the velocity of it, to and fro, and the session goes
-   through the period with the host's own steps and fluid; 4 modes + 1 runs of a period and a step, after each of which
-   it goes back, to the last bit. Run until the state repeats, then call. Newton is strict in them.
-     dt: in, s, of the steps, as the run is stepped: multipliers are those of the steps, right to dt^2
-     steps: in, of the period, >= 1: a turn of the rotor, or so many that all is where it was
-     amplitude: in, of what is moved: displacement of a node over its member's length, and turn, rad, to 0.1; 0: 1e-4.
-           Errors are its square, and what the coupling leaves over it
-     before, solve, context: in, as of spar_session_try, repeatable: what drives roots and joints moves by the time.
-           Each run begins with a balanced start, where solve is called with dt 0 (spar_session_solve_initial)
-     modes: in, 1 to 200, at most the unknowns less what is held: more until the answer stays
-     n: in, how many, at most 2 modes
-     eigenvalue[n][2]: out, growth rate, 1/s, and angular frequency, rad/s, of log(mu) over the period, the least damped
-           first; one of each conjugate pair, its frequency from 0 to pi over the period: it is known up to multiples of
-           2 pi over the period, and up to its sign. A growth rate > 0 is an instability
-   The fluid begins each run with the state it has (spar_fluid_set_states): what it remembers for longer than a period
-   is not seen. Collective. SPAR_ERR_STATE: the state does not repeat: the message says by how much; SPAR_ERR_NUMERIC:
-   fewer than n; SPAR_ERR_UNSUPPORTED: nothing is solved for. Failures as of spar_step. */
-SPAR_API int spar_session_solve_floquet(spar_session *session, double dt, int64_t steps, double amplitude,
-                                        spar_before_step before, spar_fluid_solver solve, void *context, int64_t modes,
-                                        int64_t n, double *eigenvalue);
+/* Sets the progress callback, on all ranks or on none. If one rank stops, the others return SPAR_ERR_PEER. Local.
+     progress: in, NULL: none (default)
+     context: in, handed to progress, must live as long as the trial uses it */
+SPAR_API int spar_trial_set_progress(spar_trial *trial, spar_progress progress, void *context);
 
-/* ---- effects ------------------------------------------------------------------------------------------------------- */
+/* One run with the session as it is, for hosts that compare settings of their own. Collective. Failures as of
+   spar_step.
+     compare: in, 0: later runs of this trial are compared with this one, and its own errors are 0; 1: compared with
+           that run over the same time, with any dt. SPAR_ERR_STATE: no run of the present members to compare with */
+SPAR_API int spar_trial_run(spar_trial *trial, int compare);
+/* Differences of the last run from the run it was compared with. Each is the root mean square over members, positions
+   and time, relative to that of the other run. Runs are compared at 128 even times; between steps by cubic
+   interpolation. Local. SPAR_ERR_STATE: no run so far.
+     motion: out, relative to the motion beyond that of a fixed or driven root, else since the start, NULL: not wanted
+     reaction: out, of the reactions at the roots, moments by the members' lengths, NULL: not wanted
+     load: out, of the fluid's loads, after the first step and at 8 even times, NULL: not wanted */
+SPAR_API int spar_trial_get_errors(const spar_trial *trial, double *motion, double *reaction, double *load);
+/* Cost of the last run. Local. SPAR_ERR_STATE: no run so far.
+     seconds: out, s, processor time of the steps and the fluid, on all ranks, NULL: not wanted
+     evaluations: out, calls of the fluid solver, NULL: not wanted */
+SPAR_API int spar_trial_get_cost(const spar_trial *trial, double *seconds, int64_t *evaluations);
 
-/* Rows of the report of effects. */
+/* ---- effects ----------------------------------------------------------------------------------------------------- */
+
+/* Effects of the report. "Without" says what the run without the effect has instead. */
 enum {
-    SPAR_ROW_INERTIA = 0, /* size: its nodal forces relative to the largest of all terms, roots of the sums of squares
-                             over nodes, the present state and the trial's steps; the next three likewise */
+    SPAR_ROW_INERTIA = 0,
     SPAR_ROW_GYROSCOPIC = 1,
     SPAR_ROW_GRAVITY = 2,
     SPAR_ROW_DAMPING = 3,
-    SPAR_ROW_FLUID_MOMENT = 4,   /* size, as of the next three: change of the fluid's loads, as SPAR_TRY_LOAD */
-    SPAR_ROW_FLUID_VELOCITY = 5, /* velocities pulled; without: a fluid that sees them as zero */
+    SPAR_ROW_FLUID_MOMENT = 4,   /* moments pushed by the fluid */
+    SPAR_ROW_FLUID_VELOCITY = 5, /* velocities pulled; without: zero */
     SPAR_ROW_FLUID_POSES = 6,    /* orientations, angular velocities, accelerations pulled; without: the reference's */
-    SPAR_ROW_FLUID_HISTORY = 7,  /* node forces pulled back; without: zeros */
-    SPAR_ROW_PREDICTOR = 8,      /* size: |predicted - final| / |final| loads of the last step; without: order 0 */
-    SPAR_ROW_ITERATION = 9,      /* size: added mass over mass, as the coupling sees it; without: explicit */
-    SPAR_ROW_HALF_STEP = 10,     /* pulls at 0 < theta < 1; size: (Omega dt)^2 / 8, the cut corner; without: theta 1 */
-    SPAR_ROW_MASSES = 11,        /* bodies on beams; size as of gravity: their weight and inertia */
-    SPAR_ROW_FOUNDATION = 12,    /* springs along beams; size as of gravity */
-    SPAR_ROW_PRETENSION = 13,    /* section forces of the reference; size as of gravity */
+    SPAR_ROW_FLUID_HISTORY = 7,  /* node forces pulled back; without: zero */
+    SPAR_ROW_PREDICTOR = 8,      /* extrapolation of the loads; without: order 0 */
+    SPAR_ROW_ITERATION = 9,      /* iteration of the coupling; without: explicit */
+    SPAR_ROW_HALF_STEP = 10,     /* pulls at 0 < theta < 1; without: theta 1 */
+    SPAR_ROW_MASSES = 11,        /* bodies on beams: their weight and inertia */
+    SPAR_ROW_FOUNDATION = 12,    /* springs along beams */
+    SPAR_ROW_PRETENSION = 13,    /* section forces of the reference */
     SPAR_ROW_COUNT = 14
 };
-/* Columns of the same. */
-enum {
-    SPAR_COLUMN_IN_FORCE = 0, /* 1; 0: the scene has it not, and the rest of the row is 0 */
-    SPAR_COLUMN_SIZE = 1,     /* relative to the leading term, over the trial: a scene at rest may be about to move */
-    SPAR_COLUMN_MOTION = 2,   /* error of the motion without it, as SPAR_TRY_MOTION; -1: the run fails without it (a log
-                                 is told why, at SPAR_LOG_INFO) */
-    SPAR_COLUMN_REACTION = 3, /* the same of the roots' reactions */
-    SPAR_COLUMN_SHARE = 4, /* of the time, that leaving it out saves: of a solution's, but for predictor and iteration,
-                              which change how many there are; below 0: it then costs more */
-    SPAR_COLUMN_COUNT = 5
-};
-/* Name of a row, "gravity"; static storage; "" for what is no row. */
+/* Name of an effect, such as "gravity", in static storage; "" for any other number. */
 SPAR_API const char *spar_effect_name(int row);
-/* What each effect is worth in the scene as it stands: sizes, errors and savings from trials, with the effect and
-   without it, all members at once.
-     dt: in, s
-     steps: in, of dt in each trial, a multiple of 8
-     before, solve, context: in, as of spar_session_try; solve NULL: under the present loads, rows of the fluid not in
-           force
-     rows, columns: in, the capacity of the table
-     table[rows][columns]: out, by SPAR_ROW_* and SPAR_COLUMN_*, Fortran (columns, rows), NULL: not wanted */
-SPAR_API int spar_session_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
-                                         spar_fluid_solver solve, void *context, int64_t rows, int64_t columns,
-                                         double *table);
+/* Finds what each effect contributes, by runs with the effect and without it in all members. Collective. */
+SPAR_API int spar_trial_report_effects(spar_trial *trial);
+/* One effect in the last report. Figures of an effect that is not in force are 0. Local. SPAR_ERR_STATE: no report.
+     row: in, SPAR_ROW_*
+     in_force: out, 1: the session has this effect, 0: not, NULL: not wanted
+     fails: out, 1: the run fails without it, and motion, reaction and share are 0; a log is told why, at
+           SPAR_LOG_INFO; 0: it does not; NULL: not wanted
+     size: out, NULL: not wanted. Inertia to damping, masses, foundation, pretension: nodal forces relative to the
+           largest term of the equations, root of the sum of squares over nodes, the present state and the steps.
+           Fluid: change of its loads, as load of spar_trial_get_errors. Predictor: |predicted - final| / |final|
+           loads of the last step. Iteration: added mass over mass, as the coupling sees it. Half step: (Omega dt)^2 / 8
+     motion: out, error of the motion without it, as of spar_trial_get_errors, NULL: not wanted
+     reaction: out, error of the reactions without it, likewise, NULL: not wanted
+     share: out, part of the time of a solution that is saved without it, below 0: it costs more; for predictor and
+           iteration of the time of the run; NULL: not wanted */
+SPAR_API int spar_trial_get_effect(const spar_trial *trial, int row, int *in_force, int *fails, double *size,
+                                   double *motion, double *reaction, double *share);
 
-/* ---- advice -------------------------------------------------------------------------------------------------------- */
+/* ---- advice ------------------------------------------------------------------------------------------------------ */
 
-/* What the tolerance of advice is for. Each is relative to its own root of the mean square, and compared by itself. */
+/* What the tolerance of the advice holds for. Each goal is relative to its own root mean square. */
 enum {
-    SPAR_GOAL_MOTION = 1,   /* motion, as SPAR_TRY_MOTION */
-    SPAR_GOAL_REACTION = 2, /* what roots and joints give the members, moments by their lengths */
-    SPAR_GOAL_SECTION = 4,  /* section forces at nine places, eta 0 to 1, of the beams that have sections, as
-                               spar_beam_evaluate; moments by the lengths */
-    SPAR_GOAL_LOAD = 8,     /* the fluid's loads on each member: their sum and moment about its root */
-    SPAR_GOAL_NUMBERS = 16  /* each number of spar_session_push_numbers */
+    SPAR_GOAL_MOTION = 1,   /* motion, as of spar_trial_get_errors */
+    SPAR_GOAL_REACTION = 2, /* reactions of roots and joints, moments by the members' lengths */
+    SPAR_GOAL_SECTION = 4,  /* section forces at nine positions of each beam, as of spar_beam_evaluate; moments by the
+                               lengths */
+    SPAR_GOAL_LOAD = 8,     /* the fluid's loads on each member: their sum, and their moment about its root */
+    SPAR_GOAL_NUMBERS = 16  /* each number of spar_trial_push_numbers */
 };
-/* Local, alike on all ranks, between steps.
-     goals: in, SPAR_GOAL_* or-ed; the tolerance holds for each; default SPAR_GOAL_MOTION */
-SPAR_API int spar_session_set_goal(spar_session *session, int goals);
-/* goals: out */
-SPAR_API int spar_session_get_goal(const spar_session *session, int *goals);
-/* Numbers of the host's own that advice is to keep, as they are now (thrust, power, lift): pushed by the fluid solver
-   in each iteration, or before a step; the last ones of a step count. Nothing else is done with them. Local, at any
-   time; on several ranks their sum counts, so that each gives its part, or one of them all. n: in, 0 to 32 numbers[n]:
-   in */
-SPAR_API int spar_session_push_numbers(spar_session *session, int64_t n, const double *numbers);
-/* Advice for a session. */
-enum {
-    SPAR_ADVICE_DT = 0, /* s */
-    SPAR_ADVICE_SUBSTEPS = 1,
-    SPAR_ADVICE_SCHEME = 2,        /* SPAR_COUPLING_* */
-    SPAR_ADVICE_COUPLING_RTOL = 3, /* of an iterated scheme; its atol is the session's */
-    SPAR_ADVICE_PREDICTOR = 4,
-    SPAR_ADVICE_NEWTON_RTOL = 5,   /* its atol is the session's */
-    SPAR_ADVICE_ERROR = 6,         /* estimated, of the goal that is off farthest */
-    SPAR_ADVICE_COST = 7,          /* of a second of the run, counted, relative to the session as it is with dt given */
-    SPAR_ADVICE_PRESENT_ERROR = 8, /* of the session as it is; -1: it fails */
-    SPAR_ADVICE_TRIALS = 9,        /* runs made */
-    SPAR_ADVICE_WORK = 10,    /* what asking has cost, counted, in trials with the session as it is; -1: it fails */
-    SPAR_ADVICE_SHOWING = 11, /* of that, what it took to know what keeps the tolerance: the session as it is, the
-                                 reference, and the longer look */
-    SPAR_ADVICE_SAVES = 12, /* what the rest brings, in the same unit: what a run as long as was asked for, and no less
-                               than ten times the trials, saves against the cheapest settings that were known then to
-                               keep the tolerance: the session as it is, or with dt fine enough */
-    SPAR_ADVICE_SKIPPED = 13,  /* trials not made because they could not save as much as they would have cost: what they
-                                  would have varied stays */
-    SPAR_ADVICE_ELEMENTS = 14, /* of all beams together; of each: spar_beam_get_elements, once it is in force */
-    SPAR_ADVICE_COUNT = 15
-};
-/* The cheapest settings whose error stays below a tolerance, by trials against a run that is converged in dt, nodes and
-   coupling; nothing is changed. A log is told of each trial at SPAR_LOG_INFO.
-     tolerance: in, in (0, 1): of each goal (spar_session_set_goal), by default of the motion, as SPAR_TRY_MOTION
-     dt, steps: in, the host's dt in s, and how many of it the trials last, a multiple of 8
-     length: in, > 0: how long the run will be that the advice is for, s. If it is longer than the trials, their errors
-           count for as much more as they grow with time; SPAR_ERR_NUMERIC if the trials do not tell what comes after
-           them: the motion neither settles in them nor turns as often as a period does. What only happens later (a
-           gust) is not seen
-     before, solve, context: in, as of spar_session_try, called with other dt too
-     capacity: in, of the advice
-     advice[capacity]: out, by SPAR_ADVICE_*, NULL: not wanted; what it says of beams: spar_member_get_advice
-   Beams of one make (all that is described but name, placement and initial velocity) get one advice. Elements are
-   kept where the host has given the nodes, or where a joint or a kept load is at a node that would not end one. Costs
-   are counted (iterations of Newton, tangents, nodes, unknowns, solutions of the fluid) and not timed, so that the
-   same scene gets the same advice each time; what a solution of the fluid counts for: the option advise.fluid_cost
-   (unsaid its time, in classes; SPAR_LOG_WARNING where that is near to a border of two). No trial is made that could
-   not save, in a run of SPAR_ADVICE_SAVES' length, what it costs; but for those that show what keeps the tolerance.
-   Where the session as it is keeps it and nothing cheaper pays, it is what is advised. What is kept as it is: the
-   options advise.dt, advise.nodes, advise.fidelity, advise.coupling = keep. SPAR_ERR_UNSUPPORTED:
-   solve is NULL; SPAR_ERR_NUMERIC: no settings do, or nothing converges; the message says what error was reached;
-   SPAR_ERR_LIMIT: the option advise.limit. After a failure all is as it was. */
-SPAR_API int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps, double length,
-                                 spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity,
-                                 double *advice);
-/* Puts the last advice in force between steps: substeps, coupling scheme and its rtol, predictor, Newton's rtol, and
-   of beams fidelity, modes, elements, nodes per element and quadrature points. dt stays the host's to take. Beams for
-   which something is advised otherwise are made anew in place: they keep handle, name, place, root, loads and the
-   work done on them, and their motion, which goes over by the elements' own interpolation (loads by its transpose:
-   their sum stays); accelerations begin from the balance of forces. Their fluids keep handles and nodes and are
-   mapped again. Counts change: spar_member_get_count; what depends on the nodes' numbers, as the nodes of loads set
-   from now on, is the host's to say anew. All else stays to the last bit. What the advice does not have stays:
-   rho_inf, the coupling's atol, limits and options, Newton's atol, effects asked for. A beam whose nodes the host has
-   given has its line through the new ones from then on; of the motion a lower fidelity keeps what it can show.
-   Sections of fluids keep places and frames. Called again it does nothing.
-     dt: out, SPAR_ADVICE_DT, s; NULL: not wanted
-   Collective. SPAR_ERR_STATE: a step or a trial is under way, there is no advice, members have been added or described
-   otherwise since, or a fluid has nodes that are not mapped. After a failure all is as it was. */
-SPAR_API int spar_session_apply_advice(spar_session *session, double *dt);
-/* What the last advice says of a beam. Each NULL: not wanted. Local. SPAR_ERR_STATE: no advice yet.
-     fidelity: out, SPAR_FIDELITY_*
-     modes: out, of a modal one, else 0
-     nodes_per_element: out
-     points: out, for spar_beam_set_quadrature with the rule in force; 0: as described */
-SPAR_API int spar_member_get_advice(const spar_member *member, int *fidelity, int64_t *modes, int *nodes_per_element,
-                                    int *points);
+/* Sets the goals of the advice. Local.
+     goals: in, SPAR_GOAL_* combined with or, the tolerance holds for each of them; default SPAR_GOAL_MOTION */
+SPAR_API int spar_trial_set_goals(spar_trial *trial, int goals);
+/* Local.
+     goals: out, SPAR_GOAL_* combined with or */
+SPAR_API int spar_trial_get_goals(const spar_trial *trial, int *goals);
+/* Gives numbers of the host that the advice keeps, such as thrust, power or lift. The callbacks push them in each
+   iteration or before a step; the last numbers of a step count. On several ranks their sum counts: each rank gives its
+   part, or one rank gives them all. Local, at any time.
+     n: in, 0 to 32
+     numbers[n]: in, any unit */
+SPAR_API int spar_trial_push_numbers(spar_trial *trial, int64_t n, const double *numbers);
+/* Sets an option of the advice. Local.
+     key: in, "dt", "nodes" (with elements), "fidelity", "coupling": vary (default) or keep it as it is
+           "limit": SPAR_ERR_LIMIT ends the search once it has cost so many runs with the session as it is; 0: no limit
+           (default)
+           "fluid_cost": s of processor time on all ranks, of a solution of the fluid; 0: estimated from its nodes. If
+           the first run takes more than thirty times that, the time counts, in powers of 900, with SPAR_LOG_WARNING
+           near the border of two powers (default)
+     value: in, as text */
+SPAR_API int spar_trial_set_option(spar_trial *trial, const char *key, const char *value);
+/* Reads an option of the advice. Local.
+     key: in, of spar_trial_set_option
+     capacity: in, of the text, with its end
+     text[capacity]: out, the value; SPAR_ERR_ARGUMENT if it does not fit */
+SPAR_API int spar_trial_get_option(const spar_trial *trial, const char *key, int64_t capacity, char *text);
+/* Finds the cheapest settings whose error stays below a tolerance, by runs against one that is converged in dt, nodes
+   and coupling. The session stays as it is. A log is told of each run at SPAR_LOG_INFO.
+
+   Identical beams (all but name, placement and initial velocity) get one advice. Elements are kept where the host has
+   given the nodes, or where a joint or an applied load is at a node that would not end an element. Costs are counted
+   (Newton iterations, tangents, nodes, unknowns, solutions of the fluid) and not timed: the same session gets the same
+   advice each time. Apart from the runs that establish accuracy, a run is made only if it can pay for itself, in a run
+   of the given length and no less than ten times the trial's. If the session as it is keeps the tolerance, and nothing
+   cheaper pays, it is the advice. Collective.
+     tolerance: in, in (0, 1), of each goal
+     length: in, s, > 0, duration of the run that the advice is for. If it is longer than the trial's steps, their
+           errors are extrapolated by their growth in time. What only happens later, such as a gust, is not seen
+   SPAR_ERR_UNSUPPORTED: no fluid solver. SPAR_ERR_NUMERIC: no settings keep the tolerance; or nothing converges; or the
+   runs cover neither a steady state nor a full period, and so cannot be extrapolated. The message says what error was
+   reached. SPAR_ERR_LIMIT: the option limit. */
+SPAR_API int spar_trial_advise(spar_trial *trial, double tolerance, double length);
+/* The advised settings of the session. Local. SPAR_ERR_STATE: no advice.
+     dt: out, s, NULL: not wanted
+     substeps: out, as of spar_session_set_integrator, NULL: not wanted
+     scheme: out, SPAR_COUPLING_*, NULL: not wanted
+     coupling_rtol: out, of an iterated scheme, NULL: not wanted
+     predictor: out, order, NULL: not wanted
+     newton_rtol: out, NULL: not wanted */
+SPAR_API int spar_trial_get_settings(const spar_trial *trial, double *dt, int *substeps, int *scheme,
+                                     double *coupling_rtol, int *predictor, double *newton_rtol);
+/* The advised settings of a beam. Local. SPAR_ERR_STATE: no advice for this member.
+     member: in, of the session
+     fidelity: out, SPAR_FIDELITY_*, NULL: not wanted
+     modes: out, of a modal beam, else 0, NULL: not wanted
+     elements: out, NULL: not wanted
+     nodes_per_element: out, NULL: not wanted
+     points: out, for spar_beam_set_quadrature with the rule in force, 0: as described, NULL: not wanted */
+SPAR_API int spar_trial_get_beam(const spar_trial *trial, const spar_member *member, int *fidelity, int64_t *modes,
+                                 int *elements, int *nodes_per_element, int *points);
+/* Errors and cost that the advice expects. Local. SPAR_ERR_STATE: no advice.
+     error: out, with the advised settings, of the goal with the largest one, NULL: not wanted
+     cost: out, of a second of the run, relative to the session as it is; 0: not known, since that fails; NULL: not
+           wanted
+     present_fails: out, 1: a run with the session as it is fails, or its dt does not resolve the motion; 0: not, NULL:
+           not wanted
+     present_error: out, of the session as it is, 0 if that fails, NULL: not wanted */
+SPAR_API int spar_trial_get_outcome(const spar_trial *trial, double *error, double *cost, int *present_fails,
+                                    double *present_error);
+/* What the search for the advice has cost, and what it saves. The unit of work, shown and saved is a run of the trial
+   with the session as it is; 0 if that fails. Local. SPAR_ERR_STATE: no advice.
+     runs: out, made, NULL: not wanted
+     skipped: out, runs that could not have saved what they would have cost, NULL: not wanted
+     work: out, counted cost of all runs, NULL: not wanted
+     shown: out, the part that shows what keeps the tolerance: the session as it is, the reference, the longer runs,
+           NULL: not wanted
+     saved: out, by the rest, in the host's run or ten times the trial, whichever is longer; against the cheapest
+           settings known before: the session as it is, or with a finer dt; NULL: not wanted */
+SPAR_API int spar_trial_get_search(const spar_trial *trial, int64_t *runs, int64_t *skipped, double *work,
+                                   double *shown, double *saved);
+/* Puts the advice in force: substeps, coupling scheme and its rtol, predictor, Newton's rtol, and of beams fidelity,
+   modes, elements, nodes per element and quadrature points. The host takes the advised dt itself.
+
+   Beams with other settings are rebuilt in place. They keep handle, name, placement, root, loads and the work done on
+   them. Their motion is transferred by the interpolation of the elements, loads by its transpose, so that their sum
+   stays. Accelerations follow from the balance of forces. Fluids keep handles and nodes, and are mapped again. Counts
+   change (spar_member_get_count); the host gives node numbers anew, for example of loads that it sets. Everything else
+   stays to the last bit, among it rho_inf, atol of coupling and Newton, limits, options and effects. A beam whose nodes
+   the host has given has its line through the new nodes. A lower fidelity keeps the part of the motion that it can
+   show. To apply the same advice again changes nothing. Collective.
+     dt: out, s, advised, NULL: not wanted
+   SPAR_ERR_STATE: no advice; members were added or described otherwise since; or a fluid has nodes that are not
+   mapped. After a failure all is as before. */
+SPAR_API int spar_trial_apply(spar_trial *trial, double *dt);
+
+/* ---- stability with the fluid ------------------------------------------------------------------------------------ */
+
+/* Sets the small motions for spar_trial_solve_eigenvalues and spar_trial_solve_floquet. Local.
+     modes: in, 1 to 200 lowest undamped modes; give more until the result stays; 0: not set (default)
+     amplitude: in, >= 0, to 0.1: displacement of a node over the length of its member, or rotation in rad; 0: 1e-5 for
+           eigenvalues, 1e-4 for Floquet (default). A fluid that is solved to r of its loads needs about sqrt(r)
+     memory: in, for eigenvalues: 0 to 1000000 steps until the loads decay after a motion has ended; 0: the fluid has no
+           memory (default) */
+SPAR_API int spar_trial_set_motion(spar_trial *trial, int64_t modes, double amplitude, int64_t memory);
+/* Local.
+     modes: out, 0: not set, NULL: not wanted
+     amplitude: out, as set, NULL: not wanted
+     memory: out, NULL: not wanted */
+SPAR_API int spar_trial_get_motion(const spar_trial *trial, int64_t *modes, double *amplitude, int64_t *memory);
+/* Eigenvalues of structure and fluid together: those of spar_member_solve_eigenvalues, with the fluid's response to
+   small motions about the present state. That state is an equilibrium with the loads in use (spar_session_solve_static,
+   or a run that has come to rest or rotates steadily). A wing flutters where the largest growth rate, over the wind
+   speed, passes 0.
+
+   Members move in runs along each of the lowest undamped modes, to and fro. Nothing is solved: the fluid solver gives
+   the loads. A fluid without memory is called 6 modes times, once in a run, for displacement, velocity and
+   acceleration; it may make them from the positions at both ends of the step. A fluid with memory is called
+   2 modes (22 + memory) times: the motion is a pulse of a few steps, and the loads are recorded until so many steps
+   after it. Their later decay is that of the linear system that they show. Joints that constrain or drive do not move;
+   neither does what the callback before a step drives or loads (docs/stability.md).
+
+   The structure is exact in time: steps show these growth rates to the order of their integrator. Of the trial's steps
+   only dt is used. With memory, eigenvalues are found up to |lambda| dt = 1. A rotor's eigenvalues are those in a fluid
+   that is steady in the rotating frame. Collective.
+     n: in, number of eigenvalues, 0 to 2 modes
+     shift[2]: in, 1/s and rad/s: growth rate and angular frequency; the eigenvalues nearest to it are found; NULL: zero
+     eigenvalue[n][2]: out, 1/s and rad/s: growth rate and angular frequency >= 0, by their distance from the shift.
+           Those of the fluid alone are left out unless they grow
+     nodes: in, of all members, the size of shapes; 0 without shapes
+     shapes[n][nodes][6][2]: out, displacement and rotation of the nodes, member by member as created, real and
+           imaginary part, of unit x^H M x, NULL: not wanted
+     frame[3]: out, rad/s, as of spar_member_solve_eigenvalues, NULL: not wanted
+   SPAR_ERR_STATE: no equilibrium, or other loads there. SPAR_ERR_NUMERIC: the fluid does not come to rest within the
+   memory, or fewer than n were found. SPAR_ERR_ARGUMENT: memory 0 of a fluid with states. SPAR_ERR_UNSUPPORTED: no
+   fluid solver, or as of members. */
+SPAR_API int spar_trial_solve_eigenvalues(spar_trial *trial, int64_t n, const double shift[2], double *eigenvalue,
+                                          int64_t nodes, double *shapes, double frame[3]);
+/* Stability of a periodic state: a rotor of two blades, or on a tower, or under its weight. Finds the eigenvalues of
+   the map of small motions over one period, Floquet's multipliers mu. The trial's steps are those of the period. Run
+   until the state repeats, then call.
+
+   Runs go through the period with the host's own steps and fluid: 4 modes + 1 runs of a period and a step. Everything
+   that spar solves for is displaced along each of its lowest undamped modes, and given a velocity along it, to and fro.
+   The multipliers are those of the steps, right to dt^2. Errors are the square of the amplitude, and the coupling's
+   error over the amplitude. Each run begins with consistent initial accelerations, for which the solver is called with
+   dt 0 (spar_session_solve_initial). Newton's stopping rule is strict. The callback before each step drives roots and
+   joints by the time. The fluid begins each run with its present states: what it remembers for longer than a period is
+   not seen. Collective.
+     n: in, number of multipliers, 0 to 2 modes
+     eigenvalue[n][2]: out, 1/s and rad/s: growth rate and angular frequency of log(mu) over the period, the least
+           damped first. Of a conjugate pair one is given, with a frequency from 0 to pi over the period. It is known
+           up to multiples of 2 pi over the period, and up to its sign. A growth rate > 0 is an instability
+   SPAR_ERR_STATE: the state does not repeat; the message says by how much. SPAR_ERR_NUMERIC: fewer than n were found.
+   SPAR_ERR_UNSUPPORTED: spar solves for nothing. Failures as of spar_step. */
+SPAR_API int spar_trial_solve_floquet(spar_trial *trial, int64_t n, double *eigenvalue);
 
 #ifdef __cplusplus
 }

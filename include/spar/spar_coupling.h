@@ -87,14 +87,6 @@ SPAR_API int spar_session_get_relaxation(const spar_session *session, double *om
    coupling.motion_atol   >= 0, m, default 0, and
    coupling.motion_rtol   0 to 1, default 0: if one is set, the iteration also continues until the nodes move between
                           iterations by less than atol + rtol times their displacement in the step
-   advise.dt, advise.nodes, advise.fidelity, advise.coupling
-                          vary (default) | keep: what spar_session_advise may propose to change; with nodes go
-                          elements
-   advise.limit           >= 0, default 0 (none): what asking for advice may cost, counted, in trials with the session
-                          as it is; SPAR_ERR_LIMIT where there is no advice by then
-   advise.fluid_cost      >= 0, in s of processor time, all ranks, default 0: what a solution of the fluid costs. 0:
-                          what its nodes lead one to expect; where those of the first run take more than
-                          thirty times that, their time in powers of 900 of it
    SPAR_ERR_ARGUMENT: no such key or value; the message lists them. */
 SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
 /* The value of an option, as a text that spar_session_set_option takes.

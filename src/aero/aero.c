@@ -665,6 +665,7 @@ static int solve_elements(spar_aero *aero, double density, const double *inflow,
 int spar_aero_solve(spar_aero *aero, double density, const double *inflow, double theta) {
     SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
+    aero->solves++;
     int status = spari_named(aero->session, __func__, solve_elements(aero, density, inflow, theta, __func__));
     if (status != SPAR_OK && aero->blades > 0) { /* a step must not go on with old loads */
         (void)spar_fluid_fail(aero->fluid[0], status, spar_session_message(aero->session));

@@ -7,6 +7,12 @@
 
 #include <spar/spar_aero.h>
 
+/* A row of the report of effects. */
+typedef struct spari_aero_effect {
+    int in_force, fails;
+    double size, motion, reaction, share;
+} spari_aero_effect;
+
 struct spar_aero {
     spar_session *session; /* for messages; NULL without blades */
     int blades;            /* on this rank */
@@ -29,7 +35,10 @@ struct spar_aero {
     spari_wind *wind;         /* NULL: neither shear nor tower described */
     double *met;              /* [blades][n][3] wind with shear and tower; NULL: not in force yet */
     int *inside;              /* [blades][n] SPAR_AERO_FLAG_TOWER or 0 */
-    spari_rotor used;         /* in the last solution; rotor_used: it was set then */
+    int64_t solves;           /* calls of spar_aero_solve */
+    int reported;             /* there is a report of effects */
+    spari_aero_effect effect[SPAR_AERO_ROW_COUNT];
+    spari_rotor used; /* in the last solution; rotor_used: it was set then */
     int rotor_used;
 };
 

@@ -33,19 +33,6 @@ const char *spar_aero_effect_name(int r) {
     return r >= 0 && r < SPAR_AERO_ROW_COUNT ? rows[r].name : "";
 }
 
-/* The host's arguments of a trial. */
-typedef struct aero_trial {
-    double dt;
-    int64_t steps;
-    spar_before_step before;
-    spar_fluid_solver solve;
-    void *context;
-} aero_trial;
-
-static int try_once(spar_session *s, const aero_trial *t, int compare, double report[SPAR_TRY_COUNT]) {
-    return spar_session_try(s, t->dt, t->steps, t->before, t->solve, t->context, compare, SPAR_TRY_COUNT, report);
-}
-
 static int polars_have_moments(const spar_aero *aero) {
     int any = 0;
     for (int64_t i = 0; i < aero->n; i++) {
@@ -73,72 +60,117 @@ static int find_rows(spar_session *s, const spar_aero *aero, int status, double 
     return spar_session_sum(s, status, SPAR_AERO_ROW_COUNT, in_force);
 }
 
-/* Compares the time of one solution: a run that starts out of equilibrium iterates more, which is not the cost of
-   the effect. */
-static double cost_of_try(const double report[SPAR_TRY_COUNT]) {
-    return report[SPAR_TRY_SECONDS] / fmax(report[SPAR_TRY_SOLUTIONS], 1);
+/* A run of the trial: its errors, and the time of one solution, because a run that starts out of equilibrium iterates
+   more, which is not the cost of the effect. */
+typedef struct aero_run {
+    double motion, reaction, load, time;
+} aero_run;
+
+static int try_once(spar_trial *trial, int compare, aero_run *out) {
+    double seconds;
+    int64_t evaluations;
+    SPARI_TRY(spar_trial_run(trial, compare));
+    SPARI_TRY(spar_trial_get_errors(trial, &out->motion, &out->reaction, &out->load));
+    SPARI_TRY(spar_trial_get_cost(trial, &seconds, &evaluations));
+    out->time = seconds / fmax((double)evaluations, 1);
+    return SPAR_OK;
 }
 
 /* Restores the effects, whatever fails. Times are the smallest of three runs, with and without in turn. */
-static int try_without(spar_session *s, spar_aero *aero, const aero_trial *t, int r, const double *base, double *out) {
+static int try_without(spar_trial *trial, spar_aero *aero, int r, const aero_run *base, spari_aero_effect *out) {
     enum { REPEATS = 3 };
-    double with = cost_of_try(base), without = INFINITY, report[SPAR_TRY_COUNT];
+    double with = base->time, without = INFINITY;
     const int effects = aero->rotor.effects;
     for (int k = 0; k < REPEATS; k++) {
+        aero_run run;
         aero->rotor.effects = effects & ~rows[r].effect;
-        int status = try_once(s, t, 1, report);
+        int status = try_once(trial, 1, &run);
         aero->rotor.effects = effects;
         if (status != SPAR_OK) {
-            out[SPAR_COLUMN_MOTION] = out[SPAR_COLUMN_REACTION] = -1;
+            *out = (spari_aero_effect){.in_force = 1, .fails = 1};
             return SPAR_OK;
         }
-        out[SPAR_COLUMN_SIZE] = report[SPAR_TRY_LOAD];
-        out[SPAR_COLUMN_MOTION] = report[SPAR_TRY_MOTION];
-        out[SPAR_COLUMN_REACTION] = report[SPAR_TRY_REACTION];
-        without = fmin(without, cost_of_try(report));
-        SPARI_TRY(try_once(s, t, 1, report));
-        with = fmin(with, cost_of_try(report));
+        *out = (spari_aero_effect){.in_force = 1, .size = run.load, .motion = run.motion, .reaction = run.reaction};
+        without = fmin(without, run.time);
+        SPARI_TRY(try_once(trial, 1, &run));
+        with = fmin(with, run.time);
     }
-    out[SPAR_COLUMN_SHARE] = with > 0 ? 1 - without / with : 0;
+    out->share = with > 0 ? 1 - without / with : 0;
     return SPAR_OK;
 }
 
-static int try_all(spar_session *s, spar_aero *aero, const aero_trial *t, int status,
-                   double (*table)[SPAR_COLUMN_COUNT]) {
-    double in_force[SPAR_AERO_ROW_COUNT], base[SPAR_TRY_COUNT];
+/* Whether the trial's fluid solver has solved for this object on any rank. */
+static int check_solves(spar_session *s, const spar_aero *aero, int64_t before, const char *call) {
+    double sum[] = {aero->solves > before, aero->blades};
+    SPARI_TRY(spar_session_sum(s, SPAR_OK, 2, sum));
+    SPARI_REQUIRE(s, sum[0] > 0 || sum[1] == 0, SPAR_ERR_STATE,
+                  "%s: the trial's fluid solver does not call spar_aero_solve on this object; give "
+                  "spar_trial_set_callbacks one that does",
+                  call);
+    return SPAR_OK;
+}
+
+static int try_all(spar_session *s, spar_trial *trial, spar_aero *aero, int status, const char *call,
+                   spari_aero_effect *table) {
+    double in_force[SPAR_AERO_ROW_COUNT];
+    aero_run base;
     SPARI_TRY(find_rows(s, aero, status, in_force));
-    SPARI_TRY(try_once(s, t, 0, base));
+    const int64_t solves = aero->solves;
+    SPARI_TRY(try_once(trial, 0, &base));
+    SPARI_TRY(check_solves(s, aero, solves, call));
     for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
         if (in_force[r] > 0) {
-            table[r][SPAR_COLUMN_IN_FORCE] = 1;
-            SPARI_TRY(try_without(s, aero, t, r, base, table[r]));
+            SPARI_TRY(try_without(trial, aero, r, &base, table + r));
         }
     }
     return SPAR_OK;
 }
 
-static int check_arguments(spar_session *s, const spar_aero *aero, const aero_trial *t, int64_t table_rows,
-                           int64_t table_columns, const char *call) {
+static int check_arguments(spar_session *s, const spar_aero *aero, const char *call) {
     SPARI_REQUIRE(s, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create", call);
     SPARI_REQUIRE(s, !aero->session || aero->session == s, SPAR_ERR_ARGUMENT,
-                  "%s: the blades belong to another session; give the session of the blades", call);
-    SPARI_REQUIRE(s, t->solve, SPAR_ERR_ARGUMENT, "%s: solve is NULL; give the solver passed to spar_step", call);
-    SPARI_TRY(spari_need_capacity(s, call, table_rows));
-    return spari_need_capacity(s, call, table_columns);
+                  "%s: the blades belong to another session; give a trial of the session of the blades", call);
+    return SPAR_OK;
 }
 
-int spar_aero_report_effects(spar_aero *aero, spar_session *session, double dt, int64_t steps, spar_before_step before,
-                             spar_fluid_solver solve, void *context, int64_t table_rows, int64_t table_columns,
-                             double *table) {
+int spar_aero_report_effects(spar_aero *aero, spar_trial *trial) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; give that of the blades", __func__);
-    const aero_trial t = {dt, steps, before, solve, context};
-    double made[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
+    SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it with spar_trial_create", __func__);
+    spar_session *session = NULL;
+    SPARI_TRY(spar_trial_get_session(trial, &session));
+    spari_aero_effect made[SPAR_AERO_ROW_COUNT] = {{0}};
     char message[SPARI_MESSAGE_SIZE] = "";
     (void)snprintf(message, sizeof message, "%s", spar_session_message(session));
-    int status = check_arguments(session, aero, &t, table_rows, table_columns, __func__);
-    SPARI_TRY(spari_named(session, __func__, try_all(session, aero, &t, status, made)));
+    int status = check_arguments(session, aero, __func__);
+    SPARI_TRY(spari_named(session, __func__, try_all(session, trial, aero, status, __func__, made)));
     spari_put_message_back(session, message);
-    spari_fill_table(table_rows, table_columns, table, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, made[0]);
+    memcpy(aero->effect, made, sizeof made);
+    aero->reported = 1;
+    return SPAR_OK;
+}
+
+int spar_aero_get_effect(const spar_aero *aero, int row, int *in_force, int *fails, double *size, double *motion,
+                         double *reaction, double *share) {
+    SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create",
+                  __func__);
+    SPARI_REQUIRE(aero->session, row >= 0 && row < SPAR_AERO_ROW_COUNT, SPAR_ERR_ARGUMENT,
+                  "%s: there is no row %d; give a SPAR_AERO_ROW_*", __func__, row);
+    SPARI_REQUIRE(aero->session, aero->reported, SPAR_ERR_STATE,
+                  "%s: there is no report; call spar_aero_report_effects first", __func__);
+    const spari_aero_effect *e = aero->effect + row;
+    int *const flags[] = {in_force, fails};
+    const int flag[] = {e->in_force, e->fails};
+    double *const figures[] = {size, motion, reaction, share};
+    const double figure[] = {e->size, e->motion, e->reaction, e->share};
+    for (int k = 0; k < 2; k++) {
+        if (flags[k]) {
+            *flags[k] = flag[k];
+        }
+    }
+    for (int k = 0; k < 4; k++) {
+        if (figures[k]) {
+            *figures[k] = figure[k];
+        }
+    }
     return SPAR_OK;
 }

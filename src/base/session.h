@@ -24,8 +24,6 @@ typedef struct spari_ranks {
 typedef struct spari_callbacks {
     spar_log log;
     void *log_context;
-    spar_progress progress; /* of calls that run trials */
-    void *progress_context;
     const char *in_progress; /* callback in progress: the public call that runs the host's fluid solver; or NULL */
 } spari_callbacks;
 
@@ -72,16 +70,6 @@ typedef struct spari_tolerance {
     double rtol;  /* relative */
 } spari_tolerance;
 
-/* Settings of the advice. */
-typedef struct spari_advice_settings {
-    int keep_dt;       /* option advise.dt = keep */
-    int keep_nodes;    /* option advise.nodes = keep */
-    int keep_fidelity; /* option advise.fidelity = keep */
-    int keep_coupling; /* option advise.coupling = keep */
-    int goals;         /* SPAR_GOAL_* */
-    double limit;      /* option advise.limit */
-    double fluid_cost; /* option advise.fluid_cost */
-} spari_advice_settings;
 
 /* Time and number of the accepted steps, and lengths of the last steps. */
 typedef struct spari_clock {
@@ -134,7 +122,6 @@ struct spar_session {
     spari_newton_settings newton;
     spari_coupling_settings coupling;
     spari_tolerance tolerance;
-    spari_advice_settings advice;
     const spari_setting *settings; /* table of all settings */
     int setting_count;
 

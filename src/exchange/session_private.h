@@ -5,9 +5,7 @@
 #include "../base/session.h"
 #include "../math/bins.h"
 
-typedef struct spari_record spari_record;     /* trial/trial.h */
 typedef struct spari_coupling spari_coupling; /* coupling/coupling.h */
-typedef struct spari_advised spari_advised;   /* tune/apply.h */
 
 /* Step-size control (session/step_control.h). */
 typedef struct spari_step_control {
@@ -17,8 +15,6 @@ typedef struct spari_step_control {
     double cut;   /* the last attempted step was rejected: 1 */
     int64_t rejected;
 } spari_step_control;
-
-enum { SPARI_MOST_NUMBERS = 32 };
 
 struct spari_own {
     double *pack; /* loads of all members, stacked, for the sum over ranks: [6 * nodes of all members], number of fluids
@@ -34,11 +30,10 @@ struct spari_own {
     int64_t listed;
     spari_coupling *coupling;  /* from the first step on */
     spari_coupling *suspended; /* that of the steps, while a solution is under way that is none; NULL: there was none */
-    spari_step_control step_control;   /* of steps to a tolerance */
-    double number[SPARI_MOST_NUMBERS]; /* spar_session_push_numbers, this rank's; 0: not pushed */
-    spari_record *kept;                /* of a trial that others are compared with; NULL: none */
-    void (*free_kept)(spari_record *kept);
-    spari_advised *advised; /* of spar_session_advise; NULL: none */
+    spari_step_control step_control; /* of steps to a tolerance */
+    spar_trial *trials;              /* list, in order of creation (trial/handle.h) */
+    int64_t trials_created;
+    void (*free_trials)(spar_trial *first); /* NULL: there are none */
 };
 
 #endif

@@ -160,7 +160,6 @@ struct spar_member {
     spari_work *work;         /* NULL: not requested */
     spari_added *added;       /* NULL: no added mass; otherwise the loads above follow added_mass.h */
     spari_means *means;       /* accelerations for fluids with substeps; NULL: those of the motion */
-    spari_rebuild *advice;    /* of spar_session_advise; NULL: none */
 };
 
 /* Table of the nodal arrays, used by everything that allocates, frees, saves, loads or copies a member. */

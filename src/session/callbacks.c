@@ -58,10 +58,6 @@ int spari_callback_before_step(spar_session *s, spar_before_step before, double 
 
 /* ---- how far trials are ---- */
 
-spari_progress spari_progress_of(const spar_session *s, const char *call) {
-    return (spari_progress){.call = call, .tell = s->callbacks.progress, .context = s->callbacks.progress_context};
-}
-
 /* Between trials the session stands as the host left it; what would try or save it is refused as within one. */
 static int ask_host(spar_session *s, const spari_progress *p, double done, double expected) {
     spari_host host;

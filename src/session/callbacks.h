@@ -19,12 +19,11 @@ int spari_callback_before_step(spar_session *session, spar_before_step before, d
 
 typedef struct spari_progress {
     const char *call;
-    spar_progress tell; /* as it was at the entry of the call; NULL: nobody */
+    spar_progress tell; /* NULL: nobody */
     void *context;
     int stopped; /* what the call is to answer, once it has been stopped; else SPAR_OK */
 } spari_progress;
 
-spari_progress spari_progress_of(const spar_session *session, const char *call);
 /* SPAR_OK, or SPAR_ERR_LIMIT on all ranks, where one of them stops: no trial fails with that, so that nothing else is
    tried in its place. Collective where there is somebody, else nothing. */
 int spari_progress_tell(spar_session *session, spari_progress *progress, double done, double expected);

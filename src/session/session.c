@@ -87,10 +87,9 @@ void spar_session_destroy(spar_session **session) {
     spari_comm_destroy(&s->ranks.comm);
     spari_coupling_free(&s->own->coupling);
     spari_coupling_free(&s->own->suspended);
-    if (s->own->kept) {
-        s->own->free_kept(s->own->kept);
+    if (s->own->free_trials) {
+        s->own->free_trials(s->own->trials);
     }
-    free(s->own->advised);
     free(s->own->pack);
     free(s->own->bins);
     free(s->own->first);
@@ -103,13 +102,6 @@ int spar_session_set_log(spar_session *session, spar_log log, void *context) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     session->callbacks.log = log;
     session->callbacks.log_context = context;
-    return SPAR_OK;
-}
-
-int spar_session_set_progress(spar_session *session, spar_progress progress, void *context) {
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    session->callbacks.progress = progress;
-    session->callbacks.progress_context = context;
     return SPAR_OK;
 }
 

@@ -19,7 +19,7 @@
 #include <string.h>
 
 /* Setter calls beside spar_session_set_option. */
-enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REPRODUCIBLE, TOLERANCE, GOAL, OPTION };
+enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REPRODUCIBLE, TOLERANCE, OPTION };
 
 /* Rows with field, range, default and flags: for the arguments of a setter, in order; for an option that is a
    number, or one of two words for 0 and 1; and for effects of a setter that is not an argument. */
@@ -77,8 +77,6 @@ static const spari_setting settings[] = {
     WHOLE(REPRODUCIBLE, "reproducible", "on", ranks.reproducible, 0, 1, "0 or 1", 0, SPARI_AGREED),
     REAL(TOLERANCE, "tolerance", "drift", tolerance.drift, 0, DBL_MAX, not_negative, 0, SPARI_AGREED),
     REAL(TOLERANCE, "tolerance", "rtol", tolerance.rtol, 0, 1, "a number from 0 to 1", 0, SPARI_AGREED),
-    WHOLE(GOAL, "goal", "goals", advice.goals, 1, 31, "at least one SPAR_GOAL_*, combined with or", SPAR_GOAL_MOTION,
-          SPARI_AGREED),
     OPTION_WORD("newton.stop", newton.strict, "balanced", "strict", SPARI_AGREED | SPARI_VARIED),
     OPTION_WORD("coupling.unconverged", coupling.accept_unconverged, "error", "accept", SPARI_AGREED),
     OPTION_WORD("coupling.unstable", coupling.accept_unstable, "error", "accept", SPARI_AGREED),
@@ -96,12 +94,6 @@ static const spari_setting settings[] = {
                 SPARI_AGREED | SPARI_OF_COUPLING),
     OPTION_REAL("coupling.motion_rtol", coupling.motion_rtol, 0, 1, "a number from 0 to 1", 0,
                 SPARI_AGREED | SPARI_OF_COUPLING),
-    OPTION_WORD("advise.dt", advice.keep_dt, "vary", "keep", SPARI_AGREED),
-    OPTION_WORD("advise.nodes", advice.keep_nodes, "vary", "keep", SPARI_AGREED),
-    OPTION_WORD("advise.fidelity", advice.keep_fidelity, "vary", "keep", SPARI_AGREED),
-    OPTION_WORD("advise.coupling", advice.keep_coupling, "vary", "keep", SPARI_AGREED),
-    OPTION_REAL("advise.limit", advice.limit, 0, 1e300, "a number >= 0 (trials)", 0, SPARI_AGREED),
-    OPTION_REAL("advise.fluid_cost", advice.fluid_cost, 0, 1e300, "a number >= 0 (seconds)", 0, SPARI_AGREED),
     STATE("numbers of members", member_count),
     STATE("numbers of joints", joint_count),
     STATE("calls that set the coupling", coupling.stale),
@@ -308,14 +300,6 @@ int spar_session_set_reproducible(spar_session *session, int on) {
 
 int spar_session_get_reproducible(const spar_session *session, int *on) {
     return get(session, __func__, REPRODUCIBLE, INTO(on));
-}
-
-int spar_session_set_goal(spar_session *session, int goals) {
-    return set(session, __func__, GOAL, (const double[]){goals});
-}
-
-int spar_session_get_goal(const spar_session *session, int *goals) {
-    return get(session, __func__, GOAL, INTO(goals));
 }
 
 int spar_session_set_tolerance(spar_session *session, double drift, double rtol) {

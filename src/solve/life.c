@@ -504,7 +504,6 @@ void spari_member_free(spar_member *member) {
     }
     spari_member_release(member);
     spari_beam_free(member->beam);
-    free(member->advice);
     free(member->guess_eta);
     free(member->guess);
     spari_learned_free(member->learned);

@@ -1,12 +1,12 @@
 /* Eigenvalues of structure and fluid together, for example a flutter speed without time integration. The structure
    is that of spar_member_solve_eigenvalues, reduced to some of its modes. The fluid's response to motion in these
    modes comes from trials. */
+#include "../trial/handle.h"
 #include "reduced_model.h"
 #include "shapes.h"
 
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
-#include "../comm/enter.h"
 #include "../exchange/exchange.h"
 #include "../time/fidelity.h"
 
@@ -14,8 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double common_amplitude = 1e-5, most_amplitude = 0.1;
-static const int64_t most_memory = 1000000;
+static const double common_amplitude = 1e-5;
 /* Maximum deviation of the fluid's decay from that of a linear system, relative to the largest load. */
 static const double most_misfit = 1e-3;
 
@@ -160,62 +159,52 @@ static int check_memory(spar_session *s, const char *call) {
     return SPAR_OK;
 }
 
-static int check_coupled(spar_session *s, const char *call, const coupled_ask *ask, int64_t nodes,
-                         const double shift[2], const double *eigenvalue) {
-    const spari_response_query *f = &ask->fluid;
-    SPARI_TRY(spari_trial_check(s, call, &f->run));
+static int check_coupled(spar_trial *t, const char *call, const coupled_ask *ask, int64_t nodes,
+                         const double shift[2]) {
+    spar_session *s = t->session;
+    SPARI_TRY(spari_trial_ready(t, call));
+    SPARI_REQUIRE(s, t->modes > 0, SPAR_ERR_STATE,
+                  "%s: the number of modes is not set; call spar_trial_set_motion first", call);
     SPARI_TRY(s->clock.started ? SPAR_OK : spari_session_pushes(s, call));
     SPARI_REQUIRE(
-        s, f->run.solve, SPAR_ERR_UNSUPPORTED,
-        "%s: the fluid solver is NULL; give the solver passed to spar_step, or use spar_member_solve_eigenvalues",
+        s, t->solve, SPAR_ERR_UNSUPPORTED,
+        "%s: the trial has no fluid solver; give spar_trial_set_callbacks the solver passed to spar_step, or use "
+        "spar_member_solve_eigenvalues",
         call);
-    SPARI_REQUIRE(s, f->memory >= 0 && f->memory <= most_memory, SPAR_ERR_ARGUMENT,
-                  "%s: a memory of %lld steps; give 0 to %lld", call, (long long)f->memory, (long long)most_memory);
-    SPARI_TRY(f->memory == 0 ? check_memory(s, call) : SPAR_OK);
-    SPARI_REQUIRE(s, f->amplitude > 0 && f->amplitude <= most_amplitude, SPAR_ERR_ARGUMENT,
-                  "%s: an amplitude of %g; give up to %g, or 0 for %g", call, f->amplitude, most_amplitude,
-                  common_amplitude);
-    SPARI_REQUIRE(s, f->modes >= 1, SPAR_ERR_ARGUMENT, "%s: no modes; give 1 to %d", call, SPARI_SHAPES_MOST);
-    SPARI_REQUIRE(s, ask->n >= 0 && ask->n <= 2 * f->modes, SPAR_ERR_ARGUMENT,
-                  "%s: %lld eigenvalues of %d modes; give at most two per mode", call, (long long)ask->n, f->modes);
-    SPARI_REQUIRE(s, eigenvalue || ask->n == 0, SPAR_ERR_ARGUMENT, "%s: eigenvalue is NULL", call);
-    SPARI_REQUIRE(s, !ask->shapes || nodes == f->nodes, SPAR_ERR_ARGUMENT,
+    SPARI_TRY(t->memory == 0 ? check_memory(s, call) : SPAR_OK);
+    SPARI_REQUIRE(s, ask->n >= 0 && ask->n <= 2 * t->modes, SPAR_ERR_ARGUMENT,
+                  "%s: %lld eigenvalues of %lld modes; give at most two per mode", call, (long long)ask->n,
+                  (long long)t->modes);
+    SPARI_REQUIRE(s, ask->eigenvalue || ask->n == 0, SPAR_ERR_ARGUMENT, "%s: eigenvalue is NULL", call);
+    SPARI_REQUIRE(s, !ask->shapes || nodes == ask->fluid.nodes, SPAR_ERR_ARGUMENT,
                   "%s: shapes of %lld nodes; all members together have %lld", call, (long long)nodes,
-                  (long long)f->nodes);
+                  (long long)ask->fluid.nodes);
     SPARI_REQUIRE(s, !shift || (isfinite(shift[0]) && isfinite(shift[1])), SPAR_ERR_ARGUMENT,
                   "%s: the shift is not finite", call);
     return SPAR_OK;
 }
 
-int spar_session_solve_eigenvalues(spar_session *session, double dt, int64_t memory, double amplitude,
-                                   spar_before_step before, spar_fluid_solver solve, void *context, int64_t modes,
-                                   int64_t n, const double shift[2], double *eigenvalue, int64_t nodes, double *shapes,
-                                   double frame[3]) {
+int spar_trial_solve_eigenvalues(spar_trial *trial, int64_t n, const double shift[2], double *eigenvalue, int64_t nodes,
+                                 double *shapes, double frame[3]) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    spar_session *s = session;
+    SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
+    spar_session *s = trial->session;
+    spari_progress progress = spari_trial_progress(trial, __func__);
     coupled_ask ask = {.n = n, .shift = shift ? CMPLX(shift[0], fabs(shift[1])) : 0};
     ask.eigenvalue = eigenvalue, ask.shapes = shapes;
-    ask.fluid = (spari_response_query){.run = {.dt = dt, .steps = SPARI_MULTIPLE}, .memory = memory};
-    ask.fluid.run.before = before, ask.fluid.run.solve = solve, ask.fluid.run.context = context;
-    ask.fluid.amplitude = amplitude == 0 ? common_amplitude : amplitude;
-    ask.fluid.modes = modes >= 1 && modes <= SPARI_SHAPES_MOST ? (int)modes : 0;
+    ask.fluid = (spari_response_query){.run = spari_trial_run_of(trial, &progress), .memory = trial->memory};
+    ask.fluid.run.steps = SPARI_MULTIPLE;
+    ask.fluid.amplitude = trial->amplitude == 0 ? common_amplitude : trial->amplitude;
+    ask.fluid.modes = (int)trial->modes;
     ask.fluid.nodes = spari_shapes_nodes(s);
-    spari_progress progress = spari_progress_of(s, __func__);
-    ask.fluid.run.progress = &progress;
-    int status = check_coupled(s, __func__, &ask, nodes, shift, eigenvalue);
-    const spari_agreed must_agree[] = {spari_real("dt", dt),
-                                       spari_whole("memory", memory),
-                                       spari_real("amplitude", amplitude),
-                                       spari_given("before", before != NULL),
-                                       spari_given("solve", solve != NULL),
-                                       spari_given("progress call", progress.tell != NULL),
-                                       spari_whole("modes", modes),
-                                       spari_whole("n", n)};
-    SPARI_TRY(spari_enter_agreed(s, __func__, must_agree, sizeof must_agree / sizeof *must_agree, status));
+    const spari_agreed arguments[] = {spari_whole("n", n)};
+    SPARI_TRY(spari_trial_enter(trial, __func__, arguments, 1, check_coupled(trial, __func__, &ask, nodes, shift)));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
-    SPARI_TRY(spari_named(s, __func__, spari_progress_ends(&progress, solve_coupled(s, __func__, &ask, frame))));
-    memcpy(s->message, message, sizeof message);
-    return SPAR_OK;
+    int status = spari_named(s, __func__, spari_progress_ends(&progress, solve_coupled(s, __func__, &ask, frame)));
+    if (status == SPAR_OK) {
+        memcpy(s->message, message, sizeof message);
+    }
+    spari_trial_leave(trial);
+    return status;
 }

@@ -137,7 +137,7 @@ static int check_same(const spari_small_motions *w, const spari_motion_part *p, 
     SPARI_REQUIRE(
         w->session, same, SPAR_ERR_UNSUPPORTED,
         "'%s' rotates relative to the parts it is connected to, and is not isotropic about its axis: the small-motion "
-        "equations depend on time and have no eigenvalues; for a periodic state use spar_session_solve_floquet",
+        "equations depend on time and have no eigenvalues; for a periodic state use spar_trial_solve_floquet",
         p->member->name);
     return SPAR_OK;
 }

@@ -2,14 +2,13 @@
    and its eigenvalues (Floquet multipliers). Each trial displaces every member along a shape, or gives it a velocity
    along it, in either direction, and runs through the period. Half the difference of the two final states is a
    column. */
-#include "../trial/trial.h"
+#include "../trial/handle.h"
 #include "shapes.h"
 
 #include "../algebra/dense.h"
 #include "../algebra/eigen.h"
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
-#include "../comm/enter.h"
 #include "../exchange/exchange.h"
 #include "../math/rotation.h"
 #include "../session/callbacks.h"
@@ -20,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double usual_amplitude = 1e-4, largest_amplitude = 0.1;
+static const double usual_amplitude = 1e-4;
 enum { NODE = 13 };
 /* Maximum difference of the state after a period: displacement relative to the member's length, rotation, and both
    for velocities times a radian of the period. */
@@ -28,7 +27,7 @@ static const double periodic = 1e-3;
 
 typedef struct floquet {
     const char *call;
-    spari_run run; /* dt, before, solve, context, progress */
+    spari_run run; /* dt, callbacks, progress */
     int64_t steps; /* per period */
     int64_t nodes; /* of all members */
     int modes;
@@ -148,10 +147,10 @@ static int run_period(spar_session *s, void *self) {
     }
     s->clock.step = 0;
     s->clock.started = 0;
-    SPARI_TRY(spar_session_solve_initial(s, run->dt, run->solve, run->context, &iterations));
+    SPARI_TRY(spar_session_solve_initial(s, run->dt, run->solve, run->solve_context, &iterations));
     for (int64_t i = 0; i <= f->steps; i++) {
-        SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->context));
-        SPARI_TRY(spar_step(s, run->dt, run->solve, run->context, &iterations));
+        SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->before_context));
+        SPARI_TRY(spar_step(s, run->dt, run->solve, run->solve_context, &iterations));
         if (i == 0 && f->mode < 0) {
             keep_motion(s, f->base);
         }
@@ -269,7 +268,7 @@ static int find_multipliers(spar_session *s, floquet *f, int64_t n, double *eige
     double complex *z = spari_zalloc(2 * (int64_t)f->modes, sizeof *z);
     int count = 0, status = solve_map(f, z, &count);
     double period = f->run.dt * (double)f->steps;
-    for (int64_t k = 0; k < n && k < count; k++) {
+    for (int64_t k = 0; k < n && count >= n; k++) {
         eigenvalue[2 * k] = log(cabs(z[k])) / period;
         eigenvalue[2 * k + 1] = carg(z[k]) / period;
     }
@@ -298,52 +297,42 @@ static int solve_floquet(spar_session *s, floquet *f, int64_t n, double *eigenva
     return status;
 }
 
-static int check_floquet(spar_session *s, const floquet *f, int64_t modes, int64_t n, const double *eigenvalue) {
+static int check_floquet(spar_trial *t, const floquet *f, int64_t n, const double *eigenvalue) {
     const char *call = f->call;
-    SPARI_TRY(spari_trial_check(s, call, &f->run));
+    spar_session *s = t->session;
+    SPARI_TRY(spari_trial_ready(t, call));
+    SPARI_REQUIRE(s, t->modes > 0, SPAR_ERR_STATE,
+                  "%s: the number of modes is not set; call spar_trial_set_motion first", call);
     SPARI_TRY(s->clock.started ? SPAR_OK : spari_session_pushes(s, call));
-    SPARI_REQUIRE(s, f->steps >= 1 && isfinite(f->run.dt * (double)f->steps), SPAR_ERR_ARGUMENT,
-                  "%s: %lld steps; give the number of steps in a period", call, (long long)f->steps);
-    SPARI_REQUIRE(s, f->amplitude > 0 && f->amplitude <= largest_amplitude, SPAR_ERR_ARGUMENT,
-                  "%s: an amplitude of %g; give up to %g, or 0 for %g", call, f->amplitude, largest_amplitude,
-                  usual_amplitude);
-    SPARI_REQUIRE(s, modes >= 1 && modes <= SPARI_SHAPES_MOST, SPAR_ERR_ARGUMENT, "%s: %lld modes; give 1 to %d", call,
-                  (long long)modes, SPARI_SHAPES_MOST);
-    SPARI_REQUIRE(s, n >= 0 && n <= 2 * modes, SPAR_ERR_ARGUMENT,
+    SPARI_REQUIRE(s, isfinite(t->dt * (double)t->steps), SPAR_ERR_ARGUMENT,
+                  "%s: the period of %lld steps is not finite; give fewer or shorter steps", call, (long long)t->steps);
+    SPARI_REQUIRE(s, n >= 0 && n <= 2 * t->modes, SPAR_ERR_ARGUMENT,
                   "%s: %lld multipliers of %lld modes; give at most two per mode", call, (long long)n,
-                  (long long)modes);
+                  (long long)t->modes);
     SPARI_REQUIRE(s, eigenvalue || n == 0, SPAR_ERR_ARGUMENT, "%s: eigenvalue is NULL", call);
     return SPAR_OK;
 }
 
-int spar_session_solve_floquet(spar_session *session, double dt, int64_t steps, double amplitude,
-                               spar_before_step before, spar_fluid_solver solve, void *context, int64_t modes,
-                               int64_t n, double *eigenvalue) {
+int spar_trial_solve_floquet(spar_trial *trial, int64_t n, double *eigenvalue) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    spar_session *s = session;
-    spari_progress progress = spari_progress_of(s, __func__);
-    floquet f = {
-        .call = __func__, .steps = steps, .modes = (int)(modes >= 1 && modes <= SPARI_SHAPES_MOST ? modes : 0)};
-    f.run = (spari_run){.dt = dt, .steps = SPARI_MULTIPLE, .before = before, .solve = solve, .context = context};
-    f.run.progress = &progress;
-    f.amplitude = amplitude == 0 ? usual_amplitude : amplitude;
+    SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
+    spar_session *s = trial->session;
+    spari_progress progress = spari_trial_progress(trial, __func__);
+    floquet f = {.call = __func__, .steps = trial->steps, .modes = (int)trial->modes};
+    f.run = spari_trial_run_of(trial, &progress);
+    f.run.steps = SPARI_MULTIPLE;
+    f.amplitude = trial->amplitude == 0 ? usual_amplitude : trial->amplitude;
     f.nodes = spari_shapes_nodes(s);
-    const spari_agreed must_agree[] = {spari_real("dt", dt),
-                                       spari_whole("steps", steps),
-                                       spari_real("amplitude", amplitude),
-                                       spari_given("before", before != NULL),
-                                       spari_given("solve", solve != NULL),
-                                       spari_given("progress call", progress.tell != NULL),
-                                       spari_whole("modes", modes),
-                                       spari_whole("n", n)};
-    int status = check_floquet(s, &f, modes, n, eigenvalue);
-    SPARI_TRY(spari_enter_agreed(s, __func__, must_agree, sizeof must_agree / sizeof *must_agree, status));
+    const spari_agreed arguments[] = {spari_whole("n", n)};
+    SPARI_TRY(spari_trial_enter(trial, __func__, arguments, 1, check_floquet(trial, &f, n, eigenvalue)));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
-    status = solve_floquet(s, &f, n, eigenvalue);
+    int status = solve_floquet(s, &f, n, eigenvalue);
     floquet_free(&f);
-    SPARI_TRY(spari_named(s, __func__, spari_progress_ends(&progress, status)));
-    memcpy(s->message, message, sizeof message);
-    return SPAR_OK;
+    status = spari_named(s, __func__, spari_progress_ends(&progress, status));
+    if (status == SPAR_OK) {
+        memcpy(s->message, message, sizeof message);
+    }
+    spari_trial_leave(trial);
+    return status;
 }

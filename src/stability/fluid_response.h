@@ -12,7 +12,7 @@ enum { SPARI_PULSE = 22, SPARI_PULSE_MIDDLE = 9 };
 
 typedef struct spari_response_query {
     const spari_small_motions *motions;
-    spari_run run;    /* dt, before, solve, context, progress */
+    spari_run run;    /* dt, callbacks, progress */
     int64_t memory;   /* steps of dt for which loads last after the motion has ended; 0: none */
     double amplitude; /* relative to the member's length for displacements; rad for rotations */
     int modes;

@@ -4,9 +4,6 @@
 
 #include "small_motions.h"
 
-/* Maximum number of shapes. */
-enum { SPARI_SHAPES_MOST = 200 };
-
 /* Nodes of the committed members, at which shapes are given. */
 int64_t spari_shapes_nodes(const spar_session *session);
 /* K, C or M (kind 0, 1, 2) times x. */

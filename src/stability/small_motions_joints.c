@@ -197,7 +197,7 @@ SPARI_APART static int check_around(const spari_small_motions *w, const spar_joi
                 of_P <= tolerance * rotation * size[2];
     SPARI_REQUIRE(w->session, round, SPAR_ERR_UNSUPPORTED,
                   "joint '%s' is not isotropic about the axis of relative rotation: the small-motion equations depend "
-                  "on time and have no eigenvalues; for a periodic state use spar_session_solve_floquet",
+                  "on time and have no eigenvalues; for a periodic state use spar_trial_solve_floquet",
                   j->name);
     return SPAR_OK;
 }

@@ -111,10 +111,10 @@ double spari_cost_fluids(const spar_session *s) {
     return sum;
 }
 
-double spari_cost_solution(const spar_session *s, double by_nodes, double seconds, int64_t solutions) {
+double spari_cost_solution(double given, double by_nodes, double seconds, int64_t solutions) {
     const spari_prices *p = &spari_rule.price;
-    if (s->advice.fluid_cost > 0) {
-        return whole(fmin(s->advice.fluid_cost * p->second, 1e15));
+    if (given > 0) {
+        return whole(fmin(given * p->second, 1e15));
     }
     /* the time of a solution, relative to what its nodes lead one to expect */
     double timed = solutions > 0 ? seconds / (double)solutions * p->second : 0,
@@ -123,8 +123,8 @@ double spari_cost_solution(const spar_session *s, double by_nodes, double second
     return whole(fmax(by_nodes, p->fluid) * pow(p->believed, 2 * power));
 }
 
-int spari_cost_wavers(const spar_session *s, double by_nodes, double seconds, int64_t solutions) {
+int spari_cost_wavers(double given, double by_nodes, double seconds, int64_t solutions) {
     const double near = 2; /* timing error of a busy machine */
-    return spari_cost_solution(s, by_nodes, seconds / near, solutions) !=
-           spari_cost_solution(s, by_nodes, seconds * near, solutions);
+    return spari_cost_solution(given, by_nodes, seconds / near, solutions) !=
+           spari_cost_solution(given, by_nodes, seconds * near, solutions);
 }

@@ -17,10 +17,11 @@ double spari_cost_frame(const spar_member *member, int elements, int nodes, int 
 double spari_cost_exact(const spar_member *member, int elements, int nodes, int points);
 /* Expected cost of a solution of this rank's fluids, from their nodes. */
 double spari_cost_fluids(const spar_session *session);
-/* Cost of a fluid solution: the host's value (option advise.fluid_cost), otherwise the expectation from its nodes.
-   If the measured time is far from that, it is the time, rounded so coarsely that timing noise has no effect. */
-double spari_cost_solution(const spar_session *session, double by_nodes, double seconds, int64_t solutions);
+/* Cost of a fluid solution: the host's value, s (option fluid_cost of the trial); if that is 0, the expectation from
+   its nodes. If the measured time is far from that, it is the time, rounded so coarsely that timing noise has no
+   effect. */
+double spari_cost_solution(double given, double by_nodes, double seconds, int64_t solutions);
 /* Whether the time is so close to the boundary of two classes that another run may fall in the other. */
-int spari_cost_wavers(const spar_session *session, double by_nodes, double seconds, int64_t solutions);
+int spari_cost_wavers(double given, double by_nodes, double seconds, int64_t solutions);
 
 #endif

@@ -1,6 +1,6 @@
 /* Contribution of effects: their size in a run, and trials with and without them. */
 #include "../base/environment.h"
-#include "trial.h"
+#include "handle.h"
 
 #include "../math/rotation.h"
 #include "../member/applied.h"
@@ -12,52 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- one trial for the host ---- */
-
-int spar_session_try(spar_session *session, double dt, int64_t steps, spar_before_step before, spar_fluid_solver solve,
-                     void *context, int compare, int64_t capacity, double *report) {
-    SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    spar_session *s = session;
-    spari_run run = {.dt = dt,
-                     .steps = steps,
-                     .before = before,
-                     .solve = solve,
-                     .context = context,
-                     .goals = SPARI_GOAL(SPARI_OF_REACTION)};
-    spari_record record = {0};
-    spari_trial_settings trial_settings = {0};
-    int status = spari_trial_check(s, __func__, &run);
-    status = status == SPAR_OK ? spari_need_capacity(s, __func__, capacity) : status;
-    if (status == SPAR_OK && compare && (!s->own->kept || s->own->kept->members != s->member_count)) {
-        status = spari_fail(s, SPAR_ERR_STATE,
-                            "%s: there is no earlier run of these members to compare with; call with compare = 0 first",
-                            __func__);
-    }
-    status = spari_trial_enter(s, __func__, &run, 0, compare, status);
-    status = status == SPAR_OK ? spari_trial_settings_create(s, &trial_settings) : status;
-    if (status == SPAR_OK) {
-        (void)spari_trial_run(s, &run, &trial_settings, &record);
-        status = record.own;
-    }
-    spari_trial_settings_free(&trial_settings);
-    if (status == SPAR_OK) {
-        const double made[SPAR_TRY_COUNT] = {
-            [SPAR_TRY_MOTION] = compare ? spari_record_distance(&record, s->own->kept, SPARI_OF_MOTION) : 0,
-            [SPAR_TRY_REACTION] = compare ? spari_record_distance(&record, s->own->kept, SPARI_OF_REACTION) : 0,
-            [SPAR_TRY_LOAD] = compare ? spari_record_load(&record, s->own->kept) : 0,
-            [SPAR_TRY_SECONDS] = record.seconds,
-            [SPAR_TRY_SOLUTIONS] = (double)record.solutions,
-        };
-        spari_fill(capacity, report, SPAR_TRY_COUNT, made);
-        if (!compare) {
-            status = spari_trial_keep(s, &record);
-        }
-    }
-    spari_record_free(&record);
-    return spari_named(s, __func__, status);
-}
 
 /* ---- sizes ---- */
 
@@ -216,13 +170,13 @@ static void find_sizes(const sizes *of, double dt, double size[SPAR_ROW_COUNT]) 
 
 /* ---- rows ---- */
 
-typedef struct row {
+typedef struct effect_row {
     const char *name;
     int effect; /* SPAR_EFFECT_* of members */
     int part;   /* SPARI_MUTE_* of fluids */
-} row;
+} effect_row;
 
-static const row rows[SPAR_ROW_COUNT] = {
+static const effect_row rows[SPAR_ROW_COUNT] = {
     {"inertia", SPAR_EFFECT_INERTIA, 0},
     {"gyroscopic terms", SPAR_EFFECT_GYROSCOPIC, 0},
     {"gravity", SPAR_EFFECT_GRAVITY, 0},
@@ -244,7 +198,7 @@ const char *spar_effect_name(int r) {
 }
 
 /* asked: what the fluids of all ranks have pulled and pushed */
-static int in_force(const spar_session *s, int r, int asked) {
+static int row_in_force(const spar_session *s, int r, int asked) {
     if (r == SPAR_ROW_PREDICTOR) {
         return s->coupling.predictor > 0;
     }
@@ -298,11 +252,11 @@ static void tell_failure(spar_session *s, const char *call, int r) {
 
 enum { REPEATS = 3 }; /* times are the smallest of this many runs, with and without in turn */
 
-/* Number of runs for rows from r on. asked: as in in_force. */
+/* Number of runs for rows from r on. asked: as in row_in_force. */
 static int count_runs(const spar_session *s, int r, int asked) {
     int runs = 0;
     for (; r < SPAR_ROW_COUNT; r++) {
-        runs += in_force(s, r, asked) ? 2 * REPEATS : 0;
+        runs += row_in_force(s, r, asked) ? 2 * REPEATS : 0;
     }
     return runs;
 }
@@ -324,7 +278,7 @@ static int run_told(spar_session *s, const spari_run *run, const spari_trial_set
 }
 
 static int try_row_out(spar_session *s, const char *call, const spari_run *run, int r, const spari_record *base,
-                       run_tally *runs, double *out) {
+                       run_tally *runs, spari_effect *out) {
     double with = cost_of_row(base, r), without = INFINITY;
     spari_trial_settings trial_settings;
     SPARI_TRY(spari_trial_settings_create(s, &trial_settings));
@@ -334,10 +288,10 @@ static int try_row_out(spar_session *s, const char *call, const spari_run *run, 
         leave_row_out(s, r, &trial_settings);
         status = run_told(s, run, &trial_settings, runs, &record);
         if (status == SPAR_OK && k == 0) {
-            out[SPAR_COLUMN_MOTION] = spari_record_distance(&record, base, SPARI_OF_MOTION);
-            out[SPAR_COLUMN_REACTION] = spari_record_distance(&record, base, SPARI_OF_REACTION);
+            out->motion = spari_record_distance(&record, base, SPARI_OF_MOTION);
+            out->reaction = spari_record_distance(&record, base, SPARI_OF_REACTION);
             if (r >= SPAR_ROW_FLUID_MOMENT && r <= SPAR_ROW_FLUID_HISTORY) {
-                out[SPAR_COLUMN_SIZE] = spari_record_load(&record, base);
+                out->size = spari_record_load(&record, base);
             }
         }
         without = status == SPAR_OK ? fmin(without, cost_of_row(&record, r)) : without;
@@ -353,11 +307,11 @@ static int try_row_out(spar_session *s, const char *call, const spari_run *run, 
     spari_trial_settings_free(&trial_settings);
     if (is_of_the_run(status)) {
         tell_failure(s, call, r);
-        out[SPAR_COLUMN_MOTION] = out[SPAR_COLUMN_REACTION] = -1;
-        out[SPAR_COLUMN_SHARE] = 0;
+        out->fails = 1;
+        out->motion = out->reaction = 0;
         return SPAR_OK;
     }
-    out[SPAR_COLUMN_SHARE] = with > 0 ? 1 - without / with : 0;
+    out->share = with > 0 ? 1 - without / with : 0;
     return status;
 }
 
@@ -377,21 +331,19 @@ static int asked_anywhere(spar_session *s, int *asked) {
 }
 
 static int try_rows(spar_session *s, const char *call, const spari_run *run, const spari_record *base,
-                    const double size[SPAR_ROW_COUNT], int asked, run_tally *runs, double (*table)[SPAR_COLUMN_COUNT]) {
+                    const double size[SPAR_ROW_COUNT], int asked, run_tally *runs, spari_effect *table) {
     int status = SPAR_OK;
     for (int r = 0; r < SPAR_ROW_COUNT && status == SPAR_OK; r++) {
-        double *out = table[r];
         runs->left = count_runs(s, r, asked);
-        if (in_force(s, r, asked)) {
-            out[SPAR_COLUMN_IN_FORCE] = 1;
-            out[SPAR_COLUMN_SIZE] = size[r];
-            status = try_row_out(s, call, run, r, base, runs, out);
+        if (row_in_force(s, r, asked)) {
+            table[r] = (spari_effect){.in_force = 1, .size = size[r]};
+            status = try_row_out(s, call, run, r, base, runs, table + r);
         }
     }
     return status;
 }
 
-static int fill_rows(spar_session *s, const char *call, const spari_run *run, double (*table)[SPAR_COLUMN_COUNT]) {
+static int fill_rows(spar_session *s, const char *call, const spari_run *run, spari_effect *table) {
     double size[SPAR_ROW_COUNT] = {0};
     sizes seen = {{0}, 0};
     spari_run watched = *run;
@@ -413,29 +365,48 @@ static int fill_rows(spar_session *s, const char *call, const spari_run *run, do
     return status;
 }
 
-int spar_session_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
-                                spar_fluid_solver solve, void *context, int64_t table_rows, int64_t table_columns,
-                                double *table) {
+int spar_trial_report_effects(spar_trial *trial) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    spar_session *s = session;
-    spari_run run = {.dt = dt,
-                     .steps = steps,
-                     .before = before,
-                     .solve = solve,
-                     .context = context,
-                     .goals = SPARI_GOAL(SPARI_OF_REACTION)};
-    spari_progress progress = spari_progress_of(s, __func__);
-    run.progress = &progress;
-    double made[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT] = {{0}};
-    int status = spari_trial_check(s, __func__, &run);
-    status = status == SPAR_OK ? spari_need_capacity(s, __func__, table_rows) : status;
-    status = status == SPAR_OK ? spari_need_capacity(s, __func__, table_columns) : status;
-    SPARI_TRY(spari_trial_enter(s, __func__, &run, 0, 0, status));
+    SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
+    spar_session *s = trial->session;
+    spari_effect made[SPAR_ROW_COUNT] = {{0}};
+    SPARI_TRY(spari_trial_enter(trial, __func__, NULL, 0, spari_trial_ready_for_runs(trial, __func__)));
+    spari_progress progress = spari_trial_progress(trial, __func__);
+    spari_run run = spari_trial_run_of(trial, &progress);
+    run.goals = SPARI_GOAL(SPARI_OF_REACTION);
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
-    SPARI_TRY(spari_named(s, __func__, spari_progress_ends(&progress, fill_rows(s, __func__, &run, made))));
-    spari_put_message_back(s, message);
-    spari_fill_table(table_rows, table_columns, table, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, made[0]);
+    int status = spari_named(s, __func__, spari_progress_ends(&progress, fill_rows(s, __func__, &run, made)));
+    if (status == SPAR_OK) {
+        spari_put_message_back(s, message);
+        memcpy(trial->effect, made, sizeof made);
+        trial->reported = 1;
+    }
+    spari_trial_leave(trial);
+    return status;
+}
+
+int spar_trial_get_effect(const spar_trial *trial, int row, int *in_force, int *fails, double *size, double *motion,
+                          double *reaction, double *share) {
+    SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
+    SPARI_REQUIRE(trial->session, row >= 0 && row < SPAR_ROW_COUNT, SPAR_ERR_ARGUMENT,
+                  "%s: there is no row %d; give a SPAR_ROW_*", __func__, row);
+    SPARI_REQUIRE(trial->session, trial->reported, SPAR_ERR_STATE,
+                  "%s: there is no report; call spar_trial_report_effects first", __func__);
+    const spari_effect *e = trial->effect + row;
+    int *const flags[] = {in_force, fails};
+    const int flag[] = {e->in_force, e->fails};
+    double *const figures[] = {size, motion, reaction, share};
+    const double figure[] = {e->size, e->motion, e->reaction, e->share};
+    for (int k = 0; k < 2; k++) {
+        if (flags[k]) {
+            *flags[k] = flag[k];
+        }
+    }
+    for (int k = 0; k < 4; k++) {
+        if (figures[k]) {
+            *figures[k] = figure[k];
+        }
+    }
     return SPAR_OK;
 }

@@ -283,9 +283,9 @@ static int look_at_goals(const spari_record *r, spar_session *s, double *now) {
     }
     if (r->goals & SPARI_GOAL(SPARI_OF_NUMBERS) && status == SPAR_OK) {
         double sum[SPARI_MOST_NUMBERS + 1];
-        memcpy(sum, s->own->number, sizeof s->own->number);
+        memcpy(sum, r->numbers, SPARI_MOST_NUMBERS * sizeof *sum);
         status = spari_comm_sum(s->ranks.comm, sum, SPARI_MOST_NUMBERS, SPAR_OK, s->message, sizeof s->message);
-        memcpy(now + r->first[SPARI_OF_NUMBERS], sum, sizeof s->own->number);
+        memcpy(now + r->first[SPARI_OF_NUMBERS], sum, SPARI_MOST_NUMBERS * sizeof *sum);
     }
     return status;
 }

@@ -4,6 +4,8 @@
 
 #include "../exchange/session_private.h"
 
+/* Numbers of the host's own, at most. */
+enum { SPARI_MOST_NUMBERS = 32 };
 /* Number of times at which runs are compared; between steps, cubic interpolation. */
 enum { SPARI_SAMPLES = 128 };
 /* Blocks of a sample. Goals are in the order of SPAR_GOAL_*. */
@@ -21,12 +23,13 @@ enum {
 
 enum { SPARI_LOADS = 9 }; /* times at which the fluid's loads are compared: the end of the first step, and 8 more */
 
-struct spari_record {
+typedef struct spari_record {
     int64_t steps, steps_done, stations; /* of the run, and completed; positions of all members */
     int64_t first[SPARI_BLOCKS + 1];     /* begin of a block in a sample, and size of a sample */
     int goals, members;                  /* blocks recorded beside the motion */
     double *value;                       /* [SPARI_SAMPLES][first[SPARI_BLOCKS]] */
     double *recent;                      /* [4][the same], of the last steps */
+    const double *numbers;               /* [SPARI_MOST_NUMBERS] of the host, in the trial; read at each step */
     double *start, *workspace;           /* initial displacements; workspace for reactions */
     double *basis;                       /* [stations][SPARI_MAX_NODES] for the positions along beams */
     double *load;  /* [SPARI_LOADS][members][6]: fluid loads after the first step and at even times: their sum, and
@@ -45,7 +48,7 @@ struct spari_record {
     double report[SPAR_REPORT_COUNT]; /* of the coupling, at the end */
     int asked;                        /* SPARI_MUTE_*: what the host has pulled and pushed */
     int own;                          /* this rank's own status of a failed run */
-};
+} spari_record;
 
 /* Allocates for a run of `steps`, and records its beginning; goals: SPARI_GOAL or-ed. Free it also after a failure.
    Local. */

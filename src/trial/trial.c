@@ -6,7 +6,6 @@
 #include "move_loads.h"
 
 #include "../base/environment.h"
-#include "../comm/enter.h"
 #include "../coupling/coupling.h"
 #include "../exchange/exchange.h"
 #include "../exchange/session_private.h"
@@ -193,29 +192,6 @@ static void go_back(spar_session *s, snapshot *t) {
 
 /* ---- the run ---- */
 
-static void free_kept(spari_record *kept) {
-    spari_record_free(kept);
-    free(kept);
-}
-
-int spari_trial_keep(spar_session *s, spari_record *record) {
-    spari_record *kept = spari_zalloc(1, sizeof *kept);
-    int status = kept ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the record of a trial run");
-    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
-    if (status != SPAR_OK) {
-        free(kept);
-        return status;
-    }
-    if (s->own->kept) {
-        free_kept(s->own->kept);
-    }
-    *kept = *record;
-    *record = (spari_record){0};
-    s->own->kept = kept;
-    s->own->free_kept = free_kept;
-    return SPAR_OK;
-}
-
 /* Alternation of the loads at step i. Unstable explicit coupling begins as an alternation, whose second differences
    change sign with every step; those of a resolved motion keep their sign. size: squares of the loads in each
    quarter. */
@@ -250,7 +226,7 @@ typedef struct timed_fluid {
 static int solve_timed(spar_session *s, double t, double dt, int iteration, void *context) {
     timed_fluid *fluid = context;
     clock_t since = clock();
-    int result = fluid->run->solve(s, t, dt, iteration, fluid->run->context);
+    int result = fluid->run->solve(s, t, dt, iteration, fluid->run->solve_context);
     fluid->spent += clock() - since;
     return result;
 }
@@ -261,7 +237,7 @@ static int step_once(spar_session *s, const spari_run *run, spari_record *r) {
     timed_fluid fluid = {run, 0};
     clock_t since = clock();
     int status = timed ? spar_step(s, run->dt, solve_timed, &fluid, &iterations)
-                       : spar_step(s, run->dt, run->solve, run->context, &iterations);
+                       : spar_step(s, run->dt, run->solve, run->solve_context, &iterations);
     r->seconds += (double)(clock() - since) / CLOCKS_PER_SEC;
     r->fluid_seconds += (double)fluid.spent / CLOCKS_PER_SEC;
     r->solutions += iterations;
@@ -296,7 +272,7 @@ static int check_use(spar_session *s, const spari_run *run, int64_t i, spari_rec
 static int march(spar_session *s, const spari_run *run, spari_record *r) {
     double size[4] = {0};
     for (int64_t i = 1; i <= run->steps; i++) {
-        SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->context));
+        SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->before_context));
         SPARI_TRY(step_once(s, run, r));
         SPARI_TRY(run->watch ? run->watch(s, run->watcher) : SPAR_OK);
         watch_loads(s, i, run->steps, r, size);
@@ -323,10 +299,11 @@ static int share_costs(spar_session *s, spari_record *r) {
  */
 static int run_there(spar_session *s, const spari_run *run, int balanced, spari_record *r) {
     int status = spari_record_create(s, run->steps, run->goals, r);
+    r->numbers = run->numbers;
     status = spari_session_seal(s, status);
     if (status == SPAR_OK && balanced) { /* as the host has begun its own run */
         int iterations = 0;
-        status = spar_session_solve_initial(s, run->dt, run->solve, run->context, &iterations);
+        status = spar_session_solve_initial(s, run->dt, run->solve, run->solve_context, &iterations);
         r->solutions += iterations;
     }
     if (status == SPAR_OK) {
@@ -392,20 +369,7 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_trial_set
     return share_failure(s, status, &record->work);
 }
 
-int spari_trial_enter(spar_session *s, const char *call, const spari_run *run, double tolerance, int compare,
-                      int status) {
-    const spari_agreed must_agree[] = {spari_real("dt", run->dt),
-                                       spari_whole("steps", run->steps),
-                                       spari_given("before", run->before != NULL),
-                                       spari_given("solve", run->solve != NULL),
-                                       spari_real("tolerance", tolerance),
-                                       spari_real("length", run->length),
-                                       spari_whole("compare", compare != 0),
-                                       spari_given("progress call", run->progress && run->progress->tell)};
-    return spari_enter_agreed(s, call, must_agree, sizeof must_agree / sizeof *must_agree, status);
-}
-
-int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
+int spari_trial_check(spar_session *s, const char *call) {
     SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress", call);
     SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is in progress; accept or reject it first", call);
@@ -413,14 +377,16 @@ int spari_trial_check(spar_session *s, const char *call, const spari_run *run) {
         SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
                       "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
     }
-    SPARI_TRY(spari_need_dt(s, call, run->dt));
-    SPARI_REQUIRE(s, run->steps > 0 && run->steps % SPARI_MULTIPLE == 0, SPAR_ERR_ARGUMENT,
-                  "%s: %lld steps; give a multiple of %d, because advice tries other values of dt", call,
-                  (long long)run->steps, SPARI_MULTIPLE);
-    /* advice varies dt, and runs longer than requested */
-    const double longer = 1e6;
-    SPARI_REQUIRE(s, isfinite(s->clock.time + longer * (double)run->steps * run->dt), SPAR_ERR_ARGUMENT,
+    return SPAR_OK;
+}
+
+int spari_trial_check_steps(spar_session *s, const char *call, double dt, int64_t steps) {
+    const double longer = 1e6; /* advice varies dt, and runs longer than requested */
+    SPARI_REQUIRE(s, steps % SPARI_MULTIPLE == 0, SPAR_ERR_ARGUMENT,
+                  "%s: the trial has %lld steps; give spar_trial_set_steps a multiple of %d", call, (long long)steps,
+                  SPARI_MULTIPLE);
+    SPARI_REQUIRE(s, isfinite(s->clock.time + longer * (double)steps * dt), SPAR_ERR_ARGUMENT,
                   "%s: the end of %lld steps of %g s from t = %g is not finite; give fewer or shorter steps", call,
-                  (long long)run->steps, run->dt, s->clock.time);
+                  (long long)steps, dt, s->clock.time);
     return SPAR_OK;
 }

@@ -17,11 +17,12 @@ enum { SPARI_MULTIPLE = 8 };
 /* A run: steps (a multiple of SPARI_MULTIPLE) of dt, with the host's callbacks. */
 typedef struct spari_run {
     double dt;
-    double length; /* for advice: length of the host's own run, s */
     int64_t steps;
     spar_before_step before;
+    void *before_context;
     spar_fluid_solver solve;
-    void *context;
+    void *solve_context;
+    const double *numbers; /* [SPARI_MOST_NUMBERS] of the host, for the goal SPARI_OF_NUMBERS */
     int (*watch)(spar_session *session,
                  void *watcher); /* called after each step; may be NULL: a status that all ranks agree on */
     void *watcher;
@@ -45,12 +46,10 @@ typedef struct spari_trial_settings {
     spari_rebuild *member;             /* [members] */
 } spari_trial_settings;
 
-/* Refuses trials during a step or a trial, with uncommitted members, or with invalid numbers. Local. */
-int spari_trial_check(spar_session *session, const char *call, const spari_run *run);
-/* Entry of a call that runs trials, with the status of the check: all ranks try the same. tolerance, compare: of
-   calls that have them, else 0. Collective. */
-int spari_trial_enter(spar_session *session, const char *call, const spari_run *run, double tolerance, int compare,
-                      int status);
+/* Refuses trials during a step or a trial, or with uncommitted members. Local. */
+int spari_trial_check(spar_session *session, const char *call);
+/* Refuses a number of steps that is no multiple of SPARI_MULTIPLE, and an end that is not finite. Local. */
+int spari_trial_check_steps(spar_session *session, const char *call, double dt, int64_t steps);
 /* Present settings. Free with spari_trial_settings_free. Collective. */
 int spari_trial_settings_create(spar_session *session, spari_trial_settings *trial_settings);
 void spari_trial_settings_free(spari_trial_settings *trial_settings);
@@ -59,6 +58,4 @@ void spari_trial_settings_free(spari_trial_settings *trial_settings);
    host. Collective. */
 int spari_trial_run(spar_session *session, const spari_run *run, const spari_trial_settings *trial_settings,
                     spari_record *record);
-/* Gives the record to the session for later comparisons; *record is then empty. Collective. */
-int spari_trial_keep(spar_session *session, spari_record *record);
 #endif

@@ -206,7 +206,7 @@ static int is_possible(const spari_advisor *d, int g, int fidelity, int64_t mode
     if (!given && (spari_fidelity_row(fidelity)->prescribed_root || (modes > 0 && modes < RIGID_MODES))) {
         return 0;
     }
-    return fidelity >= SPAR_FIDELITY_LINEAR || !(d->goals & SPAR_GOAL_MOTION) ||
+    return fidelity >= SPAR_FIDELITY_LINEAR || !(d->search->goals & SPAR_GOAL_MOTION) ||
            bend_of_group(d, g, base) <= spari_rule.fidelity * d->tolerance;
 }
 
@@ -278,7 +278,7 @@ static int choose_stiff_nodes(spari_advisor *d, spari_plan *p, int g, const shap
     int now = p->group[g].nodes, own = spari_plan_member(d, g)->mesh.per_element;
     spari_plan q = *p;
     q.group[g].nodes = spari_rule.least_nodes;
-    if (!d->session->advice.keep_nodes && q.group[g].nodes < own &&
+    if (!d->search->keep_nodes && q.group[g].nodes < own &&
         shape_pays(d, w, *cost, with_nodes(d, w, g, *cost, now, spari_rule.least_nodes))) {
         const spari_use use = {spari_rule.at_most * *cost, spari_rule.fidelity};
         SPARI_TRY(spari_plan_distance(d, &q, &w->base, use, &part, &took));
@@ -295,13 +295,13 @@ static int choose_shapes(spari_advisor *d, spari_plan *p, const shaping *w) {
     double cost = base_cost(d, w);
     for (int g = 0; g < d->groups && !d->misled; g++) {
         double part = 0;
-        if (!d->session->advice.keep_fidelity) {
+        if (!d->search->keep_fidelity) {
             SPARI_TRY(choose_fidelity(d, p, g, w, &cost, &part));
         }
         if (is_elastic(p, g)) {
             SPARI_TRY(choose_points(d, p, g, w, &cost));
-            SPARI_TRY(d->session->advice.keep_nodes ? SPAR_OK : choose_nodes(d, p, g, w, part, &cost));
-            SPARI_TRY(d->session->advice.keep_nodes || d->misled ? SPAR_OK : choose_elements(d, p, g, w, &cost));
+            SPARI_TRY(d->search->keep_nodes ? SPAR_OK : choose_nodes(d, p, g, w, part, &cost));
+            SPARI_TRY(d->search->keep_nodes || d->misled ? SPAR_OK : choose_elements(d, p, g, w, &cost));
         } else {
             SPARI_TRY(choose_stiff_nodes(d, p, g, w, &cost));
         }
@@ -323,7 +323,7 @@ static int run_base(spari_advisor *d, const spari_plan *finest, spari_plan *p, s
     memcpy(p->group, finest->group, sizeof p->group);
     p->newton = fmax(p->newton, spari_rule.rough_newton * d->tolerance);
     p->predictor = 1;
-    if (!d->session->advice.keep_coupling && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT)) {
+    if (!d->search->keep_coupling && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT)) {
         spari_plan q = *p;
         q.scheme = SPAR_COUPLING_EXPLICIT;
         SPARI_TRY(spari_plan_compare(d, &q, &rough->record, (spari_use){INFINITY, spari_rule.rough}, base, &away));
@@ -337,7 +337,7 @@ static int run_base(spari_advisor *d, const spari_plan *finest, spari_plan *p, s
         }
         spari_record_free(base);
     }
-    p->rtol = d->session->advice.keep_coupling ? p->rtol : fmax(p->rtol, spari_rule.rough_rtol * d->tolerance);
+    p->rtol = d->search->keep_coupling ? p->rtol : fmax(p->rtol, spari_rule.rough_rtol * d->tolerance);
     return spari_plan_run(d, p, 1, INFINITY, base);
 }
 
@@ -447,7 +447,7 @@ static spari_plan coupled_by(const spari_plan *structure, int scheme, int predic
 static int search_steps(spari_advisor *d, const spari_plan *p, int64_t from, spari_outcome *best) {
     spari_outcome o;
     spari_plan q = *p;
-    if (!d->session->advice.keep_dt) {
+    if (!d->search->keep_dt) {
         return coarsest_steps(d, q, spari_plan_grid(d, from > 0 ? from : spari_plan_least_steps(d)), best);
     }
     q.steps = d->run.steps;
@@ -481,7 +481,7 @@ static int try_explicit(spari_advisor *d, const spari_plan *structure, int at, i
     for (; predictor <= 2 && !is_too_heavy(d, SPAR_COUPLING_EXPLICIT) && !spari_plan_is_good(d, better); predictor++) {
         spari_outcome o;
         spari_plan p = coupled_by(structure, SPAR_COUPLING_EXPLICIT, predictor, d->session->coupling.rtol);
-        p.steps = d->session->advice.keep_dt ? d->run.steps : spari_plan_steps(d, at);
+        p.steps = d->search->keep_dt ? d->run.steps : spari_plan_steps(d, at);
         SPARI_TRY(spari_plan_measure(d, &p, INFINITY, &o));
         *better = o.error < better->error ? o : *better;
     }
@@ -519,11 +519,11 @@ static int choose_time(spari_advisor *d, const spari_plan *structure, spari_outc
     const spar_session *s = d->session;
     double goal = spari_rule.good * d->tolerance;
     spari_outcome direct, seen;
-    for (int predictor = 1; predictor <= 2 && s->advice.keep_coupling; predictor++) {
+    for (int predictor = 1; predictor <= 2 && d->search->keep_coupling; predictor++) {
         const spari_plan p = coupled_by(structure, s->coupling.scheme, predictor, s->coupling.rtol);
         SPARI_TRY(search_steps(d, &p, 0, best));
     }
-    if (s->advice.keep_coupling) {
+    if (d->search->keep_coupling) {
         return SPAR_OK;
     }
     int least = spari_plan_grid(d, spari_plan_least_steps(d)), begin = begin_explicit(d, structure, &seen),
@@ -563,7 +563,7 @@ typedef int (*move)(const spari_advisor *d, spari_plan *p, int g);
 static int coarser(const spari_advisor *d, spari_plan *p, int g) {
     (void)g;
     int64_t steps = spari_plan_steps(d, spari_plan_grid(d, p->steps) - 1);
-    int moved = !d->session->advice.keep_dt && steps < p->steps;
+    int moved = !d->search->keep_dt && steps < p->steps;
     p->steps = moved ? steps : p->steps;
     return moved;
 }
@@ -571,15 +571,15 @@ static int coarser(const spari_advisor *d, spari_plan *p, int g) {
 static int finer(const spari_advisor *d, spari_plan *p, int g) {
     (void)g;
     p->steps = spari_plan_steps(d, spari_plan_grid(d, p->steps) + 1);
-    return !d->session->advice.keep_dt;
+    return !d->search->keep_dt;
 }
 
 static int fewer_nodes(const spari_advisor *d, spari_plan *p, int g) {
-    return !d->session->advice.keep_nodes && p->group[g].nodes-- > spari_rule.least_nodes;
+    return !d->search->keep_nodes && p->group[g].nodes-- > spari_rule.least_nodes;
 }
 
 static int more_nodes(const spari_advisor *d, spari_plan *p, int g) {
-    return !d->session->advice.keep_nodes && is_elastic(p, g) && p->group[g].nodes++ < SPARI_MAX_NODES;
+    return !d->search->keep_nodes && is_elastic(p, g) && p->group[g].nodes++ < SPARI_MAX_NODES;
 }
 
 static int fewer_points(const spari_advisor *d, spari_plan *p, int g) {
@@ -591,7 +591,7 @@ static int fewer_points(const spari_advisor *d, spari_plan *p, int g) {
 
 static int lower_fidelity(const spari_advisor *d, spari_plan *p, int g) {
     spari_shape *b = &p->group[g];
-    if (d->session->advice.keep_fidelity) {
+    if (d->search->keep_fidelity) {
         return 0;
     }
     if (b->modes > 1) {
@@ -709,7 +709,7 @@ static int try_stabler(spari_advisor *d, const spari_outcome *now, const spari_p
         SPARI_TRY(spari_plan_measure(d, &p, most, &o));
     }
     *best = next_best(d, drifts, 0);
-    if (!(best->cost < most) && !d->session->advice.keep_coupling) {
+    if (!(best->cost < most) && !d->search->keep_coupling) {
         o = (spari_outcome){.error = INFINITY, .cost = INFINITY};
         SPARI_TRY(try_iterated(d, drifts, &o));
         *best = next_best(d, drifts, 0);
@@ -853,95 +853,74 @@ static SPARI_APART int search_plans(spari_advisor *d, const spari_plan *present,
                       SPARI_ADVISE, d->trials, d->tolerance, least);
 }
 
-/* Allocates the advice in advance: for members that have none yet [members], else NULL. */
-static int alloc_rebuilds(const spari_advisor *d, spari_rebuild ***copies) {
-    spari_own *own = d->session->own;
-    own->advised = own->advised ? own->advised : spari_zalloc(1, sizeof *own->advised);
-    spari_rebuild **all = *copies = spari_zalloc(d->session->member_count, sizeof(spari_rebuild *));
-    int k = 0, ok = all && own->advised;
-    for (const spar_member *m = d->session->members; m && ok; m = m->next, k++) {
-        ok = m->advice || (all[k] = spari_zalloc(1, sizeof *all[k]));
-    }
-    return ok ? SPAR_OK : spari_fail(d->session, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);
-}
-
-static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_outcome *best, spari_rebuild **copies,
-                      double *advice) {
+static void hand_over(spari_advisor *d, const spari_outcome *now, const spari_outcome *best, spari_rebuild *beam,
+                      spari_advised *advised) {
     const spari_plan *p = &best->plan;
-    double elements = 0;
-    int k = 0;
-    for (spar_member *m = d->session->members; m; m = m->next, k++) {
-        m->advice = m->advice ? m->advice : copies[k];
-        copies[k] = copies[k] == m->advice ? NULL : copies[k];
-        *m->advice = spari_rebuild_of(m);
+    const int64_t runs = d->trials, skipped = d->skipped;
+    int64_t k = 0;
+    for (const spar_member *m = d->session->members; m; m = m->next, k++) {
+        beam[k] = spari_rebuild_of(m);
         if (d->group[k] >= 0) {
             const spari_shape *b = &p->group[d->group[k]];
-            *m->advice = (spari_rebuild){b->nodes, b->fidelity, b->modes, b->points, 0, b->elements};
+            beam[k] = (spari_rebuild){b->nodes, b->fidelity, b->modes, b->points, 0, b->elements};
         }
-        elements += m->kind == SPARI_BEAM ? m->advice->elements : 0;
     }
-    const double made[SPAR_ADVICE_COUNT] = {
-        [SPAR_ADVICE_DT] = d->run.dt * (double)d->run.steps / (double)p->steps,
-        [SPAR_ADVICE_SUBSTEPS] = p->substeps,
-        [SPAR_ADVICE_SCHEME] = p->scheme,
-        [SPAR_ADVICE_COUPLING_RTOL] = p->rtol,
-        [SPAR_ADVICE_PREDICTOR] = p->predictor,
-        [SPAR_ADVICE_NEWTON_RTOL] = p->newton,
-        [SPAR_ADVICE_ERROR] = best->error,
-        [SPAR_ADVICE_COST] = isfinite(now->cost) && now->cost > 0 ? best->cost / now->cost : -1,
-        [SPAR_ADVICE_PRESENT_ERROR] = isfinite(now->error) ? now->error : -1,
-        [SPAR_ADVICE_TRIALS] = d->trials,
-        [SPAR_ADVICE_WORK] = d->now > 0 ? d->spent / d->now : -1,
-        [SPAR_ADVICE_SHOWING] = d->now > 0 ? d->shown / d->now : -1,
-        [SPAR_ADVICE_SAVES] = d->now > 0 ? d->runs * (d->known_good - best->cost) / d->now : 0,
-        [SPAR_ADVICE_SKIPPED] = d->skipped,
-        [SPAR_ADVICE_ELEMENTS] = elements,
-    };
-    memcpy(advice, made, sizeof made);
-    spari_advised *advised = d->session->own->advised;
-    *advised = (spari_advised){.dt = made[SPAR_ADVICE_DT], .given = 1, .of = spari_advised_of(d->session)};
+    const int counts = d->now > 0;
+    free(advised->beam);
+    *advised = (spari_advised){.given = 1,
+                               .of = spari_advised_of(d->session),
+                               .dt = d->run.dt * (double)d->run.steps / (double)p->steps,
+                               .substeps = p->substeps,
+                               .scheme = p->scheme,
+                               .coupling_rtol = p->rtol,
+                               .predictor = p->predictor,
+                               .newton_rtol = p->newton,
+                               .members = k,
+                               .beam = beam,
+                               .error = best->error,
+                               .cost = isfinite(now->cost) && now->cost > 0 ? best->cost / now->cost : 0,
+                               .present_fails = !isfinite(now->error),
+                               .present_error = isfinite(now->error) ? now->error : 0,
+                               .runs = runs,
+                               .skipped = skipped,
+                               .work = counts ? d->spent / d->now : 0,
+                               .shown = counts ? d->shown / d->now : 0,
+                               .saved = counts ? d->runs * (d->known_good - best->cost) / d->now : 0};
     (void)spari_settings_varied(d->session, advised->setting);
     spari_plan_settings(p, advised->setting);
 }
 
-static int check_request(spar_session *s, double tolerance, const spari_run *run, int64_t capacity) {
+static int check_request(spar_trial *t, double tolerance, double length) {
     const double most = 1e300;
-    SPARI_TRY(spari_trial_check(s, SPARI_ADVISE, run));
+    spar_session *s = t->session;
+    SPARI_TRY(spari_trial_ready_for_runs(t, SPARI_ADVISE));
     SPARI_REQUIRE(s, tolerance > 0 && tolerance < 1, SPAR_ERR_ARGUMENT, "%s: the tolerance is %g; give one in (0, 1)",
                   SPARI_ADVISE, tolerance);
-    SPARI_REQUIRE(s, run->length > 0 && run->length <= most, SPAR_ERR_ARGUMENT,
-                  "%s: the length is %g; give the duration of the planned run in seconds", SPARI_ADVISE, run->length);
-    SPARI_TRY(spari_need_capacity(s, SPARI_ADVISE, capacity));
-    SPARI_REQUIRE(s, run->solve, SPAR_ERR_UNSUPPORTED,
-                  "%s: the fluid solver is NULL; give the solver passed to spar_step", SPARI_ADVISE);
+    SPARI_REQUIRE(s, length > 0 && length <= most, SPAR_ERR_ARGUMENT,
+                  "%s: the length is %g; give the duration of the planned run in seconds", SPARI_ADVISE, length);
+    SPARI_REQUIRE(s, t->solve, SPAR_ERR_UNSUPPORTED,
+                  "%s: the trial has no fluid solver; give spar_trial_set_callbacks the solver passed to spar_step",
+                  SPARI_ADVISE);
     return SPAR_OK;
 }
 
-int spar_session_advise(spar_session *session, double tolerance, double dt, int64_t steps, double length,
-                        spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity,
-                        double *advice) {
-    SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", SPARI_ADVISE);
-    spar_session *s = session;
-    spari_advisor d = {
-        .session = s,
-        .run = {.dt = dt, .length = length, .steps = steps, .before = before, .solve = solve, .context = context},
-        .tolerance = tolerance,
-        .limit = INFINITY,
-        .stalled = INFINITY,
-        .progress = spari_progress_of(s, SPARI_ADVISE)};
-    d.run.progress = &d.progress;
+static int find_advice(spar_trial *t, double tolerance, double length) {
+    spar_session *s = t->session;
+    spari_advisor d = {.session = s,
+                       .tolerance = tolerance,
+                       .search = &t->search,
+                       .limit = t->search.limit > 0 ? t->search.limit : INFINITY,
+                       .stalled = INFINITY,
+                       .longer = fmax(1, length / (t->dt * (double)t->steps)),
+                       .progress = spari_trial_progress(t, SPARI_ADVISE)};
+    d.run = spari_trial_run_of(t, &d.progress);
+    d.run.goals = t->search.goals;
+    d.runs = fmax(d.longer, spari_rule.least_runs);
     spari_outcome now = {0}, best = {.cost = INFINITY, .error = INFINITY};
-    SPARI_TRY(spari_trial_enter(s, SPARI_ADVISE, &d.run, tolerance, 0, check_request(s, tolerance, &d.run, capacity)));
     char message[SPARI_MESSAGE_SIZE];
     memcpy(message, s->message, sizeof message);
-    spari_rebuild **copies = NULL;
-    d.goals = d.run.goals = s->advice.goals;
-    d.limit = s->advice.limit > 0 ? s->advice.limit : INFINITY;
-    d.longer = fmax(1, length / (dt * (double)steps));
-    d.runs = fmax(d.longer, spari_rule.least_runs);
-    int status = spari_plan_groups(&d);
-    status = status == SPAR_OK ? alloc_rebuilds(&d, &copies) : status;
+    spari_rebuild *beam = spari_zalloc(s->member_count, sizeof *beam);
+    int status = beam ? spari_plan_groups(&d) : spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);
     status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
     if (status == SPAR_OK) {
         spari_plan present = spari_plan_present(&d);
@@ -949,38 +928,23 @@ int spar_session_advise(spar_session *session, double tolerance, double dt, int6
     }
     if (status == SPAR_OK) {
         memcpy(s->message, message, sizeof message); /* a failure in a trial is no failure of the session */
-        double made[SPAR_ADVICE_COUNT];
-        hand_over(&d, &now, &best, copies, made);
-        spari_fill(capacity, advice, SPAR_ADVICE_COUNT, made);
+        hand_over(&d, &now, &best, beam, &t->advised);
+    } else {
+        free(beam);
     }
-    for (int k = 0; copies && k < s->member_count; k++) {
-        free(copies[k]);
-    }
-    free(copies);
     free(d.group);
     free(d.known);
     spari_plan_forget(&d);
     free(d.level);
-    return spari_named(s, SPARI_ADVISE, status);
+    return status;
 }
 
-int spar_member_get_advice(const spar_member *member, int *fidelity, int64_t *modes, int *nodes_per_element,
-                           int *points) {
-    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
-    SPARI_REQUIRE(member->session, member->advice, SPAR_ERR_STATE,
-                  "%s: '%s' has no advice yet; call spar_session_advise first", __func__, member->name);
-    const spari_rebuild *a = member->advice;
-    if (fidelity) {
-        *fidelity = a->fidelity;
-    }
-    if (modes) {
-        *modes = a->modes;
-    }
-    if (nodes_per_element) {
-        *nodes_per_element = a->per_element;
-    }
-    if (points) {
-        *points = a->points;
-    }
-    return SPAR_OK;
+int spar_trial_advise(spar_trial *trial, double tolerance, double length) {
+    SPARI_GUARD_ENVIRONMENT;
+    SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", SPARI_ADVISE);
+    const spari_agreed arguments[] = {spari_real("tolerance", tolerance), spari_real("length", length)};
+    SPARI_TRY(spari_trial_enter(trial, SPARI_ADVISE, arguments, 2, check_request(trial, tolerance, length)));
+    int status = spari_named(trial->session, SPARI_ADVISE, find_advice(trial, tolerance, length));
+    spari_trial_leave(trial);
+    return status;
 }

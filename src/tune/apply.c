@@ -12,6 +12,7 @@
 #include "../member/joint.h"
 #include "../member/mean_acceleration.h"
 #include "../solve/work.h"
+#include "../trial/handle.h"
 #include "../trial/move_joints.h"
 #include "../trial/move_loads.h"
 #include "../trial/rebuild.h"
@@ -62,23 +63,23 @@ static void put_settings(spar_session *s, const double *values, int past) {
     s->state.past = past < s->coupling.predictor ? past : s->coupling.predictor;
 }
 
-static int is_as_advised(const spar_member *m) {
-    const spari_rebuild *to = m->advice;
-    return !to ||
-           (to->per_element == m->mesh.per_element && (to->elements == 0 || to->elements == m->mesh.elements) &&
+static int is_as_advised(const spar_member *m, const spari_rebuild *to) {
+    return (to->per_element == m->mesh.per_element && (to->elements == 0 || to->elements == m->mesh.elements) &&
             to->fidelity == m->fidelity && to->modes == m->modes && (to->points == 0 || to->points == m->beam->points));
 }
 
-static int rebuild_members(spar_session *s, change *c) {
+/* to [members] */
+static int rebuild_members(spar_session *s, const spari_rebuild *to, change *c) {
     int joints_moved = 0; /* members that are tied begin anew together: whether one of them has to */
-    for (const spar_member *m = s->members; m && s->joints; m = m->next) {
-        joints_moved = joints_moved || (!is_as_advised(m) && spari_member_has_joints(m));
+    const spari_rebuild *each = to;
+    for (const spar_member *m = s->members; m && s->joints; m = m->next, each++) {
+        joints_moved = joints_moved || (!is_as_advised(m, each) && spari_member_has_joints(m));
     }
     if (joints_moved) {
         SPARI_TRY(spari_joints_save_snapshot(s, &c->joint_snapshot));
     }
-    for (spar_member *m = s->members; m; m = m->next) {
-        if (is_as_advised(m) && !(joints_moved && spari_member_has_joints(m))) {
+    for (spar_member *m = s->members; m; m = m->next, to++) {
+        if (is_as_advised(m, to) && !(joints_moved && spari_member_has_joints(m))) {
             SPARI_REQUIRE(s, spari_history_keep(m->load.history, 6 * m->nodes, s->coupling.predictor) == SPAR_OK,
                           SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
             SPARI_TRY(spari_means_keep(m));
@@ -86,8 +87,7 @@ static int rebuild_members(spar_session *s, change *c) {
         }
         anew *a = &c->made[c->count++];
         a->member = m;
-        const spari_rebuild as_it_is = spari_rebuild_of(m);
-        SPARI_TRY(spari_member_rebuild(m, m->advice ? m->advice : &as_it_is, &a->was));
+        SPARI_TRY(spari_member_rebuild(m, to, &a->was));
         SPARI_TRY(spari_joints_follow_rebuild(m, &a->was));
         spari_work_carry(&a->was, m);
     }
@@ -175,19 +175,18 @@ static void confirm(spar_session *s, change *c) {
     }
     spari_joints_drop_snapshot(s, &c->joint_snapshot);
     s->coupling.stale = 1;
-    s->own->advised->of = spari_advised_of(s);
 }
 
 /* ---- public call ---- */
 
-static int check_apply(spar_session *s, const char *call) {
-    const spari_advised *a = s->own->advised;
+static int check_apply(spar_trial *t, const char *call) {
+    spar_session *s = t->session;
     SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress", call);
     SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is in progress; accept or reject it first", call);
-    SPARI_REQUIRE(s, a && a->given, SPAR_ERR_STATE, "%s: there is no advice yet; call %s first", call,
-                  "spar_session_advise");
-    SPARI_REQUIRE(s, a->of == spari_advised_of(s), SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, t->advised.given, SPAR_ERR_STATE, "%s: there is no advice yet; call %s first", call,
+                  "spar_trial_advise");
+    SPARI_REQUIRE(s, t->advised.of == spari_advised_of(s), SPAR_ERR_STATE,
                   "%s: members were added or changed after the advice; request the advice again", call);
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         SPARI_REQUIRE(s, !spari_fluid_is_pending(f), SPAR_ERR_STATE,
@@ -197,19 +196,20 @@ static int check_apply(spar_session *s, const char *call) {
     return SPAR_OK;
 }
 
-int spar_session_apply_advice(spar_session *session, double *dt) {
+int spar_trial_apply(spar_trial *trial, double *dt) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    spar_session *s = session;
+    SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
+    spar_session *s = trial->session;
+    spari_advised *advised = &trial->advised;
     change c = {0};
-    SPARI_TRY(spari_enter_agreed(s, __func__, NULL, 0, check_apply(s, __func__)));
+    SPARI_TRY(spari_trial_enter(trial, __func__, NULL, 0, check_apply(trial, __func__)));
     int status = change_create(s, &c), begun = status == SPAR_OK;
     if (begun) {
         detach_exchange(s->own, &c);
         (void)spari_settings_varied(s, c.before);
         c.past = s->state.past;
-        put_settings(s, s->own->advised->setting, s->state.past);
-        status = rebuild_members(s, &c);
+        put_settings(s, advised->setting, s->state.past);
+        status = rebuild_members(s, advised->beam, &c);
         status = status == SPAR_OK ? rebuild_fluids(s, &c) : status;
     }
     if (s->joints) { /* whether there are joints agrees on all ranks; they change only on success */
@@ -220,6 +220,7 @@ int spar_session_apply_advice(spar_session *session, double *dt) {
     status = status == SPAR_OK ? carry_change(s, &c, __func__) : status;
     if (status == SPAR_OK) {
         confirm(s, &c);
+        advised->of = spari_advised_of(s);
     } else if (begun) {
         undo(s, &c);
     }
@@ -229,26 +230,9 @@ int spar_session_apply_advice(spar_session *session, double *dt) {
     free(c.made);
     free(c.carried);
     if (status == SPAR_OK && dt) {
-        *dt = s->own->advised->dt;
+        *dt = advised->dt;
     }
-    return spari_named(s, __func__, status);
-}
-
-/* ---- numbers of the host's own ---- */
-
-int spar_session_push_numbers(spar_session *session, int64_t n, const double *numbers) {
-    SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST_NUMBERS && (numbers || n == 0), SPAR_ERR_ARGUMENT,
-                  "%s: %lld numbers%s; give 0 to %d", __func__, (long long)n, numbers ? "" : " without an array",
-                  SPARI_MOST_NUMBERS);
-    int64_t bad = numbers ? spari_first_nonfinite(numbers, n) : -1;
-    SPARI_REQUIRE(session, bad < 0, SPAR_ERR_ARGUMENT, "%s: number %lld is %g; give finite numbers", __func__,
-                  (long long)bad, numbers[bad]);
-    double *own = session->own->number;
-    memset(own, 0, sizeof session->own->number);
-    for (int64_t i = 0; i < n; i++) {
-        own[i] = numbers[i];
-    }
-    return SPAR_OK;
+    status = spari_named(s, __func__, status);
+    spari_trial_leave(trial);
+    return status;
 }

@@ -154,7 +154,7 @@ int spari_plan_run(spari_advisor *d, const spari_plan *p, int longer, double mos
     run.fluid = d->fluid;
     *record = (spari_record){0};
     SPARI_REQUIRE(s, d->now <= 0 || d->spent < d->limit * d->now, SPAR_ERR_LIMIT,
-                  "%s: %d trials have cost %.3g times a trial with the present settings; the option advise.limit "
+                  "%s: %d trials have cost %.3g times a trial with the present settings; the option limit "
                   "allows %.3g: give a larger limit, a larger tolerance, or no limit (0)",
                   SPARI_ADVISE, d->trials, d->spent / d->now, d->limit);
     SPARI_TRY(tell_progress(d));
@@ -229,7 +229,7 @@ double spari_plan_cost(const spari_advisor *d, const spari_record *r) {
 /* Error of a relative to b, over a run `longer` times as long; all ranks use rank 0's bits. */
 static int compare_runs(spari_advisor *d, const spari_record *a, const spari_record *b, double longer, double *error) {
     spar_session *s = d->session;
-    double found[2] = {spari_comm_rank(s->ranks.comm) == 0 ? spari_record_error(a, b, d->goals, longer) : 0, 0};
+    double found[2] = {spari_comm_rank(s->ranks.comm) == 0 ? spari_record_error(a, b, d->search->goals, longer) : 0, 0};
     SPARI_TRY(spari_comm_sum(s->ranks.comm, found, 1, SPAR_OK, s->message, sizeof s->message));
     *error = found[0];
     return SPAR_OK;
@@ -351,7 +351,7 @@ static void weigh_fluid(spari_advisor *d, const spari_record *r) {
     if (d->weighed) {
         return;
     }
-    d->fluid = spari_cost_solution(s, r->fluid, r->fluid_seconds, r->solutions);
+    d->fluid = spari_cost_solution(d->search->fluid_cost, r->fluid, r->fluid_seconds, r->solutions);
     d->spent += d->fluid * (double)d->solutions;
     d->weighed = 1;
     d->run.timed = 0;
@@ -361,17 +361,17 @@ static void weigh_fluid(spari_advisor *d, const spari_record *r) {
                        SPARI_ADVISE, d->fluid, r->fluid, spari_rule.price.second);
         spari_log(s, SPAR_LOG_INFO, text);
     }
-    if (s->callbacks.log && spari_cost_wavers(s, r->fluid, r->fluid_seconds, r->solutions)) {
+    if (s->callbacks.log && spari_cost_wavers(d->search->fluid_cost, r->fluid, r->fluid_seconds, r->solutions)) {
         (void)snprintf(text, sizeof text,
                        "%s: the fluid's time, %.3g s per solution, is between two cost classes, so the advice may vary "
-                       "between runs; set the option advise.fluid_cost",
+                       "between runs; set the option fluid_cost of the trial",
                        SPARI_ADVISE, r->fluid_seconds / (double)r->solutions);
         spari_log(s, SPAR_LOG_WARNING, text);
     }
 }
 
 int spari_plan_try_present(spari_advisor *d, const spari_plan *present, spari_record *record) {
-    d->run.timed = d->session->advice.fluid_cost <= 0;
+    d->run.timed = d->search->fluid_cost <= 0;
     int status = spari_plan_run(d, present, 1, INFINITY, record);
     if (status == SPAR_OK) {
         weigh_fluid(d, record);
@@ -388,26 +388,25 @@ int spari_plan_try_present(spari_advisor *d, const spari_plan *present, spari_re
    error of predicted loads. Otherwise the prediction alone meets the tolerance at a fine dt, and its lag, which
    accumulates over the run, changes the observed order. */
 static spari_plan reference_plan(const spari_advisor *d, const spari_plan *present, int level, int more) {
-    const spar_session *s = d->session;
-    const double falls = s->advice.keep_dt ? 1 : pow(4, -fmax(0, level));
+    const double falls = d->search->keep_dt ? 1 : pow(4, -fmax(0, level));
     spari_plan p = *present;
     p.newton = fmax(spari_rule.reference_newton * d->tolerance, 1e-12);
     p.strict = 1;
     p.substeps = 1;
     p.predictor = 2;
-    if (!s->advice.keep_coupling) {
+    if (!d->search->keep_coupling) {
         p.scheme = SPAR_COUPLING_IQN_ILS;
         p.rtol = fmax(spari_rule.reference_rtol * d->tolerance * falls, 1e-10);
         p.newton = fmax(fmin(p.newton, p.rtol), 1e-12);
     }
-    p.steps = s->advice.keep_dt ? present->steps : spari_plan_steps(d, 2 * level);
+    p.steps = d->search->keep_dt ? present->steps : spari_plan_steps(d, 2 * level);
     for (int g = 0; g < d->groups; g++) {
         spari_shape *b = &p.group[g];
-        if (!s->advice.keep_fidelity) {
+        if (!d->search->keep_fidelity) {
             b->fidelity = SPAR_FIDELITY_EXACT;
             b->modes = 0;
         }
-        if (!s->advice.keep_nodes) {
+        if (!d->search->keep_nodes) {
             b->nodes = b->nodes + more < SPARI_MAX_NODES ? b->nodes + more : SPARI_MAX_NODES;
             b->nodes = d->cap > 0 && b->nodes > d->cap ? d->cap : b->nodes;
         }
@@ -440,14 +439,14 @@ static int run_level(spari_advisor *d, const spari_plan *p, int *made) {
 static spari_plan rough_plan(const spari_advisor *d, const spari_plan *present, int level, int more) {
     spari_plan p = reference_plan(d, present, level, more);
     p.newton = fmax(p.newton, spari_rule.rough_newton * d->tolerance);
-    p.rtol = d->session->advice.keep_coupling ? p.rtol : fmax(p.rtol, spari_rule.rough_rtol * d->tolerance);
+    p.rtol = d->search->keep_coupling ? p.rtol : fmax(p.rtol, spari_rule.rough_rtol * d->tolerance);
     p.predictor = 1;
     return p;
 }
 
 /* Coarsest level that completes. */
 static int run_coarsest(spari_advisor *d, const spari_plan *present, int *level, int more, spari_record *run) {
-    int last = d->session->advice.keep_dt ? 0 : SPARI_FINEST, status;
+    int last = d->search->keep_dt ? 0 : SPARI_FINEST, status;
     spari_plan p = rough_plan(d, present, *level, more);
     for (; (status = spari_plan_run(d, &p, 1, most_of_level(d, &p), run)) != SPAR_OK;
          p = rough_plan(d, present, ++*level, more)) {
@@ -466,7 +465,7 @@ static int run_coarsest(spari_advisor *d, const spari_plan *present, int *level,
    finer dt shows the effect of the nodes. If it shows the same, the nodes are the cause from then on. */
 static int is_dt(spari_advisor *d, int level, double part, double before) {
     const double same = 0.8;
-    int stalls = part > before && isfinite(part) && level < SPARI_FINEST && !d->session->advice.keep_dt;
+    int stalls = part > before && isfinite(part) && level < SPARI_FINEST && !d->search->keep_dt;
     if (stalls && d->stalls <= 1) {
         d->stalls = part > same * d->stalled ? d->stalls + 1 : 1;
         d->stalled = part;
@@ -544,8 +543,7 @@ static int more_reference_nodes(spari_advisor *d, const spari_plan *present, int
    remaining error. The coarsest dt, coupling and Newton are used. */
 static int reference_nodes(spari_advisor *d, const spari_plan *present, int *level, int *more, double *left) {
     const double spectral = 0.25; /* maximum fraction of the error that remains with two more nodes */
-    const spar_session *s = d->session;
-    const int begun = d->thorough || s->advice.keep_dt ? 2 : 0;
+    const int begun = d->thorough || d->search->keep_dt ? 2 : 0;
     int status, finer;
     do {
         spari_record base = {0};
@@ -553,7 +551,7 @@ static int reference_nodes(spari_advisor *d, const spari_plan *present, int *lev
         finer = 0;
         *more = begun;
         status = run_coarsest(d, present, level, begun, &base);
-        if (status == SPAR_OK && begun == 0 && !s->advice.keep_nodes) {
+        if (status == SPAR_OK && begun == 0 && !d->search->keep_nodes) {
             status = fewer_reference_nodes(d, present, *level, &base, &shown, &two, &finer);
         }
         *left = spectral * shown * d->tolerance;
@@ -632,7 +630,7 @@ static int finer_pays(spari_advisor *d) {
 /* Halves dt until the errors of steps and nodes are a small fraction of the tolerance, or small enough if the next
    run would not pay. */
 static int refine(spari_advisor *d, const spari_plan *present, int level, int more, double nodes) {
-    int made, keeps = d->session->advice.keep_dt, ends = keeps ? level : SPARI_FINEST;
+    int made, keeps = d->search->keep_dt, ends = keeps ? level : SPARI_FINEST;
     double goal = spari_rule.reference_ends * d->tolerance, part;
     d->reference_error = INFINITY;
     for (; level <= ends && d->levels < SPARI_LEVELS && d->reference_error > goal; level++) {
@@ -693,7 +691,7 @@ static int check_reference(spari_advisor *d) {
 }
 
 int spari_plan_reference(spari_advisor *d, const spari_plan *present, spari_plan *finest) {
-    int level = d->session->advice.keep_dt ? 0 : -SPARI_COARSEST, more; /* the coarsest there may be */
+    int level = d->search->keep_dt ? 0 : -SPARI_COARSEST, more; /* the coarsest there may be */
     double nodes;
     while (level < 0 && spari_plan_steps(d, 2 * level) < 2 * SPARI_MULTIPLE) {
         level++;
@@ -760,7 +758,7 @@ static int seesaws(const spari_advisor *d, const spari_plan *p, const spari_reco
 /* Comparison settings for the longer run: tight coupling, and half the dt if the coupling is tight already. */
 static spari_plan last_look_plan(const spari_advisor *d, const spari_plan *p) {
     spari_plan q = *p;
-    int keeps = d->session->advice.keep_coupling;
+    int keeps = d->search->keep_coupling;
     q.predictor = 1;
     q.newton = fmin(q.newton, fmax(spari_rule.stays_newton, spari_rule.rough_newton * d->tolerance));
     q.strict = 1;

@@ -2,10 +2,10 @@
 #ifndef SPARI_SETTINGS_TRIAL_H
 #define SPARI_SETTINGS_TRIAL_H
 
+#include "../trial/handle.h"
 #include "../trial/rules.h"
-#include "../trial/trial.h"
 
-#define SPARI_ADVISE "spar_session_advise"
+#define SPARI_ADVISE "spar_trial_advise"
 
 enum {
     SPARI_GROUPS = 8,   /* of identical beams; others stay unchanged */
@@ -50,11 +50,11 @@ typedef struct spari_advisor {
     spar_session *session;
     spari_run run; /* as requested by the host */
     double tolerance;
-    double longer;      /* length of the host's run, in trials */
-    int goals;          /* SPAR_GOAL_* */
-    double limit;       /* limit of the total cost, in trials with the present session; INFINITY: none */
-    int groups, *group; /* [members] group of each; -1: unchanged */
-    spari_level *level; /* [SPARI_LEVELS] */
+    double longer;              /* length of the host's run, in trials */
+    const spari_search *search; /* settings of the host */
+    double limit;               /* of the total cost, in trials with the present session; INFINITY: none */
+    int groups, *group;         /* [members] group of each; -1: unchanged */
+    spari_level *level;         /* [SPARI_LEVELS] */
     int levels;
     int cap, few;   /* maximum nodes of the reference, 0: any; number that is clearly too few for all beams at once */
     double stalled; /* change by nodes that was attributed to dt, the last time; INFINITY: never, */

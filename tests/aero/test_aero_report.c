@@ -1,6 +1,7 @@
 /* What blade element effects are worth, by trials: what theory says of drag and losses, and that nothing stays changed.
  */
 #include "scene.h"
+#include "trials.h"
 
 #include <nrel5mw.h>
 #include <spar/spar_aero.h>
@@ -62,20 +63,19 @@ static void release(scene *c) {
 static void test_drag(void **state) {
     (void)state;
     scene c;
-    double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT], before[N][3], after[N][3];
+    double table[SPAR_AERO_ROW_COUNT][COLUMN_COUNT], before[N][3], after[N][3];
     build(&c, NULL);
     OK(c.s, spar_aero_solve(c.aero, rho, c.wind[0], 1));
     OK(c.s, spar_aero_get_loads(c.aero, NULL, before[0], NULL));
-    OK(c.s, spar_aero_report_effects(c.aero, c.s, dt, 16, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
-                                     table[0]));
+    OK(c.s, trial_report_aero(c.aero, c.s, dt, 16, NULL, solve, &c, table[0]));
     const double *drag = table[SPAR_AERO_ROW_DRAG];
-    assert_true(drag[SPAR_COLUMN_IN_FORCE] == 1);
-    NEAR(drag[SPAR_COLUMN_SIZE], cd / hypot(cl, cd), 1e-3);
-    NEAR(drag[SPAR_COLUMN_MOTION], cd / hypot(cl, cd), 0.05);
-    NEAR(drag[SPAR_COLUMN_REACTION], cd / hypot(cl, cd), 0.05);
+    assert_true(drag[COLUMN_IN_FORCE] == 1);
+    NEAR(drag[COLUMN_SIZE], cd / hypot(cl, cd), 1e-3);
+    NEAR(drag[COLUMN_MOTION], cd / hypot(cl, cd), 0.05);
+    NEAR(drag[COLUMN_REACTION], cd / hypot(cl, cd), 0.05);
     for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) { /* no rotor, and polars without moments */
         assert_true(spar_aero_effect_name(r)[0] != '\0');
-        for (int k = 0; k < SPAR_COLUMN_COUNT && r != SPAR_AERO_ROW_DRAG; k++) {
+        for (int k = 0; k < COLUMN_COUNT && r != SPAR_AERO_ROW_DRAG; k++) {
             assert_true(table[r][k] == 0);
         }
     }
@@ -93,13 +93,12 @@ static void test_moment(void **state) {
     (void)state;
     scene c;
     const double cm[2] = {-0.1, -0.1};
-    double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT];
+    double table[SPAR_AERO_ROW_COUNT][COLUMN_COUNT];
     build(&c, cm);
-    OK(c.s,
-       spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
-    assert_true(table[SPAR_AERO_ROW_MOMENT][SPAR_COLUMN_IN_FORCE] == 1);
+    OK(c.s, trial_report_aero(c.aero, c.s, dt, 8, NULL, solve, &c, table[0]));
+    assert_true(table[SPAR_AERO_ROW_MOMENT][COLUMN_IN_FORCE] == 1);
     /* load: force q c L hypot(cl, cd) and half of that as moment by the length; cm q c^2 L by the length */
-    NEAR(table[SPAR_AERO_ROW_MOMENT][SPAR_COLUMN_SIZE], 0.1 * chord / 2 / (hypot(cl, cd) * hypot(1, 0.5)), 1e-4);
+    NEAR(table[SPAR_AERO_ROW_MOMENT][COLUMN_SIZE], 0.1 * chord / 2 / (hypot(cl, cd) * hypot(1, 0.5)), 1e-4);
     release(&c);
 }
 
@@ -108,15 +107,14 @@ static void test_moment(void **state) {
 static void test_failing_solve(void **state) {
     (void)state;
     scene c;
-    double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT] = {{5}}, force[N][3], drag = 0;
+    double table[SPAR_AERO_ROW_COUNT][COLUMN_COUNT] = {{5}}, force[N][3], drag = 0;
     build(&c, NULL);
     for (int fails_at = 4; fails_at <= 12; fails_at += 8) {
         c.calls = 0;
         c.fails_at = fails_at;
         char message[1024];
         (void)snprintf(message, sizeof message, "%s", spar_session_message(c.s));
-        int status = spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT,
-                                              SPAR_COLUMN_COUNT, table[0]);
+        int status = trial_report_aero(c.aero, c.s, dt, 8, NULL, solve, &c, table[0]);
         if (fails_at == 4) {
             assert_int_equal(status, SPAR_ERR_USER);
             assert_true(table[0][0] == 5);
@@ -124,9 +122,9 @@ static void test_failing_solve(void **state) {
             assert_int_equal(status, SPAR_OK);
             assert_true(message[0] != '\0');
             assert_string_equal(spar_session_message(c.s), message);
-            assert_true(table[SPAR_AERO_ROW_DRAG][SPAR_COLUMN_IN_FORCE] == 1);
-            assert_true(table[SPAR_AERO_ROW_DRAG][SPAR_COLUMN_MOTION] == -1);
-            assert_true(table[SPAR_AERO_ROW_DRAG][SPAR_COLUMN_REACTION] == -1);
+            assert_true(table[SPAR_AERO_ROW_DRAG][COLUMN_IN_FORCE] == 1);
+            assert_true(table[SPAR_AERO_ROW_DRAG][COLUMN_MOTION] == -1);
+            assert_true(table[SPAR_AERO_ROW_DRAG][COLUMN_REACTION] == -1);
         }
         drag = 0;
         OK(c.s, spar_aero_solve(c.aero, rho, c.wind[0], 1));
@@ -163,7 +161,7 @@ static void test_rotor(void **state) {
     nrel5mw data;
     nrel5mw_rotor rotor;
     scene c = {.s = scene_session()};
-    double twist[64], table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT], omega[3], root[3], q[4], all[6], less[6];
+    double twist[64], table[SPAR_AERO_ROW_COUNT][COLUMN_COUNT], omega[3], root[3], q[4], all[6], less[6];
     OK(NULL, nrel5mw_load(&data, SPAR_DATA_DIR "/nrel5mw"));
     assert_int_equal(data.aero_n, ROOM);
     nrel5mw_rotor_default(&data, &rotor);
@@ -184,8 +182,7 @@ static void test_rotor(void **state) {
     OK(c.s, spar_aero_set_shear(c.aero, SPAR_SHEAR_POWER, ground, (double[3]){0, 0, 1}, 90, 0.2));
     OK(c.s, spar_aero_set_tower(c.aero, base, top, 3, 2));
     OK(c.s, spar_aero_set_effects(c.aero, effects));
-    OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-4, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
-                                     table[0]));
+    OK(c.s, trial_report_aero(c.aero, c.s, 1e-4, 8, NULL, solve, &c, table[0]));
     OK(c.s, spar_aero_solve(c.aero, rho, c.wind[0], 1));
     sum_loads(&c, root, data.length, all);
     for (int r = 0; r <= SPAR_AERO_ROW_TOWER; r++) {
@@ -197,21 +194,19 @@ static void test_rotor(void **state) {
             change = hypot(change, all[k] - less[k]);
             size = hypot(size, all[k]);
         }
-        assert_true(table[r][SPAR_COLUMN_IN_FORCE] == 1);
-        NEAR(table[r][SPAR_COLUMN_SIZE], change / size, 0.02 * change / size);
+        assert_true(table[r][COLUMN_IN_FORCE] == 1);
+        NEAR(table[r][COLUMN_SIZE], change / size, 0.02 * change / size);
     }
     OK(c.s, spar_aero_set_effects(c.aero, effects & ~SPAR_AERO_INDUCTION));
-    OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-4, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
-                                     table[0]));
+    OK(c.s, trial_report_aero(c.aero, c.s, 1e-4, 8, NULL, solve, &c, table[0]));
     for (int r = 0; r < SPAR_AERO_ROW_COUNT; r++) {
-        assert_true(table[r][SPAR_COLUMN_IN_FORCE] == (r >= SPAR_AERO_ROW_DRAG && r <= SPAR_AERO_ROW_TOWER));
+        assert_true(table[r][COLUMN_IN_FORCE] == (r >= SPAR_AERO_ROW_DRAG && r <= SPAR_AERO_ROW_TOWER));
     }
     OK(c.s, spar_aero_set_effects(c.aero, effects));
     OK(c.s, spar_aero_set_rotor(c.aero, rotor.hub, rotor.axis, 0, 63));
-    OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-4, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
-                                     table[0]));
-    assert_true(table[SPAR_AERO_ROW_HUB_LOSS][SPAR_COLUMN_IN_FORCE] == 0);
-    assert_true(table[SPAR_AERO_ROW_TIP_LOSS][SPAR_COLUMN_IN_FORCE] == 1);
+    OK(c.s, trial_report_aero(c.aero, c.s, 1e-4, 8, NULL, solve, &c, table[0]));
+    assert_true(table[SPAR_AERO_ROW_HUB_LOSS][COLUMN_IN_FORCE] == 0);
+    assert_true(table[SPAR_AERO_ROW_TIP_LOSS][COLUMN_IN_FORCE] == 1);
     release(&c);
     nrel5mw_free(&data);
 }
@@ -219,36 +214,25 @@ static void test_rotor(void **state) {
 static void test_bad_input(void **state) {
     (void)state;
     scene c, other;
-    double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT];
+    double table[SPAR_AERO_ROW_COUNT][COLUMN_COUNT];
     build(&c, NULL);
     build(&other, NULL);
-    assert_int_equal(
-        spar_aero_report_effects(NULL, c.s, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]),
-        SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_aero_report_effects(c.aero, NULL, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT,
-                                              SPAR_COLUMN_COUNT, table[0]),
-                     SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_aero_report_effects(c.aero, other.s, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT,
-                                              SPAR_COLUMN_COUNT, table[0]),
-                     SPAR_ERR_ARGUMENT);
+    assert_int_equal(trial_report_aero(NULL, c.s, dt, 8, NULL, solve, &c, table[0]), SPAR_ERR_ARGUMENT);
+    assert_int_equal(trial_report_aero(c.aero, NULL, dt, 8, NULL, solve, &c, table[0]), SPAR_ERR_ARGUMENT);
+    assert_int_equal(trial_report_aero(c.aero, other.s, dt, 8, NULL, solve, &c, table[0]), SPAR_ERR_ARGUMENT);
     assert_non_null(strstr(spar_session_message(other.s), "another session"));
-    assert_int_equal(
-        spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, NULL, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]),
-        SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, -1, 1, table[0]), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_aero_report_effects(c.aero, c.s, NAN, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT,
-                                              SPAR_COLUMN_COUNT, table[0]),
+    assert_int_equal(trial_report_aero(c.aero, c.s, dt, 8, NULL, NULL, &c, table[0]), SPAR_ERR_STATE);
+    assert_non_null(strstr(spar_session_message(c.s), "does not call spar_aero_solve"));
+    assert_int_equal(spar_aero_get_effect(c.aero, 0, NULL, NULL, NULL, NULL, NULL, NULL), SPAR_ERR_STATE);
+    assert_int_equal(spar_aero_get_effect(c.aero, SPAR_AERO_ROW_COUNT, NULL, NULL, NULL, NULL, NULL, NULL),
                      SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_aero_report_effects(c.aero, c.s, dt, 12, NULL, solve, &c, SPAR_AERO_ROW_COUNT,
-                                              SPAR_COLUMN_COUNT, table[0]),
-                     SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_aero_get_effect(NULL, 0, NULL, NULL, NULL, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+    assert_int_equal(trial_report_aero(c.aero, c.s, NAN, 8, NULL, solve, &c, table[0]), SPAR_ERR_ARGUMENT);
+    assert_int_equal(trial_report_aero(c.aero, c.s, dt, 12, NULL, solve, &c, table[0]), SPAR_ERR_ARGUMENT);
     OK(c.s, spar_step_begin(c.s, dt));
-    assert_int_equal(
-        spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]),
-        SPAR_ERR_STATE);
+    assert_int_equal(trial_report_aero(c.aero, c.s, dt, 8, NULL, solve, &c, table[0]), SPAR_ERR_STATE);
     OK(c.s, spar_step_reject(c.s));
-    OK(c.s,
-       spar_aero_report_effects(c.aero, c.s, dt, 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
+    OK(c.s, trial_report_aero(c.aero, c.s, dt, 8, NULL, solve, &c, table[0]));
     release(&c);
     release(&other);
 }

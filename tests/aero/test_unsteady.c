@@ -1,6 +1,7 @@
 /* Blade elements that remember: thin airfoil, inflow and stall against their closed forms, order in dt, and what they
    remember through iterations, rejected steps, trials, save and load. */
 #include "scene.h"
+#include "trials.h"
 
 #include "aero/unsteady.h"
 #include <complex.h>
@@ -422,7 +423,7 @@ static void test_goes_with_the_run(void **state) {
     (void)state;
     wing_scene c, base, again;
     spar_polar *polar = stall_polar();
-    double end[3][SPARI_MEMORY_NUMBERS * N], report[SPAR_TRY_COUNT], tip[3][7];
+    double end[3][SPARI_MEMORY_NUMBERS * N], report[TRY_COUNT], tip[3][7];
     build_flexible(&c, polar, EVERY);
     build_flexible(&base, polar, EVERY);
     build_flexible(&again, polar, EVERY);
@@ -438,7 +439,7 @@ static void test_goes_with_the_run(void **state) {
         }
         turn_wind(&c, 0.12 + 0.02 * i);
         if (i == 4) {
-            OK(c.s, spar_session_try(c.s, 0.02, 8, NULL, solve_wing, &c, 0, SPAR_TRY_COUNT, report));
+            OK(c.s, trial_run(c.s, 0.02, 8, NULL, solve_wing, &c, 0, report));
             OK(c.s, spar_session_save(c.s, file));
             OK(again.s, spar_session_load(again.s, file));
         }
@@ -542,20 +543,19 @@ static void test_report(void **state) {
     enum { STEPS = 16 };
     wing_scene c;
     spar_polar *polar = stall_polar();
-    double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT], was[SPARI_MEMORY_NUMBERS * N], is[SPARI_MEMORY_NUMBERS * N];
+    double table[SPAR_AERO_ROW_COUNT][COLUMN_COUNT], was[SPARI_MEMORY_NUMBERS * N], is[SPARI_MEMORY_NUMBERS * N];
     static const int row[2] = {SPAR_AERO_ROW_STALL, SPAR_AERO_ROW_UNSTEADY},
                      bit[2] = {SPAR_AERO_STALL, SPAR_AERO_UNSTEADY};
     build_flexible(&c, polar, EVERY);
     OK(c.s, spar_session_solve_initial(c.s, 1e-2, gust, &c, NULL));
     get_states(&c, was);
-    OK(c.s, spar_aero_report_effects(c.aero, c.s, 1e-2, STEPS, NULL, gust, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
-                                     table[0]));
+    OK(c.s, trial_report_aero(c.aero, c.s, 1e-2, STEPS, NULL, gust, &c, table[0]));
     get_states(&c, is);
     assert_memory_equal(was, is, sizeof was);
-    assert_true(table[SPAR_AERO_ROW_INFLOW][SPAR_COLUMN_IN_FORCE] == 0);
+    assert_true(table[SPAR_AERO_ROW_INFLOW][COLUMN_IN_FORCE] == 0);
     for (int k = 0; k < 2; k++) {
-        assert_true(table[row[k]][SPAR_COLUMN_IN_FORCE] == 1);
-        assert_true(table[row[k]][SPAR_COLUMN_MOTION] > 1e-3);
+        assert_true(table[row[k]][COLUMN_IN_FORCE] == 1);
+        assert_true(table[row[k]][COLUMN_MOTION] > 1e-3);
         double load[2][STEPS][6], off = 0, all = 0;
         for (int without = 0; without < 2; without++) {
             wing_scene d;
@@ -577,7 +577,7 @@ static void test_report(void **state) {
         }
         double change = sqrt(off / all);
         assert_true(change > 1e-4);
-        NEAR(table[row[k]][SPAR_COLUMN_SIZE], change, (k ? 1e-2 : 1e-8) * change);
+        NEAR(table[row[k]][COLUMN_SIZE], change, (k ? 1e-2 : 1e-8) * change);
     }
     assert_string_equal(spar_aero_effect_name(SPAR_AERO_ROW_INFLOW), "dynamic inflow");
     assert_string_equal(spar_aero_effect_name(SPAR_AERO_ROW_STALL), "dynamic stall");

@@ -1,6 +1,7 @@
 /* Wind shear and tower shadow: laws and potential flow in closed form, what sections meet and what switches it, bad
    input. */
 #include "scene.h"
+#include "trials.h"
 
 #include "aero/wind.h"
 #include <complex.h>
@@ -263,23 +264,21 @@ static void test_report(void **state) {
     (void)state;
     scene c;
     const double ground[3] = {0, 0, -20}, up[3] = {0, 0, 1}, base[3] = {1e5, 0, 8}, top[3] = {-1e4, 0, 8};
-    double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT], s = 1.0 / 64;
+    double table[SPAR_AERO_ROW_COUNT][COLUMN_COUNT], s = 1.0 / 64;
     build(&c);
     OK(c.s, spar_aero_set_shear(c.aero, SPAR_SHEAR_POWER, ground, up, 10, 0.25));
     OK(c.s, spar_aero_set_tower(c.aero, base, top, 1, 1));
-    OK(c.s,
-       spar_aero_report_effects(c.aero, c.s, 0.1, 8, NULL, blow, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
-    assert_true(table[SPAR_AERO_ROW_SHEAR][SPAR_COLUMN_IN_FORCE] == 1);
-    assert_true(table[SPAR_AERO_ROW_TOWER][SPAR_COLUMN_IN_FORCE] == 1);
-    NEAR(table[SPAR_AERO_ROW_SHEAR][SPAR_COLUMN_SIZE], 1 - 1 / sqrt(2), 1e-6);
-    NEAR(table[SPAR_AERO_ROW_TOWER][SPAR_COLUMN_SIZE], 1 - 1 / ((1 + s) * (1 + s)), 1e-6);
+    OK(c.s, trial_report_aero(c.aero, c.s, 0.1, 8, NULL, blow, &c, table[0]));
+    assert_true(table[SPAR_AERO_ROW_SHEAR][COLUMN_IN_FORCE] == 1);
+    assert_true(table[SPAR_AERO_ROW_TOWER][COLUMN_IN_FORCE] == 1);
+    NEAR(table[SPAR_AERO_ROW_SHEAR][COLUMN_SIZE], 1 - 1 / sqrt(2), 1e-6);
+    NEAR(table[SPAR_AERO_ROW_TOWER][COLUMN_SIZE], 1 - 1 / ((1 + s) * (1 + s)), 1e-6);
     assert_string_equal(spar_aero_effect_name(SPAR_AERO_ROW_SHEAR), "wind shear");
     assert_string_equal(spar_aero_effect_name(SPAR_AERO_ROW_TOWER), "tower shadow");
     OK(c.s, spar_aero_set_effects(c.aero, SPAR_AERO_DRAG));
-    OK(c.s,
-       spar_aero_report_effects(c.aero, c.s, 0.1, 8, NULL, blow, &c, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
-    assert_true(table[SPAR_AERO_ROW_SHEAR][SPAR_COLUMN_IN_FORCE] == 0);
-    assert_true(table[SPAR_AERO_ROW_TOWER][SPAR_COLUMN_IN_FORCE] == 0);
+    OK(c.s, trial_report_aero(c.aero, c.s, 0.1, 8, NULL, blow, &c, table[0]));
+    assert_true(table[SPAR_AERO_ROW_SHEAR][COLUMN_IN_FORCE] == 0);
+    assert_true(table[SPAR_AERO_ROW_TOWER][COLUMN_IN_FORCE] == 0);
     release(&c);
 }
 

@@ -4,6 +4,7 @@
    order. Then what a single rank can say otherwise, or fail at: all are told, none waits (ctest's time limit is the
    witness), and all is as it was. */
 #include "scene.h"
+#include "trials.h"
 
 #include "ranks.h"
 #include <spar/spar_mpi.h>
@@ -272,10 +273,10 @@ static void trials(void **state) {
     (void)state;
     for (int first = 0; first <= 4; first += 4) {
         scene all, alone;
-        double seen[SPAR_TRY_COUNT];
+        double seen[TRY_COUNT];
         begin_both(&all, &alone, 0);
         run_both(&all, &alone, 0, first, 0);
-        OK(all.session, spar_session_try(all.session, step, 8, drive_next, solve, &all, 0, SPAR_TRY_COUNT, seen));
+        OK(all.session, trial_run(all.session, step, 8, drive_next, solve, &all, 0, seen));
         same(&all, &alone, 0);
         run_both(&all, &alone, first, 3, 0);
         end_both(&all, &alone);
@@ -287,7 +288,7 @@ static void trials(void **state) {
 static void advised(void **state) {
     (void)state;
     scene all;
-    double advice[SPAR_ADVICE_COUNT], z[6];
+    double advice[ADVICE_COUNT], z[6];
     int64_t nodes = 8;
     begin(&all, size);
     ready(&all, rank, size, 1);
@@ -296,19 +297,19 @@ static void advised(void **state) {
         drive(&all, i);
         OK(s, spar_step(s, step, solve, &all, NULL));
         if (i == 3) {
-            OK(s, spar_session_set_option(s, "advise.dt", "keep"));
-            OK(s, spar_session_set_option(s, "advise.coupling", "keep"));
-            OK(s, spar_session_set_option(s, "advise.fidelity", "keep"));
-            OK(s, spar_session_set_option(s, "advise.fluid_cost", "1e-6")); /* not by a clock */
-            OK(s, spar_session_advise(s, 0.3, step, 8, 8 * step, drive_next, solve, &all, SPAR_ADVICE_COUNT, advice));
-            OK(s, spar_session_apply_advice(s, NULL));
+            OK(s, spar_trial_set_option(trial_of(s), "dt", "keep"));
+            OK(s, spar_trial_set_option(trial_of(s), "coupling", "keep"));
+            OK(s, spar_trial_set_option(trial_of(s), "fidelity", "keep"));
+            OK(s, spar_trial_set_option(trial_of(s), "fluid_cost", "1e-6")); /* not by a clock */
+            OK(s, trial_advise(s, 0.3, step, 8, 8 * step, drive_next, solve, &all, advice));
+            OK(s, spar_trial_apply(trial_of(s), NULL));
         }
     }
     OK(s, spar_member_get_count(all.member[0], &nodes));
     assert_true(nodes < 8);
     OK(s, spar_joint_get_motion(all.joint[0], z, NULL, NULL));
     for (int k = 0; k < 6; k++) {
-        assert_true(k == 4 || fabs(z[k]) < fmax(1e-11, advice[SPAR_ADVICE_NEWTON_RTOL]));
+        assert_true(k == 4 || fabs(z[k]) < fmax(1e-11, advice[ADVICE_NEWTON_RTOL]));
     }
     OK(s, spar_joint_get_motion(all.joint[2], z, NULL, NULL));
     NEAR(z[5], 4 * 12 * step, 1e-11);

@@ -3,6 +3,7 @@
    The instrument tests/torture/ranks goes through all calls; here are those that were found to wait or to be accepted.
  */
 #include "scene.h"
+#include "trials.h"
 
 #include "ranks.h"
 #include <spar/spar_aero.h>
@@ -71,51 +72,45 @@ static void goes_on(scene *c) {
 static void trials(void **state) {
     (void)state;
     scene c;
-    double r[SPAR_TRY_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    double r[TRY_COUNT], table[SPAR_ROW_COUNT][COLUMN_COUNT];
     create(&c);
     spar_session *s = c.session;
-    differs(&c, spar_session_try(s, dt, last ? 16 : 8, NULL, solve, &c, 0, SPAR_TRY_COUNT, r), "steps (here ");
-    differs(&c, spar_session_try(s, last ? 2 * dt : dt, 8, NULL, solve, &c, 0, SPAR_TRY_COUNT, r), "dt (here ");
-    differs(&c, spar_session_try(s, dt, 8, NULL, last ? NULL : solve, &c, 0, SPAR_TRY_COUNT, r), "solve (here ");
-    differs(&c, spar_session_try(s, dt, 8, last ? NULL : before, solve, &c, 0, SPAR_TRY_COUNT, r), "before (here ");
-    OK(s, spar_session_try(s, dt, 8, NULL, solve, &c, 0, SPAR_TRY_COUNT, r));
-    differs(&c, spar_session_try(s, dt, 8, NULL, solve, &c, last, SPAR_TRY_COUNT, r), "compare (here ");
-    differs(
-        &c,
-        spar_session_report_effects(s, dt, last ? 16 : 8, NULL, solve, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]),
-        "steps (here ");
-    differs(&c,
-            spar_session_report_effects(s, dt, 8, NULL, last ? NULL : solve, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
-                                        table[0]),
-            "solve (here ");
+    differs(&c, trial_run(s, dt, last ? 16 : 8, NULL, solve, &c, 0, r), "steps (here ");
+    differs(&c, trial_run(s, last ? 2 * dt : dt, 8, NULL, solve, &c, 0, r), "dt (here ");
+    differs(&c, trial_run(s, dt, 8, NULL, last ? NULL : solve, &c, 0, r), "solve (here ");
+    differs(&c, trial_run(s, dt, 8, last ? NULL : before, solve, &c, 0, r), "before (here ");
+    OK(s, trial_run(s, dt, 8, NULL, solve, &c, 0, r));
+    differs(&c, trial_run(s, dt, 8, NULL, solve, &c, last, r), "compare (here ");
+    differs(&c, trial_report_effects(s, dt, last ? 16 : 8, NULL, solve, &c, table[0]), "steps (here ");
+    differs(&c, trial_report_effects(s, dt, 8, NULL, last ? NULL : solve, &c, table[0]), "solve (here ");
     goes_on(&c);
 }
 
 static void advice(void **state) {
     (void)state;
-    static const char *const option[][2] = {{"advise.dt", "keep"},          {"advise.nodes", "keep"},
-                                            {"advise.fidelity", "keep"},    {"advise.coupling", "keep"},
-                                            {"advise.fluid_cost", "7"},     {"advise.limit", "7"},
-                                            {"coupling.motion_rtol", "0.5"}};
+    static const char *const option[][2] = {{"dt", "keep"},       {"nodes", "keep"},   {"fidelity", "keep"},
+                                            {"coupling", "keep"}, {"fluid_cost", "7"}, {"limit", "7"}};
     enum { OPTIONS = sizeof option / sizeof *option };
-    double a[SPAR_ADVICE_COUNT];
-    for (int k = 0; k < OPTIONS + 3 && size > 1; k++) {
+    double a[ADVICE_COUNT];
+    for (int k = 0; k < OPTIONS + 4 && size > 1; k++) {
         scene c;
         create(&c);
         spar_session *s = c.session;
         if (k < OPTIONS) {
-            OK(s, spar_session_set_option(s, option[k][0], last ? option[k][1] : k < 4 ? "vary" : "0.01"));
-            differs(&c, spar_session_advise(s, 0.1, dt, 8, 1, NULL, solve, &c, SPAR_ADVICE_COUNT, a), option[k][0]);
+            char name[40];
+            (void)snprintf(name, sizeof name, "option %s", option[k][0]);
+            OK(s, spar_trial_set_option(trial_of(s), option[k][0], last ? option[k][1] : k < 4 ? "vary" : "0.01"));
+            differs(&c, trial_advise(s, 0.1, dt, 8, 1, NULL, solve, &c, a), name);
         } else if (k == OPTIONS) {
-            differs(&c, spar_session_advise(s, last ? 0.1 : 0.2, dt, 8, 1, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
-                    "tolerance (here ");
+            differs(&c, trial_advise(s, last ? 0.1 : 0.2, dt, 8, 1, NULL, solve, &c, a), "tolerance (here ");
         } else if (k == OPTIONS + 1) {
-            differs(&c, spar_session_advise(s, 0.1, dt, last ? 16 : 8, 1, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
-                    "steps (here ");
+            differs(&c, trial_advise(s, 0.1, dt, last ? 16 : 8, 1, NULL, solve, &c, a), "steps (here ");
+        } else if (k == OPTIONS + 2) {
+            OK(s, spar_session_set_option(s, "coupling.motion_rtol", last ? "0.5" : "0.01"));
+            differs(&c, trial_advise(s, 0.1, dt, 8, 1, NULL, solve, &c, a), "coupling.motion_rtol");
         } else {
             OK(s, spar_session_set_coupling(s, last ? SPAR_COUPLING_AITKEN : SPAR_COUPLING_EXPLICIT, 1e-9, 1e-6, 50));
-            differs(&c, spar_session_advise(s, 0.1, dt, 8, 1, NULL, solve, &c, SPAR_ADVICE_COUNT, a),
-                    "scheme of spar_session_set_coupling");
+            differs(&c, trial_advise(s, 0.1, dt, 8, 1, NULL, solve, &c, a), "scheme of spar_session_set_coupling");
         }
         spar_session_destroy(&c.session);
     }
@@ -125,17 +120,11 @@ static void aero(void **state) {
     (void)state;
     scene c;
     spar_aero *none = NULL;
-    double table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT];
+    double table[SPAR_AERO_ROW_COUNT][COLUMN_COUNT];
     create(&c);
     OK(c.session, spar_aero_create(0, NULL, &none));
-    differs(&c,
-            spar_aero_report_effects(none, c.session, dt, last ? 16 : 8, NULL, solve, &c, SPAR_AERO_ROW_COUNT,
-                                     SPAR_COLUMN_COUNT, table[0]),
-            "steps (here ");
-    differs(&c,
-            spar_aero_report_effects(none, c.session, dt, 8, last ? NULL : before, solve, &c, SPAR_AERO_ROW_COUNT,
-                                     SPAR_COLUMN_COUNT, table[0]),
-            "before (here ");
+    differs(&c, trial_report_aero(none, c.session, dt, last ? 16 : 8, NULL, solve, &c, table[0]), "steps (here ");
+    differs(&c, trial_report_aero(none, c.session, dt, 8, last ? NULL : before, solve, &c, table[0]), "before (here ");
     spar_aero_destroy(&none);
     goes_on(&c);
 }
@@ -291,17 +280,16 @@ static int calls_them_before(spar_session *s, double t, double step, void *conte
 static void calls_from_callbacks(void **state) {
     (void)state;
     scene c;
-    double report[SPAR_TRY_COUNT];
+    double report[TRY_COUNT];
     if (size == 1) {
         return;
     }
     create(&c);
     differs(&c, spar_step(c.session, dt, calls_the_others, &c, NULL), "another call");
     MPI_Barrier(MPI_COMM_WORLD); /* nobody is left behind in the step */
-    differs(&c, spar_session_try(c.session, dt, 8, NULL, calls_the_others, &c, 0, SPAR_TRY_COUNT, report), "");
+    differs(&c, trial_run(c.session, dt, 8, NULL, calls_the_others, &c, 0, report), "");
     MPI_Barrier(MPI_COMM_WORLD);
-    differs(&c, spar_session_try(c.session, dt, 8, calls_them_before, solve, &c, 0, SPAR_TRY_COUNT, report),
-            "another call");
+    differs(&c, trial_run(c.session, dt, 8, calls_them_before, solve, &c, 0, report), "another call");
     MPI_Barrier(MPI_COMM_WORLD);
     goes_on(&c);
 }

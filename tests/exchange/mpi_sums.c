@@ -4,11 +4,9 @@
    the beam, whose nodes are dealt out in turn with a rank that has none, all to one rank, at random, or one to a rank;
    forces that nearly cancel, of sizes from 1e-6 to 1e3 N. */
 #include "scene.h"
+#include "trials.h"
 
-#include "exchange/session_private.h"
 #include "ranks.h"
-#include "trial/rebuild.h"
-#include "tune/apply.h"
 #include <spar/spar_mpi.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -272,20 +270,6 @@ static void parts_of_a_step(void **state) {
     }
 }
 
-/* The beam in other elements, as if that had been advised. */
-static int give_nodes(scene *c, int elements, int per_element) {
-    spar_session *s = c->session;
-    spari_advised *advised = s->own->advised = calloc(1, sizeof *advised);
-    c->beam->advice = calloc(1, sizeof *c->beam->advice);
-    assert_true(advised && c->beam->advice);
-    (void)spari_settings_varied(s, advised->setting);
-    advised->given = 1;
-    advised->of = spari_advised_of(s);
-    *c->beam->advice = spari_rebuild_of(c->beam);
-    c->beam->advice->elements = elements, c->beam->advice->per_element = per_element;
-    return spar_session_apply_advice(s, NULL);
-}
-
 /* With other nodes, or other elements too, in the middle of a run in which one fluid on the beam has fallen silent: its
    loads go over, whoever had them, and the run has the bits of one process. So have the errors that trials on as many
    nodes find. */
@@ -295,18 +279,18 @@ static void other_nodes(void **state) {
     int turns[STEPS];
     for (int parts = 0; parts <= 3; parts += 3) {
         for (int deal = -1; deal < DEALS; deal += parts ? AT_RANDOM + 1 : 1) { /* -1: alone */
-            static double before[7], q[7 * POINTS], loads[6 * POINTS], error[SPAR_TRY_LOAD + 1];
-            double tip[7], x[7 * POINTS], y[6 * POINTS], report[SPAR_TRY_COUNT];
+            static double before[7], q[7 * POINTS], loads[6 * POINTS], error[TRY_LOAD + 1];
+            double tip[7], x[7 * POINTS], y[6 * POINTS], report[TRY_COUNT];
             int64_t n;
             scene c;
             create(&c, deal < 0 ? NULL : &world, deal < 0 ? IN_TURN : deal, SPAR_COUPLING_IQN_ILS);
             c.parts = parts;
             c.pushed_until = 0.02 * 2 - 0.01;
             advance(&c, 3, turns);
-            OK(c.session, spar_session_try(c.session, 0.02, 8, NULL, solve, &c, 0, SPAR_TRY_COUNT, report));
-            OK(c.session, spar_session_try(c.session, 0.01, 16, NULL, solve, &c, 1, SPAR_TRY_COUNT, report));
+            OK(c.session, trial_run(c.session, 0.02, 8, NULL, solve, &c, 0, report));
+            OK(c.session, trial_run(c.session, 0.01, 16, NULL, solve, &c, 1, report));
             scene_tip(c.beam, tip);
-            OK(c.session, give_nodes(&c, parts ? 3 : 2, parts ? 3 : 4));
+            OK(c.session, trial_give_elements(c.session, c.beam, parts ? 3 : 2, parts ? 3 : 4));
             OK(c.session, spar_member_get_count(c.beam, &n));
             assert_int_equal(n, parts ? 9 : 8);
             advance(&c, 3, turns);
@@ -317,7 +301,7 @@ static void other_nodes(void **state) {
                 memcpy(q, x, 7 * (size_t)n * sizeof *x);
                 memcpy(loads, y, 6 * (size_t)n * sizeof *y);
                 memcpy(error, report, sizeof error);
-                assert_true(error[SPAR_TRY_MOTION] > 0);
+                assert_true(error[TRY_MOTION] > 0);
             }
             assert_memory_equal(error, report, sizeof error);
             assert_memory_equal(before, tip, sizeof tip);
@@ -345,7 +329,7 @@ static void other_nodes_and_fluids(void **state) {
     advance(&alone, 3, turns);
     advance(&all, 2, turns);
     if (size > 1) {
-        REFUSED(all.session, SPAR_ERR_COMM, "list of fluids", give_nodes(&all, 2, 4));
+        REFUSED(all.session, SPAR_ERR_COMM, "list of fluids", trial_give_elements(all.session, all.beam, 2, 4));
     }
     OK(all.session, spar_member_get_count(all.beam, &n));
     assert_int_equal(n, POINTS);

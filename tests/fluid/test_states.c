@@ -1,6 +1,7 @@
 /* Numbers of the host's own that go with a fluid's nodes: through iterations, rejected and accepted steps, static
    solutions, trials, new nodes, save and load. */
 #include "scene.h"
+#include "trials.h"
 
 #include <stdio.h>
 
@@ -139,7 +140,7 @@ static int solve(spar_session *s, double t, double dt, int iteration, void *cont
 static void trial_and_file(void **state) {
     (void)state;
     states_scene c = create(WIDTH), again = create(WIDTH), base = create(WIDTH);
-    double z[ALL], report[SPAR_TRY_COUNT];
+    double z[ALL], report[TRY_COUNT];
     OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_FIXED_POINT, 1e-13, 1e-13, 50));
     OK(again.s, spar_session_set_coupling(again.s, SPAR_COUPLING_FIXED_POINT, 1e-13, 1e-13, 50));
     OK(base.s, spar_session_set_coupling(base.s, SPAR_COUPLING_FIXED_POINT, 1e-13, 1e-13, 50));
@@ -156,7 +157,7 @@ static void trial_and_file(void **state) {
         expect(&c, base.last);
         if (k == 2) {
             memcpy(z, c.last, sizeof z);
-            OK(c.s, spar_session_try(c.s, 0.1, 8, NULL, solve, &c, 0, SPAR_TRY_COUNT, report));
+            OK(c.s, trial_run(c.s, 0.1, 8, NULL, solve, &c, 0, report));
             assert_memory_not_equal(z, c.last, sizeof z);
             expect(&c, z);
             OK(c.s, spar_session_save(c.s, file));

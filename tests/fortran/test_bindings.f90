@@ -30,9 +30,6 @@ program test_bindings
   call refused(spar_session_set_relaxation(none, 0.0_c_double), 'spar_session_set_relaxation')
   call refused(spar_session_set_reproducible(none, 0_c_int), 'spar_session_set_reproducible')
   call refused(spar_session_set_threads(none, 2_c_int), 'spar_session_set_threads')
-  call refused(spar_session_set_goal(none, 1_c_int), 'spar_session_set_goal')
-  call refused(spar_session_get_goal(none), 'spar_session_get_goal')
-  call refused(spar_session_push_numbers(none, 0_c_int64_t), 'spar_session_push_numbers')
   call refused(spar_session_set_tolerance(none, 1.0_c_double, 0.0_c_double), 'spar_session_set_tolerance')
   call refused(spar_session_get_tolerance(none), 'spar_session_get_tolerance')
   call refused(spar_session_get_step_control(none), 'spar_session_get_step_control')
@@ -186,26 +183,39 @@ program test_bindings
   call refused(spar_step_adaptive(none, before=c_null_funptr, solve=c_null_funptr, context=none), 'spar_step_adaptive')
   call refused(spar_step_begin_initial(none, 0.1_c_double), 'spar_step_begin_initial')
   call refused(spar_session_solve_static(none, 1_c_int, c_null_funptr, none), 'spar_session_solve_static')
-  call refused(spar_session_try(none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, 0_c_int, &
-      0_c_int64_t), &
-      'spar_session_try')
-  call refused(spar_session_solve_eigenvalues(none, 0.0_c_double, 0_c_int64_t, 0.0_c_double, c_null_funptr, &
-      c_null_funptr, none, 1_c_int64_t, 0_c_int64_t, nodes=0_c_int64_t), 'spar_session_solve_eigenvalues')
-  call refused(spar_session_solve_floquet(none, 0.0_c_double, 0_c_int64_t, 0.0_c_double, c_null_funptr, &
-      c_null_funptr, none, 1_c_int64_t, 0_c_int64_t), 'spar_session_solve_floquet')
-  call refused(spar_session_report_effects(none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, &
-      0_c_int64_t, 0_c_int64_t), &
-      'spar_session_report_effects')
-  call refused(spar_session_advise(none, 0.0_c_double, 0.0_c_double, 0_c_int64_t, 0.0_c_double, c_null_funptr, &
-      c_null_funptr, none, 0_c_int64_t), &
-      'spar_session_advise')
-  call refused(spar_session_apply_advice(none), 'spar_session_apply_advice')
-  call refused(spar_member_get_advice(none), 'spar_member_get_advice')
+  call refused(spar_trial_create(none, trial=made), 'spar_trial_create')
+  made = c_null_ptr
+  call spar_trial_destroy(made)
+  call refused(spar_trial_get_session(none, made), 'spar_trial_get_session')
+  made = c_null_ptr
+  call refused(spar_trial_set_steps(none, 0.0_c_double, 0_c_int64_t), 'spar_trial_set_steps')
+  call refused(spar_trial_get_steps(none), 'spar_trial_get_steps')
+  call refused(spar_trial_set_callbacks(none, c_null_funptr, none, c_null_funptr, none), 'spar_trial_set_callbacks')
+  call refused(spar_trial_set_progress(none, c_null_funptr, none), 'spar_trial_set_progress')
+  call refused(spar_trial_run(none, 0_c_int), 'spar_trial_run')
+  call refused(spar_trial_get_errors(none), 'spar_trial_get_errors')
+  call refused(spar_trial_get_cost(none), 'spar_trial_get_cost')
+  call refused(spar_trial_report_effects(none), 'spar_trial_report_effects')
+  call refused(spar_trial_get_effect(none, 0_c_int), 'spar_trial_get_effect')
+  call refused(spar_trial_set_goals(none, 1_c_int), 'spar_trial_set_goals')
+  call refused(spar_trial_get_goals(none), 'spar_trial_get_goals')
+  call refused(spar_trial_push_numbers(none, 0_c_int64_t), 'spar_trial_push_numbers')
+  call refused(spar_trial_set_option(none), 'spar_trial_set_option')
+  call refused(spar_trial_get_option(none, capacity=0_c_int64_t), 'spar_trial_get_option')
+  call refused(spar_trial_advise(none, 0.0_c_double, 0.0_c_double), 'spar_trial_advise')
+  call refused(spar_trial_get_settings(none), 'spar_trial_get_settings')
+  call refused(spar_trial_get_beam(none, none), 'spar_trial_get_beam')
+  call refused(spar_trial_get_outcome(none), 'spar_trial_get_outcome')
+  call refused(spar_trial_get_search(none), 'spar_trial_get_search')
+  call refused(spar_trial_apply(none), 'spar_trial_apply')
+  call refused(spar_trial_set_motion(none, 1_c_int64_t, 0.0_c_double, 0_c_int64_t), 'spar_trial_set_motion')
+  call refused(spar_trial_get_motion(none), 'spar_trial_get_motion')
+  call refused(spar_trial_solve_eigenvalues(none, 0_c_int64_t, nodes=0_c_int64_t), 'spar_trial_solve_eigenvalues')
+  call refused(spar_trial_solve_floquet(none, 0_c_int64_t), 'spar_trial_solve_floquet')
   call check(c_associated(spar_effect_name(0_c_int)), 'spar_effect_name')
   call refused(spar_session_save(none), 'spar_session_save')
   call refused(spar_session_load(none), 'spar_session_load')
   call refused(spar_session_set_log(none, c_null_funptr, none), 'spar_session_set_log')
-  call refused(spar_session_set_progress(none, c_null_funptr, none), 'spar_session_set_progress')
 
   ! spar_aero.h
   call refused(spar_polar_create(0_c_int64_t, polar=made), 'spar_polar_create')
@@ -233,9 +243,8 @@ program test_bindings
   call refused(spar_aero_get_chord(none), 'spar_aero_get_chord')
   call refused(spar_aero_get_loads(none), 'spar_aero_get_loads')
   call check(c_associated(spar_aero_effect_name(0_c_int)), 'spar_aero_effect_name')
-  call refused(spar_aero_report_effects(none, none, 0.0_c_double, 0_c_int64_t, c_null_funptr, c_null_funptr, none, &
-      0_c_int64_t, 0_c_int64_t), &
-      'spar_aero_report_effects')
+  call refused(spar_aero_report_effects(none, none), 'spar_aero_report_effects')
+  call refused(spar_aero_get_effect(none, 0_c_int), 'spar_aero_get_effect')
 
   ! spar_output.h
   call refused(spar_member_write_vtk(none), 'spar_member_write_vtk')

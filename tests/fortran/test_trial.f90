@@ -14,11 +14,15 @@ module trial_fluid
     integer :: calls = 0, stops_at = -1
     real(c_double) :: done = -1
   end type hearing
-  type(hearing), target :: heard ! here, as gfortran keeps what is local to a caller in registers
+  ! Contexts that a trial keeps: here, as gfortran keeps what is local to a caller in registers.
+  type(hearing), target :: heard
 
   type :: wing
     type(spar_aero), pointer :: aero => null()
   end type wing
+
+  type(spring), target :: held
+  type(wing), target :: flown
 
 contains
 
@@ -150,17 +154,16 @@ contains
   ! 1 kg on a spring of 4 N/m under its weight: without gravity it does not move, so the error of the motion is all of it,
   ! 1; without inertia it has no equilibrium to be found (a free body has no stiffness of its own).
   subroutine trials()
-    type(spar_session) :: session
+    type(spar_session), target :: session
+    type(spar_trial) :: trial, other
     type(spar_member) :: body
     type(spar_fluid), target :: fluid
-    type(spring) :: context
-    real(c_double) :: report(0:SPAR_TRY_COUNT - 1), table(0:SPAR_COLUMN_COUNT - 1,0:SPAR_ROW_COUNT - 1)
-    real(c_double) :: advice(0:SPAR_ADVICE_COUNT - 1), q(7,1), t, size
-    integer(c_int) :: stat, fidelity, nodes, points
-    integer(c_int64_t) :: modes
-    class(*), pointer :: listener
+    real(c_double) :: motion, reaction, load, size, error, t, q(7,1), step
+    integer :: stat, in_force, fails, nodes, row, goals
+    integer(c_int64_t) :: evaluations, runs, steps
+    class(*), pointer :: context, listener
+    character(:), allocatable :: text
     character(300) :: errmsg
-    integer :: row
 
     call session%create()
     call session%set_gravity([0.0_c_double, 0.0_c_double, -9.81_c_double])
@@ -171,57 +174,92 @@ contains
     call fluid%set_motion_nodes(reshape(origin, [3, 1]))
     call fluid%set_force_nodes(reshape(origin, [3, 1]))
     call fluid%map()
-    context%fluid => fluid
-    context%stiffness = 4
-    call session%try(dt, 16, report, count_step, solve, context)
-    call check(context%steps == 16, 'before is called ahead of each step')
-    call check(abs(report(SPAR_TRY_MOTION)) <= 0 .and. report(SPAR_TRY_SOLUTIONS) >= 16, 'a first trial')
-    call session%try(dt, 16_c_int64_t, report, count_step, solve, context, compare=.true.)
-    call check(all(abs(report(SPAR_TRY_MOTION:SPAR_TRY_LOAD)) <= 0), 'a trial is as the one before')
-    call session%try(dt, 8, report, count_nothing, compare=.false.)
-    call check(abs(report(SPAR_TRY_MOTION)) <= 0, 'a trial without context')
-    context%fails_at = context%steps + 3
-    call session%try(dt, 16, report, count_step, solve, context, stat=stat, errmsg=errmsg)
+    held = spring(fluid, 4.0_c_double)
+    context => held
+    call check(.not. trial%exists(), 'no trial yet')
+    call trial%create(session)
+    call trial%create(session, stat=stat)
+    call check(trial%exists() .and. stat == SPAR_ERR_STATE, 'one trial in a variable')
+    call trial%run(stat=stat, errmsg=errmsg)
+    call check(stat == SPAR_ERR_STATE .and. index(errmsg, 'no steps') > 0, 'without steps: ' // trim(errmsg))
+    call trial%set_steps(dt, 16)
+    call trial%get_steps(step, steps)
+    call check(abs(step - dt) <= 0 .and. steps == 16, 'its steps')
+    call trial%set_callbacks(count_step, context, solve, context)
+    call trial%run()
+    call trial%get_errors(motion)
+    call trial%get_cost(evaluations=evaluations)
+    call check(held%steps == 16, 'before is called ahead of each step')
+    call check(abs(motion) <= 0 .and. evaluations >= 16, 'a first run')
+    call trial%run(compare=.true.)
+    call trial%get_errors(motion, reaction, load)
+    call check(max(abs(motion), abs(reaction), abs(load)) <= 0, 'a run is as the one before')
+    call other%create(session)
+    call other%set_steps(dt, 8_c_int64_t)
+    call other%set_callbacks(count_nothing)
+    call other%run(compare=.false.)
+    call check(held%steps == 32, 'a trial without context')
+    call other%destroy()
+    call other%destroy()
+    call check(.not. other%exists() .and. trial%exists(), 'one of two destroyed')
+    held%fails_at = held%steps + 3
+    call trial%run(stat=stat, errmsg=errmsg)
     call check(stat == SPAR_ERR_USER .and. index(errmsg, '7') > 0, 'a failing call before a step: ' // trim(errmsg))
-    call session%try(dt, 12, report, stat=stat, errmsg=errmsg)
+    call trial%set_steps(dt, 12)
+    call trial%run(stat=stat, errmsg=errmsg)
     call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, 'multiple of 8') > 0, 'bad steps: ' // trim(errmsg))
+    call trial%set_steps(dt, 16)
 
-    context%stiffness = 1e-6_c_double
-    call session%report_effects(dt, 16, table, count_step, solve, context)
-    call check(abs(table(SPAR_COLUMN_IN_FORCE,SPAR_ROW_GRAVITY) - 1) <= 0, 'gravity is in force')
-    call check(abs(table(SPAR_COLUMN_MOTION,SPAR_ROW_GRAVITY) - 1) < 1e-5_c_double, 'gravity is all of the motion')
-    call check(table(SPAR_COLUMN_MOTION,SPAR_ROW_INERTIA) < 0, 'no run without inertia')
+    held%stiffness = 1e-6_c_double
+    call trial%report_effects()
+    call trial%get_effect(SPAR_ROW_GRAVITY, in_force, fails, motion=motion)
+    call check(in_force == 1 .and. fails == 0, 'gravity is in force')
+    call check(abs(motion - 1) < 1e-5_c_double, 'gravity is all of the motion')
+    call trial%get_effect(SPAR_ROW_INERTIA, fails=fails)
+    call check(fails == 1, 'no run without inertia')
     do row = 0, SPAR_ROW_COUNT - 1
-      if (table(SPAR_COLUMN_IN_FORCE,row) > 0) cycle
-      call check(all(abs(table(:,row)) <= 0), 'nothing of ' // spar_effect_name(int(row, c_int)))
+      call trial%get_effect(row, in_force, size=size, motion=motion, reaction=reaction)
+      if (in_force > 0) cycle
+      call check(max(abs(size), abs(motion), abs(reaction)) <= 0, 'nothing of ' // spar_effect_name(row))
     end do
-    call check(spar_effect_name(SPAR_ROW_GRAVITY) == 'gravity' .and. spar_effect_name(-1_c_int) == '', 'names')
+    call check(spar_effect_name(SPAR_ROW_GRAVITY) == 'gravity' .and. spar_effect_name(-1) == '', 'names')
 
-    context%stiffness = 4
-    call body%get_advice(fidelity, modes, nodes, points, stat)
+    held%stiffness = 4
+    call trial%get_beam(body, nodes_per_element=nodes, stat=stat)
     call check(stat == SPAR_ERR_STATE, 'no advice yet')
-    call session%apply_advice(stat=stat)
+    call trial%apply(stat=stat)
     call check(stat == SPAR_ERR_STATE, 'no advice to apply')
-    call session%advise(1e-2_c_double, dt, 16, 16 * dt, advice, count_step, solve, context)
-    call check(advice(SPAR_ADVICE_ERROR) <= 1e-2_c_double .and. advice(SPAR_ADVICE_DT) > 0, 'advice')
-    call body%get_advice(nodes_per_element=nodes)
+    call trial%set_goals(SPAR_GOAL_MOTION + SPAR_GOAL_REACTION)
+    call trial%get_goals(goals)
+    call check(goals == SPAR_GOAL_MOTION + SPAR_GOAL_REACTION, 'goals')
+    call trial%set_goals(SPAR_GOAL_MOTION)
+    call trial%push_numbers([1.0_c_double, 2.0_c_double])
+    call trial%set_option('limit', '1000')
+    call trial%get_option('limit', text)
+    call check(text == '1000', 'an option')
+    call trial%advise(1e-2_c_double, 16 * dt)
+    call trial%get_settings(dt=step)
+    call trial%get_outcome(error, present_fails=fails)
+    call check(error <= 1e-2_c_double .and. step > 0 .and. fails == 0, 'advice')
+    call trial%get_beam(body, nodes_per_element=nodes)
     call check(nodes == 1, 'the body stays as it is')
-    call session%advise(2.0_c_double, dt, 16_c_int64_t, 16 * dt, advice, solve=solve, context=context, stat=stat)
+    call trial%advise(2.0_c_double, 16 * dt, stat=stat)
     call check(stat == SPAR_ERR_ARGUMENT, 'a tolerance of 2')
 
-    ! progress: once ahead of each trial; what it answers ends the call; without it nothing is called
+    ! progress: once ahead of each run; what it answers ends the call; without it nothing is called
     listener => heard
-    call session%set_progress(hear, listener)
-    call session%advise(1e-2_c_double, dt, 16, 16 * dt, advice, count_step, solve, context)
-    call check(heard%calls == nint(advice(SPAR_ADVICE_TRIALS)), 'told ahead of each trial')
+    call trial%set_progress(hear, listener)
+    call trial%advise(1e-2_c_double, 16 * dt)
+    call trial%get_search(runs=runs)
+    call check(heard%calls == runs, 'told ahead of each run')
     heard = hearing(stops_at=2)
-    call session%advise(1e-2_c_double, dt, 16, 16 * dt, advice, count_step, solve, context, stat)
+    call trial%advise(1e-2_c_double, 16 * dt, stat)
     call check(stat == SPAR_ERR_USER .and. heard%calls == 2, 'stopped')
     call check(index(session%message(), 'cancelled by the progress callback (9)') > 0, 'what has stopped it')
-    call session%set_progress(hear_nothing)
-    call session%report_effects(dt, 16, table, count_step, solve, context)
-    call session%set_progress()
-    call session%report_effects(dt, 16, table, count_step, solve, context)
+    call trial%set_progress(hear_nothing)
+    call trial%report_effects()
+    call trial%set_progress()
+    call trial%report_effects()
     call check(heard%calls == 2, 'nobody is told')
 
     ! back where it was: g t^2 / 2 to the order of the spring
@@ -233,13 +271,15 @@ contains
 
   ! 1 kg on a spring of 4 N/m, which is a fluid: 2 rad/s, in three directions; the shape is one of unit mass.
   subroutine eigenvalues()
-    type(spar_session) :: session
+    type(spar_session), target :: session
+    type(spar_trial) :: trial
     type(spar_member) :: body
     type(spar_fluid), target :: fluid
-    type(spring) :: context
-    real(c_double) :: eigenvalue(2,3), shapes(2,6,1,3), frame(3), few(2,1)
+    class(*), pointer :: context
+    real(c_double) :: eigenvalue(2,3), shapes(2,6,1,3), frame(3), few(2,1), amplitude
     real(c_double), parameter :: at(2) = [0.0_c_double, 2.0_c_double]
-    integer(c_int) :: stat
+    integer :: stat
+    integer(c_int64_t) :: modes, memory
     character(300) :: errmsg
 
     call session%create()
@@ -249,36 +289,45 @@ contains
     call fluid%set_motion_nodes(reshape(origin, [3, 1]))
     call fluid%set_force_nodes(reshape(origin, [3, 1]))
     call fluid%map()
-    context%fluid => fluid
-    context%stiffness = 4
-    call session%solve_eigenvalues(dt, 0, 6, at, eigenvalue, 0.0_c_double, count_step, solve, context, shapes, frame)
+    held = spring(fluid, 4.0_c_double)
+    context => held
+    call trial%create(session)
+    call trial%set_steps(dt, 8)
+    call trial%set_callbacks(count_step, context, solve, context)
+    call trial%solve_eigenvalues(at, eigenvalue, stat=stat)
+    call check(stat == SPAR_ERR_STATE, 'no modes')
+    call trial%set_motion(6)
+    call trial%solve_eigenvalues(at, eigenvalue, shapes, frame)
     call check(all(abs(eigenvalue(2,:) - 2) < 1e-7_c_double) .and. all(abs(eigenvalue(1,:)) < 1e-7_c_double), 'eigenvalues')
-    call check(context%steps == 36, 'six calls a mode')
+    call check(held%steps == 36, 'six calls a mode')
     call check(abs(sum(shapes**2) - 3) < 1e-6_c_double .and. all(abs(frame) <= 0), 'shapes of unit mass')
-    call session%solve_eigenvalues(dt, 10_c_int64_t, 6_c_int64_t, at, few, 1e-4_c_double, solve=solve, context=context)
+    call trial%set_motion(6_c_int64_t, 1e-4_c_double, 10_c_int64_t)
+    call trial%get_motion(modes, amplitude, memory)
+    call check(modes == 6 .and. abs(amplitude - 1e-4_c_double) <= 0 .and. memory == 10, 'the motion')
+    call trial%solve_eigenvalues(at, few)
     call check(abs(few(2,1) - 2) < 1e-5_c_double, 'an eigenvalue by pulses')
-    call session%solve_eigenvalues(dt, 0, 6, at, eigenvalue, shapes=shapes(:,:,:,:2), solve=solve, context=context, &
-        stat=stat, errmsg=errmsg)
+    call trial%set_motion(6, memory=0)
+    call trial%solve_eigenvalues(at, eigenvalue, shapes(:,:,:,:2), stat=stat, errmsg=errmsg)
     call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, 'shapes') > 0, 'shapes of too few: ' // trim(errmsg))
     call session%set_integrator(1.0_c_double, 1)
-    call session%set_coupling(SPAR_COUPLING_EXPLICIT, 0.0_c_double, 1e-6_c_double, 50) ! its lag lets the spring's modes come first
-    call session%solve_floquet(0.001_c_double, 1000, 6, few, before=count_step, solve=solve, context=context)
+    call session%set_coupling(SPAR_COUPLING_EXPLICIT, 0.0_c_double, 1e-6_c_double, 50) ! its lag lets the modes of the spring come first
+    call trial%set_steps(0.001_c_double, 1000)
+    call trial%solve_floquet(few)
     call check(abs(few(2,1) - 2) < 1e-4_c_double .and. abs(few(1,1)) < 1e-4_c_double, 'a multiplier')
-    call session%solve_floquet(0.001_c_double, 0_c_int64_t, 6_c_int64_t, few, solve=solve, context=context, stat=stat, &
-        errmsg=errmsg)
+    call trial%set_steps(0.001_c_double, 0, stat=stat, errmsg=errmsg)
     call check(stat == SPAR_ERR_ARGUMENT .and. index(errmsg, '0 steps') > 0, 'a period of no steps: ' // trim(errmsg))
   end subroutine eigenvalues
 
   ! Where trials vary the nodes, shapes follow: a beam whose solver asks for the basis of its fluid.
   subroutine a_beam()
-    type(spar_session) :: session
+    type(spar_session), target :: session
+    type(spar_trial) :: trial
     type(spar_member) :: beam
     type(spar_fluid), target :: fluid
-    type(spring) :: context
-    real(c_double) :: advice(0:SPAR_ADVICE_COUNT - 1)
-    real(c_double) :: new_dt
+    class(*), pointer :: context
+    real(c_double) :: new_dt, advised
     integer(c_int64_t) :: count
-    integer(c_int) :: nodes
+    integer :: nodes, elements
 
     call session%create()
     call beam%create_beam(session, 'beam', 1, 5)
@@ -290,30 +339,35 @@ contains
     call fluid%set_motion_nodes(reshape([2, 0, 0] * 1.0_c_double, [3, 1]))
     call fluid%set_force_nodes(reshape([2, 0, 0] * 1.0_c_double, [3, 1]))
     call fluid%map()
-    context%fluid => fluid
-    call session%advise(0.05_c_double, 0.02_c_double, 16, 0.32_c_double, advice, solve=push_by_basis, context=context)
-    call beam%get_advice(nodes_per_element=nodes)
-    call check(nodes >= 3 .and. nodes <= 24, 'nodes are advised')
-    call check(context%steps > 1, 'runs had other numbers of nodes')
-    call session%apply_advice(new_dt)
-    call check(abs(new_dt - advice(SPAR_ADVICE_DT)) <= 0, 'dt is the one advised')
+    held = spring(fluid)
+    context => held
+    call trial%create(session)
+    call trial%set_steps(0.02_c_double, 16)
+    call trial%set_callbacks(solve=push_by_basis, solve_context=context)
+    call trial%advise(0.05_c_double, 0.32_c_double)
+    call trial%get_beam(beam, elements=elements, nodes_per_element=nodes)
+    call trial%get_settings(dt=advised)
+    call check(elements == 1 .and. nodes >= 3 .and. nodes <= 24, 'nodes are advised')
+    call check(held%steps > 1, 'runs had other numbers of nodes')
+    call trial%apply(new_dt)
+    call check(abs(new_dt - advised) <= 0, 'dt is the one advised')
     call beam%get_count(count)
     call check(count == nodes, 'the beam has the nodes advised')
-    call session%step(new_dt, push_by_basis, context)
+    call session%step(new_dt, push_by_basis, held)
   end subroutine a_beam
 
   ! Coefficients that are the same at all angles: without drag, cd of hypot(cl, cd) is missing.
   subroutine a_wing()
-    type(spar_session) :: session
+    type(spar_session), target :: session
+    type(spar_trial) :: trial
     type(spar_member) :: beam
     type(spar_fluid) :: fluid(1)
     type(spar_polar) :: polar
-    type(spar_aero), target :: aero
-    type(wing) :: context
+    type(spar_aero), target, save :: aero ! the context of the trial points to it
+    class(*), pointer :: context
     real(c_double), parameter :: half_turn = 3.14159265358979_c_double
-    real(c_double) :: table(0:SPAR_COLUMN_COUNT - 1,0:SPAR_AERO_ROW_COUNT - 1)
-    integer(c_int) :: stat
-    integer :: i
+    real(c_double) :: size, motion
+    integer :: stat, i, in_force
 
     call session%create()
     call beam%create_beam(session, 'beam', 1, 5)
@@ -329,14 +383,21 @@ contains
     do i = 1, 2
       call aero%set_section(i, 0.1_c_double, 0.0_c_double, polar)
     end do
-    context%aero => aero
-    call aero%report_effects(session, 1e-3_c_double, 8, table, solve=solve_wing, context=context)
-    call check(abs(table(SPAR_COLUMN_IN_FORCE,SPAR_AERO_ROW_DRAG) - 1) <= 0, 'drag is in force')
-    call check(abs(table(SPAR_COLUMN_SIZE,SPAR_AERO_ROW_DRAG) - 0.8_c_double) < 1e-3_c_double, 'drag is 4 of 5 parts')
-    call check(all(abs(table(:,SPAR_AERO_ROW_SWIRL)) <= 0), 'no swirl')
+    flown%aero => aero
+    context => flown
+    call trial%create(session)
+    call trial%set_steps(1e-3_c_double, 8)
+    call aero%report_effects(trial, stat=stat)
+    call check(stat == SPAR_ERR_STATE, 'no solver')
+    call trial%set_callbacks(solve=solve_wing, solve_context=context)
+    call aero%report_effects(trial)
+    call aero%get_effect(SPAR_AERO_ROW_DRAG, in_force, size=size)
+    call check(in_force == 1, 'drag is in force')
+    call check(abs(size - 0.8_c_double) < 1e-3_c_double, 'drag is 4 of 5 parts')
+    call aero%get_effect(SPAR_AERO_ROW_SWIRL, in_force, size=size, motion=motion)
+    call check(in_force == 0 .and. abs(size) <= 0 .and. abs(motion) <= 0, 'no swirl')
     call check(spar_aero_effect_name(SPAR_AERO_ROW_DRAG) == 'drag', 'names of the blade element')
-    call aero%report_effects(session, 1e-3_c_double, 8_c_int64_t, table, stat=stat)
-    call check(stat == SPAR_ERR_ARGUMENT, 'no solver')
+    call aero%destroy()
   end subroutine a_wing
 
   ! The tip is the last node: its basis is 0, ..., 0, 1 with any number of nodes. context%steps: how many were seen.

@@ -3,6 +3,7 @@
    it computes is in test_added_mass.c. The oracle is the converged run without it, or the run that was not disturbed.
  */
 #include "pistons.h"
+#include "trials.h"
 
 #include <stdio.h>
 
@@ -449,10 +450,10 @@ static void tied_and_swinging(void **state) {
    is the tolerance that was asked for). */
 static void trials(void **state) {
     (void)state;
-    double report[SPAR_TRY_COUNT], advice[SPAR_ADVICE_COUNT], tip[2][7];
+    double report[TRY_COUNT], advice[ADVICE_COUNT], tip[2][7];
     for (int k = 0; k < 2; k++) {
         mast m;
-        double dt = 0.01, table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+        double dt = 0.01, table[SPAR_ROW_COUNT][COLUMN_COUNT];
         mast_create(&m, 2, k ? 2 : 0, SPAR_FIDELITY_EXACT);
         OK(m.session, spar_session_set_coupling(m.session, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-7, 100));
         for (int i = 0; i < 5; i++) {
@@ -460,14 +461,12 @@ static void trials(void **state) {
         }
         double before[2][7 * 6];
         OK(m.session, spar_member_get_motion(m.beam, before[0], NULL, NULL));
-        OK(m.session, spar_session_try(m.session, dt, 16, NULL, mast_fluid, &m, 0, SPAR_TRY_COUNT, report));
-        OK(m.session, spar_session_report_effects(m.session, dt, 16, NULL, mast_fluid, &m, SPAR_ROW_COUNT,
-                                                  SPAR_COLUMN_COUNT, table[0]));
-        OK(m.session,
-           spar_session_advise(m.session, 0.1, dt, 32, 0.5, NULL, mast_fluid, &m, SPAR_ADVICE_COUNT, advice));
+        OK(m.session, trial_run(m.session, dt, 16, NULL, mast_fluid, &m, 0, report));
+        OK(m.session, trial_report_effects(m.session, dt, 16, NULL, mast_fluid, &m, table[0]));
+        OK(m.session, trial_advise(m.session, 0.1, dt, 32, 0.5, NULL, mast_fluid, &m, advice));
         OK(m.session, spar_member_get_motion(m.beam, before[1], NULL, NULL));
         assert_memory_equal(before[0], before[1], sizeof before[0]);
-        OK(m.session, spar_session_apply_advice(m.session, &dt));
+        OK(m.session, spar_trial_apply(trial_of(m.session), &dt));
         double t = 0;
         for (int i = 0; i < 400 && t < 0.5; i++) {
             OK(m.session, spar_step(m.session, fmin(dt, 0.01), mast_fluid, &m, NULL));

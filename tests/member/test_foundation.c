@@ -1,6 +1,7 @@
 /* Springs to the ground along a beam: Winkler's beam at rest and swinging, section axes and stations, energies, linear
    and modal beams, what switches them, bad input. */
 #include "scene.h"
+#include "trials.h"
 
 #include <stdio.h>
 
@@ -199,7 +200,7 @@ static void test_off(void **state) {
 static void test_trial_and_file(void **state) {
     (void)state;
     static const char *const file = "test_foundation.spar";
-    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], tip[3][7];
+    double table[SPAR_ROW_COUNT][COLUMN_COUNT], tip[3][7];
     spar_session *s[2];
     spar_member *b[2];
     for (int i = 0; i < 2; i++) {
@@ -211,13 +212,12 @@ static void test_trial_and_file(void **state) {
     }
     scene_run(s[0], 0.01, 10);
     scene_tip(b[0], tip[0]);
-    OK(s[0],
-       spar_session_report_effects(s[0], 0.01, 16, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
+    OK(s[0], trial_report_effects(s[0], 0.01, 16, NULL, NULL, NULL, table[0]));
     scene_tip(b[0], tip[1]);
     assert_memory_equal(tip[0], tip[1], sizeof tip[0]);
-    assert_true(table[SPAR_ROW_FOUNDATION][SPAR_COLUMN_IN_FORCE] == 1);
-    assert_true(table[SPAR_ROW_FOUNDATION][SPAR_COLUMN_SIZE] > 0.1);
-    assert_true(table[SPAR_ROW_FOUNDATION][SPAR_COLUMN_MOTION] > 0.1);
+    assert_true(table[SPAR_ROW_FOUNDATION][COLUMN_IN_FORCE] == 1);
+    assert_true(table[SPAR_ROW_FOUNDATION][COLUMN_SIZE] > 0.1);
+    assert_true(table[SPAR_ROW_FOUNDATION][COLUMN_MOTION] > 0.1);
     assert_string_equal(spar_effect_name(SPAR_ROW_FOUNDATION), "foundation");
     OK(s[0], spar_session_save(s[0], file));
     OK(s[1], spar_session_load(s[1], file));

@@ -1,6 +1,7 @@
 /* The added mass learned from iterations (spar_member_learn_added_mass) through what happens to a run: steps given up,
    trials, files, failures, substeps, joints, directions that move little. docs/theory.md, (T21) to (T23). */
 #include "buoy.h"
+#include "trials.h"
 
 #include <stdio.h>
 
@@ -42,7 +43,7 @@ static void bits(void **state) {
     for (int way = 0; way < 4; way++) { /* undisturbed; steps given up and trials; files; failures */
         buoy b;
         int used, done;
-        double report[SPAR_TRY_COUNT];
+        double report[TRY_COUNT];
         buoy_create(&b, 10, 1);
         OK(b.session, spar_session_set_option(b.session, "coupling.reuse", "0"));
         for (int step = 0; step < 30; step++) {
@@ -57,7 +58,7 @@ static void bits(void **state) {
                 OK(b.session, spar_step_reject(b.session));
             }
             if (way == 1 && step == 8) {
-                OK(b.session, spar_session_try(b.session, 0.02, 16, NULL, buoy_fluid, &b, 0, SPAR_TRY_COUNT, report));
+                OK(b.session, trial_run(b.session, 0.02, 16, NULL, buoy_fluid, &b, 0, report));
             }
             if (way == 3) {
                 fail_in_all_ways(&b);

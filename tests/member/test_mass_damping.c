@@ -1,6 +1,7 @@
 /* Mass-proportional damping: growth rates, the step response of one mode and the energy in closed form, fidelities
    against each other, roots that turn, beams that fly, what switches it, save and load, bad input. */
 #include "scene.h"
+#include "trials.h"
 
 #include <stdio.h>
 
@@ -190,7 +191,7 @@ static void test_turning_decay(void **state) {
 static void test_off(void **state) {
     (void)state;
     const double dead[6] = {0, 0, 20, 0, 0, 0};
-    double tip[4][7], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    double tip[4][7], table[SPAR_ROW_COUNT][COLUMN_COUNT];
     for (int k = 0; k < 4; k++) {
         int effects;
         spar_session *s = scene_session();
@@ -204,10 +205,9 @@ static void test_off(void **state) {
         assert_int_equal((effects & SPAR_EFFECT_DAMPING) != 0, k == 2);
         OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, dead));
         if (k == 2) {
-            OK(s,
-               spar_session_report_effects(s, 0.02, 16, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
-            assert_true(table[SPAR_ROW_DAMPING][SPAR_COLUMN_SIZE] > 1e-3);
-            assert_true(table[SPAR_ROW_DAMPING][SPAR_COLUMN_MOTION] > 1e-3);
+            OK(s, trial_report_effects(s, 0.02, 16, NULL, NULL, NULL, table[0]));
+            assert_true(table[SPAR_ROW_DAMPING][COLUMN_SIZE] > 1e-3);
+            assert_true(table[SPAR_ROW_DAMPING][COLUMN_MOTION] > 1e-3);
         }
         scene_run(s, 0.02, 20);
         scene_tip(b, tip[k]);

@@ -1,6 +1,7 @@
 /* Pretension of beams: strings, columns, beams under tension, springs back to where nothing pulls, section axes and
    stations, linear members and turning roots, energies, what switches it, bad input. */
 #include "scene.h"
+#include "trials.h"
 
 #include <stdio.h>
 
@@ -304,7 +305,7 @@ static void test_off(void **state) {
 static void test_trial_and_file(void **state) {
     (void)state;
     static const char *const file = "test_pretension.spar";
-    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], tip[3][7];
+    double table[SPAR_ROW_COUNT][COLUMN_COUNT], tip[3][7];
     spar_session *s[2];
     spar_member *b[2];
     for (int i = 0; i < 2; i++) {
@@ -317,13 +318,12 @@ static void test_trial_and_file(void **state) {
     }
     scene_run(s[0], 0.01, 10);
     scene_tip(b[0], tip[0]);
-    OK(s[0],
-       spar_session_report_effects(s[0], 0.01, 16, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
+    OK(s[0], trial_report_effects(s[0], 0.01, 16, NULL, NULL, NULL, table[0]));
     scene_tip(b[0], tip[1]);
     assert_memory_equal(tip[0], tip[1], sizeof tip[0]);
-    assert_true(table[SPAR_ROW_PRETENSION][SPAR_COLUMN_IN_FORCE] == 1);
-    assert_true(table[SPAR_ROW_PRETENSION][SPAR_COLUMN_SIZE] > 0.5);
-    assert_true(table[SPAR_ROW_PRETENSION][SPAR_COLUMN_MOTION] > 1e-3);
+    assert_true(table[SPAR_ROW_PRETENSION][COLUMN_IN_FORCE] == 1);
+    assert_true(table[SPAR_ROW_PRETENSION][COLUMN_SIZE] > 0.5);
+    assert_true(table[SPAR_ROW_PRETENSION][COLUMN_MOTION] > 1e-3);
     assert_string_equal(spar_effect_name(SPAR_ROW_PRETENSION), "pretension");
     OK(s[0], spar_session_save(s[0], file));
     OK(s[1], spar_session_load(s[1], file));

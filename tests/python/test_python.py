@@ -254,32 +254,83 @@ class Edges(unittest.TestCase):
         self.assertEqual(told[0][0], spar.LOG_ERROR)
         self.assertIn('dt', told[0][1])
 
+    def test_trial(self):
+        """A run against itself has no error; each callback is called; what one raises ends the run and is raised again."""
+        with spar.Session() as s:
+            member, fluid = body(s)
+            trial = s.trial_create()
+            seen = []
+
+            def before(session, t, dt):
+                self.assertIs(session, s)
+                seen.append((t, dt))
+
+            def solve(_session, _t, _dt, iteration):
+                fluid.push_forces([[0, 0, 1.0 + 0 * iteration]])
+
+            trial.set_steps(0.1, 8)
+            self.assertEqual(trial.get_steps(), (0.1, 8))
+            trial.set_callbacks(before, solve)
+            gc.collect()
+            trial.run(0)
+            self.assertEqual(len(seen), 8)
+            trial.run(1)
+            self.assertEqual(trial.get_errors(), (0, 0, 0))
+            self.assertGreaterEqual(trial.get_cost()[1], 8)
+            trial.report_effects()
+            self.assertEqual(trial.get_effect(spar.ROW_GRAVITY)[0], 0)
+            trial.set_option('limit', '7')
+            self.assertEqual(trial.get_option('limit'), '7')
+            with self.assertRaises(spar.Error) as refused:
+                trial.get_beam(member)
+            self.assertEqual(refused.exception.status, spar.ERR_STATE)
+
+            def broken(*_):
+                with self.assertRaises(spar.Error) as fixed:
+                    trial.set_callbacks(None, None)
+                self.assertIn('the trial is running', str(fixed.exception))
+                raise KeyError('flow')
+
+            trial.set_callbacks(None, broken)
+            gc.collect()
+            with self.assertRaises(KeyError):
+                trial.run(0)
+            trial.set_callbacks(before, solve)
+            trial.run(0)
+            trial.close()
+            with self.assertRaises(spar.Error):
+                trial.run(0)
+            self.assertEqual(s.get_time()[1], 0)
+
     def test_progress(self):
-        """Told ahead of each trial; an answer and a fault end the call; another progress may be set from within."""
+        """Told ahead of each run; an answer and a fault end the call."""
         told = []
         with spar.Session() as s:
             body(s)
-            s.set_progress(lambda done, expected: told.append((done, expected)))
+            trial = s.trial_create()
+            trial.set_steps(0.1, 8)
+            trial.set_progress(lambda done, expected: told.append((done, expected)))
             gc.collect()
-            s.report_effects(0.1, 8)
+            trial.report_effects()
+            heard = len(told)
             self.assertEqual(told[0][0], 0)
             self.assertEqual(told, sorted(told, key=lambda one: one[0]))
             self.assertTrue(all(expected > done for done, expected in told))
-            s.set_progress(lambda done, expected: 4)
+            trial.set_progress(lambda done, expected: 4)
             with self.assertRaises(spar.Error) as refused:
-                s.report_effects(0.1, 8)
+                trial.report_effects()
             self.assertEqual(refused.exception.status, spar.ERR_USER)
             self.assertIn('cancelled by the progress callback (4)', str(refused.exception))
 
             def broken(*_):
-                s.set_progress(None)
-                gc.collect()
                 raise KeyError('enough')
 
-            s.set_progress(broken)
+            trial.set_progress(broken)
             with self.assertRaises(KeyError):
-                s.report_effects(0.1, 8)
-            s.report_effects(0.1, 8)
+                trial.report_effects()
+            trial.set_progress(None)
+            trial.report_effects()
+            self.assertEqual(len(told), heard)
 
     def test_life(self):
         """A member keeps its session; what is closed twice is closed."""
@@ -416,7 +467,10 @@ class Every(unittest.TestCase):
         line = s.link_create('line', member, 0, [0, 0, 0], None, 0, [0, 0, 1])
         point = s.point_create('point', [5, 0, 0], UNIT)
         point.commit()
-        return {'session': [s], 'member': [beam, member, point, *([s.beam_create('new', 1, 4)] if new else [])],
+        trial = s.trial_create()
+        trial.set_steps(0.01, 8)
+        trial.set_motion(1, 0, 0)
+        return {'session': [s], 'trial': [trial], 'member': [beam, member, point, *([s.beam_create('new', 1, 4)] if new else [])],
                 'fluid': [fluid, blade, member.fluid_create('bare')], 'joint': [joint, line],
                 'polar': [spar.Polar([-3, 3], [1, 1], [0, 0])], 'aero': [spar.Aero([blade])]}
 

@@ -3,6 +3,7 @@
    bound. The stack is this test's own memory with a page below that nobody may touch, so that a frame too much ends the
    program. */
 #include "scene.h"
+#include "trials.h"
 
 #include "fluid/state.h"
 #include "member/body.h"
@@ -101,7 +102,7 @@ static void describe(errand *e, spar_session *s, spar_member **blade) {
 }
 
 static void run(errand *e, spar_session *s, spar_member *blade, const char *file) {
-    double frequency[4], advice[SPAR_ADVICE_COUNT], eigenvalue[8], frame[3];
+    double frequency[4], advice[ADVICE_COUNT], eigenvalue[8], frame[3];
     const double shift[2] = {0, 1};
     DO(spar_member_solve_static(blade, 2));
     DO(spar_session_solve_static(s, 1, solve, &here, NULL));
@@ -117,7 +118,7 @@ static void run(errand *e, spar_session *s, spar_member *blade, const char *file
     if (!e->advised) {
         return;
     }
-    DO(spar_session_advise(s, 0.5, 2e-3, 32, 32 * 2e-3, NULL, solve, &here, SPAR_ADVICE_COUNT, advice));
+    DO(trial_advise(s, 0.5, 2e-3, 32, 32 * 2e-3, NULL, solve, &here, advice));
 }
 
 static void *work(void *context) {

@@ -1,6 +1,7 @@
 /* The balanced start (spar_session_solve_initial): accelerations and loads at t = 0 that belong together, against
    closed forms, twins whose own mass has the fluid's in it, and the order of the runs that begin with it. */
 #include "scene.h"
+#include "trials.h"
 
 #include "math/basis.h"
 
@@ -198,14 +199,14 @@ static void a_trial_starts_as_the_run(void **state) {
     int calls[2];
     for (int started = 0; started < 2; started++) {
         piston p;
-        double report[SPAR_TRY_COUNT];
+        double report[TRY_COUNT];
         int in_step;
         piston_create(&p, SPAR_COUPLING_IQN_ILS, 1e-9);
         if (started) {
             OK(p.session, spar_session_solve_initial(p.session, 0.1, piston_fluid, &p, NULL));
         }
         p.calls = 0;
-        OK(p.session, spar_session_try(p.session, 0.1, 8, NULL, piston_fluid, &p, 0, SPAR_TRY_COUNT, report));
+        OK(p.session, trial_run(p.session, 0.1, 8, NULL, piston_fluid, &p, 0, report));
         calls[started] = p.calls;
         p.calls = 0;
         for (int i = 0; i < 8; i++) {

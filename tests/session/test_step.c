@@ -1,5 +1,6 @@
 /* Steps of a session: the clock, messages, what a failed or refused call leaves, and who may end a step. */
 #include "pistons.h"
+#include "trials.h"
 
 #include <stdio.h>
 
@@ -146,7 +147,7 @@ static void test_clock_of_many_steps(void **state) {
 
 static void test_clock_beyond_numbers(void **state) {
     (void)state;
-    double report[SPAR_TRY_COUNT], advice[SPAR_ADVICE_COUNT], t;
+    double report[TRY_COUNT], advice[ADVICE_COUNT], t;
     spar_session *s = scene_session();
     OK(s, spar_step(s, 1e308, nothing, NULL, NULL));
     assert_int_equal(spar_step(s, 1e308, nothing, NULL, NULL), SPAR_ERR_ARGUMENT);
@@ -156,10 +157,8 @@ static void test_clock_beyond_numbers(void **state) {
     OK(s, spar_step(s, 1, nothing, NULL, NULL));
     static const double dt[] = {1e308, 1e302, 5e-324};
     for (size_t k = 0; k < sizeof dt / sizeof *dt; k++) {
-        assert_int_equal(spar_session_try(s, dt[k], 8, NULL, nothing, NULL, 0, SPAR_TRY_COUNT, report),
-                         SPAR_ERR_ARGUMENT);
-        assert_int_equal(spar_session_advise(s, 0.1, dt[k], 8, 1, NULL, nothing, NULL, SPAR_ADVICE_COUNT, advice),
-                         SPAR_ERR_ARGUMENT);
+        assert_int_equal(trial_run(s, dt[k], 8, NULL, nothing, NULL, 0, report), SPAR_ERR_ARGUMENT);
+        assert_int_equal(trial_advise(s, 0.1, dt[k], 8, 1, NULL, nothing, NULL, advice), SPAR_ERR_ARGUMENT);
     }
     spar_session_destroy(&s);
 }

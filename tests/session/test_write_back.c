@@ -4,6 +4,7 @@
    setter must not clear. Expected: all getters give what they gave, and eight steps have the same bits as in a run
    without writing back. */
 #include "scene.h"
+#include "trials.h"
 
 #include "base/session.h"
 
@@ -88,10 +89,34 @@ static void session_settings(scene *w) {
     OK(s, spar_session_get_tolerance(s, &a, &b));
     WRITE(w, spar_session_set_tolerance(s, a, b));
     keep_one(w, a), keep_one(w, b);
-    OK(s, spar_session_get_goal(s, &i));
-    WRITE(w, spar_session_set_goal(s, i));
-    keep_one(w, i);
     options(w);
+}
+
+/* ---- settings of a trial ---- */
+
+static void trial_settings(scene *w) {
+    static const char *const option[] = {"dt", "nodes", "fidelity", "coupling", "limit", "fluid_cost"};
+    spar_trial *t = trial_of(w->s);
+    double a;
+    int64_t n, k;
+    int i;
+    OK(w->s, spar_trial_get_steps(t, &a, &n));
+    WRITE(w, spar_trial_set_steps(t, a, n));
+    keep_one(w, a), keep_one(w, (double)n);
+    OK(w->s, spar_trial_get_goals(t, &i));
+    WRITE(w, spar_trial_set_goals(t, i));
+    keep_one(w, i);
+    OK(w->s, spar_trial_get_motion(t, &n, &a, &k));
+    WRITE(w, spar_trial_set_motion(t, n, a, k));
+    keep_one(w, (double)n), keep_one(w, a), keep_one(w, (double)k);
+    for (size_t o = 0; o < sizeof option / sizeof *option; o++) {
+        char text[32];
+        OK(w->s, spar_trial_get_option(t, option[o], sizeof text, text));
+        WRITE(w, spar_trial_set_option(t, option[o], text));
+        for (const char *c = text; *c; c++) {
+            keep_one(w, *c);
+        }
+    }
 }
 
 /* ---- settings of members, before their commit ---- */
@@ -191,11 +216,14 @@ static void fluid_settings(scene *w, spar_fluid *f, int before_map) {
 
 /* The settings of the session are others than the defaults. */
 static void change_session(spar_session *s) {
-    static const char *const option[][2] = {
-        {"newton.stop", "strict"},     {"coupling.unconverged", "accept"},         {"coupling.unstable", "accept"},
-        {"coupling.patience", "7"},    {"coupling.filter", "0.00012345678901234"}, {"coupling.columns", "20"},
-        {"coupling.reuse", "4"},       {"coupling.motion_rtol", "1e-9"},           {"advise.nodes", "keep"},
-        {"advise.fluid_cost", "0.125"}};
+    static const char *const option[][2] = {{"newton.stop", "strict"},
+                                            {"coupling.unconverged", "accept"},
+                                            {"coupling.unstable", "accept"},
+                                            {"coupling.patience", "7"},
+                                            {"coupling.filter", "0.00012345678901234"},
+                                            {"coupling.columns", "20"},
+                                            {"coupling.reuse", "4"},
+                                            {"coupling.motion_rtol", "1e-9"}};
     OK(s, spar_session_set_gravity(s, (const double[]){0.1, 0.2, -9.81}));
     OK(s, spar_session_set_integrator(s, 0.8, 2));
     OK(s, spar_session_set_newton(s, 1e-14, 1e-11, 40));
@@ -205,7 +233,11 @@ static void change_session(spar_session *s) {
     OK(s, spar_session_set_reproducible(s, 1));
     OK(s, spar_session_set_threads(s, 2));
     OK(s, spar_session_set_tolerance(s, 1e3, 0.5));
-    OK(s, spar_session_set_goal(s, SPAR_GOAL_MOTION | SPAR_GOAL_LOAD));
+    OK(s, spar_trial_set_steps(trial_of(s), 0.01, 24));
+    OK(s, spar_trial_set_motion(trial_of(s), 3, 1e-3, 7));
+    OK(s, spar_trial_set_goals(trial_of(s), SPAR_GOAL_MOTION | SPAR_GOAL_LOAD));
+    OK(s, spar_trial_set_option(trial_of(s), "nodes", "keep"));
+    OK(s, spar_trial_set_option(trial_of(s), "fluid_cost", "0.125"));
     for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
         OK(s, spar_session_set_option(s, option[i][0], option[i][1]));
     }
@@ -283,6 +315,7 @@ static void make(scene *w, int changed, int writes, const scene *effects_of) {
         change_session(w->s);
     }
     session_settings(w);
+    trial_settings(w);
     w->m[BLADE] = beam(w, "blade", 3), w->m[BARE] = beam(w, "bare", changed ? 1 : 3);
     scene_mass(mass, 2, centre, box);
     OK(w->s, spar_rigid_create(w->s, "body", NULL, NULL, mass, &w->m[BODY]));
@@ -357,6 +390,7 @@ static void run(scene *w) {
         OK(w->s, spar_step(w->s, k < 2 ? 0.02 : 0.01, solve, w, NULL));
         if (k == 3) {
             session_settings(w);
+            trial_settings(w);
             for (int f = 0; f < FLUIDS; f++) {
                 fluid_settings(w, w->f[f], 0);
             }
@@ -435,7 +469,8 @@ static void test_all_settings_are_tried(void **state) {
     (void)state;
     static const char *const tried =
         " session_gravity session_integrator session_newton session_predictor session_coupling session_relaxation "
-        "session_reproducible session_threads session_option session_tolerance session_goal beam_masses "
+        "session_reproducible session_threads session_option session_tolerance trial_steps trial_goals trial_motion "
+        "trial_option beam_masses "
         "beam_foundation beam_pretension beam_quadrature beam_damping beam_mass_damping member_placement member_root "
         "member_external member_effects member_fidelity member_added_mass member_owner fluid_motion_weights "
         "fluid_layout fluid_projection fluid_interpolation fluid_states fluid_option member_added_mass_response ";

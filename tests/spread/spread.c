@@ -679,39 +679,41 @@ int spread_get_reaction(const spar_member *member, double *load) {
 }
 
 /* Errors of trials, but not times; only where they are reproducible: small differences of runs that go apart. */
-int spread_try(spar_session *session, double dt, int64_t steps, spar_before_step before, spar_fluid_solver solve,
-               void *context, int compare, int64_t capacity, double *report) {
+int spread_trial_run(spar_trial *trial, int compare) {
+    double error[3];
     iterating++;
-    int status = verdict(spar_session_try(session, dt, steps, before, solve, context, compare, capacity, report));
+    int status = verdict(spar_trial_run(trial, compare));
     iterating--;
-    if (status == SPAR_OK && bits && report && capacity > SPAR_TRY_LOAD) {
-        note(TRIALS, report, SPAR_TRY_LOAD + 1);
+    if (status == SPAR_OK && bits) {
+        (void)spar_trial_get_errors(trial, error, error + 1, error + 2);
+        note(TRIALS, error, 3);
     }
     return status;
 }
 
-int spread_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
-                          spar_fluid_solver solve, void *context, int64_t rows, int64_t columns, double *table) {
+int spread_trial_report_effects(spar_trial *trial) {
     iterating++;
-    int status = verdict(spar_session_report_effects(session, dt, steps, before, solve, context, rows, columns, table));
+    int status = verdict(spar_trial_report_effects(trial));
     iterating--;
-    for (int64_t r = 0; r < rows && status == SPAR_OK && bits && table; r++) {
-        note(TRIALS, table + r * columns, columns < SPAR_COLUMN_SHARE ? columns : SPAR_COLUMN_SHARE);
+    for (int r = 0; r < SPAR_ROW_COUNT && status == SPAR_OK && bits; r++) {
+        int in_force, fails;
+        double x[5];
+        (void)spar_trial_get_effect(trial, r, &in_force, &fails, x + 2, x + 3, x + 4, NULL);
+        x[0] = in_force, x[1] = fails;
+        note(TRIALS, x, 5);
     }
     return status;
 }
 
-int spread_advise(spar_session *session, double tolerance, double dt, int64_t steps, double length,
-                  spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity, double *advice) {
+int spread_trial_advise(spar_trial *trial, double tolerance, double length) {
     advising++;
-    int status =
-        verdict(spar_session_advise(session, tolerance, dt, steps, length, before, solve, context, capacity, advice));
+    int status = verdict(spar_trial_advise(trial, tolerance, length));
     advising--;
     return status;
 }
 
-int spread_apply_advice(spar_session *session, double *dt) {
-    return verdict(spar_session_apply_advice(session, dt));
+int spread_trial_apply(spar_trial *trial, double *dt) {
+    return verdict(spar_trial_apply(trial, dt));
 }
 
 /* What is iterated to a tolerance is known to that tolerance; with a tighter one it comes closer. */

@@ -56,13 +56,10 @@ int spread_step_accept(spar_session *session);
 int spread_get_motion(const spar_member *member, double *q, double *v, double *a);
 int spread_get_loads(const spar_member *member, double *load);
 int spread_get_reaction(const spar_member *member, double *load);
-int spread_try(spar_session *session, double dt, int64_t steps, spar_before_step before, spar_fluid_solver solve,
-               void *context, int compare, int64_t capacity, double *report);
-int spread_report_effects(spar_session *session, double dt, int64_t steps, spar_before_step before,
-                          spar_fluid_solver solve, void *context, int64_t rows, int64_t columns, double *table);
-int spread_advise(spar_session *session, double tolerance, double dt, int64_t steps, double length,
-                  spar_before_step before, spar_fluid_solver solve, void *context, int64_t capacity, double *advice);
-int spread_apply_advice(spar_session *session, double *dt);
+int spread_trial_run(spar_trial *trial, int compare);
+int spread_trial_report_effects(spar_trial *trial);
+int spread_trial_advise(spar_trial *trial, double tolerance, double length);
+int spread_trial_apply(spar_trial *trial, double *dt);
 int spread_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations);
 int spread_remove(const char *path);
 
@@ -105,10 +102,10 @@ int spread_remove(const char *path);
 #define spar_member_get_motion spread_get_motion
 #define spar_member_get_loads spread_get_loads
 #define spar_member_get_reaction spread_get_reaction
-#define spar_session_try spread_try
-#define spar_session_report_effects spread_report_effects
-#define spar_session_advise spread_advise
-#define spar_session_apply_advice spread_apply_advice
+#define spar_trial_run spread_trial_run
+#define spar_trial_report_effects spread_trial_report_effects
+#define spar_trial_advise spread_trial_advise
+#define spar_trial_apply spread_trial_apply
 #define spar_session_set_coupling spread_set_coupling
 #define remove spread_remove
 #endif

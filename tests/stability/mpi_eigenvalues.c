@@ -3,6 +3,7 @@
    same bits. Then what a single rank can do wrong: all are told, none waits (ctest's time limit is the witness), and
    the state is as before. */
 #include "scene.h"
+#include "trials.h"
 
 #include "ranks.h"
 #include <spar/spar_mpi.h>
@@ -68,8 +69,8 @@ static int solve(spar_session *s, double t, double dt, int iteration, void *cont
 
 static int ask(scene *c, int64_t memory, double amplitude, int64_t modes, int64_t n, double *value) {
     const double shift[2] = {0, 3};
-    return spar_session_solve_eigenvalues(c->session, 0.02, memory, amplitude, NULL, solve, c, modes, n, shift, value,
-                                          0, NULL, NULL);
+    return trial_eigenvalues(c->session, 0.02, memory, amplitude, NULL, solve, c, modes, n, shift, value, 0, NULL,
+                             NULL);
 }
 
 /* To what differences of 1e-5 leave of rounding. */

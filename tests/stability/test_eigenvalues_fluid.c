@@ -1,5 +1,6 @@
 /* Eigenvalues of structure and fluid together, the fluid's answer found by trials. */
 #include "scene.h"
+#include "trials.h"
 
 #include <complex.h>
 #include <stdio.h>
@@ -102,7 +103,7 @@ static double complex root_near(double V, int lags, double complex s) {
 static double complex nearest(spar_session *s, section *c, double dt, int64_t memory, double complex shift) {
     const double at[2] = {creal(shift), cimag(shift)};
     double value[2];
-    OK(s, spar_session_solve_eigenvalues(s, dt, memory, 0, NULL, blow, c, 6, 1, at, value, 0, NULL, NULL));
+    OK(s, trial_eigenvalues(s, dt, memory, 0, NULL, blow, c, 6, 1, at, value, 0, NULL, NULL));
     return value[0] + value[1] * I;
 }
 
@@ -160,7 +161,7 @@ static void test_shapes(void **state) {
     double value[2], x[6][2], frame[3] = {1, 1, 1};
     section c;
     spar_session *s = section_scene(&c, 1, 0);
-    OK(s, spar_session_solve_eigenvalues(s, 0.1, 0, 0, NULL, blow, &c, 6, 1, shift, value, 1, x[0], frame));
+    OK(s, trial_eigenvalues(s, 0.1, 0, 0, NULL, blow, &c, 6, 1, shift, value, 1, x[0], frame));
     double complex z = value[0] + value[1] * I, h = -(x[2][0] + x[2][1] * I), p = -(x[3][0] + x[3][1] * I);
     double complex plunge = z * z + sigma * sigma + (z * z + 2 * z) / mu;
     double complex pitch = (e - a) * z * z + (z - a * z * z + 2 * (1 + (0.5 - a) * z)) / mu;
@@ -246,10 +247,8 @@ static void test_follower(void **state) {
         begin_air(s, &b);
         OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 0, 1e-10, 50));
         OK(s, spar_session_solve_static(s, 1, pull_tip, &b, NULL));
-        OK(s,
-           spar_session_solve_eigenvalues(s, 1e-3, 0, 0, NULL, pull_tip, &b, 24, 4, shift, found[0][0], 0, NULL, NULL));
-        OK(s,
-           spar_session_solve_eigenvalues(s, 1e-3, 8, 0, NULL, pull_tip, &b, 24, 4, shift, found[1][0], 0, NULL, NULL));
+        OK(s, trial_eigenvalues(s, 1e-3, 0, 0, NULL, pull_tip, &b, 24, 4, shift, found[0][0], 0, NULL, NULL));
+        OK(s, trial_eigenvalues(s, 1e-3, 8, 0, NULL, pull_tip, &b, 24, 4, shift, found[1][0], 0, NULL, NULL));
         same(8, found[0][0], own[0], 1e-6);
         same(8, found[1][0], own[0], 1e-6);
         spar_session_destroy(&s);
@@ -269,15 +268,14 @@ static void test_turning(void **state) {
         OK(s, spar_member_commit(b.beam));
         begin_air(s, &b);
         OK(s, spar_member_solve_static(b.beam, 1));
-        OK(s,
-           spar_session_solve_eigenvalues(s, 1e-3, 0, 0, NULL, pull_tip, &b, 24, 24, NULL, value[0], 0, NULL, frame));
+        OK(s, trial_eigenvalues(s, 1e-3, 0, 0, NULL, pull_tip, &b, 24, 24, NULL, value[0], 0, NULL, frame));
         sum[k] = 0;
         for (int i = 0; i < 24; i++) {
             sum[k] += (value[i][1] > 0 ? 2 : 1) * value[i][0];
         }
         NEAR(frame[2], k ? 4 : 0, 1e-12);
         b.damper = 0;
-        OK(s, spar_session_solve_eigenvalues(s, 1e-3, 0, 0, NULL, pull_tip, &b, 24, 6, NULL, found[0], 0, NULL, NULL));
+        OK(s, trial_eigenvalues(s, 1e-3, 0, 0, NULL, pull_tip, &b, 24, 6, NULL, found[0], 0, NULL, NULL));
         OK(s, spar_member_solve_eigenvalues(b.beam, 6, NULL, own[0], NULL, NULL));
         same(12, found[0], own[0], 1e-7);
         spar_session_destroy(&s);
@@ -308,8 +306,7 @@ static void test_tied(void **state) {
             OK(s, spar_member_solve_eigenvalues(first, 5, NULL, value[1][0], NULL, NULL));
         } else {
             begin_air(s, &b);
-            OK(s, spar_session_solve_eigenvalues(s, 1e-3, 0, 0, NULL, pull_tip, &b, 48, 5, NULL, value[0][0], 0, NULL,
-                                                 NULL));
+            OK(s, trial_eigenvalues(s, 1e-3, 0, 0, NULL, pull_tip, &b, 48, 5, NULL, value[0][0], 0, NULL, NULL));
         }
         spar_session_destroy(&s);
     }
@@ -355,8 +352,7 @@ static void expect(spar_session *s, rotor *r, int64_t modes, double complex expe
     const double shift[2] = {creal(expected), cimag(expected)};
     for (int64_t memory = 0; memory < 13; memory += 12) {
         double value[2], frame[3];
-        OK(s, spar_session_solve_eigenvalues(s, 0.01, memory, 0, NULL, hold_rotor, r, modes, 1, shift, value, 0, NULL,
-                                             frame));
+        OK(s, trial_eigenvalues(s, 0.01, memory, 0, NULL, hold_rotor, r, modes, 1, shift, value, 0, NULL, frame));
         NEAR(value[0], creal(expected), 1e-6);
         NEAR(value[1], cimag(expected), 1e-6);
         NEAR(frame[0], turn, 1e-12);
@@ -427,7 +423,7 @@ static void unchanged(spar_session *s, int64_t n) {
 }
 
 static int solve_there(spar_session *s, section *c, double *value) {
-    return spar_session_solve_eigenvalues(s, 0.1, 5, 0, NULL, blow, c, 6, 2, NULL, value, 0, NULL, NULL);
+    return trial_eigenvalues(s, 0.1, 5, 0, NULL, blow, c, 6, 2, NULL, value, 0, NULL, NULL);
 }
 
 /* In the middle of a run, with a fluid that has states: what is saved is the same to the bit after the call, after
@@ -494,7 +490,7 @@ static void test_progress(void **state) {
         spar_session *s = section_scene(&c, 1, memory > 0);
         OK(s, spar_step(s, 0.1, blow, &c, NULL));
         int64_t n = saved(s, before_bytes, sizeof before_bytes);
-        OK(s, spar_session_set_progress(s, hear, &h));
+        OK(s, spar_trial_set_progress(trial_of(s), hear, &h));
         c.calls = 0;
         for (int stop = 1; stop <= trials + 1; stop++) {
             double *out = value[stop > trials ? 0 : 1];
@@ -502,19 +498,18 @@ static void test_progress(void **state) {
             h = (hearing){.c = &c, .stop = stop};
             out[0] = 77;
             if (stop > trials) {
-                OK(s,
-                   spar_session_solve_eigenvalues(s, 0.1, memory, 0, NULL, blow, &c, 6, 2, NULL, out, 0, NULL, NULL));
+                OK(s, trial_eigenvalues(s, 0.1, memory, 0, NULL, blow, &c, 6, 2, NULL, out, 0, NULL, NULL));
                 break;
             }
-            REFUSED(s, SPAR_ERR_USER, "spar_session_solve_eigenvalues: cancelled by the progress callback (5)",
-                    spar_session_solve_eigenvalues(s, 0.1, memory, 0, NULL, blow, &c, 6, 2, NULL, out, 0, NULL, NULL));
+            REFUSED(s, SPAR_ERR_USER, "spar_trial_solve_eigenvalues: cancelled by the progress callback (5)",
+                    trial_eigenvalues(s, 0.1, memory, 0, NULL, blow, &c, 6, 2, NULL, out, 0, NULL, NULL));
             assert_true(h.calls == stop && h.expected == trials && out[0] == 77);
             assert_true(h.solved == c.calls && (stop > 1 || c.calls == before));
             unchanged(s, n);
         }
         assert_int_equal(h.calls, trials);
-        OK(s, spar_session_set_progress(s, NULL, NULL));
-        OK(s, spar_session_solve_eigenvalues(s, 0.1, memory, 0, NULL, blow, &c, 6, 2, NULL, value[1], 0, NULL, NULL));
+        OK(s, spar_trial_set_progress(trial_of(s), NULL, NULL));
+        OK(s, trial_eigenvalues(s, 0.1, memory, 0, NULL, blow, &c, 6, 2, NULL, value[1], 0, NULL, NULL));
         assert_memory_equal(value[0], value[1], sizeof value[0]);
         assert_int_equal(h.calls, trials);
         spar_session_destroy(&s);
@@ -524,7 +519,7 @@ static void test_progress(void **state) {
 static int solve_within(spar_session *s, double t, double dt, int iteration, void *context) {
     double value[2];
     REFUSED(s, SPAR_ERR_STATE, "in progress",
-            spar_session_solve_eigenvalues(s, 0.1, 0, 0, NULL, blow, context, 6, 1, NULL, value, 0, NULL, NULL));
+            trial_eigenvalues(s, 0.1, 0, 0, NULL, blow, context, 6, 1, NULL, value, 0, NULL, NULL));
     return blow(s, t, dt, iteration, context);
 }
 
@@ -535,10 +530,9 @@ static void test_refusals(void **state) {
     double value[26], shapes[24];
     spar_session *s = section_scene(&c, 1, 0), *empty = scene_session();
 #define ASK(dt, memory, amplitude, solve, modes, n, shift, value, nodes, shapes)                                       \
-    spar_session_solve_eigenvalues(s, dt, memory, amplitude, NULL, solve, &c, modes, n, shift, value, nodes, shapes,   \
-                                   NULL)
+    trial_eigenvalues(s, dt, memory, amplitude, NULL, solve, &c, modes, n, shift, value, nodes, shapes, NULL)
     REFUSED(NULL, SPAR_ERR_ARGUMENT, "NULL",
-            spar_session_solve_eigenvalues(NULL, 1, 0, 0, NULL, blow, &c, 1, 1, NULL, value, 0, NULL, NULL));
+            trial_eigenvalues(NULL, 1, 0, 0, NULL, blow, &c, 1, 1, NULL, value, 0, NULL, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "dt", ASK(0, 0, 0, blow, 6, 1, NULL, value, 0, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "memory", ASK(0.1, -1, 0, blow, 6, 1, NULL, value, 0, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "memory", ASK(0.1, INT64_MAX, 0, blow, 6, 1, NULL, value, 0, NULL));
@@ -560,7 +554,7 @@ static void test_refusals(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "'air' has states", ASK(0.1, 0, 0, blow, 6, 1, NULL, value, 0, NULL));
     OK(s, spar_fluid_set_states(c.air, 0));
     REFUSED(empty, SPAR_ERR_UNSUPPORTED, "no member",
-            spar_session_solve_eigenvalues(empty, 1, 0, 0, NULL, blow, &c, 1, 1, NULL, value, 0, NULL, NULL));
+            trial_eigenvalues(empty, 1, 0, 0, NULL, blow, &c, 1, 1, NULL, value, 0, NULL, NULL));
     OK(s, spar_step(s, 0.1, solve_within, &c, NULL));
     OK(s, spar_step_begin(s, 0.1));
     REFUSED(s, SPAR_ERR_STATE, "a step is in progress", ASK(0.1, 0, 0, blow, 6, 1, NULL, value, 0, NULL));
@@ -587,8 +581,8 @@ static void test_noise(void **state) {
     section c;
     spar_session *s = section_scene(&c, 1, 0);
     REFUSED(s, SPAR_ERR_STATE, "differ from those in use",
-            spar_session_solve_eigenvalues(s, 0.1, 40, 0, NULL, murmur, &c, 6, 1, shift, value, 0, NULL, NULL));
-    OK(s, spar_session_solve_eigenvalues(s, 0.1, 40, 1e-2, NULL, murmur, &c, 6, 1, shift, value, 0, NULL, NULL));
+            trial_eigenvalues(s, 0.1, 40, 0, NULL, murmur, &c, 6, 1, shift, value, 0, NULL, NULL));
+    OK(s, trial_eigenvalues(s, 0.1, 40, 1e-2, NULL, murmur, &c, 6, 1, shift, value, 0, NULL, NULL));
     NEAR(value[1], 1 / sqrt(1 - (e - a) * (e - a) / r2), 1e-3);
     spar_session_destroy(&s);
 }

@@ -1,6 +1,7 @@
 /* Stability of periodic states: multipliers of the map over a period, by trials. The oracles integrate the linear
    equations of their own by Runge and Kutta. */
 #include "scene.h"
+#include "trials.h"
 
 #include <complex.h>
 
@@ -131,7 +132,7 @@ static void test_constant(void **state) {
         OK(s, spar_joint_set_spring(j, spring, damper, NULL));
         OK(s, spar_member_commit(b));
         OK(s, spar_session_set_integrator(s, 1, 1));
-        OK(s, spar_session_solve_floquet(s, 0.5 / (double)steps, steps, 0, NULL, NULL, NULL, 1, 1, value));
+        OK(s, trial_floquet(s, 0.5 / (double)steps, steps, 0, NULL, NULL, NULL, 1, 1, value));
         error[fine][0] = value[0] - decay;
         error[fine][1] = value[1] - omega;
         spar_session_destroy(&s);
@@ -184,7 +185,7 @@ static void test_mathieu(void **state) {
             OK(s, spar_session_set_gravity(s, g));
             OK(s, spar_session_set_integrator(s, 1, 1));
             run(s, &h, period / (double)steps, steps, 0);
-            OK(s, spar_session_solve_floquet(s, period / (double)steps, steps, 0, drive, NULL, &h, 1, 1, value));
+            OK(s, trial_floquet(s, period / (double)steps, steps, 0, drive, NULL, &h, 1, 1, value));
             error[fine] = cabs(multiplier_of(value, period) - (creal(exact) + fabs(cimag(exact)) * I));
             assert_true((value[0] > 1e-2) == (i == 0 || i == 3));
             if (i == 0) {
@@ -243,7 +244,7 @@ static void test_unlike_shaft(void **state) {
             REFUSED(s, SPAR_ERR_UNSUPPORTED, "is not isotropic",
                     spar_member_solve_eigenvalues(b, 1, NULL, value[0], NULL, NULL));
             scene_tip(b, before);
-            OK(s, spar_session_solve_floquet(s, period / (double)steps, steps, 0, drive, NULL, &h, 2, 2, value[0]));
+            OK(s, trial_floquet(s, period / (double)steps, steps, 0, drive, NULL, &h, 2, 2, value[0]));
             scene_tip(b, after);
             assert_memory_equal(before, after, sizeof before); /* to the bit */
             assert_true(value[0][0] >= value[1][0]);
@@ -293,7 +294,7 @@ static void test_fluid(void **state) {
         OK(s, spar_fluid_map(h.air));
         OK(s, spar_session_set_integrator(s, 1, 1));
         OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 1e-14, 1e-12, 50));
-        OK(s, spar_session_solve_floquet(s, period / (double)steps, steps, 0, NULL, blow, &h, 1, 1, value));
+        OK(s, trial_floquet(s, period / (double)steps, steps, 0, NULL, blow, &h, 1, 1, value));
         assert_true(value[0] > 0.1); /* dk is large enough for c */
         worst[fine] = off_spectrum(2, A, multiplier_of(value, period));
         spar_session_destroy(&s);
@@ -320,7 +321,7 @@ static void test_blade(void **state) {
     OK(s, spar_member_commit(h.hub));
     OK(s, spar_member_solve_static(h.hub, 1));
     OK(s, spar_member_solve_eigenvalues(h.hub, 2, NULL, &value[0][0], NULL, NULL));
-    OK(s, spar_session_solve_floquet(s, dt, STEPS, 0, drive, NULL, &h, 6, 2, &floquet[0][0]));
+    OK(s, trial_floquet(s, dt, STEPS, 0, drive, NULL, &h, 6, 2, &floquet[0][0]));
     for (int i = 0; i < 2; i++) {
         double best = INFINITY;
         for (int k = 0; k < 2; k++) {
@@ -418,7 +419,7 @@ static void test_two_blades(void **state) {
     }
     spar_session *s = run[0].s;
     scene_tip(run[0].blade[1], before);
-    OK(s, spar_session_solve_floquet(s, dt, TURN, 0, turn_shaft, NULL, &run[0], 4, 4, &value[0][0]));
+    OK(s, trial_floquet(s, dt, TURN, 0, turn_shaft, NULL, &run[0], 4, 4, &value[0][0]));
     scene_tip(run[0].blade[1], after);
     assert_memory_equal(before, after, sizeof before);
     OK(run[1].s, spar_joint_set_load(run[1].support, kick));
@@ -545,8 +546,7 @@ static void test_coleman(void **state) {
             spar_session *s = scene_session();
             coleman_scene(s, &p);
             OK(s, spar_session_set_integrator(s, 1, 1));
-            OK(s,
-               spar_session_solve_floquet(s, period / (double)steps, steps, 0, turn_bearing, NULL, &p, 4, 4, value[0]));
+            OK(s, trial_floquet(s, period / (double)steps, steps, 0, turn_bearing, NULL, &p, 4, 4, value[0]));
             for (int k = 0; k < 4; k++) {
                 worst[fine] = fmax(worst[fine], off_spectrum(8, A, multiplier_of(value[k], period)));
             }
@@ -574,29 +574,26 @@ static void test_refused(void **state) {
     OK(s, spar_joint_set_spring(j, spring, NULL, NULL));
     OK(s, spar_member_commit(b));
     scene_tip(b, before);
-    assert_int_equal(spar_session_solve_floquet(NULL, 0.1, 8, 0, NULL, NULL, NULL, 1, 1, value), SPAR_ERR_ARGUMENT);
-    REFUSED(s, SPAR_ERR_ARGUMENT, "dt is 0", spar_session_solve_floquet(s, 0, 8, 0, NULL, NULL, NULL, 1, 1, value));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "0 steps", spar_session_solve_floquet(s, 0.1, 0, 0, NULL, NULL, NULL, 1, 1, value));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "an amplitude of 0.2",
-            spar_session_solve_floquet(s, 0.1, 8, 0.2, NULL, NULL, NULL, 1, 1, value));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "0 modes", spar_session_solve_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 0, 0, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "3 multipliers",
-            spar_session_solve_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 1, 3, value));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "eigenvalue is NULL",
-            spar_session_solve_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 1, 1, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "7 modes", spar_session_solve_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 7, 1, value));
-    REFUSED(s, SPAR_ERR_NUMERIC, "multipliers",
-            spar_session_solve_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 1, 2, value));
-    OK(s, spar_session_set_progress(s, stop, NULL));
-    REFUSED(s, SPAR_ERR_USER, "", spar_session_solve_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 1, 1, value));
-    OK(s, spar_session_set_progress(s, NULL, NULL));
-    OK(s, spar_session_solve_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 1, 0, NULL));
+    assert_int_equal(trial_floquet(NULL, 0.1, 8, 0, NULL, NULL, NULL, 1, 1, value), SPAR_ERR_ARGUMENT);
+    REFUSED(s, SPAR_ERR_ARGUMENT, "dt is 0", trial_floquet(s, 0, 8, 0, NULL, NULL, NULL, 1, 1, value));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "0 steps", trial_floquet(s, 0.1, 0, 0, NULL, NULL, NULL, 1, 1, value));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "an amplitude of 0.2", trial_floquet(s, 0.1, 8, 0.2, NULL, NULL, NULL, 1, 1, value));
+    REFUSED(s, SPAR_ERR_STATE, "the number of modes is not set",
+            trial_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 0, 0, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "3 multipliers", trial_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 1, 3, value));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "eigenvalue is NULL", trial_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 1, 1, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "7 modes", trial_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 7, 1, value));
+    REFUSED(s, SPAR_ERR_NUMERIC, "multipliers", trial_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 1, 2, value));
+    OK(s, spar_trial_set_progress(trial_of(s), stop, NULL));
+    REFUSED(s, SPAR_ERR_USER, "", trial_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 1, 1, value));
+    OK(s, spar_trial_set_progress(trial_of(s), NULL, NULL));
+    OK(s, trial_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 1, 0, NULL));
     scene_tip(b, q);
     assert_memory_equal(q, before, sizeof q);
     /* let go: a swing of 5 rad/s does not repeat in 0.8 s */
     OK(s, spar_member_set_initial_velocity(b, NULL, (const double[3]){0, 1, 0}, NULL));
     REFUSED(s, SPAR_ERR_STATE, "the state is not periodic with 8 steps of 0.1 s",
-            spar_session_solve_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 1, 1, value));
+            trial_floquet(s, 0.1, 8, 0, NULL, NULL, NULL, 1, 1, value));
     spar_session_destroy(&s);
 }
 

@@ -2,6 +2,7 @@
    process; the state is as before to the bit; a callback that fails on one rank only is known to all, and nobody waits
    (ctest's time limit is the witness). The last rank has no fluid nodes, when there are several. */
 #include "scene.h"
+#include "trials.h"
 
 #include "ranks.h"
 #include <spar/spar_mpi.h>
@@ -131,26 +132,24 @@ static void told(int status, int own, int bad, const spar_session *s, const char
 static void same_table(void **state) {
     (void)state;
     scene all, alone;
-    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], serial[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], held[STATE];
+    double table[SPAR_ROW_COUNT][COLUMN_COUNT], serial[SPAR_ROW_COUNT][COLUMN_COUNT], held[STATE];
     create(&all, rank, size);
     create(&alone, 0, 1);
     go(&all, 3);
     go(&alone, 3);
     state_of(&all, held);
-    OK(all.session, spar_session_report_effects(all.session, dt, STEPS, before, solve, &all, SPAR_ROW_COUNT,
-                                                SPAR_COLUMN_COUNT, table[0]));
+    OK(all.session, trial_report_effects(all.session, dt, STEPS, before, solve, &all, table[0]));
     same_bits(held, &all);
-    OK(alone.session, spar_session_report_effects(alone.session, dt, STEPS, before, solve, &alone, SPAR_ROW_COUNT,
-                                                  SPAR_COLUMN_COUNT, serial[0]));
-    same_on_all(table[0], SPAR_ROW_COUNT * SPAR_COLUMN_COUNT);
+    OK(alone.session, trial_report_effects(alone.session, dt, STEPS, before, solve, &alone, serial[0]));
+    same_on_all(table[0], SPAR_ROW_COUNT * COLUMN_COUNT);
     for (int r = 0; r < SPAR_ROW_COUNT; r++) {
-        assert_true(table[r][SPAR_COLUMN_IN_FORCE] == serial[r][SPAR_COLUMN_IN_FORCE]);
-        for (int c = SPAR_COLUMN_SIZE; c <= SPAR_COLUMN_REACTION; c++) {
-            NEAR(table[r][c], serial[r][c], r == SPAR_ROW_ITERATION && c == SPAR_COLUMN_SIZE ? 0.01 : 1e-7);
+        assert_true(table[r][COLUMN_IN_FORCE] == serial[r][COLUMN_IN_FORCE]);
+        for (int c = COLUMN_SIZE; c <= COLUMN_REACTION; c++) {
+            NEAR(table[r][c], serial[r][c], r == SPAR_ROW_ITERATION && c == COLUMN_SIZE ? 0.01 : 1e-7);
         }
     }
-    assert_true(table[SPAR_ROW_GRAVITY][SPAR_COLUMN_REACTION] > 0.01);
-    assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_IN_FORCE] == 1);
+    assert_true(table[SPAR_ROW_GRAVITY][COLUMN_REACTION] > 0.01);
+    assert_true(table[SPAR_ROW_FLUID_MOMENT][COLUMN_IN_FORCE] == 1);
     go(&all, 2);
     spar_session_destroy(&all.session);
     spar_session_destroy(&alone.session);
@@ -161,7 +160,7 @@ static void same_table(void **state) {
 static void same_advice_for(int goals, double tolerance) {
     scene c, untried;
     const double part = 1 + rank;
-    double advice[SPAR_ADVICE_COUNT + 4], held[STATE];
+    double advice[ADVICE_COUNT + 4], held[STATE];
     int fidelity, nodes, points;
     int64_t modes;
     create(&c, rank, size);
@@ -169,18 +168,17 @@ static void same_advice_for(int goals, double tolerance) {
     go(&c, 3);
     go(&untried, 3);
     state_of(&c, held);
-    OK(c.session, spar_session_set_goal(c.session, goals));
-    OK(c.session, spar_session_push_numbers(c.session, 1, &part));
-    OK(c.session,
-       spar_session_advise(c.session, tolerance, dt, STEPS, STEPS * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice));
+    OK(c.session, spar_trial_set_goals(trial_of(c.session), goals));
+    OK(c.session, spar_trial_push_numbers(trial_of(c.session), 1, &part));
+    OK(c.session, trial_advise(c.session, tolerance, dt, STEPS, STEPS * dt, before, solve, &c, advice));
     same_bits(held, &c);
-    OK(c.session, spar_member_get_advice(c.beam, &fidelity, &modes, &nodes, &points));
-    advice[SPAR_ADVICE_COUNT] = fidelity;
-    advice[SPAR_ADVICE_COUNT + 1] = (double)modes;
-    advice[SPAR_ADVICE_COUNT + 2] = nodes;
-    advice[SPAR_ADVICE_COUNT + 3] = points;
-    same_on_all(advice, SPAR_ADVICE_COUNT + 4);
-    assert_true(advice[SPAR_ADVICE_ERROR] <= tolerance);
+    OK(c.session, trial_get_beam(c.beam, &fidelity, &modes, &nodes, &points));
+    advice[ADVICE_COUNT] = fidelity;
+    advice[ADVICE_COUNT + 1] = (double)modes;
+    advice[ADVICE_COUNT + 2] = nodes;
+    advice[ADVICE_COUNT + 3] = points;
+    same_on_all(advice, ADVICE_COUNT + 4);
+    assert_true(advice[ADVICE_ERROR] <= tolerance);
     go(&c, 3);
     go(&untried, 3);
     state_of(&untried, held);
@@ -202,24 +200,22 @@ static void failing_callbacks(void **state) {
     (void)state;
     for (int bad = 0; bad < size; bad++) {
         scene c;
-        double report[SPAR_TRY_COUNT], held[STATE];
+        double report[TRY_COUNT], held[STATE];
         create(&c, rank, size);
         go(&c, 2);
         state_of(&c, held);
         for (int when = 1; when <= 9; when += 8) {
             c.calls = 0;
             c.bad_call = rank == bad ? when : 0;
-            told(spar_session_try(c.session, dt, 8, before, solve, &c, 0, SPAR_TRY_COUNT, report), SPAR_ERR_USER, bad,
-                 c.session, "77");
+            told(trial_run(c.session, dt, 8, before, solve, &c, 0, report), SPAR_ERR_USER, bad, c.session, "77");
             same_bits(held, &c);
             c.bad_call = c.begins = 0;
             c.bad_beginning = rank == bad ? 1 + when / 2 : 0;
-            told(spar_session_try(c.session, dt, 8, before, solve, &c, 0, SPAR_TRY_COUNT, report), SPAR_ERR_USER, bad,
-                 c.session, "78");
+            told(trial_run(c.session, dt, 8, before, solve, &c, 0, report), SPAR_ERR_USER, bad, c.session, "78");
             same_bits(held, &c);
             c.bad_beginning = 0;
         }
-        OK(c.session, spar_session_try(c.session, dt, 8, before, solve, &c, 0, SPAR_TRY_COUNT, report));
+        OK(c.session, trial_run(c.session, dt, 8, before, solve, &c, 0, report));
         go(&c, 1);
         spar_session_destroy(&c.session);
     }
@@ -231,26 +227,23 @@ static void failing_in_a_table(void **state) {
     (void)state;
     for (int bad = 0; bad<size; bad += size> 1 ? size - 1 : 1) {
         scene c;
-        double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], held[STATE], report[SPAR_TRY_COUNT];
+        double table[SPAR_ROW_COUNT][COLUMN_COUNT], held[STATE], report[TRY_COUNT];
         create(&c, rank, size);
         go(&c, 2);
         state_of(&c, held);
         c.calls = 0;
         c.bad_call = rank == bad ? 4 : 0;
-        told(spar_session_report_effects(c.session, dt, 8, before, solve, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
-                                         table[0]),
-             SPAR_ERR_USER, bad, c.session, "77");
+        told(trial_report_effects(c.session, dt, 8, before, solve, &c, table[0]), SPAR_ERR_USER, bad, c.session, "77");
         same_bits(held, &c);
         c.bad_call = 0;
-        OK(c.session, spar_session_try(c.session, dt, 8, before, solve, &c, 0, SPAR_TRY_COUNT, report));
+        OK(c.session, trial_run(c.session, dt, 8, before, solve, &c, 0, report));
         c.calls = 0;
-        c.bad_call = rank == bad ? (int)report[SPAR_TRY_SOLUTIONS] + 3 : 0;
+        c.bad_call = rank == bad ? (int)report[TRY_EVALUATIONS] + 3 : 0;
         c.good_call = c.bad_call + 1;
-        OK(c.session, spar_session_report_effects(c.session, dt, 8, before, solve, &c, SPAR_ROW_COUNT,
-                                                  SPAR_COLUMN_COUNT, table[0]));
-        assert_true(table[SPAR_ROW_INERTIA][SPAR_COLUMN_MOTION] == -1);
-        assert_true(table[SPAR_ROW_GRAVITY][SPAR_COLUMN_MOTION] > 0);
-        same_on_all(table[0], SPAR_ROW_COUNT * SPAR_COLUMN_COUNT);
+        OK(c.session, trial_report_effects(c.session, dt, 8, before, solve, &c, table[0]));
+        assert_true(table[SPAR_ROW_INERTIA][COLUMN_MOTION] == -1);
+        assert_true(table[SPAR_ROW_GRAVITY][COLUMN_MOTION] > 0);
+        same_on_all(table[0], SPAR_ROW_COUNT * COLUMN_COUNT);
         same_bits(held, &c);
         spar_session_destroy(&c.session);
     }
@@ -261,19 +254,19 @@ static void failing_in_advice(void **state) {
     (void)state;
     for (int bad = 0; bad<size; bad += size> 1 ? size - 1 : 1) {
         scene c;
-        double advice[SPAR_ADVICE_COUNT], held[STATE];
+        double advice[ADVICE_COUNT], held[STATE];
         create(&c, rank, size);
         state_of(&c, held);
         c.bad_call = rank == bad ? 1 : 0;
-        int status = spar_session_advise(c.session, 0.3, dt, 8, 8 * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice);
+        int status = trial_advise(c.session, 0.3, dt, 8, 8 * dt, before, solve, &c, advice);
         assert_true(status == SPAR_ERR_NUMERIC || status == SPAR_ERR_USER || status == SPAR_ERR_PEER);
         assert_non_null(strstr(spar_session_message(c.session), "77"));
         same_bits(held, &c);
         c.calls = 0;
         c.bad_call = rank == bad ? 300 : 0;
         c.good_call = 310;
-        OK(c.session, spar_session_advise(c.session, 0.3, dt, 8, 8 * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice));
-        same_on_all(advice, SPAR_ADVICE_COUNT);
+        OK(c.session, trial_advise(c.session, 0.3, dt, 8, 8 * dt, before, solve, &c, advice));
+        same_on_all(advice, ADVICE_COUNT);
         same_bits(held, &c);
         spar_session_destroy(&c.session);
     }
@@ -334,40 +327,37 @@ static int hear(spar_session *s, double done, double expected, void *context) {
 static void stopped_on_one_rank(void **state) {
     (void)state;
     scene c;
-    double advice[SPAR_ADVICE_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], held[STATE];
+    double advice[ADVICE_COUNT], table[SPAR_ROW_COUNT][COLUMN_COUNT], held[STATE];
     create(&c, rank, size);
     go(&c, 2);
     state_of(&c, held);
     for (int k = 0; k < 2 * size; k++) {
         int bad = k / 2, stop = k % 2 ? 7 : 1;
         hearing h = {.stop = rank == bad ? stop : 0};
-        OK(c.session, spar_session_set_progress(c.session, hear, &h));
-        told(spar_session_advise(c.session, 0.3, dt, STEPS, STEPS * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice),
-             SPAR_ERR_USER, bad, c.session, "cancelled by the progress callback");
+        OK(c.session, spar_trial_set_progress(trial_of(c.session), hear, &h));
+        told(trial_advise(c.session, 0.3, dt, STEPS, STEPS * dt, before, solve, &c, advice), SPAR_ERR_USER, bad,
+             c.session, "cancelled by the progress callback");
         assert_int_equal(h.calls, stop);
         same_on_all(h.heard, 2);
         same_bits(held, &c);
         h.calls = 0;
-        told(spar_session_report_effects(c.session, dt, 8, before, solve, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
-                                         table[0]),
-             SPAR_ERR_USER, bad, c.session, "cancelled by the progress callback");
+        told(trial_report_effects(c.session, dt, 8, before, solve, &c, table[0]), SPAR_ERR_USER, bad, c.session,
+             "cancelled by the progress callback");
         assert_int_equal(h.calls, stop);
         same_on_all(h.heard, 2);
         same_bits(held, &c);
     }
     hearing h = {0};
     if (size > 1) {
-        OK(c.session, spar_session_set_progress(c.session, rank == 0 ? hear : NULL, &h));
-        REFUSED(
-            c.session, SPAR_ERR_COMM, "progress call",
-            spar_session_advise(c.session, 0.3, dt, STEPS, STEPS * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice));
+        OK(c.session, spar_trial_set_progress(trial_of(c.session), rank == 0 ? hear : NULL, &h));
+        REFUSED(c.session, SPAR_ERR_COMM, "progress callback",
+                trial_advise(c.session, 0.3, dt, STEPS, STEPS * dt, before, solve, &c, advice));
         assert_int_equal(h.calls, 0);
         same_bits(held, &c);
     }
-    OK(c.session, spar_session_set_progress(c.session, hear, &h));
-    OK(c.session,
-       spar_session_advise(c.session, 0.3, dt, STEPS, STEPS * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice));
-    assert_int_equal(h.calls, (int)advice[SPAR_ADVICE_TRIALS]);
+    OK(c.session, spar_trial_set_progress(trial_of(c.session), hear, &h));
+    OK(c.session, trial_advise(c.session, 0.3, dt, STEPS, STEPS * dt, before, solve, &c, advice));
+    assert_int_equal(h.calls, (int)advice[ADVICE_RUNS]);
     go(&c, 1);
     spar_session_destroy(&c.session);
 }
@@ -376,19 +366,31 @@ static void stopped_on_one_rank(void **state) {
 static void bad_arguments(void **state) {
     (void)state;
     scene c;
-    double report[SPAR_TRY_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], advice[SPAR_ADVICE_COUNT];
+    double table[SPAR_ROW_COUNT][COLUMN_COUNT], advice[ADVICE_COUNT];
     int bad = size - 1, here = rank == bad;
     create(&c, rank, size);
     spar_session *s = c.session;
-    told(spar_session_try(s, here ? NAN : dt, 8, before, solve, &c, 0, SPAR_TRY_COUNT, report), SPAR_ERR_ARGUMENT, bad,
-         s, "dt");
-    told(spar_session_try(s, dt, 8, before, solve, &c, 0, here ? -1 : SPAR_TRY_COUNT, report), SPAR_ERR_ARGUMENT, bad,
-         s, "capacity");
-    told(spar_session_report_effects(s, dt, here ? 7 : 8, before, solve, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
-                                     table[0]),
-         SPAR_ERR_ARGUMENT, bad, s, "multiple of 8");
-    told(spar_session_advise(s, here ? 2 : 0.05, dt, 8, 8 * dt, before, solve, &c, SPAR_ADVICE_COUNT, advice),
-         SPAR_ERR_ARGUMENT, bad, s, "tolerance");
+    REFUSED(s, SPAR_ERR_STATE, "no steps", spar_trial_run(trial_of(s), 0));
+    OK(s, trial_set(s, dt, 8, before, solve, &c));
+    if (here) {
+        REFUSED(s, SPAR_ERR_ARGUMENT, "dt", spar_trial_set_steps(trial_of(s), NAN, 8));
+    }
+    OK(s, spar_trial_run(trial_of(s), 0));
+    spar_trial *extra = NULL, *two = NULL;
+    if (here && size > 1) {
+        OK(s, spar_trial_create(s, &extra));
+    }
+    OK(s, spar_trial_create(s, &two));
+    OK(s, spar_trial_set_steps(two, dt, 8));
+    if (size > 1) {
+        REFUSED(s, SPAR_ERR_COMM, "number of the trial", spar_trial_run(two, 0));
+    }
+    spar_trial_destroy(&two);
+    spar_trial_destroy(&extra);
+    told(trial_report_effects(s, dt, here ? 7 : 8, before, solve, &c, table[0]), SPAR_ERR_ARGUMENT, bad, s,
+         "multiple of 8");
+    told(trial_advise(s, here ? 2 : 0.05, dt, 8, 8 * dt, before, solve, &c, advice), SPAR_ERR_ARGUMENT, bad, s,
+         "tolerance");
     go(&c, 2);
     spar_session_destroy(&c.session);
 }

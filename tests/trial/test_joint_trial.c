@@ -1,11 +1,9 @@
 /* Trials of sessions with joints: they go back to the bit, say what theory says, and their advice comes into force for
    members that are tied. */
 #include "scene.h"
+#include "trials.h"
 
-#include "exchange/session_private.h"
 #include "member/joint.h"
-#include "trial/rebuild.h"
-#include "tune/apply.h"
 
 enum { MEMBERS = 3, JOINTS = 3, MOST = 40 };
 
@@ -113,21 +111,19 @@ static void test_to_the_bit(void **state) {
     (void)state;
     for (int first = 0; first <= 12; first += 12) {
         scene a, b;
-        double seen[SPAR_TRY_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+        double seen[TRY_COUNT], table[SPAR_ROW_COUNT][COLUMN_COUNT];
         create(&a, 4, 7, 0.5);
         create(&b, 4, 7, 0.5);
         run(&a, first);
         run(&b, first);
-        OK(b.session, spar_session_try(b.session, step, 16, before, press, &b, 0, SPAR_TRY_COUNT, seen));
+        OK(b.session, trial_run(b.session, step, 16, before, press, &b, 0, seen));
         same(&a, &b);
-        OK(b.session, spar_session_try(b.session, step, 16, before, press, &b, 1, SPAR_TRY_COUNT, seen));
-        assert_true(seen[SPAR_TRY_MOTION] == 0 && seen[SPAR_TRY_REACTION] == 0);
+        OK(b.session, trial_run(b.session, step, 16, before, press, &b, 1, seen));
+        assert_true(seen[TRY_MOTION] == 0 && seen[TRY_REACTION] == 0);
         b.fails = 7;
-        assert_int_equal(spar_session_try(b.session, step, 16, before, press, &b, 0, SPAR_TRY_COUNT, seen),
-                         SPAR_ERR_USER);
+        assert_int_equal(trial_run(b.session, step, 16, before, press, &b, 0, seen), SPAR_ERR_USER);
         b.fails = 0;
-        OK(b.session, spar_session_report_effects(b.session, step, 8, before, press, &b, SPAR_ROW_COUNT,
-                                                  SPAR_COLUMN_COUNT, table[0]));
+        OK(b.session, trial_report_effects(b.session, step, 8, before, press, &b, table[0]));
         same(&a, &b);
         run(&a, 12);
         run(&b, 12);
@@ -142,16 +138,15 @@ static void test_to_the_bit(void **state) {
 static void test_effects(void **state) {
     (void)state;
     scene c;
-    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    double table[SPAR_ROW_COUNT][COLUMN_COUNT];
     create(&c, 4, 7, 0.5);
     run(&c, 10);
-    OK(c.session, spar_session_report_effects(c.session, step, 16, before, press, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
-                                              table[0]));
-    assert_true(table[SPAR_ROW_GRAVITY][SPAR_COLUMN_IN_FORCE] == 1);
-    assert_true(table[SPAR_ROW_GRAVITY][SPAR_COLUMN_MOTION] > 0.05);
-    assert_true(table[SPAR_ROW_GRAVITY][SPAR_COLUMN_REACTION] > 0.05);
-    assert_true(table[SPAR_ROW_INERTIA][SPAR_COLUMN_MOTION] != 0);
-    assert_true(table[SPAR_ROW_DAMPING][SPAR_COLUMN_IN_FORCE] == 0);
+    OK(c.session, trial_report_effects(c.session, step, 16, before, press, &c, table[0]));
+    assert_true(table[SPAR_ROW_GRAVITY][COLUMN_IN_FORCE] == 1);
+    assert_true(table[SPAR_ROW_GRAVITY][COLUMN_MOTION] > 0.05);
+    assert_true(table[SPAR_ROW_GRAVITY][COLUMN_REACTION] > 0.05);
+    assert_true(table[SPAR_ROW_INERTIA][COLUMN_MOTION] != 0);
+    assert_true(table[SPAR_ROW_DAMPING][COLUMN_IN_FORCE] == 0);
     spar_session_destroy(&c.session);
 }
 
@@ -170,20 +165,19 @@ static double turn_of_hinge(const scene *c) {
 static void test_advice(void **state) {
     (void)state;
     scene a, b;
-    double advice[SPAR_ADVICE_COUNT], dt = 0, load[6], other[6], z[6];
+    double advice[ADVICE_COUNT], dt = 0, load[6], other[6], z[6];
     int64_t nodes = 0;
     create(&a, 7, 13, 0.5);
     create(&b, 7, 13, 0.5);
-    OK(b.session, spar_session_set_option(b.session, "advise.dt", "keep"));
-    OK(b.session, spar_session_set_option(b.session, "advise.fidelity", "keep"));
-    OK(b.session, spar_session_set_option(b.session, "advise.coupling", "keep"));
-    OK(b.session, spar_session_set_option(b.session, "advise.fluid_cost", "1e-6")); /* not timed: builds differ */
+    OK(b.session, spar_trial_set_option(trial_of(b.session), "dt", "keep"));
+    OK(b.session, spar_trial_set_option(trial_of(b.session), "fidelity", "keep"));
+    OK(b.session, spar_trial_set_option(trial_of(b.session), "coupling", "keep"));
+    OK(b.session, spar_trial_set_option(trial_of(b.session), "fluid_cost", "1e-6")); /* not timed: builds differ */
     run(&a, 30);
     run(&b, 30);
-    OK(b.session,
-       spar_session_advise(b.session, 0.05, step, 16, 16 * step, before, press, &b, SPAR_ADVICE_COUNT, advice));
+    OK(b.session, trial_advise(b.session, 0.05, step, 16, 16 * step, before, press, &b, advice));
     same(&a, &b);
-    OK(b.session, spar_session_apply_advice(b.session, &dt));
+    OK(b.session, spar_trial_apply(trial_of(b.session), &dt));
     NEAR(dt, step, 1e-12);
     OK(b.session, spar_member_get_count(b.member[0], &nodes));
     assert_true(nodes < 14);
@@ -204,13 +198,12 @@ static void test_advice(void **state) {
 static void test_held_within(void **state) {
     (void)state;
     scene c;
-    double advice[SPAR_ADVICE_COUNT];
+    double advice[ADVICE_COUNT];
     int64_t nodes = 0;
     create(&c, 6, 8, 0.5);
     run(&c, 5);
-    OK(c.session,
-       spar_session_advise(c.session, 0.05, step, 8, 8 * step, before, press, &c, SPAR_ADVICE_COUNT, advice));
-    OK(c.session, spar_session_apply_advice(c.session, NULL));
+    OK(c.session, trial_advise(c.session, 0.05, step, 8, 8 * step, before, press, &c, advice));
+    OK(c.session, spar_trial_apply(trial_of(c.session), NULL));
     OK(c.session, spar_member_get_count(c.member[0], &nodes));
     assert_int_equal(nodes, 12);
     run(&c, 5);
@@ -218,18 +211,8 @@ static void test_held_within(void **state) {
     spar_session_destroy(&c.session);
 }
 
-/* The wing with other elements, as if that had been advised. */
 static int give_elements(scene *c, int elements, int nodes) {
-    spar_session *s = c->session;
-    spari_advised *advised = s->own->advised = calloc(1, sizeof *advised);
-    c->member[0]->advice = calloc(1, sizeof *c->member[0]->advice);
-    assert_true(advised && c->member[0]->advice);
-    (void)spari_settings_varied(s, advised->setting);
-    advised->given = 1;
-    advised->of = spari_advised_of(s);
-    *c->member[0]->advice = spari_rebuild_of(c->member[0]);
-    c->member[0]->advice->elements = elements, c->member[0]->advice->per_element = nodes;
-    return spar_session_apply_advice(s, NULL);
+    return trial_give_elements(c->session, c->member[0], elements, nodes);
 }
 
 /* The hinge is in the middle, where two elements meet: with four of them it holds the node that is there then, the body
@@ -245,8 +228,6 @@ static void test_other_elements(void **state) {
         run(&a, 5);
         run(&b, 5);
         REFUSED(b.session, SPAR_ERR_STATE, "lies within an element", give_elements(&b, 3, 6));
-        free(b.session->own->advised);
-        free(b.member[0]->advice);
         same(&a, &b);
         OK(b.session, give_elements(&b, 4, 6));
         assert_int_equal(b.joint[0]->node[1], node == 5 ? 11 : 12);
@@ -302,18 +283,17 @@ static void test_modal_with_fewer_nodes(void **state) {
 static void test_advice_of_fidelity(void **state) {
     (void)state;
     scene a, b;
-    double advice[SPAR_ADVICE_COUNT];
+    double advice[ADVICE_COUNT];
     create(&a, 7, 13, 0.5);
     create(&b, 7, 13, 0.5);
-    OK(b.session, spar_session_set_option(b.session, "advise.dt", "keep"));
-    OK(b.session, spar_session_set_option(b.session, "advise.nodes", "keep"));
-    OK(b.session, spar_session_set_option(b.session, "advise.coupling", "keep"));
-    OK(b.session, spar_session_set_option(b.session, "advise.fluid_cost", "1e-6")); /* not timed: builds differ */
+    OK(b.session, spar_trial_set_option(trial_of(b.session), "dt", "keep"));
+    OK(b.session, spar_trial_set_option(trial_of(b.session), "nodes", "keep"));
+    OK(b.session, spar_trial_set_option(trial_of(b.session), "coupling", "keep"));
+    OK(b.session, spar_trial_set_option(trial_of(b.session), "fluid_cost", "1e-6")); /* not timed: builds differ */
     run(&a, 10);
     run(&b, 10);
-    OK(b.session,
-       spar_session_advise(b.session, 0.1, step, 16, 16 * step, before, press, &b, SPAR_ADVICE_COUNT, advice));
-    OK(b.session, spar_session_apply_advice(b.session, NULL));
+    OK(b.session, trial_advise(b.session, 0.1, step, 16, 16 * step, before, press, &b, advice));
+    OK(b.session, spar_trial_apply(trial_of(b.session), NULL));
     int got = SPAR_FIDELITY_EXACT;
     OK(b.session, spar_member_get_fidelity(b.member[0], &got, NULL));
     assert_int_equal(got, SPAR_FIDELITY_MODAL);

@@ -1,9 +1,8 @@
 /* Trial runs go back to the bit, and say what theory says. */
 #include "scene.h"
+#include "trials.h"
 
-#include "exchange/session_private.h"
 #include "math/basis.h"
-#include "tune/apply.h"
 #include "tune/settings_trial.h"
 
 #include <stdio.h>
@@ -19,6 +18,7 @@ typedef struct scene {
     double x[3 * NODES], v[3 * NODES], old[3 * NODES], force[3 * NODES], moment[3 * NODES];
     double load, drag, added;
     int moments, fails, solutions;
+    spar_trial *other; /* beside the session's first */
 } scene;
 
 static int press(spar_session *s, double t, double dt, int iteration, void *context) {
@@ -115,8 +115,7 @@ static char *contents(const char *path, long *size) {
 static void test_goes_back_to_the_bit(void **state) {
     (void)state;
     for (int begun = 0; begun < 2; begun++) {
-        double q[2][12 * 7], report[SPAR_TRY_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT],
-            advice[SPAR_ADVICE_COUNT];
+        double q[2][12 * 7], report[TRY_COUNT], table[SPAR_ROW_COUNT][COLUMN_COUNT], advice[ADVICE_COUNT];
         for (int tried = 0; tried < 2; tried++) {
             scene c = {.load = 0.02, .drag = 0.01, .moments = 1};
             const double line_eta[2] = {0.2, 0.9}, line[12] = {0, 1, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0},
@@ -132,14 +131,11 @@ static void test_goes_back_to_the_bit(void **state) {
                 char *file[2];
                 OK(c.s, spar_session_save(c.s, "trial_bits.spar"));
                 file[0] = contents("trial_bits.spar", &size[0]);
-                OK(c.s, spar_session_try(c.s, 0.01, 16, keep, press, &c, 0, SPAR_TRY_COUNT, report));
-                OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
-                                                    table[0]));
-                OK(c.s,
-                   spar_session_advise(c.s, 0.05, 0.01, 16, 16 * 0.01, keep, press, &c, SPAR_ADVICE_COUNT, advice));
+                OK(c.s, trial_run(c.s, 0.01, 16, keep, press, &c, 0, report));
+                OK(c.s, trial_report_effects(c.s, 0.01, 16, keep, press, &c, table[0]));
+                OK(c.s, trial_advise(c.s, 0.05, 0.01, 16, 16 * 0.01, keep, press, &c, advice));
                 c.fails = 7;
-                assert_int_equal(spar_session_try(c.s, 0.01, 16, keep, press, &c, 0, SPAR_TRY_COUNT, report),
-                                 SPAR_ERR_USER);
+                assert_int_equal(trial_run(c.s, 0.01, 16, keep, press, &c, 0, report), SPAR_ERR_USER);
                 c.fails = 0;
                 OK(c.s, spar_session_save(c.s, "trial_bits.spar"));
                 file[1] = contents("trial_bits.spar", &size[1]);
@@ -161,18 +157,18 @@ static void test_errors_of_dt(void **state) {
     (void)state;
     const double none[3] = {0, 0, 0}; /* weight that comes on at once would ring in all modes */
     scene c = {.load = 0.02, .drag = 0.01};
-    double report[SPAR_TRY_COUNT], error[2];
+    double report[TRY_COUNT], error[2];
     build(&c, 0);
     OK(c.s, spar_session_set_gravity(c.s, none));
     OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_IQN_ILS, 1e-12, 1e-9, 50));
-    OK(c.s, spar_session_try(c.s, 0.32 / 4096, 4096, keep, press, &c, 0, SPAR_TRY_COUNT, report));
-    assert_true(report[SPAR_TRY_MOTION] == 0);
-    assert_true(report[SPAR_TRY_SOLUTIONS] >= 4096);
-    OK(c.s, spar_session_try(c.s, 0.32 / 4096, 4096, keep, press, &c, 1, SPAR_TRY_COUNT, report));
-    assert_true(report[SPAR_TRY_MOTION] == 0 && report[SPAR_TRY_REACTION] == 0 && report[SPAR_TRY_LOAD] == 0);
+    OK(c.s, trial_run(c.s, 0.32 / 4096, 4096, keep, press, &c, 0, report));
+    assert_true(report[TRY_MOTION] == 0);
+    assert_true(report[TRY_EVALUATIONS] >= 4096);
+    OK(c.s, trial_run(c.s, 0.32 / 4096, 4096, keep, press, &c, 1, report));
+    assert_true(report[TRY_MOTION] == 0 && report[TRY_REACTION] == 0 && report[TRY_LOAD] == 0);
     for (int k = 0; k < 2; k++) {
-        OK(c.s, spar_session_try(c.s, 0.32 / (128 << k), 128 << k, keep, press, &c, 1, SPAR_TRY_COUNT, report));
-        error[k] = report[SPAR_TRY_MOTION];
+        OK(c.s, trial_run(c.s, 0.32 / (128 << k), 128 << k, keep, press, &c, 1, report));
+        error[k] = report[TRY_MOTION];
     }
     NEAR(log2(error[0] / error[1]), 2, 0.3);
     spar_session_destroy(&c.s);
@@ -183,26 +179,26 @@ static void test_errors_of_dt(void **state) {
 static void test_gravity_row(void **state) {
     (void)state;
     scene c = {.load = 0};
-    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    double table[SPAR_ROW_COUNT][COLUMN_COUNT];
     const double dead[6] = {0, 0, -19.62, 0, 0, 0};
     build(&c, 0);
     OK(c.s, spar_member_set_load(c.b, 11, SPAR_LOAD_DEAD, dead));
     OK(c.s, spar_member_solve_static(c.b, 4));
-    OK(c.s, spar_session_report_effects(c.s, 1e-3, 8, keep, press, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
+    OK(c.s, trial_report_effects(c.s, 1e-3, 8, keep, press, &c, table[0]));
     const double *gravity = table[SPAR_ROW_GRAVITY];
-    assert_true(gravity[SPAR_COLUMN_IN_FORCE] == 1);
-    assert_true(gravity[SPAR_COLUMN_SIZE] > 0.1 && gravity[SPAR_COLUMN_SIZE] <= 1);
-    assert_true(gravity[SPAR_COLUMN_REACTION] > 0.01);
+    assert_true(gravity[COLUMN_IN_FORCE] == 1);
+    assert_true(gravity[COLUMN_SIZE] > 0.1 && gravity[COLUMN_SIZE] <= 1);
+    assert_true(gravity[COLUMN_REACTION] > 0.01);
     for (int r = 0; r < SPAR_ROW_COUNT; r++) {
         int there = r == SPAR_ROW_INERTIA || r == SPAR_ROW_GYROSCOPIC || r == SPAR_ROW_GRAVITY ||
                     r == SPAR_ROW_FLUID_VELOCITY || r == SPAR_ROW_PREDICTOR;
-        assert_int_equal(table[r][SPAR_COLUMN_IN_FORCE], there);
-        for (int k = 0; k < SPAR_COLUMN_COUNT && !there; k++) {
+        assert_int_equal(table[r][COLUMN_IN_FORCE], there);
+        for (int k = 0; k < COLUMN_COUNT && !there; k++) {
             assert_true(table[r][k] == 0);
         }
         assert_true(spar_effect_name(r)[0] != '\0');
     }
-    NEAR(table[SPAR_ROW_INERTIA][SPAR_COLUMN_SIZE], 0, 1e-9); /* at rest */
+    NEAR(table[SPAR_ROW_INERTIA][COLUMN_SIZE], 0, 1e-9); /* at rest */
     assert_string_equal(spar_effect_name(-1), "");
     assert_string_equal(spar_effect_name(SPAR_ROW_COUNT), "");
     spar_session_destroy(&c.s);
@@ -213,7 +209,7 @@ static void test_gravity_row(void **state) {
 static void test_sizes_at_rest(void **state) {
     (void)state;
     const double dead[6] = {0, 0, -20, 0, 0, 0}, mu[6] = {0.02, 0.02, 0.02, 0.02, 0.02, 0.02};
-    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], K[36], M[36];
+    double table[SPAR_ROW_COUNT][COLUMN_COUNT], K[36], M[36];
     spar_session *s = scene_session();
     scene_diagonal(K, 1e6, 1e6, 1e6, 1e3, 1e3, 1e3);
     scene_diagonal(M, 1, 1, 1, 2e-3, 1e-3, 1e-3);
@@ -221,10 +217,10 @@ static void test_sizes_at_rest(void **state) {
     OK(s, spar_beam_set_damping(b, mu));
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_load(b, 5, SPAR_LOAD_DEAD, dead));
-    OK(s, spar_session_report_effects(s, 0.02, 16, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
-    assert_true(table[SPAR_ROW_DAMPING][SPAR_COLUMN_MOTION] > 0.01);
-    assert_true(table[SPAR_ROW_DAMPING][SPAR_COLUMN_SIZE] > 0.01);
-    assert_true(table[SPAR_ROW_INERTIA][SPAR_COLUMN_SIZE] > 0.01);
+    OK(s, trial_report_effects(s, 0.02, 16, NULL, NULL, NULL, table[0]));
+    assert_true(table[SPAR_ROW_DAMPING][COLUMN_MOTION] > 0.01);
+    assert_true(table[SPAR_ROW_DAMPING][COLUMN_SIZE] > 0.01);
+    assert_true(table[SPAR_ROW_INERTIA][COLUMN_SIZE] > 0.01);
     spar_session_destroy(&s);
 }
 
@@ -234,7 +230,7 @@ static void test_sizes_at_rest(void **state) {
 static void test_gyroscopic_row(void **state) {
     (void)state;
     const double zero[3] = {0}, J[3] = {1, 2, 3}, c[3] = {0.1, 0, 0}, w[3] = {0, 0, 3}, dead[6] = {-3.6, 0, 0, 0, 0, 0};
-    double mass[36], table[2][SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    double mass[36], table[2][SPAR_ROW_COUNT][COLUMN_COUNT];
     spar_member *b;
     spar_session *s = scene_session();
     scene_mass(mass, 2, c, J);
@@ -243,12 +239,11 @@ static void test_gyroscopic_row(void **state) {
     OK(s, spar_member_commit(b));
     OK(s, spar_member_set_load(b, 0, SPAR_LOAD_DEAD, dead));
     for (int k = 0; k < 2; k++) {
-        OK(s,
-           spar_session_report_effects(s, 1e-8, 8, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[k][0]));
-        NEAR(table[k][SPAR_ROW_GYROSCOPIC][SPAR_COLUMN_SIZE], 0.5, 1e-6);
-        NEAR(table[k][SPAR_ROW_INERTIA][SPAR_COLUMN_SIZE], 0.5 * sqrt(8.0 / 9), 1e-6);
+        OK(s, trial_report_effects(s, 1e-8, 8, NULL, NULL, NULL, table[k][0]));
+        NEAR(table[k][SPAR_ROW_GYROSCOPIC][COLUMN_SIZE], 0.5, 1e-6);
+        NEAR(table[k][SPAR_ROW_INERTIA][COLUMN_SIZE], 0.5 * sqrt(8.0 / 9), 1e-6);
     }
-    assert_true(table[0][SPAR_ROW_GYROSCOPIC][SPAR_COLUMN_MOTION] == table[1][SPAR_ROW_GYROSCOPIC][SPAR_COLUMN_MOTION]);
+    assert_true(table[0][SPAR_ROW_GYROSCOPIC][COLUMN_MOTION] == table[1][SPAR_ROW_GYROSCOPIC][COLUMN_MOTION]);
     spar_session_destroy(&s);
 }
 
@@ -257,7 +252,7 @@ static void test_gyroscopic_row(void **state) {
 static void test_left_out_of_statics(void **state) {
     (void)state;
     scene c = {.load = 0};
-    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], K[36], M[36];
+    double table[SPAR_ROW_COUNT][COLUMN_COUNT], K[36], M[36];
     const double g[3] = {0, 0, -9.81}, dead[6] = {0, 0, -10, 0, 0, 0};
     c.s = scene_session();
     scene_diagonal(K, 1e9, 1e9, 1e9, 1e9, 1e9, 1e9); /* stiff: moments by the reference's arms */
@@ -267,10 +262,10 @@ static void test_left_out_of_statics(void **state) {
     OK(c.s, spar_member_set_effects(c.b, EFFECTS_ONLY(SPAR_EFFECT_GRAVITY)));
     OK(c.s, spar_member_commit(c.b));
     OK(c.s, spar_member_set_load(c.b, 5, SPAR_LOAD_DEAD, dead));
-    OK(c.s, spar_session_report_effects(c.s, 0.1, 8, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
+    OK(c.s, trial_report_effects(c.s, 0.1, 8, NULL, NULL, NULL, table[0]));
     /* reaction: force 10 + 2 g, moment over length 10 + g; without weight 10, 10 */
     double weight = hypot(2 * 9.81, 9.81), all = hypot(10 + 2 * 9.81, 10 + 9.81);
-    NEAR(table[SPAR_ROW_GRAVITY][SPAR_COLUMN_REACTION], weight / all, 1e-6);
+    NEAR(table[SPAR_ROW_GRAVITY][COLUMN_REACTION], weight / all, 1e-6);
     spar_session_destroy(&c.s);
 }
 
@@ -279,20 +274,20 @@ static void test_left_out_of_statics(void **state) {
 static void test_fluid_rows(void **state) {
     (void)state;
     scene c = {.load = 0.5, .drag = 0, .moments = 1};
-    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    double table[SPAR_ROW_COUNT][COLUMN_COUNT];
     build(&c, 0);
-    OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
-    assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_IN_FORCE] == 1);
-    assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_SIZE] > 0.05);
-    assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_MOTION] > 0.01);
-    assert_true(table[SPAR_ROW_FLUID_VELOCITY][SPAR_COLUMN_IN_FORCE] == 1); /* pulled, though of no use at drag 0 */
-    assert_true(table[SPAR_ROW_FLUID_VELOCITY][SPAR_COLUMN_MOTION] == 0);
+    OK(c.s, trial_report_effects(c.s, 0.01, 16, keep, press, &c, table[0]));
+    assert_true(table[SPAR_ROW_FLUID_MOMENT][COLUMN_IN_FORCE] == 1);
+    assert_true(table[SPAR_ROW_FLUID_MOMENT][COLUMN_SIZE] > 0.05);
+    assert_true(table[SPAR_ROW_FLUID_MOMENT][COLUMN_MOTION] > 0.01);
+    assert_true(table[SPAR_ROW_FLUID_VELOCITY][COLUMN_IN_FORCE] == 1); /* pulled, though of no use at drag 0 */
+    assert_true(table[SPAR_ROW_FLUID_VELOCITY][COLUMN_MOTION] == 0);
     spar_session_destroy(&c.s);
     c = (scene){.load = 0.5, .drag = 0.05};
     build(&c, 0);
-    OK(c.s, spar_session_report_effects(c.s, 0.01, 16, keep, press, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
-    assert_true(table[SPAR_ROW_FLUID_MOMENT][SPAR_COLUMN_IN_FORCE] == 0);
-    assert_true(table[SPAR_ROW_FLUID_VELOCITY][SPAR_COLUMN_MOTION] > 0.01);
+    OK(c.s, trial_report_effects(c.s, 0.01, 16, keep, press, &c, table[0]));
+    assert_true(table[SPAR_ROW_FLUID_MOMENT][COLUMN_IN_FORCE] == 0);
+    assert_true(table[SPAR_ROW_FLUID_VELOCITY][COLUMN_MOTION] > 0.01);
     spar_session_destroy(&c.s);
 }
 
@@ -303,11 +298,10 @@ static void test_fluid_size_from_rest(void **state) {
     double size[2];
     for (int fine = 0; fine < 2; fine++) {
         scene c = {.load = 0.5, .drag = 0.05};
-        double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+        double table[SPAR_ROW_COUNT][COLUMN_COUNT];
         build(&c, 1);
-        OK(c.s, spar_session_report_effects(c.s, fine ? 1e-3 : 1e-2, fine ? 160 : 16, keep, press, &c, SPAR_ROW_COUNT,
-                                            SPAR_COLUMN_COUNT, table[0]));
-        size[fine] = table[SPAR_ROW_FLUID_VELOCITY][SPAR_COLUMN_SIZE];
+        OK(c.s, trial_report_effects(c.s, fine ? 1e-3 : 1e-2, fine ? 160 : 16, keep, press, &c, table[0]));
+        size[fine] = table[SPAR_ROW_FLUID_VELOCITY][COLUMN_SIZE];
         spar_session_destroy(&c.s);
     }
     assert_true(size[0] > 0.01);
@@ -319,7 +313,7 @@ static void test_fluid_size_from_rest(void **state) {
 static void advised(double tolerance, double added) {
     enum { STEPS = 32 };
     const double T = 0.32;
-    double advice[SPAR_ADVICE_COUNT], tip[2][7];
+    double advice[ADVICE_COUNT], tip[2][7];
     int nodes = 0, fidelity = 0, points = 0;
     int64_t modes = 0;
     scene c = {.load = 0.05, .drag = 0.01, .added = added};
@@ -327,11 +321,10 @@ static void advised(double tolerance, double added) {
     if (added > 0) {
         OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-6, 50));
     }
-    OK(c.s, spar_session_advise(c.s, tolerance, T / STEPS, STEPS, STEPS * T / STEPS, keep, press, &c, SPAR_ADVICE_COUNT,
-                                advice));
-    OK(c.s, spar_member_get_advice(c.b, &fidelity, &modes, &nodes, &points));
-    assert_true(advice[SPAR_ADVICE_ERROR] <= tolerance);
-    assert_true(advice[SPAR_ADVICE_TRIALS] > 5);
+    OK(c.s, trial_advise(c.s, tolerance, T / STEPS, STEPS, STEPS * T / STEPS, keep, press, &c, advice));
+    OK(c.s, trial_get_beam(c.b, &fidelity, &modes, &nodes, &points));
+    assert_true(advice[ADVICE_ERROR] <= tolerance);
+    assert_true(advice[ADVICE_RUNS] > 5);
     spar_session_destroy(&c.s);
     for (int fine = 0; fine < 2; fine++) {
         scene r = {.load = 0.05, .drag = 0.01, .added = added};
@@ -353,13 +346,13 @@ static void advised(double tolerance, double added) {
         OK(r.s, spar_fluid_set_motion_nodes(r.f, NODES, x));
         OK(r.s, spar_fluid_set_force_nodes(r.f, NODES, x));
         OK(r.s, spar_fluid_map(r.f));
-        int n = fine ? 4096 : (int)lround(T / advice[SPAR_ADVICE_DT]);
-        OK(r.s, spar_session_set_coupling(r.s, fine ? SPAR_COUPLING_IQN_ILS : (int)advice[SPAR_ADVICE_SCHEME], 1e-9,
-                                          fine ? 1e-8 : advice[SPAR_ADVICE_COUPLING_RTOL], 50));
+        int n = fine ? 4096 : (int)lround(T / advice[ADVICE_DT]);
+        OK(r.s, spar_session_set_coupling(r.s, fine ? SPAR_COUPLING_IQN_ILS : (int)advice[ADVICE_SCHEME], 1e-9,
+                                          fine ? 1e-8 : advice[ADVICE_COUPLING_RTOL], 50));
         if (!fine) {
-            OK(r.s, spar_session_set_integrator(r.s, 0.9, (int)advice[SPAR_ADVICE_SUBSTEPS]));
-            OK(r.s, spar_session_set_predictor(r.s, (int)advice[SPAR_ADVICE_PREDICTOR]));
-            OK(r.s, spar_session_set_newton(r.s, 1e-15, advice[SPAR_ADVICE_NEWTON_RTOL], 50));
+            OK(r.s, spar_session_set_integrator(r.s, 0.9, (int)advice[ADVICE_SUBSTEPS]));
+            OK(r.s, spar_session_set_predictor(r.s, (int)advice[ADVICE_PREDICTOR]));
+            OK(r.s, spar_session_set_newton(r.s, 1e-15, advice[ADVICE_NEWTON_RTOL], 50));
         }
         step(&r, T / n, n);
         scene_tip(r.b, tip[fine]);
@@ -373,10 +366,9 @@ static void advised(double tolerance, double added) {
     if (getenv("SPAR_SHOW")) {
         printf("tolerance %g added %g: estimate %g, real %g at the end, cost %.3g, present error %g, %g trials; dt %g, "
                "scheme %g %g, predictor %g, newton %g, %d nodes, fidelity %d, %d modes\n",
-               tolerance, added, advice[SPAR_ADVICE_ERROR], off / size, advice[SPAR_ADVICE_COST],
-               advice[SPAR_ADVICE_PRESENT_ERROR], advice[SPAR_ADVICE_TRIALS], advice[SPAR_ADVICE_DT],
-               advice[SPAR_ADVICE_SCHEME], advice[SPAR_ADVICE_COUPLING_RTOL], advice[SPAR_ADVICE_PREDICTOR],
-               advice[SPAR_ADVICE_NEWTON_RTOL], nodes, fidelity, (int)modes);
+               tolerance, added, advice[ADVICE_ERROR], off / size, advice[ADVICE_COST], advice[ADVICE_PRESENT_ERROR],
+               advice[ADVICE_RUNS], advice[ADVICE_DT], advice[ADVICE_SCHEME], advice[ADVICE_COUPLING_RTOL],
+               advice[ADVICE_PREDICTOR], advice[ADVICE_NEWTON_RTOL], nodes, fidelity, (int)modes);
     }
     assert_true(off <= 1.5 * tolerance * size); /* the tolerance is of the mean over the run, this is its end */
 }
@@ -458,18 +450,17 @@ static void test_advice_stays_stable(void **state) {
     const double ratio[] = {0.3, 0.36, 0.45, 0.5, 0.55, 0.6, 3};
     for (size_t i = 0; i < sizeof ratio / sizeof *ratio; i++) {
         heave h = {.m = 1, .added = ratio[i], .k = 40, .c = 0.5, .F = 1, .rate = 3};
-        double advice[SPAR_ADVICE_COUNT], largest = 0, t = 0, dt;
+        double advice[ADVICE_COUNT], largest = 0, t = 0, dt;
         spar_session *s = heave_session(&h);
         OK(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 1e-12, 1e-6, 50));
         /* the last one is near resonance: what its first-order fluid leaves grows for as long as trials look */
         double length = ratio[i] < 1 ? 160 : 512 * 0.02;
-        OK(s, spar_session_advise(s, 1e-2, 0.02, 512, length, keep_heave, float_on, &h, SPAR_ADVICE_COUNT, advice));
-        OK(s, spar_session_set_integrator(s, 0.9, (int)advice[SPAR_ADVICE_SUBSTEPS]));
-        OK(s, spar_session_set_predictor(s, (int)advice[SPAR_ADVICE_PREDICTOR]));
-        OK(s, spar_session_set_newton(s, 1e-15, advice[SPAR_ADVICE_NEWTON_RTOL], 50));
-        OK(s,
-           spar_session_set_coupling(s, (int)advice[SPAR_ADVICE_SCHEME], 1e-12, advice[SPAR_ADVICE_COUPLING_RTOL], 50));
-        for (dt = advice[SPAR_ADVICE_DT]; t < 160; t += dt) {
+        OK(s, trial_advise(s, 1e-2, 0.02, 512, length, keep_heave, float_on, &h, advice));
+        OK(s, spar_session_set_integrator(s, 0.9, (int)advice[ADVICE_SUBSTEPS]));
+        OK(s, spar_session_set_predictor(s, (int)advice[ADVICE_PREDICTOR]));
+        OK(s, spar_session_set_newton(s, 1e-15, advice[ADVICE_NEWTON_RTOL], 50));
+        OK(s, spar_session_set_coupling(s, (int)advice[ADVICE_SCHEME], 1e-12, advice[ADVICE_COUPLING_RTOL], 50));
+        for (dt = advice[ADVICE_DT]; t < 160; t += dt) {
             OK(s, keep_heave(s, t, dt, &h));
             OK(s, spar_step(s, dt, float_on, &h, NULL));
             largest = t > 120 ? fmax(largest, fabs(h.x[2])) : largest;
@@ -492,9 +483,9 @@ static void same_file(spar_session *s, const char *before, long size) {
     free(after);
 }
 
-static void ask_advice(scene *c, double advice[SPAR_ADVICE_COUNT]) {
-    OK(c->s, spar_session_set_option(c->s, "advise.fluid_cost", "1e-6"));
-    OK(c->s, spar_session_advise(c->s, 0.05, 0.01, 16, 16 * 0.01, keep, press, c, SPAR_ADVICE_COUNT, advice));
+static void ask_advice(scene *c, double advice[ADVICE_COUNT]) {
+    OK(c->s, spar_trial_set_option(trial_of(c->s), "fluid_cost", "1e-6"));
+    OK(c->s, trial_advise(c->s, 0.05, 0.01, 16, 16 * 0.01, keep, press, c, advice));
 }
 
 /* Refused, and the session as it was to the bit: without advice, in a step, with other members than were advised on,
@@ -504,36 +495,37 @@ static void test_apply_refuses(void **state) {
     (void)state;
     scene c = {.load = 0.05, .drag = 0.01};
     const double x[3] = {1, 0, 0};
-    double advice[SPAR_ADVICE_COUNT], dt = 7;
+    double advice[ADVICE_COUNT], dt = 7;
     int nodes;
     long size;
     build(&c, 1);
-    assert_int_equal(spar_session_apply_advice(NULL, &dt), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
+    assert_int_equal(spar_trial_apply(NULL, &dt), SPAR_ERR_ARGUMENT);
+    assert_int_equal(spar_trial_apply(trial_of(c.s), &dt), SPAR_ERR_STATE);
     assert_non_null(strstr(spar_session_message(c.s), "no advice yet"));
     step(&c, 0.01, 3);
     ask_advice(&c, advice);
-    OK(c.s, spar_member_get_advice(c.b, NULL, NULL, &nodes, NULL));
-    assert_true(nodes * c.b->advice->elements != 12); /* else nothing would be made anew */
+    OK(c.s, trial_get_beam(c.b, NULL, NULL, &nodes, NULL));
+    spari_rebuild *advised_of = trial_of(c.s)->advised.beam; /* wing, body */
+    assert_true(nodes * advised_of[0].elements != 12);       /* else nothing would be made anew */
     OK(c.s, spar_session_save(c.s, "trial_apply.spar"));
     char *before = contents("trial_apply.spar", &size);
-    spari_rebuild right = *c.body->advice;
-    c.body->advice->fidelity = SPAR_FIDELITY_MODAL; /* there is no modal body */
-    assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
-    assert_non_null(strstr(spar_session_message(c.s), "spar_session_apply_advice"));
-    *c.body->advice = right;
+    spari_rebuild right = advised_of[1];
+    advised_of[1].fidelity = SPAR_FIDELITY_MODAL; /* there is no modal body */
+    assert_int_equal(spar_trial_apply(trial_of(c.s), &dt), SPAR_ERR_STATE);
+    assert_non_null(strstr(spar_session_message(c.s), "spar_trial_apply"));
+    advised_of[1] = right;
     same_file(c.s, before, size);
     assert_true(c.s->coupling.predictor == 1 && c.s->coupling.scheme == SPAR_COUPLING_EXPLICIT &&
                 c.s->newton.rtol == 1e-12);
     OK(c.s, spar_fluid_set_force_nodes(c.g, 1, x));
-    assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
+    assert_int_equal(spar_trial_apply(trial_of(c.s), &dt), SPAR_ERR_STATE);
     assert_non_null(strstr(spar_session_message(c.s), "not mapped"));
     OK(c.s, spar_fluid_map(c.g));
     OK(c.s, spar_step_begin(c.s, 0.01));
-    assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
+    assert_int_equal(spar_trial_apply(trial_of(c.s), &dt), SPAR_ERR_STATE);
     OK(c.s, spar_step_reject(c.s));
-    c.s->own->advised->of ^= 1; /* as if other members had been advised on */
-    assert_int_equal(spar_session_apply_advice(c.s, &dt), SPAR_ERR_STATE);
+    trial_of(c.s)->advised.of ^= 1; /* as if other members had been advised on */
+    assert_int_equal(spar_trial_apply(trial_of(c.s), &dt), SPAR_ERR_STATE);
     assert_non_null(strstr(spar_session_message(c.s), "request the advice again"));
     assert_true(dt == 7);
     step(&c, 0.01, 2);
@@ -570,7 +562,7 @@ static void test_apply_in_a_run(void **state) {
     (void)state;
     scene c = {.load = 0.05, .drag = 0.01, .moments = 1};
     const double follower[6] = {0, 0.1, 0, 0, 0, 0}, dead[6] = {0, 0, 0.2, 0, 0, 0};
-    double advice[SPAR_ADVICE_COUNT], dt;
+    double advice[ADVICE_COUNT], dt;
     outlook before, after;
     int64_t modes;
     int nodes, fidelity;
@@ -580,17 +572,17 @@ static void test_apply_in_a_run(void **state) {
     OK(c.s, spar_member_set_load(c.b, 4, SPAR_LOAD_DEAD, dead));
     step(&c, 0.01, 8);
     ask_advice(&c, advice);
-    OK(c.s, spar_member_get_advice(c.b, &fidelity, &modes, &nodes, NULL));
+    OK(c.s, trial_get_beam(c.b, &fidelity, &modes, &nodes, NULL));
     look_at(&c, &before);
-    OK(c.s, spar_session_apply_advice(c.s, &dt));
+    OK(c.s, spar_trial_apply(trial_of(c.s), &dt));
     look_at(&c, &after);
-    assert_true(dt == advice[SPAR_ADVICE_DT]);
+    assert_true(dt == advice[ADVICE_DT]);
     assert_true(after.nodes == 2 * nodes && after.nodes != before.nodes);
     assert_true(c.b->fidelity == fidelity && c.b->modes == modes);
-    assert_true(c.s->coupling.scheme == (int)advice[SPAR_ADVICE_SCHEME] &&
-                c.s->coupling.predictor == (int)advice[SPAR_ADVICE_PREDICTOR]);
-    assert_true(c.s->integrator.substeps == (int)advice[SPAR_ADVICE_SUBSTEPS]);
-    assert_true(c.s->newton.rtol == advice[SPAR_ADVICE_NEWTON_RTOL]);
+    assert_true(c.s->coupling.scheme == (int)advice[ADVICE_SCHEME] &&
+                c.s->coupling.predictor == (int)advice[ADVICE_PREDICTOR]);
+    assert_true(c.s->integrator.substeps == (int)advice[ADVICE_SUBSTEPS]);
+    assert_true(c.s->newton.rtol == advice[ADVICE_NEWTON_RTOL]);
     for (int i = 0; i < 3; i++) {
         NEAR(after.sum[i], before.sum[i], 1e-11);
         NEAR(after.tip[i], before.tip[i], 1e-13);
@@ -605,7 +597,7 @@ static void test_apply_in_a_run(void **state) {
     NEAR(off, 0, 1e-2 * fabs(before.tip[2])); /* the tolerance that the advice is for is 5 % */
     OK(c.s, spar_session_save(c.s, "trial_apply.spar"));
     char *saved = contents("trial_apply.spar", &size);
-    OK(c.s, spar_session_apply_advice(c.s, NULL));
+    OK(c.s, spar_trial_apply(trial_of(c.s), NULL));
     same_file(c.s, saved, size);
     free(saved);
     step(&c, dt, 8);
@@ -621,7 +613,7 @@ static void test_apply_elements(void **state) {
     const double follower[6] = {0, 0.1, 0, 0, 0, 0}, dead[6] = {0, 0, 0.2, 0, 0, 0};
     for (int k = 0; k < 3; k++) {
         scene c = {.load = 0.05, .drag = 0.01, .moments = 1};
-        double advice[SPAR_ADVICE_COUNT], off = 0;
+        double advice[ADVICE_COUNT], off = 0;
         outlook before, after;
         long size;
         int elements, nodes;
@@ -630,10 +622,11 @@ static void test_apply_elements(void **state) {
         OK(c.s, spar_member_set_load(c.b, 4, SPAR_LOAD_DEAD, dead));
         step(&c, 0.01, 8);
         ask_advice(&c, advice);
-        c.b->advice->elements = divided[k][0], c.b->advice->per_element = divided[k][1];
-        c.b->advice->fidelity = SPAR_FIDELITY_EXACT, c.b->advice->modes = 0;
+        spari_rebuild *to = trial_of(c.s)->advised.beam;
+        to->elements = divided[k][0], to->per_element = divided[k][1];
+        to->fidelity = SPAR_FIDELITY_EXACT, to->modes = 0;
         look_at(&c, &before);
-        OK(c.s, spar_session_apply_advice(c.s, NULL));
+        OK(c.s, spar_trial_apply(trial_of(c.s), NULL));
         look_at(&c, &after);
         OK(c.s, spar_beam_get_elements(c.b, &elements, &nodes));
         assert_true(elements == divided[k][0] && nodes == divided[k][1] && after.nodes == (int64_t)elements * nodes);
@@ -651,7 +644,7 @@ static void test_apply_elements(void **state) {
         NEAR(off, 0, 1e-3 * fabs(before.tip[2]));
         OK(c.s, spar_session_save(c.s, "trial_apply.spar"));
         char *saved = contents("trial_apply.spar", &size);
-        OK(c.s, spar_session_apply_advice(c.s, NULL));
+        OK(c.s, spar_trial_apply(trial_of(c.s), NULL));
         same_file(c.s, saved, size);
         free(saved);
         step(&c, 0.01, 8);
@@ -680,28 +673,30 @@ static void test_elements_advised(void **state) {
     const double load[6] = {0, 0, 0.1, 0, 0, 0}, dt = 0.01;
     for (int kind = 0; kind < KINDS; kind++) {
         scene c = {.load = 0.05, .drag = 0.01}, fine = c;
-        double advice[SPAR_ADVICE_COUNT], tip[2][7], step_dt = 0;
+        double advice[ADVICE_COUNT], tip[2][7], step_dt = 0;
         char text[200] = "";
         int elements, nodes, many = kind == GIVEN ? 2 : 6;
         build_of(&c, 0, many, 5, kind == GIVEN);
         OK(c.s, spar_session_set_log(c.s, keep_text, text));
-        OK(c.s, spar_session_set_option(c.s, "advise.fluid_cost", "1e-6"));
-        OK(c.s, spar_session_set_option(c.s, "advise.fidelity", "keep"));
-        OK(c.s, spar_session_set_option(c.s, "advise.dt", "keep"));
-        OK(c.s, spar_session_set_option(c.s, "advise.nodes", kind == KEPT ? "keep" : "vary"));
+        OK(c.s, spar_trial_set_option(trial_of(c.s), "fluid_cost", "1e-6"));
+        OK(c.s, spar_trial_set_option(trial_of(c.s), "fidelity", "keep"));
+        OK(c.s, spar_trial_set_option(trial_of(c.s), "dt", "keep"));
+        OK(c.s, spar_trial_set_option(trial_of(c.s), "nodes", kind == KEPT ? "keep" : "vary"));
         if (kind == LOADED) {
             OK(c.s, spar_member_set_load(c.b, 7, SPAR_LOAD_FOLLOWER, load));
         }
-        OK(c.s, spar_session_advise(c.s, 0.05, dt, T, T * dt, keep, press, &c, SPAR_ADVICE_COUNT, advice));
-        OK(c.s, spar_session_apply_advice(c.s, &step_dt));
+        OK(c.s, trial_advise(c.s, 0.05, dt, T, T * dt, keep, press, &c, advice));
+        OK(c.s, spar_trial_apply(trial_of(c.s), &step_dt));
         OK(c.s, spar_beam_get_elements(c.b, &elements, &nodes));
-        assert_int_equal(elements, advice[SPAR_ADVICE_ELEMENTS]);
-        print_message("%d of %d nodes, cost %.2f, %.0f trials %s\n", elements, nodes, advice[SPAR_ADVICE_COST],
-                      advice[SPAR_ADVICE_TRIALS], text);
+        int said = 0;
+        OK(c.s, spar_trial_get_beam(trial_of(c.s), c.b, NULL, NULL, &said, NULL, NULL));
+        assert_int_equal(elements, said);
+        print_message("%d of %d nodes, cost %.2f, %.0f trials %s\n", elements, nodes, advice[ADVICE_COST],
+                      advice[ADVICE_RUNS], text);
         assert_true(kind == PLAIN ? elements < many : elements == many);
         assert_non_null(strstr(text, reason[kind]));
         if (kind == PLAIN) {
-            assert_true(advice[SPAR_ADVICE_COST] < 0.5);
+            assert_true(advice[ADVICE_COST] < 0.5);
             build_of(&fine, 0, 2, 12, 0);
             step(&c, step_dt, T);
             step(&fine, dt / 8, 8 * T);
@@ -714,42 +709,178 @@ static void test_elements_advised(void **state) {
     }
 }
 
-static void test_bad_input(void **state) {
+/* What is set is read, and what is read can be set; getters of results are refused before there are any. */
+static void test_settings_of_a_trial(void **state) {
     (void)state;
+    static const char *const option[][3] = {{"dt", "vary", "keep"},       {"nodes", "vary", "keep"},
+                                            {"fidelity", "vary", "keep"}, {"coupling", "vary", "keep"},
+                                            {"limit", "0", "12"},         {"fluid_cost", "0", "0.25"}};
     scene c = {.load = 0.02};
-    double report[SPAR_TRY_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], advice[SPAR_ADVICE_COUNT];
+    spar_trial *t = NULL;
+    spar_session *of = NULL;
+    double dt = 7, amplitude = 7;
+    int64_t steps = 7, modes = 7, memory = 7;
+    int goals = 0;
+    char word[32];
     build(&c, 0);
-    assert_int_equal(spar_session_try(NULL, 0.01, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_try(c.s, NAN, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_try(c.s, 0.01, 12, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_ARGUMENT);
-    assert_non_null(strstr(spar_session_message(c.s), "multiple of 8"));
-    assert_int_equal(spar_session_try(c.s, 0.01, 0, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 0, -1, report), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 1, SPAR_TRY_COUNT, report), SPAR_ERR_STATE);
-    assert_int_equal(spar_session_report_effects(c.s, 0.01, 8, NULL, NULL, NULL, 1, -1, table[0]), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_advise(c.s, 0, 0.01, 8, 8 * 0.01, NULL, press, &c, SPAR_ADVICE_COUNT, advice),
-                     SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_advise(c.s, NAN, 0.01, 8, 8 * 0.01, NULL, press, &c, SPAR_ADVICE_COUNT, advice),
-                     SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_session_advise(c.s, 1e-2, 0.01, 8, 8 * 0.01, NULL, NULL, NULL, SPAR_ADVICE_COUNT, advice),
-                     SPAR_ERR_UNSUPPORTED);
-    assert_int_equal(spar_session_advise(c.s, 1e-2, 0.01, 8, 8 * 0.01, NULL, press, &c, -1, advice), SPAR_ERR_ARGUMENT);
-    assert_int_equal(spar_member_get_advice(c.b, NULL, NULL, NULL, NULL), SPAR_ERR_STATE);
-    OK(c.s, spar_step_begin(c.s, 0.01));
-    assert_int_equal(spar_session_try(c.s, 0.01, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_STATE);
-    assert_int_equal(
-        spar_session_report_effects(c.s, 0.01, 8, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]),
-        SPAR_ERR_STATE);
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "NULL", spar_trial_create(c.s, NULL));
+    assert_int_equal(spar_trial_create(NULL, &t), SPAR_ERR_ARGUMENT);
+    OK(c.s, spar_trial_create(c.s, &t));
+    OK(c.s, spar_trial_get_session(t, &of));
+    assert_ptr_equal(of, c.s);
+    OK(c.s, spar_trial_get_steps(t, &dt, &steps));
+    OK(c.s, spar_trial_get_motion(t, &modes, &amplitude, &memory));
+    OK(c.s, spar_trial_get_goals(t, &goals));
+    assert_true(dt == 0 && steps == 0 && modes == 0 && amplitude == 0 && memory == 0 && goals == SPAR_GOAL_MOTION);
+    REFUSED(c.s, SPAR_ERR_STATE, "no steps", spar_trial_run(t, 0));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "0 steps", spar_trial_set_steps(t, 0.01, 0));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "dt", spar_trial_set_steps(t, 0, 8));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "-1 modes", spar_trial_set_motion(t, -1, 0, 0));
+    OK(c.s, spar_trial_set_steps(t, dt, steps)); /* what is read can be written back */
+    OK(c.s, spar_trial_set_motion(t, modes, amplitude, memory));
+    REFUSED(c.s, SPAR_ERR_STATE, "no steps", spar_trial_run(t, 0));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "201 modes", spar_trial_set_motion(t, 201, 0, 0));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "amplitude", spar_trial_set_motion(t, 1, 0.2, 0));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "amplitude", spar_trial_set_motion(t, 1, NAN, 0));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "memory", spar_trial_set_motion(t, 1, 0, -1));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "goals", spar_trial_set_goals(t, 0));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "goals", spar_trial_set_goals(t, 32));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "no option", spar_trial_set_option(t, "advise.dt", "keep"));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "does not accept", spar_trial_set_option(t, "limit", "-1"));
+    OK(c.s, spar_trial_set_steps(t, 0.02, 24));
+    OK(c.s, spar_trial_set_motion(t, 3, 1e-3, 40));
+    OK(c.s, spar_trial_set_goals(t, SPAR_GOAL_LOAD | SPAR_GOAL_SECTION));
+    OK(c.s, spar_trial_get_steps(t, &dt, &steps));
+    OK(c.s, spar_trial_get_motion(t, &modes, &amplitude, &memory));
+    OK(c.s, spar_trial_get_goals(t, &goals));
+    assert_true(dt == 0.02 && steps == 24 && modes == 3 && amplitude == 1e-3 && memory == 40);
+    assert_int_equal(goals, SPAR_GOAL_LOAD | SPAR_GOAL_SECTION);
+    for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
+        OK(c.s, spar_trial_get_option(t, option[i][0], sizeof word, word));
+        assert_string_equal(word, option[i][1]);
+        OK(c.s, spar_trial_set_option(t, option[i][0], option[i][2]));
+        OK(c.s, spar_trial_get_option(t, option[i][0], (int64_t)strlen(option[i][2]) + 1, word));
+        assert_string_equal(word, option[i][2]);
+    }
+    REFUSED(c.s, SPAR_ERR_STATE, "no run", spar_trial_get_errors(t, NULL, NULL, NULL));
+    REFUSED(c.s, SPAR_ERR_STATE, "no run", spar_trial_get_cost(t, NULL, NULL));
+    REFUSED(c.s, SPAR_ERR_STATE, "no report", spar_trial_get_effect(t, 0, NULL, NULL, NULL, NULL, NULL, NULL));
+    REFUSED(c.s, SPAR_ERR_ARGUMENT, "no row", spar_trial_get_effect(t, -1, NULL, NULL, NULL, NULL, NULL, NULL));
+    REFUSED(c.s, SPAR_ERR_STATE, "no advice", spar_trial_get_settings(t, NULL, NULL, NULL, NULL, NULL, NULL));
+    REFUSED(c.s, SPAR_ERR_STATE, "no advice", spar_trial_get_outcome(t, NULL, NULL, NULL, NULL));
+    REFUSED(c.s, SPAR_ERR_STATE, "no advice", spar_trial_get_search(t, NULL, NULL, NULL, NULL, NULL));
+    REFUSED(c.s, SPAR_ERR_STATE, "no advice", spar_trial_get_beam(t, c.b, NULL, NULL, NULL, NULL, NULL));
+    spar_trial_destroy(&t);
+    assert_null(t);
+    spar_trial_destroy(&t);
+    spar_trial_destroy(NULL);
     spar_session_destroy(&c.s);
 }
 
-/* Within a trial nothing may be made or saved; the trial goes on. */
+/* Each trial is compared with its own run, and each callback has its own context. */
+static int count_before(spar_session *s, double t, double dt, void *context) {
+    (void)s, (void)t, (void)dt;
+    ++*(int *)context;
+    return 0;
+}
+
+static void test_two_trials(void **state) {
+    (void)state;
+    scene c = {.load = 0.02};
+    spar_trial *t[2] = {NULL, NULL};
+    double motion = 7;
+    int counted = 0;
+    build(&c, 0);
+    for (int k = 0; k < 2; k++) {
+        OK(c.s, spar_trial_create(c.s, &t[k]));
+        OK(c.s, spar_trial_set_callbacks(t[k], count_before, &counted, press, &c));
+        OK(c.s, spar_trial_set_steps(t[k], k ? 0.005 : 0.01, k ? 16 : 8));
+        OK(c.s, spar_trial_run(t[k], 0));
+    }
+    assert_int_equal(counted, 24);
+    for (int k = 0; k < 2; k++) {
+        OK(c.s, spar_trial_run(t[k], 1));
+        OK(c.s, spar_trial_get_errors(t[k], &motion, NULL, NULL));
+        assert_true(motion == 0);
+    }
+    OK(c.s, spar_trial_set_steps(t[1], 0.01, 8));
+    OK(c.s, spar_trial_run(t[1], 1));
+    OK(c.s, spar_trial_get_errors(t[1], &motion, NULL, NULL));
+    assert_true(motion > 0);
+    c.fails = 7; /* what has been found stays */
+    assert_int_equal(spar_trial_run(t[1], 1), SPAR_ERR_USER);
+    c.fails = 0;
+    double again = 7;
+    OK(c.s, spar_trial_get_errors(t[1], &again, NULL, NULL));
+    assert_true(again == motion);
+    spar_trial_destroy(&t[0]);
+    spar_session_destroy(&c.s);
+}
+
+/* A trial that is destroyed in its own run ends it; the session goes on. */
+static int destroy_own(spar_session *s, double t, double dt, void *context) {
+    (void)s, (void)t, (void)dt;
+    spar_trial_destroy(context);
+    return 0;
+}
+
+static void test_destroyed_while_it_runs(void **state) {
+    (void)state;
+    scene c = {.load = 0.02};
+    spar_trial *t = NULL, *next = NULL;
+    build(&c, 0);
+    OK(c.s, spar_trial_create(c.s, &t));
+    OK(c.s, spar_trial_create(c.s, &next));
+    spar_trial *same = t;
+    OK(c.s, spar_trial_set_steps(t, 0.01, 8));
+    OK(c.s, spar_trial_set_callbacks(t, destroy_own, &t, press, &c));
+    OK(c.s, spar_trial_run(same, 0));
+    assert_null(t);
+    assert_ptr_equal(c.s->own->trials, next);
+    step(&c, 0.01, 2);
+    spar_session_destroy(&c.s);
+}
+
+static void test_bad_input(void **state) {
+    (void)state;
+    scene c = {.load = 0.02};
+    double report[TRY_COUNT], table[SPAR_ROW_COUNT][COLUMN_COUNT], advice[ADVICE_COUNT];
+    build(&c, 0);
+    assert_int_equal(trial_run(NULL, 0.01, 8, NULL, NULL, NULL, 0, report), SPAR_ERR_ARGUMENT);
+    assert_int_equal(trial_run(c.s, NAN, 8, NULL, NULL, NULL, 0, report), SPAR_ERR_ARGUMENT);
+    assert_int_equal(trial_run(c.s, 0.01, 12, NULL, NULL, NULL, 0, report), SPAR_ERR_ARGUMENT);
+    assert_non_null(strstr(spar_session_message(c.s), "multiple of 8"));
+    assert_int_equal(trial_run(c.s, 0.01, 0, NULL, NULL, NULL, 0, report), SPAR_ERR_ARGUMENT);
+    assert_int_equal(trial_run(c.s, 0.01, 8, NULL, NULL, NULL, 1, report), SPAR_ERR_STATE);
+    assert_int_equal(trial_advise(c.s, 0, 0.01, 8, 8 * 0.01, NULL, press, &c, advice), SPAR_ERR_ARGUMENT);
+    assert_int_equal(trial_advise(c.s, NAN, 0.01, 8, 8 * 0.01, NULL, press, &c, advice), SPAR_ERR_ARGUMENT);
+    assert_int_equal(trial_advise(c.s, 1e-2, 0.01, 8, 8 * 0.01, NULL, NULL, NULL, advice), SPAR_ERR_UNSUPPORTED);
+    assert_int_equal(trial_get_beam(c.b, NULL, NULL, NULL, NULL), SPAR_ERR_STATE);
+    OK(c.s, spar_step_begin(c.s, 0.01));
+    assert_int_equal(trial_run(c.s, 0.01, 8, NULL, NULL, NULL, 0, report), SPAR_ERR_STATE);
+    assert_int_equal(trial_report_effects(c.s, 0.01, 8, NULL, NULL, NULL, table[0]), SPAR_ERR_STATE);
+    spar_session_destroy(&c.s);
+}
+
+/* The settings of a trial that runs are fixed. */
+static void refuses_settings(spar_trial *t) {
+    spar_session *s = t->session;
+    REFUSED(s, SPAR_ERR_STATE, "the trial is running", spar_trial_set_steps(t, 0.01, 8));
+    REFUSED(s, SPAR_ERR_STATE, "the trial is running", spar_trial_set_callbacks(t, NULL, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "the trial is running", spar_trial_set_progress(t, NULL, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "the trial is running", spar_trial_set_goals(t, SPAR_GOAL_LOAD));
+    REFUSED(s, SPAR_ERR_STATE, "the trial is running", spar_trial_set_option(t, "dt", "keep"));
+    REFUSED(s, SPAR_ERR_STATE, "the trial is running", spar_trial_set_motion(t, 1, 0, 0));
+}
+
+/* Within a trial nothing may be made or saved, and its settings are fixed; the trial goes on. */
 static int meddle(spar_session *s, double t, double dt, void *context) {
     scene *c = context;
     spar_fluid *f = NULL;
     spar_member *m = NULL;
-    double report[SPAR_TRY_COUNT];
-    assert_int_equal(spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report), SPAR_ERR_STATE);
+    REFUSED(s, SPAR_ERR_STATE, "trial run is in progress", spar_trial_run(c->other, 0));
+    REFUSED(s, SPAR_ERR_STATE, "trial run is in progress", spar_trial_run(trial_of(s), 0));
+    refuses_settings(trial_of(s));
     assert_int_equal(spar_fluid_create(c->b, "late", &f), SPAR_ERR_STATE);
     assert_int_equal(spar_point_create(s, "late", NULL, NULL, &m), SPAR_ERR_STATE);
     assert_int_equal(spar_fluid_set_motion_nodes(c->f, 0, NULL), SPAR_ERR_STATE);
@@ -761,9 +892,12 @@ static int meddle(spar_session *s, double t, double dt, void *context) {
 static void test_meddling(void **state) {
     (void)state;
     scene c = {.load = 0.02};
-    double report[SPAR_TRY_COUNT];
+    double report[TRY_COUNT];
     build(&c, 0);
-    OK(c.s, spar_session_try(c.s, 0.01, 8, meddle, press, &c, 0, SPAR_TRY_COUNT, report));
+    (void)trial_of(c.s);
+    OK(c.s, spar_trial_create(c.s, &c.other));
+    OK(c.s, spar_trial_set_steps(c.other, 0.01, 8));
+    OK(c.s, trial_run(c.s, 0.01, 8, meddle, press, &c, 0, report));
     step(&c, 0.01, 2);
     spar_session_destroy(&c.s);
 }
@@ -779,7 +913,7 @@ static int leave(spar_session *s, double t, double dt, void *context) {
 
 static void test_destroyed_within(void **state) {
     (void)state;
-    double q[2][12 * 7], body[2][7], report[2][SPAR_TRY_COUNT];
+    double q[2][12 * 7], body[2][7], report[2][TRY_COUNT];
     for (int within = 0; within < 2; within++) {
         scene c = {.load = 0.02};
         build(&c, 1);
@@ -787,7 +921,7 @@ static void test_destroyed_within(void **state) {
         if (!within) {
             spar_fluid_destroy(&c.g);
         }
-        OK(c.s, spar_session_try(c.s, 0.01, 8, within ? leave : keep, press, &c, 0, SPAR_TRY_COUNT, report[within]));
+        OK(c.s, trial_run(c.s, 0.01, 8, within ? leave : keep, press, &c, 0, report[within]));
         assert_null(c.g);
         step(&c, 0.01, 3);
         OK(c.s, spar_member_get_motion(c.b, q[within], NULL, NULL));
@@ -796,7 +930,7 @@ static void test_destroyed_within(void **state) {
     }
     assert_memory_equal(q[0], q[1], sizeof q[0]);
     assert_memory_equal(body[0], body[1], sizeof body[0]);
-    assert_true(report[0][SPAR_TRY_SOLUTIONS] == report[1][SPAR_TRY_SOLUTIONS]);
+    assert_true(report[0][TRY_EVALUATIONS] == report[1][TRY_EVALUATIONS]);
 }
 
 /* What a callback asks and gives within trials: the residuals have the room that the host says, whatever scheme is
@@ -812,34 +946,12 @@ static int ask(spar_session *s, double t, double dt, int iteration, void *contex
 }
 
 /* A host made with a header that knows fewer entries, or more: what there is room for comes, the first ones first, and
-   the rest of the room is 0. Entries that a run's clock does not touch are the same bits whatever the room. */
+   the rest of the room is 0. */
 static void test_capacities(void **state) {
     (void)state;
-    enum { ROWS = SPAR_ROW_COUNT + 2, COLUMNS = SPAR_COLUMN_COUNT + 1 };
     scene c = {.load = 0.02};
-    double whole[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT], more[ROWS][COLUMNS], less[3][2] = {{0}, {0}, {7, 7}};
     build(&c, 0);
     step(&c, 0.01, 3);
-    OK(c.s, spar_session_report_effects(c.s, 0.01, 8, keep, press, &c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, whole[0]));
-    OK(c.s, spar_session_report_effects(c.s, 0.01, 8, keep, press, &c, ROWS, COLUMNS, more[0]));
-    OK(c.s, spar_session_report_effects(c.s, 0.01, 8, keep, press, &c, 2, 2, less[0]));
-    OK(c.s, spar_session_report_effects(c.s, 0.01, 8, keep, press, &c, 2, 2, NULL));
-    assert_true(whole[SPAR_ROW_INERTIA][SPAR_COLUMN_IN_FORCE] == 1 && whole[SPAR_ROW_INERTIA][SPAR_COLUMN_SIZE] > 0);
-    for (int r = 0; r < ROWS; r++) {
-        for (int k = 0; k < COLUMNS; k++) {
-            int known = r < SPAR_ROW_COUNT && k < SPAR_COLUMN_COUNT;
-            assert_true(known ? k == SPAR_COLUMN_SHARE || more[r][k] == whole[r][k] : more[r][k] == 0);
-        }
-    }
-    for (int r = 0; r < 3; r++) {
-        for (int k = 0; k < 2; k++) {
-            assert_true(less[r][k] == (r < 2 ? whole[r][k] : 7));
-        }
-    }
-    double wide[SPAR_TRY_COUNT + 1], narrow[2] = {7, 7};
-    OK(c.s, spar_session_try(c.s, 0.01, 8, keep, press, &c, 0, SPAR_TRY_COUNT + 1, wide));
-    OK(c.s, spar_session_try(c.s, 0.01, 8, keep, press, &c, 1, 1, narrow));
-    assert_true(wide[SPAR_TRY_SOLUTIONS] > 0 && wide[SPAR_TRY_COUNT] == 0 && narrow[0] == 0 && narrow[1] == 7);
     double energy[SPAR_ENERGY_COUNT + 1], first[2] = {7, 7}, audit[SPAR_AUDIT_COUNT + 1], count[7];
     OK(c.s, spar_member_get_energy(c.b, SPAR_ENERGY_COUNT + 1, energy));
     OK(c.s, spar_member_get_energy(c.b, 1, first));
@@ -854,27 +966,27 @@ static void test_capacities(void **state) {
 static void test_asking(void **state) {
     (void)state;
     scene c = {.load = 0.02};
-    double advice[SPAR_ADVICE_COUNT], report[SPAR_TRY_COUNT];
+    double advice[ADVICE_COUNT], report[TRY_COUNT];
     build(&c, 0);
     OK(c.s, spar_session_set_coupling(c.s, SPAR_COUPLING_EXPLICIT, 1e-9, 1e-6, 30));
-    OK(c.s, spar_session_advise(c.s, 0.1, 0.01, 8, 8 * 0.01, keep, ask, &c, SPAR_ADVICE_COUNT, advice));
-    OK(c.s, spar_session_try(c.s, 0.01, 8, keep, ask, &c, 0, SPAR_TRY_COUNT, report));
+    OK(c.s, trial_advise(c.s, 0.1, 0.01, 8, 8 * 0.01, keep, ask, &c, advice));
+    OK(c.s, trial_run(c.s, 0.01, 8, keep, ask, &c, 0, report));
     spar_session_destroy(&c.s);
 }
 
 /* No members, or members that nothing is to be found of: a point, an external beam. */
 static void test_nothing_to_try(void **state) {
     (void)state;
-    double report[SPAR_TRY_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    double report[TRY_COUNT], table[SPAR_ROW_COUNT][COLUMN_COUNT];
     spar_session *s = scene_session();
-    OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report));
+    OK(s, trial_run(s, 0.01, 8, NULL, NULL, NULL, 0, report));
     spar_member *p;
     OK(s, spar_point_create(s, "p", NULL, NULL, &p));
     OK(s, spar_member_commit(p));
-    OK(s, spar_session_report_effects(s, 0.01, 8, NULL, NULL, NULL, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
-    OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report));
-    OK(s, spar_session_try(s, 0.01, 8, NULL, NULL, NULL, 1, SPAR_TRY_COUNT, report));
-    assert_true(report[SPAR_TRY_MOTION] == 0);
+    OK(s, trial_report_effects(s, 0.01, 8, NULL, NULL, NULL, table[0]));
+    OK(s, trial_run(s, 0.01, 8, NULL, NULL, NULL, 0, report));
+    OK(s, trial_run(s, 0.01, 8, NULL, NULL, NULL, 1, report));
+    assert_true(report[TRY_MOTION] == 0);
     spar_session_destroy(&s);
 }
 
@@ -888,7 +1000,7 @@ static int idle(spar_session *s, double t, double dt, int iteration, void *conte
 static void test_loads_that_are_not_there(void **state) {
     (void)state;
     for (int why = SPAR_ERR_ARGUMENT; why <= SPAR_ERR_LIMIT; why++) {
-        double K[36], M[36], advice[SPAR_ADVICE_COUNT], report[SPAR_TRY_COUNT];
+        double K[36], M[36], advice[ADVICE_COUNT], report[TRY_COUNT];
         spar_fluid *f = NULL;
         spar_session *s = scene_session();
         scene_diagonal(K, 100, 100, 100, 100, 100, 100);
@@ -897,8 +1009,8 @@ static void test_loads_that_are_not_there(void **state) {
         OK(s, spar_member_commit(beam));
         OK(s, spar_fluid_create(beam, "air", &f));
         OK(s, spar_fluid_fail(f, why, "the solver has stopped"));
-        assert_int_equal(spar_session_try(s, 0.01, 8, NULL, idle, NULL, 0, SPAR_TRY_COUNT, report), why);
-        int status = spar_session_advise(s, 0.1, 0.01, 8, 8 * 0.01, NULL, idle, NULL, SPAR_ADVICE_COUNT, advice);
+        assert_int_equal(trial_run(s, 0.01, 8, NULL, idle, NULL, 0, report), why);
+        int status = trial_advise(s, 0.1, 0.01, 8, 8 * 0.01, NULL, idle, NULL, advice);
         assert_true(status == why || status == SPAR_ERR_NUMERIC);
         spar_session_destroy(&s);
     }
@@ -917,7 +1029,7 @@ static int whim(spar_session *s, double t, double dt, int iteration, void *conte
    below: a part of the tolerance, so that the first is above the second and the second below the tolerance. */
 static void test_fluid_that_does_not_repeat(void **state) {
     (void)state;
-    double K[36], M[36], advice[SPAR_ADVICE_COUNT], error, limit, tolerance = 0.03;
+    double K[36], M[36], advice[ADVICE_COUNT], error, limit, tolerance = 0.03;
     const double tip[3] = {1, 0, 0};
     spar_fluid *f = NULL;
     spar_session *s = scene_session();
@@ -928,8 +1040,7 @@ static void test_fluid_that_does_not_repeat(void **state) {
     OK(s, spar_fluid_create(beam, "air", &f));
     OK(s, spar_fluid_set_force_nodes(f, 1, tip));
     OK(s, spar_fluid_map(f));
-    assert_int_equal(spar_session_advise(s, tolerance, 0.01, 8, 8 * 0.01, NULL, whim, f, SPAR_ADVICE_COUNT, advice),
-                     SPAR_ERR_NUMERIC);
+    assert_int_equal(trial_advise(s, tolerance, 0.01, 8, 8 * 0.01, NULL, whim, f, advice), SPAR_ERR_NUMERIC);
     const char *says = strstr(spar_session_message(s), "the error of the reference is about ");
     assert_non_null(says);
     assert_int_equal(sscanf(says, "the error of the reference is about %lf, but must be below %lf", &error, &limit), 2);
@@ -956,32 +1067,32 @@ static int hear(spar_session *s, double done, double expected, void *context) {
 }
 
 static int ask_for(scene *c, int table, double *answer) {
-    return table ? spar_session_report_effects(c->s, 0.01, 8, keep, press, c, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, answer)
-                 : spar_session_advise(c->s, 0.05, 0.01, 16, 16 * 0.01, keep, press, c, SPAR_ADVICE_COUNT, answer);
+    return table ? trial_report_effects(c->s, 0.01, 8, keep, press, c, answer)
+                 : trial_advise(c->s, 0.05, 0.01, 16, 16 * 0.01, keep, press, c, answer);
 }
 
 /* Advice calls once ahead of each trial, with what has been spent so far: 0 at first, before the fluid is solved, and
-   less than SPAR_ADVICE_WORK at last; it says what it says without. advise.limit bounds what is expected. Effects: one
+   less than ADVICE_WORK at last; it says what it says without. advise.limit bounds what is expected. Effects: one
    run with all and six for each row in force, as which that many are expected in the end. Unset, nothing is called. */
 static void test_progress(void **state) {
     (void)state;
     scene c = {.load = 0.02, .drag = 0.01, .moments = 1};
     hearing h = {.c = &c};
-    double advice[SPAR_ADVICE_COUNT], quiet[SPAR_ADVICE_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    double advice[ADVICE_COUNT], quiet[ADVICE_COUNT], table[SPAR_ROW_COUNT][COLUMN_COUNT];
     build(&c, 0);
-    assert_int_equal(spar_session_set_progress(NULL, hear, &h), SPAR_ERR_ARGUMENT);
-    OK(c.s, spar_session_set_option(c.s, "advise.fluid_cost", "1e-6"));
+    assert_int_equal(spar_trial_set_progress(trial_of(NULL), hear, &h), SPAR_ERR_ARGUMENT);
+    OK(c.s, spar_trial_set_option(trial_of(c.s), "fluid_cost", "1e-6"));
     step(&c, 0.01, 3);
     OK(c.s, ask_for(&c, 0, quiet));
     c.solutions = 0;
-    OK(c.s, spar_session_set_progress(c.s, hear, &h));
+    OK(c.s, spar_trial_set_progress(trial_of(c.s), hear, &h));
     OK(c.s, ask_for(&c, 0, advice));
     assert_memory_equal(advice, quiet, sizeof quiet);
     assert_true(h.first == 0 && c.solutions > 0);
-    assert_true(h.calls == (int)advice[SPAR_ADVICE_TRIALS]);
-    assert_true(h.done > 0 && h.done < advice[SPAR_ADVICE_WORK]);
-    assert_true(h.most > 3 && h.most < 10 * advice[SPAR_ADVICE_WORK]);
-    OK(c.s, spar_session_set_option(c.s, "advise.limit", "2"));
+    assert_true(h.calls == (int)advice[ADVICE_RUNS]);
+    assert_true(h.done > 0 && h.done < advice[ADVICE_WORK]);
+    assert_true(h.most > 3 && h.most < 10 * advice[ADVICE_WORK]);
+    OK(c.s, spar_trial_set_option(trial_of(c.s), "limit", "2"));
     h = (hearing){.c = &c};
     assert_int_equal(ask_for(&c, 0, advice), SPAR_ERR_LIMIT);
     assert_true(h.calls > 1 && h.most == 2);
@@ -989,12 +1100,12 @@ static void test_progress(void **state) {
     OK(c.s, ask_for(&c, 1, table[0]));
     int rows = 0;
     for (int r = 0; r < SPAR_ROW_COUNT; r++) {
-        rows += table[r][SPAR_COLUMN_IN_FORCE] > 0;
+        rows += table[r][COLUMN_IN_FORCE] > 0;
     }
     assert_true(rows > 3);
     assert_int_equal(h.calls, 1 + 6 * rows);
     assert_true(h.done == 6 * rows && h.expected == 1 + 6 * rows);
-    OK(c.s, spar_session_set_progress(c.s, NULL, &h));
+    OK(c.s, spar_trial_set_progress(trial_of(c.s), NULL, &h));
     h.calls = 0;
     OK(c.s, ask_for(&c, 1, table[0]));
     assert_int_equal(h.calls, 0);
@@ -1008,11 +1119,11 @@ static void test_stopped_at_each_call(void **state) {
     for (int table = 0; table < 2; table++) {
         scene c = {.load = 0.02, .drag = 0.01};
         hearing h = {.c = &c};
-        double answer[SPAR_ROW_COUNT * SPAR_COLUMN_COUNT];
+        double answer[SPAR_ROW_COUNT * COLUMN_COUNT];
         long size;
         build(&c, 0);
         step(&c, 0.01, 2);
-        OK(c.s, spar_session_set_progress(c.s, hear, &h));
+        OK(c.s, spar_trial_set_progress(trial_of(c.s), hear, &h));
         OK(c.s, ask_for(&c, table, answer));
         int calls = h.calls;
         assert_true(calls > 6);
@@ -1022,8 +1133,8 @@ static void test_stopped_at_each_call(void **state) {
             h = (hearing){.c = &c, .stop = stop};
             answer[0] = 77;
             REFUSED(c.s, SPAR_ERR_USER,
-                    table ? "spar_session_report_effects: cancelled by the progress callback (5)"
-                          : "spar_session_advise: cancelled by the progress callback (5)",
+                    table ? "spar_trial_report_effects: cancelled by the progress callback (5)"
+                          : "spar_trial_advise: cancelled by the progress callback (5)",
                     ask_for(&c, table, answer));
             assert_int_equal(h.calls, stop);
             assert_true(answer[0] == 77);
@@ -1038,18 +1149,16 @@ static void test_stopped_at_each_call(void **state) {
     }
 }
 
-/* From within: the session can be read; what tries or saves is refused; another progress call holds for the next call.
- */
+/* From within: the session can be read; what tries or saves is refused, and so are settings of the trial. */
 static int meddle_between(spar_session *s, double done, double expected, void *context) {
     hearing *h = context;
-    double report[SPAR_TRY_COUNT], t = -1;
+    double t = -1;
     (void)done, (void)expected;
     OK(s, spar_session_get_time(s, &t, NULL, NULL));
     NEAR(t, 0.02, 1e-12);
-    REFUSED(s, SPAR_ERR_STATE, "trial run is in progress",
-            spar_session_try(s, 0.01, 8, keep, press, h->c, 0, SPAR_TRY_COUNT, report));
+    REFUSED(s, SPAR_ERR_STATE, "trial run is in progress", spar_trial_run(h->c->other, 0));
     assert_int_equal(spar_session_save(s, "trial_apply.spar"), SPAR_ERR_STATE);
-    OK(s, spar_session_set_progress(s, NULL, NULL));
+    refuses_settings(trial_of(s));
     h->calls++;
     return 0;
 }
@@ -1058,14 +1167,14 @@ static void test_progress_meddles(void **state) {
     (void)state;
     scene c = {.load = 0.02, .drag = 0.01};
     hearing h = {.c = &c};
-    double advice[SPAR_ADVICE_COUNT];
+    double advice[ADVICE_COUNT];
     build(&c, 0);
     step(&c, 0.01, 2);
-    OK(c.s, spar_session_set_progress(c.s, meddle_between, &h));
+    OK(c.s, spar_trial_set_progress(trial_of(c.s), meddle_between, &h));
+    OK(c.s, spar_trial_create(c.s, &c.other));
+    OK(c.s, spar_trial_set_steps(c.other, 0.01, 8));
     OK(c.s, ask_for(&c, 0, advice));
-    assert_int_equal(h.calls, (int)advice[SPAR_ADVICE_TRIALS]);
-    OK(c.s, ask_for(&c, 0, advice));
-    assert_int_equal(h.calls, (int)advice[SPAR_ADVICE_TRIALS]);
+    assert_int_equal(h.calls, (int)advice[ADVICE_RUNS]);
     spar_session_destroy(&c.s);
 }
 
@@ -1091,7 +1200,7 @@ static void test_trials_without_inertia(void **state) {
     (void)state;
     const int effects[] = {0, SPAR_EFFECT_INERTIA, SPAR_EFFECT_GRAVITY};
     for (int k = 0; k < 3; k++) {
-        double advice[SPAR_ADVICE_COUNT], table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+        double advice[ADVICE_COUNT], table[SPAR_ROW_COUNT][COLUMN_COUNT];
         const double tip[3] = {10, 0, 0}, g[3] = {0, 0, -1};
         spar_session *s = scene_session();
         spar_fluid *f = NULL;
@@ -1100,9 +1209,9 @@ static void test_trials_without_inertia(void **state) {
         OK(s, spar_fluid_create(b, "tip", &f));
         OK(s, spar_fluid_set_force_nodes(f, 1, tip));
         OK(s, spar_fluid_map(f));
-        OK(s, spar_session_report_effects(s, 0.01, 8, NULL, press_tip, f, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, table[0]));
+        OK(s, trial_report_effects(s, 0.01, 8, NULL, press_tip, f, table[0]));
         if (k == 0) {
-            OK(s, spar_session_advise(s, 0.1, 0.01, 8, 8 * 0.01, NULL, press_tip, f, SPAR_ADVICE_COUNT, advice));
+            OK(s, trial_advise(s, 0.1, 0.01, 8, 8 * 0.01, NULL, press_tip, f, advice));
         }
         spar_session_destroy(&s);
     }
@@ -1111,14 +1220,14 @@ static void test_trials_without_inertia(void **state) {
 /* A run kept for comparison is refused once the session has other members. */
 static void test_comparison_of_other_members(void **state) {
     (void)state;
-    double report[SPAR_TRY_COUNT];
+    double report[TRY_COUNT];
     spar_session *s = scene_session();
     scene_body(s, "one", (double[3]){0}, 2, (double[]){1, 1, 1});
-    OK(s, spar_session_try(s, 0.1, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report));
+    OK(s, trial_run(s, 0.1, 8, NULL, NULL, NULL, 0, report));
     scene_body(s, "two", (double[3]){0}, 2, (double[]){1, 1, 1});
-    assert_int_equal(spar_session_try(s, 0.1, 8, NULL, NULL, NULL, 1, SPAR_TRY_COUNT, report), SPAR_ERR_STATE);
-    OK(s, spar_session_try(s, 0.1, 8, NULL, NULL, NULL, 0, SPAR_TRY_COUNT, report));
-    OK(s, spar_session_try(s, 0.1, 8, NULL, NULL, NULL, 1, SPAR_TRY_COUNT, report));
+    assert_int_equal(trial_run(s, 0.1, 8, NULL, NULL, NULL, 1, report), SPAR_ERR_STATE);
+    OK(s, trial_run(s, 0.1, 8, NULL, NULL, NULL, 0, report));
+    OK(s, trial_run(s, 0.1, 8, NULL, NULL, NULL, 1, report));
     spar_session_destroy(&s);
 }
 
@@ -1139,6 +1248,9 @@ int main(void) {
         cmocka_unit_test(test_apply_in_a_run),
         cmocka_unit_test(test_apply_elements),
         cmocka_unit_test(test_elements_advised),
+        cmocka_unit_test(test_settings_of_a_trial),
+        cmocka_unit_test(test_two_trials),
+        cmocka_unit_test(test_destroyed_while_it_runs),
         cmocka_unit_test(test_bad_input),
         cmocka_unit_test(test_meddling),
         cmocka_unit_test(test_asking),

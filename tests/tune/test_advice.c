@@ -1,6 +1,7 @@
 /* Advice on the scenes of the benchmarks: the same every time, whatever else the machine does. */
 #define _DEFAULT_SOURCE
 #include "check.h"
+#include "trials.h"
 
 #include "member/structure.h"
 #include "scenes.h"
@@ -19,17 +20,17 @@ enum { ROTOR, GUST, WING, PLATE, BODY };
 
 /* All that is advised. */
 typedef struct answer {
-    double advice[SPAR_ADVICE_COUNT];
+    double advice[ADVICE_COUNT];
     int64_t modes;
-    int fidelity, nodes, points, unused;
+    int fidelity, elements, nodes, points;
 } answer;
 
 static void ask(scene_run *r, double tolerance, int64_t steps, answer *a) {
     spar_session *s = r->session;
     memset(a, 0, sizeof *a);
-    OK(s, spar_session_advise(s, tolerance, r->knobs.dt, steps, (double)steps * r->knobs.dt, r->before, r->solve,
-                              r->context, SPAR_ADVICE_COUNT, a->advice));
-    OK(s, spar_member_get_advice(r->member, &a->fidelity, &a->modes, &a->nodes, &a->points));
+    OK(s, trial_advise(s, tolerance, r->knobs.dt, steps, (double)steps * r->knobs.dt, r->before, r->solve, r->context,
+                       a->advice));
+    OK(s, spar_trial_get_beam(trial_of(s), r->member, &a->fidelity, &a->modes, &a->elements, &a->nodes, &a->points));
 }
 
 /* ---- the same every time ---- */
@@ -78,8 +79,8 @@ static void test_the_same_every_time(void **state) {
         if (k > 0 && memcmp(&first, &a, sizeof a) != 0) {
             quench(burner);
             fail_msg("run %d advises dt %.17g, cost %.17g, %d nodes; the first dt %.17g, cost %.17g, %d nodes", k,
-                     a.advice[SPAR_ADVICE_DT], a.advice[SPAR_ADVICE_COST], a.nodes, first.advice[SPAR_ADVICE_DT],
-                     first.advice[SPAR_ADVICE_COST], first.nodes);
+                     a.advice[ADVICE_DT], a.advice[ADVICE_COST], a.nodes, first.advice[ADVICE_DT],
+                     first.advice[ADVICE_COST], first.nodes);
         }
     }
     quench(burner);
@@ -96,9 +97,9 @@ static void test_slow_nodes(void **state) {
     scene_run *r = NULL;
     assert_int_equal(scene_build(rotor, &rotor->standard, &r), SPAR_OK);
     ask(r, 1e-3, STEPS, &a);
-    print_message("%g trials cost %.3g; %d nodes, said %.3g\n", a.advice[SPAR_ADVICE_TRIALS],
-                  a.advice[SPAR_ADVICE_WORK], a.nodes, a.advice[SPAR_ADVICE_ERROR]);
-    assert_true(a.advice[SPAR_ADVICE_WORK] <= MOST);
+    print_message("%g trials cost %.3g; %d nodes, said %.3g\n", a.advice[ADVICE_RUNS], a.advice[ADVICE_WORK], a.nodes,
+                  a.advice[ADVICE_ERROR]);
+    assert_true(a.advice[ADVICE_WORK] <= MOST);
     scene_destroy(&r);
 }
 
@@ -108,39 +109,36 @@ static void test_slow_nodes(void **state) {
  * what the host says goes before both. A clock off by 60 % near the middle of a class changes nothing. */
 static void test_weight_of_a_fluid(void **state) {
     (void)state;
-    spar_session *s = NULL;
-    OK(NULL, spar_session_create(&s));
+    double given = 0;
     const double second = spari_rule.price.second, nodes = 5000, each = nodes / second;
     static const struct {
         double times, counts;
     } rows[] = {{0, 1},     {1e-9, 1},   {0.4, 1},     {1.6, 1},       {29.9, 1},      {30.1, 900},
                 {500, 900}, {1500, 900}, {26900, 900}, {27100, 8.1e5}, {1.3e6, 8.1e5}, {7e8, 7.29e8}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        NEAR(spari_cost_solution(s, nodes, 7 * rows[k].times * each, 7), rows[k].counts * nodes, 0.5);
+        NEAR(spari_cost_solution(given, nodes, 7 * rows[k].times * each, 7), rows[k].counts * nodes, 0.5);
     }
     for (int k = 0; k < 24; k++) { /* within a factor of two of 30 and of 27000 it is said that it may be either */
         double times = 2.1 * pow(2, k), near = fabs(log(times / 30)), next = fabs(log(times / 27000));
-        int wavers = spari_cost_wavers(s, nodes, 7 * times * each, 7);
+        int wavers = spari_cost_wavers(given, nodes, 7 * times * each, 7);
         assert_int_equal(wavers, near < log(2) || next < log(2) || fabs(log(times / 2.43e7)) < log(2));
     }
-    assert_int_equal(spari_cost_wavers(s, nodes, 0, 0), 0);
-    NEAR(spari_cost_solution(s, nodes, 0, 0), nodes, 0);
-    NEAR(spari_cost_solution(s, 0, 0, 0), spari_rule.price.fluid, 0); /* no nodes: not for nothing */
-    OK(s, spar_session_set_option(s, "advise.fluid_cost", "2.5e-6"));
-    NEAR(spari_cost_solution(s, nodes, 1e9, 7), 2.5e-6 * second, 0.5);
-    assert_int_equal(spari_cost_wavers(s, nodes, 7 * 30 * each, 7), 0); /* what the host says does not waver */
-    assert_int_equal(spar_session_set_option(s, "advise.fluid_cost", "-1"), SPAR_ERR_ARGUMENT);
-    spar_session_destroy(&s);
+    assert_int_equal(spari_cost_wavers(given, nodes, 0, 0), 0);
+    NEAR(spari_cost_solution(given, nodes, 0, 0), nodes, 0);
+    NEAR(spari_cost_solution(given, 0, 0, 0), spari_rule.price.fluid, 0); /* no nodes: not for nothing */
+    given = 2.5e-6;
+    NEAR(spari_cost_solution(given, nodes, 1e9, 7), 2.5e-6 * second, 0.5);
+    assert_int_equal(spari_cost_wavers(given, nodes, 7 * 30 * each, 7), 0); /* what the host says does not waver */
 }
 
 /* The scene as one builds it to what is advised. */
 static knobs by_hand(const scene *of, const answer *a) {
     knobs k = of->standard;
-    k.dt = a->advice[SPAR_ADVICE_DT], k.substeps = (int)a->advice[SPAR_ADVICE_SUBSTEPS];
-    k.scheme = (int)a->advice[SPAR_ADVICE_SCHEME], k.tolerance = a->advice[SPAR_ADVICE_COUPLING_RTOL];
-    k.predictor = (int)a->advice[SPAR_ADVICE_PREDICTOR], k.newton = a->advice[SPAR_ADVICE_NEWTON_RTOL];
+    k.dt = a->advice[ADVICE_DT], k.substeps = (int)a->advice[ADVICE_SUBSTEPS];
+    k.scheme = (int)a->advice[ADVICE_SCHEME], k.tolerance = a->advice[ADVICE_COUPLING_RTOL];
+    k.predictor = (int)a->advice[ADVICE_PREDICTOR], k.newton = a->advice[ADVICE_NEWTON_RTOL];
     k.fidelity = a->fidelity, k.modes = a->modes, k.nodes = a->nodes;
-    k.elements = (int)a->advice[SPAR_ADVICE_ELEMENTS];
+    k.elements = a->elements;
     k.points = a->points, k.rule = a->points > 0 ? SPAR_QUADRATURE_SECTIONS : k.rule;
     return k;
 }
@@ -170,7 +168,7 @@ static void test_dear_and_cheap_fluids(void **state) {
     for (int dear = 0; dear < 2; dear++) {
         scene_run *r;
         assert_int_equal(scene_build(wing, &wing->standard, &r), SPAR_OK);
-        OK(r->session, spar_session_set_option(r->session, "advise.fluid_cost", dear ? "3600" : "1e-9"));
+        OK(r->session, spar_trial_set_option(trial_of(r->session), "fluid_cost", dear ? "3600" : "1e-9"));
         ask(r, 3e-2, steps, &a[dear]);
         scene_destroy(&r);
         taken[dear] = solutions(wing, &a[dear], (double)steps * wing->standard.dt);
@@ -221,8 +219,8 @@ static void test_one_call_is_as_by_hand(void **state) {
         scene_run *r;
         assert_int_equal(scene_build(of, &of->standard, &r), SPAR_OK);
         ask(r, 3e-2, 16, &a);
-        OK(r->session, spar_session_apply_advice(r->session, &dt));
-        assert_true(dt == a.advice[SPAR_ADVICE_DT]);
+        OK(r->session, spar_trial_apply(trial_of(r->session), &dt));
+        assert_true(dt == a.advice[ADVICE_DT]);
         OK(r->session, r->solve(r->session, 0, 0, 0, r->context)); /* the loads at t^0, as scene_build gives them */
         follow(r, dt, STEPS, &c[0]);
         scene_destroy(&r);
@@ -237,8 +235,8 @@ static void test_one_call_is_as_by_hand(void **state) {
         }
         print_message("%s: dt %.3g, scheme %g, fidelity %d of %lld modes, %d/%d nodes: tips %.2g apart, of %.3g m; "
                       "solutions %lld, %lld; cost %.6g, %.6g\n",
-                      of->name, dt, a.advice[SPAR_ADVICE_SCHEME], a.fidelity, (long long)a.modes, a.nodes, a.points,
-                      off, size, (long long)c[0].solutions, (long long)c[1].solutions, c[0].cost, c[1].cost);
+                      of->name, dt, a.advice[ADVICE_SCHEME], a.fidelity, (long long)a.modes, a.nodes, a.points, off,
+                      size, (long long)c[0].solutions, (long long)c[1].solutions, c[0].cost, c[1].cost);
         assert_true(size > 0);
         NEAR(off, 0, 1e-8 * size);
         assert_int_equal(c[0].solutions, c[1].solutions);

@@ -1,6 +1,7 @@
 /* Advice over ten times the trials: what was asked for is kept, and what trials cannot tell is refused. The oracle is
    the same scene in its first modes, in steps of a millisecond. */
 #include "scene.h"
+#include "trials.h"
 
 #include "trial/run_record.h"
 
@@ -87,14 +88,13 @@ static void test_kept_over_ten_times(void **state) {
     for (int k = 0; k < 2; k++) {
         const pile scene = {.load = 0.1, .rate = 2.1, .drag = 0.03};
         pile p = scene;
-        double advice[SPAR_ADVICE_COUNT], dt;
+        double advice[ADVICE_COUNT], dt;
         build(&p, SPAR_FIDELITY_EXACT, 0);
-        OK(p.s, spar_session_advise(p.s, tolerance[k], step, STEPS, 10 * STEPS * step, NULL, waves, &p,
-                                    SPAR_ADVICE_COUNT, advice));
-        OK(p.s, spar_session_apply_advice(p.s, &dt));
+        OK(p.s, trial_advise(p.s, tolerance[k], step, STEPS, 10 * STEPS * step, NULL, waves, &p, advice));
+        OK(p.s, spar_trial_apply(trial_of(p.s), &dt));
         double error = error_of(&p, dt, 10 * STEPS * step, &scene);
         print_message("asked for %g: dt %.4g, said %.3g, is %.3g over ten times the trials; asking cost %.3g runs\n",
-                      tolerance[k], dt, advice[SPAR_ADVICE_ERROR], error, advice[SPAR_ADVICE_WORK]);
+                      tolerance[k], dt, advice[ADVICE_ERROR], error, advice[ADVICE_WORK]);
         assert_true(error <= tolerance[k]);
         assert_true(dt <= 0.65 / 10); /* ten steps in a period of its own */
         spar_session_destroy(&p.s);
@@ -106,13 +106,13 @@ static void test_kept_over_ten_times(void **state) {
 static void test_trials_too_short(void **state) {
     (void)state;
     pile p = {.load = 0.1, .rate = 0.2, .drag = 0.3};
-    double advice[SPAR_ADVICE_COUNT] = {7};
+    double advice[ADVICE_COUNT] = {7};
     build(&p, SPAR_FIDELITY_EXACT, 0);
     REFUSED(p.s, SPAR_ERR_NUMERIC, "give more steps, or the length 7.2",
-            spar_session_advise(p.s, 3e-2, 0.02, 360, 72, NULL, waves, &p, SPAR_ADVICE_COUNT, advice));
+            trial_advise(p.s, 3e-2, 0.02, 360, 72, NULL, waves, &p, advice));
     assert_true(advice[0] == 7);
-    REFUSED(p.s, SPAR_ERR_STATE, "no advice", spar_member_get_advice(p.b, NULL, NULL, NULL, NULL));
-    OK(p.s, spar_session_advise(p.s, 3e-2, 0.02, 360, 7.2, NULL, waves, &p, SPAR_ADVICE_COUNT, advice));
+    REFUSED(p.s, SPAR_ERR_STATE, "no advice", trial_get_beam(p.b, NULL, NULL, NULL, NULL));
+    OK(p.s, trial_advise(p.s, 3e-2, 0.02, 360, 7.2, NULL, waves, &p, advice));
     spar_session_destroy(&p.s);
 }
 
@@ -120,11 +120,11 @@ static void test_bad_lengths(void **state) {
     (void)state;
     static const double bad[] = {0, -1, NAN, INFINITY};
     pile p = {.load = 0.1, .rate = 2.1};
-    double advice[SPAR_ADVICE_COUNT];
+    double advice[ADVICE_COUNT];
     build(&p, SPAR_FIDELITY_EXACT, 0);
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         REFUSED(p.s, SPAR_ERR_ARGUMENT, "the length is ",
-                spar_session_advise(p.s, 3e-2, 0.02, 8, bad[k], NULL, waves, &p, SPAR_ADVICE_COUNT, advice));
+                trial_advise(p.s, 3e-2, 0.02, 8, bad[k], NULL, waves, &p, advice));
     }
     spar_session_destroy(&p.s);
 }
@@ -151,13 +151,12 @@ static void test_periods_are_resolved(void **state) {
     enum { STEPS = 256 };
     for (int k = 0; k < 2; k++) {
         pile p = {.load = 0.05, .rate = 1, .damping = 0.05};
-        double advice[SPAR_ADVICE_COUNT];
+        double advice[ADVICE_COUNT];
         build(&p, SPAR_FIDELITY_EXACT, 0);
-        OK(p.s, spar_session_advise(p.s, tolerance[k], step, STEPS, STEPS * step, NULL, swell, &p, SPAR_ADVICE_COUNT,
-                                    advice));
-        dt[k] = advice[SPAR_ADVICE_DT];
+        OK(p.s, trial_advise(p.s, tolerance[k], step, STEPS, STEPS * step, NULL, swell, &p, advice));
+        dt[k] = advice[ADVICE_DT];
         print_message("asked for %g: %.3g steps in the shortest period, said %.3g\n", tolerance[k], period / dt[k],
-                      advice[SPAR_ADVICE_ERROR]);
+                      advice[ADVICE_ERROR]);
         spar_session_destroy(&p.s);
     }
     assert_true(period / dt[0] >= 10 * (1 - 1e-9));
@@ -229,11 +228,11 @@ static void float_cylinder(cylinder *c) {
 static void test_phase_adds_up(void **state) {
     (void)state;
     const double tolerance = 6e-2, step = 0.05, length = 10 * 128 * step;
-    double advice[SPAR_ADVICE_COUNT], dt, z = 0, v = 0, difference = 0, size = 0;
+    double advice[ADVICE_COUNT], dt, z = 0, v = 0, difference = 0, size = 0;
     cylinder c = {0};
     float_cylinder(&c);
-    OK(c.s, spar_session_advise(c.s, tolerance, step, 128, length, NULL, flow, &c, SPAR_ADVICE_COUNT, advice));
-    OK(c.s, spar_session_apply_advice(c.s, &dt));
+    OK(c.s, trial_advise(c.s, tolerance, step, 128, length, NULL, flow, &c, advice));
+    OK(c.s, spar_trial_apply(trial_of(c.s), &dt));
     for (int i = 0; (i + 1) * dt <= length * (1 + 1e-9); i++) {
         enum { PARTS = 4 };
         double q[7];
@@ -247,8 +246,8 @@ static void test_phase_adds_up(void **state) {
     }
     double error = sqrt(difference / size);
     print_message("asked for %g: dt %.4g, said %.3g, is %.3g over ten times the trials\n", tolerance, dt,
-                  advice[SPAR_ADVICE_ERROR], error);
-    assert_true(error <= advice[SPAR_ADVICE_ERROR] && advice[SPAR_ADVICE_ERROR] <= tolerance);
+                  advice[ADVICE_ERROR], error);
+    assert_true(error <= advice[ADVICE_ERROR] && advice[ADVICE_ERROR] <= tolerance);
     assert_int_equal(c.told, 0); /* the waves beat with it at the start */
     spar_session_destroy(&c.s);
 }
@@ -260,11 +259,10 @@ static void test_growth_is_told(void **state) {
     drive = 1;
     for (int k = 0; k < 2; k++) {
         const double step = 0.05, longer = k == 0 ? 10 : 1;
-        double advice[SPAR_ADVICE_COUNT];
+        double advice[ADVICE_COUNT];
         cylinder c = {0};
         float_cylinder(&c);
-        OK(c.s,
-           spar_session_advise(c.s, 0.1, step, 128, longer * 128 * step, NULL, flow, &c, SPAR_ADVICE_COUNT, advice));
+        OK(c.s, trial_advise(c.s, 0.1, step, 128, longer * 128 * step, NULL, flow, &c, advice));
         assert_int_equal(c.told, k == 0);
         spar_session_destroy(&c.s);
     }
@@ -316,7 +314,7 @@ static int air(spar_session *s, double t, double dt, int iteration, void *contex
     (void)t, (void)dt, (void)iteration;
     int status = spar_fluid_pull_motion(r->f, 1, NULL, r->v);
     const double force[3] = {-0.05 * r->v[0], 0, -0.05 * r->v[2]}, power = force[0] * r->v[0] + force[2] * r->v[2];
-    status = status ? status : spar_session_push_numbers(s, 1, &power);
+    status = status ? status : spar_trial_push_numbers(trial_of(s), 1, &power);
     return status ? status : spar_fluid_push_forces(r->f, force, NULL);
 }
 
@@ -393,14 +391,14 @@ static void test_goals(void **state) {
     }
     spar_session_destroy(&r.s);
     for (int g = 0; g < 4; g++) {
-        double advice[SPAR_ADVICE_COUNT];
+        double advice[ADVICE_COUNT];
         hang(&r);
-        OK(r.s, spar_session_set_goal(r.s, goals[g]));
-        OK(r.s, spar_session_advise(r.s, tolerance, step, 160, 1.6, NULL, air, &r, SPAR_ADVICE_COUNT, advice));
-        OK(r.s, spar_session_apply_advice(r.s, &dt[g]));
+        OK(r.s, spar_trial_set_goals(trial_of(r.s), goals[g]));
+        OK(r.s, trial_advise(r.s, tolerance, step, 160, 1.6, NULL, air, &r, advice));
+        OK(r.s, spar_trial_apply(trial_of(r.s), &dt[g]));
         swing(&r, dt[g], truth, off[g]);
         print_message("goals %d: dt %.4g, asking cost %.3g; motion off by %.2g, root's force by %.2g, power by %.2g\n",
-                      goals[g], dt[g], advice[SPAR_ADVICE_WORK], off[g][OF_MOTION], off[g][OF_ROOT], off[g][OF_NUMBER]);
+                      goals[g], dt[g], advice[ADVICE_WORK], off[g][OF_MOTION], off[g][OF_ROOT], off[g][OF_NUMBER]);
         spar_session_destroy(&r.s);
     }
     assert_true(off[0][OF_MOTION] <= tolerance);
@@ -415,17 +413,17 @@ static void test_goal_input(void **state) {
     const double x[2] = {1, NAN};
     int goals = 0;
     spar_session *s = scene_session();
-    OK(s, spar_session_get_goal(s, &goals));
+    OK(s, spar_trial_get_goals(trial_of(s), &goals));
     assert_int_equal(goals, SPAR_GOAL_MOTION);
-    REFUSED(s, SPAR_ERR_ARGUMENT, "SPAR_GOAL_", spar_session_set_goal(s, 0));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "SPAR_GOAL_", spar_session_set_goal(s, 32));
-    OK(s, spar_session_set_goal(s, SPAR_GOAL_LOAD | SPAR_GOAL_NUMBERS));
-    OK(s, spar_session_get_goal(s, &goals));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "SPAR_GOAL_", spar_trial_set_goals(trial_of(s), 0));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "SPAR_GOAL_", spar_trial_set_goals(trial_of(s), 32));
+    OK(s, spar_trial_set_goals(trial_of(s), SPAR_GOAL_LOAD | SPAR_GOAL_NUMBERS));
+    OK(s, spar_trial_get_goals(trial_of(s), &goals));
     assert_int_equal(goals, SPAR_GOAL_LOAD | SPAR_GOAL_NUMBERS);
-    OK(s, spar_session_push_numbers(s, 0, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "number 1 is nan", spar_session_push_numbers(s, 2, x));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "give 0 to 32", spar_session_push_numbers(s, 33, x));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "without an array", spar_session_push_numbers(s, 1, NULL));
+    OK(s, spar_trial_push_numbers(trial_of(s), 0, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "number 1 is nan", spar_trial_push_numbers(trial_of(s), 2, x));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "give 0 to 32", spar_trial_push_numbers(trial_of(s), 33, x));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "without an array", spar_trial_push_numbers(trial_of(s), 1, NULL));
     spar_session_destroy(&s);
 }
 
@@ -435,16 +433,16 @@ static void test_goal_input(void **state) {
 static void test_limit(void **state) {
     (void)state;
     pile p = {.load = 0.1, .rate = 2.1, .drag = 0.3};
-    double advice[SPAR_ADVICE_COUNT] = {7};
+    double advice[ADVICE_COUNT] = {7};
     build(&p, SPAR_FIDELITY_EXACT, 0);
-    OK(p.s, spar_session_set_option(p.s, "advise.limit", "1.5"));
-    REFUSED(p.s, SPAR_ERR_LIMIT, "advise.limit allows 1.5",
-            spar_session_advise(p.s, 3e-2, 0.02, 160, 3.2, NULL, waves, &p, SPAR_ADVICE_COUNT, advice));
+    OK(p.s, spar_trial_set_option(trial_of(p.s), "limit", "1.5"));
+    REFUSED(p.s, SPAR_ERR_LIMIT, "the option limit allows 1.5",
+            trial_advise(p.s, 3e-2, 0.02, 160, 3.2, NULL, waves, &p, advice));
     assert_true(advice[0] == 7);
     NEAR(tip(&p), 0, 0);
-    OK(p.s, spar_session_set_option(p.s, "advise.limit", "15"));
-    OK(p.s, spar_session_advise(p.s, 3e-2, 0.02, 160, 3.2, NULL, waves, &p, SPAR_ADVICE_COUNT, advice));
-    assert_true(advice[SPAR_ADVICE_WORK] > 1.5 && advice[SPAR_ADVICE_WORK] < 16);
+    OK(p.s, spar_trial_set_option(trial_of(p.s), "limit", "15"));
+    OK(p.s, trial_advise(p.s, 3e-2, 0.02, 160, 3.2, NULL, waves, &p, advice));
+    assert_true(advice[ADVICE_WORK] > 1.5 && advice[ADVICE_WORK] < 16);
     spar_session_destroy(&p.s);
 }
 
@@ -455,26 +453,23 @@ static void test_pays_for_itself(void **state) {
     (void)state;
     const double tolerance = 3e-2, step = 0.02;
     enum { STEPS = 304 };
-    double advice[SPAR_ADVICE_COUNT], again[SPAR_ADVICE_COUNT], dt;
+    double advice[ADVICE_COUNT], again[ADVICE_COUNT], dt;
     pile p = {.load = 0.1, .rate = 2.1, .drag = 0.03};
     build(&p, SPAR_FIDELITY_EXACT, 0);
-    OK(p.s, spar_session_advise(p.s, tolerance, step / 4, 4 * STEPS, 10 * STEPS * step, NULL, waves, &p,
-                                SPAR_ADVICE_COUNT, advice));
-    double showing = advice[SPAR_ADVICE_SHOWING], finding = advice[SPAR_ADVICE_WORK] - showing;
-    print_message("with dt/4: cost %.3g, showing %.3g, finding %.3g, saves %.3g, left out %g\n",
-                  advice[SPAR_ADVICE_COST], showing, finding, advice[SPAR_ADVICE_SAVES], advice[SPAR_ADVICE_SKIPPED]);
-    assert_true(advice[SPAR_ADVICE_PRESENT_ERROR] <= tolerance);
-    assert_true(showing > 1 && finding >= 0 && finding <= 0.5 * showing && advice[SPAR_ADVICE_SAVES] > 0);
-    assert_true(advice[SPAR_ADVICE_WORK] <= 0.6 * 10 * (1 - advice[SPAR_ADVICE_COST]));
-    OK(p.s, spar_session_apply_advice(p.s, &dt));
+    OK(p.s, trial_advise(p.s, tolerance, step / 4, 4 * STEPS, 10 * STEPS * step, NULL, waves, &p, advice));
+    double showing = advice[ADVICE_SHOWN], finding = advice[ADVICE_WORK] - showing;
+    print_message("with dt/4: cost %.3g, showing %.3g, finding %.3g, saves %.3g, left out %g\n", advice[ADVICE_COST],
+                  showing, finding, advice[ADVICE_SAVED], advice[ADVICE_SKIPPED]);
+    assert_true(advice[ADVICE_PRESENT_ERROR] <= tolerance);
+    assert_true(showing > 1 && finding >= 0 && finding <= 0.5 * showing && advice[ADVICE_SAVED] > 0);
+    assert_true(advice[ADVICE_WORK] <= 0.6 * 10 * (1 - advice[ADVICE_COST]));
+    OK(p.s, spar_trial_apply(trial_of(p.s), &dt));
     int64_t steps = 8 * (int64_t)floor(STEPS * step / dt / 8);
-    OK(p.s,
-       spar_session_advise(p.s, tolerance, dt, steps, 10 * STEPS * step, NULL, waves, &p, SPAR_ADVICE_COUNT, again));
-    finding = again[SPAR_ADVICE_WORK] - again[SPAR_ADVICE_SHOWING];
-    print_message("as advised: cost %.3g, showing %.3g, finding %.3g, saves %.3g, left out %g\n",
-                  again[SPAR_ADVICE_COST], again[SPAR_ADVICE_SHOWING], finding, again[SPAR_ADVICE_SAVES],
-                  again[SPAR_ADVICE_SKIPPED]);
-    assert_true(again[SPAR_ADVICE_SKIPPED] >= 2); /* the look at what there is already, and trials */
+    OK(p.s, trial_advise(p.s, tolerance, dt, steps, 10 * STEPS * step, NULL, waves, &p, again));
+    finding = again[ADVICE_WORK] - again[ADVICE_SHOWN];
+    print_message("as advised: cost %.3g, showing %.3g, finding %.3g, saves %.3g, left out %g\n", again[ADVICE_COST],
+                  again[ADVICE_SHOWN], finding, again[ADVICE_SAVED], again[ADVICE_SKIPPED]);
+    assert_true(again[ADVICE_SKIPPED] >= 2); /* the look at what there is already, and trials */
     spar_session_destroy(&p.s);
 }
 

@@ -1,5 +1,6 @@
 /* What asking for advice costs, beside what it saves: counted in trials, the same on every machine. */
 #include "scene.h"
+#include "trials.h"
 
 #include "trial/run_record.h"
 
@@ -111,17 +112,17 @@ static void test_asking_pays(void **state) {
         int far_off; /* at least */
     } asks[] = {{wing, 432, 3e-2, 2}, {wing, 432, 1e-2, 2}, {portal, 216, 3e-2, 3}};
     for (size_t k = 0; k < sizeof asks / sizeof *asks; k++) {
-        double advice[SPAR_ADVICE_COUNT];
+        double advice[ADVICE_COUNT];
         const double dt = 0.02, tolerance = asks[k].tolerance;
         air w = asks[k].build();
         OK(w.s, spar_session_set_log(w.s, count_far_off, &w));
-        OK(w.s, spar_session_advise(w.s, tolerance, dt, asks[k].steps, TIMES * dt * (double)asks[k].steps, NULL, blow,
-                                    &w, SPAR_ADVICE_COUNT, advice));
-        double saves = TIMES * (1 - advice[SPAR_ADVICE_COST]);
+        OK(w.s,
+           trial_advise(w.s, tolerance, dt, asks[k].steps, TIMES * dt * (double)asks[k].steps, NULL, blow, &w, advice));
+        double saves = TIMES * (1 - advice[ADVICE_COST]);
         print_message("asked for %g: cost %.3g, asking %.3g, saves %.3g, %d of %g trials were far off\n", tolerance,
-                      advice[SPAR_ADVICE_COST], advice[SPAR_ADVICE_WORK], saves, w.far_off, advice[SPAR_ADVICE_TRIALS]);
-        assert_true(advice[SPAR_ADVICE_PRESENT_ERROR] <= 0.9 * tolerance);
-        assert_true(advice[SPAR_ADVICE_WORK] <= saves);
+                      advice[ADVICE_COST], advice[ADVICE_WORK], saves, w.far_off, advice[ADVICE_RUNS]);
+        assert_true(advice[ADVICE_PRESENT_ERROR] <= 0.9 * tolerance);
+        assert_true(advice[ADVICE_WORK] <= saves);
         assert_true(w.far_off >= asks[k].far_off);
         spar_session_destroy(&w.s);
     }

@@ -1,7 +1,8 @@
 /* Stability of periodic states: Mathieu's equation x'' + (a - 2 q cos 2 t) x = 0 by a pendulum of length 1 whose pivot
    goes up and down with an amplitude of q / 2, at 2 rad/s, under the gravity a (upside down where a < 0). Between its
    characteristic numbers a_k and b_k (Abramowitz & Stegun, table 20.1, q = 1) it grows or does not; found by bisection
-   of spar_session_solve_floquet's growth rate, at two dt, right to dt^2. */
+   of spar_trial_solve_floquet's growth rate, at two dt, right to dt^2. */
+#include "trials.h"
 #include "verification.h"
 
 static const double pi = 3.14159265358979323846;
@@ -45,7 +46,7 @@ static void swing(double a, double q, int steps, double value[2]) {
         OK(s, shake(s, i * dt, dt, &p));
         scene_run(s, dt, 1);
     }
-    OK(s, spar_session_solve_floquet(s, dt, steps, 0, shake, NULL, &p, 1, 1, value));
+    OK(s, trial_floquet(s, dt, steps, 0, shake, NULL, &p, 1, 1, value));
     spar_session_destroy(&s);
 }
 

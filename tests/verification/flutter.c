@@ -3,6 +3,7 @@
    rad/s by Theodorsen's function. The sixteen-metre wing, straight: Patil, Hodges & Cesnik, J. Aircraft 38
    (2001), 32.21 m/s at 22.61 rad/s, divergence at 37.29 m/s. Beside these, strips with the same lags on exact bending
    and torsion modes of a uniform cantilever, whose determinant is solved here. */
+#include "trials.h"
 #include "verification.h"
 
 #include <complex.h>
@@ -80,7 +81,7 @@ static void release(wing *w) {
 static double complex by_trials(wing *w, double dt, int64_t memory, int64_t modes, double complex shift) {
     const double at[2] = {creal(shift), cimag(shift)};
     double value[2];
-    OK(w->s, spar_session_solve_eigenvalues(w->s, dt, memory, 0, NULL, blow, w, modes, 1, at, value, 0, NULL, NULL));
+    OK(w->s, trial_eigenvalues(w->s, dt, memory, 0, NULL, blow, w, modes, 1, at, value, 0, NULL, NULL));
     return value[0] + value[1] * I;
 }
 

@@ -260,22 +260,23 @@ void do_spar_aero_get_loads(call *c) {
 
 void do_spar_aero_report_effects(call *c) {
     live_aero *a = arg_aero(c);
+    live_trial *t = arg_trial(c);
     if (a->a && a->orphan) {
         return;
     }
-    int own = a->a && a->session >= 0 && !odd(c); /* else any session */
-    live_session *l = own ? c->w->session + a->session : arg_session(c);
-    text(c, own ? ", its session" : "");
-    c->session = l->s ? (int)(l - c->w->session) : -1;
-    double dt = arg_dt(c);
-    int64_t steps = odd(c) ? 4 - 8 * below(c, 3) : 8;
-    text(c, ", %lld", (long long)steps);
-    spar_fluid_solver solve;
-    spar_before_step before;
-    host *h = arg_host(c, &solve, &before);
-    int64_t rows = arg_count(c, 0, SPAR_AERO_ROW_COUNT + 2), columns = arg_count(c, 0, SPAR_COLUMN_COUNT + 2);
-    double *table = OUT_OR_NULL(c, length(rows) * length(columns));
+    c->session = t->t ? t->session : -1;
     a->busy++;
-    RUN(c, spar_aero_report_effects(a->a, l->s, dt, steps, before, solve, h, rows, columns, table));
+    t->busy++;
+    RUN(c, spar_aero_report_effects(a->a, t->t));
+    t->busy--;
     a->busy--;
+}
+
+void do_spar_aero_get_effect(call *c) {
+    live_aero *a = arg_aero(c);
+    int row = arg_int(c, 0, SPAR_AERO_ROW_COUNT - 1);
+    int *in_force = arg_out(c, sizeof *in_force, 1), *fails = arg_out(c, sizeof *fails, 1);
+    double *size = OUT_OR_NULL(c, 1), *motion = OUT_OR_NULL(c, 1), *reaction = OUT_OR_NULL(c, 1),
+           *share = OUT_OR_NULL(c, 1);
+    RUN(c, spar_aero_get_effect(a->a, row, in_force, fails, size, motion, reaction, share));
 }

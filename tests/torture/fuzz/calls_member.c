@@ -529,14 +529,6 @@ void do_spar_member_solve_eigenvalues(call *c) {
     RUN(c, spar_member_solve_eigenvalues(m->m, n, shift, eigenvalue, shapes, frame));
 }
 
-void do_spar_member_get_advice(call *c) {
-    live_member *m = arg_member(c, -1);
-    int *fidelity = arg_out(c, sizeof(int), 1), *nodes = arg_out(c, sizeof(int), 1),
-        *points = arg_out(c, sizeof(int), 1);
-    int64_t *modes = arg_out(c, sizeof(int64_t), 1);
-    RUN(c, spar_member_get_advice(m->m, fidelity, modes, nodes, points));
-}
-
 void do_spar_member_write_vtk(call *c) {
     live_member *m = arg_member(c, -1);
     const char *path = arg_path(c, chance(c, 50) ? ".vtu" : ".vtp");

@@ -1,4 +1,4 @@
-/* The calls on sessions, steps, trials. */
+/* The calls on sessions and steps. */
 #include "fuzz.h"
 
 #include <limits.h>
@@ -96,6 +96,11 @@ static void forget_session(world *w, int session) {
     for (int i = 0; i < FLUIDS; i++) {
         if (w->fluid[i].session == session) {
             w->fluid[i].f = NULL;
+        }
+    }
+    for (int i = 0; i < TRIALS; i++) {
+        if (w->trial[i].session == session) {
+            w->trial[i].t = NULL;
         }
     }
     for (int i = 0; i < AEROS; i++) {
@@ -205,25 +210,6 @@ void do_spar_session_set_reproducible(call *c) {
     RUN(c, spar_session_set_reproducible(l->s, on));
 }
 
-void do_spar_session_set_goal(call *c) {
-    live_session *l = arg_session(c);
-    int goals = arg_int(c, 1, 31);
-    RUN(c, spar_session_set_goal(l->s, goals));
-}
-
-void do_spar_session_get_goal(call *c) {
-    live_session *l = arg_session(c);
-    int *goals = arg_out(c, (int64_t)sizeof *goals, 1);
-    RUN(c, spar_session_get_goal(l->s, goals));
-}
-
-void do_spar_session_push_numbers(call *c) {
-    live_session *l = arg_session(c);
-    int64_t n = arg_count(c, 0, 32);
-    double *numbers = arg_reals(c, length(n), -10, 10);
-    RUN(c, spar_session_push_numbers(l->s, n, numbers));
-}
-
 void do_spar_session_set_threads(call *c) {
     live_session *l = arg_session(c);
     int threads = arg_int(c, 1, 3);
@@ -231,23 +217,16 @@ void do_spar_session_set_threads(call *c) {
 }
 
 void do_spar_session_set_option(call *c) {
-    static const char *const keys[] = {
-        "coupling.unconverged", "advise.dt",        "advise.nodes",    "advise.fidelity",      "advise.coupling",
-        "coupling.columns",     "coupling.reuse",   "coupling.filter", "coupling.motion_atol", "coupling.motion_rtol",
-        "advise.fluid_cost",    "advise.limit",     "coupling.norm",   "coupling.patience",    "coupling.estimate",
-        "newton.stop",          "coupling.unstable"};
+    static const char *const keys[] = {"coupling.unconverged", "coupling.columns",     "coupling.reuse",
+                                       "coupling.filter",      "coupling.motion_atol", "coupling.motion_rtol",
+                                       "coupling.norm",        "coupling.patience",    "coupling.estimate",
+                                       "newton.stop",          "coupling.unstable"};
     static const char *const values[][3] = {{"error", "accept", "accept"},
-                                            {"vary", "keep", "keep"},
-                                            {"vary", "keep", "keep"},
-                                            {"vary", "keep", "keep"},
-                                            {"vary", "keep", "keep"},
                                             {"1", "3", "30"},
                                             {"0", "1", "5"},
                                             {"0", "1e-4", "0.5"},
                                             {"0", "1e-12", "1e-3"},
                                             {"0", "1e-6", "0.1"},
-                                            {"0", "1", "1e-6"},
-                                            {"0", "1000", "0.5"},
                                             {"motion", "loads", "loads"},
                                             {"1", "3", "1000000"},
                                             {"off", "on", "on"},
@@ -351,11 +330,11 @@ void do_spar_session_sum_balance(call *c) {
 }
 
 void do_spar_session_get_option(call *c) {
-    static const char *const keys[] = {"coupling.unconverged", "newton.stop",   "coupling.columns",
-                                       "coupling.filter",      "coupling.norm", "coupling.patience",
-                                       "advise.fluid_cost",    "no.option",     "spar%n"};
+    static const char *const keys[] = {
+        "coupling.unconverged", "newton.stop",       "coupling.columns", "coupling.filter",
+        "coupling.norm",        "coupling.patience", "no.option",        "spar%n"};
     live_session *l = arg_session(c);
-    const char *key = odd(c) ? NULL : keys[below(c, 9)];
+    const char *key = odd(c) ? NULL : keys[below(c, 8)];
     int64_t n = arg_count(c, 0, 30);
     char *into = arg_out(c, length(n), 1);
     text(c, ", \"%s\"", key ? key : "NULL");
@@ -402,13 +381,6 @@ void do_spar_session_set_log(call *c) {
     if (c->status == SPAR_OK) {
         l->logs = on;
     }
-}
-
-void do_spar_session_set_progress(call *c) {
-    live_session *l = arg_session(c);
-    int on = chance(c, 70);
-    text(c, on ? ", progress" : ", NULL");
-    RUN(c, spar_session_set_progress(l->s, on ? fuzz_progress : NULL, l));
 }
 
 /* ---- steps ---- */
@@ -529,89 +501,4 @@ void do_spar_vtk_series_add(call *c) {
     int part = arg_int(c, 0, 3);
     const char *file = arg_name(c, "v");
     RUN(c, spar_vtk_series_add(path, time, part, file));
-}
-
-/* ---- what if ---- */
-
-static int64_t arg_steps(call *c) {
-    static const int64_t list[] = {0, -8, 7, 12, -1, INT64_MIN, INT64_MAX, 1};
-    int64_t steps = odd(c) ? list[below(c, 8)] : chance(c, 90) ? 8 : 16;
-    text(c, ", %lld", (long long)steps);
-    return steps;
-}
-
-void do_spar_session_try(call *c) {
-    live_session *l = arg_session(c);
-    double dt = arg_dt(c);
-    int64_t steps = arg_steps(c);
-    spar_fluid_solver solve;
-    spar_before_step before;
-    host *h = arg_host(c, &solve, &before);
-    int compare = arg_int(c, 0, 1);
-    int64_t n = arg_count(c, 0, SPAR_TRY_COUNT + 2);
-    double *report = OUT_OR_NULL(c, length(n));
-    RUN(c, spar_session_try(l->s, dt, steps, before, solve, h, compare, n, report));
-}
-
-void do_spar_session_report_effects(call *c) {
-    live_session *l = arg_session(c);
-    double dt = arg_dt(c);
-    int64_t steps = arg_steps(c);
-    spar_fluid_solver solve;
-    spar_before_step before;
-    host *h = arg_host(c, &solve, &before);
-    int64_t rows = arg_count(c, 0, SPAR_ROW_COUNT + 2), columns = arg_count(c, 0, SPAR_COLUMN_COUNT + 2);
-    double *table = OUT_OR_NULL(c, length(rows) * length(columns));
-    RUN(c, spar_session_report_effects(l->s, dt, steps, before, solve, h, rows, columns, table));
-}
-
-void do_spar_session_solve_eigenvalues(call *c) {
-    live_session *l = arg_session(c);
-    double dt = arg_dt(c);
-    int64_t memory = arg_count(c, 0, 12);
-    double amplitude = arg_real(c, 0, 0.05);
-    spar_fluid_solver solve;
-    spar_before_step before;
-    host *h = arg_host(c, &solve, &before);
-    int64_t modes = arg_count(c, 1, 6), n = arg_count(c, 0, 6), room = length(n);
-    double *shift = arg_reals_or_null(c, 2, -30, 100), *eigenvalue = OUT(c, 2 * room), *frame = OUT_OR_NULL(c, 3);
-    RUN(c, spar_session_solve_eigenvalues(l->s, dt, memory, amplitude, before, solve, h, modes, n, shift, eigenvalue, 0,
-                                          NULL, frame));
-}
-
-void do_spar_session_solve_floquet(call *c) {
-    live_session *l = arg_session(c);
-    double dt = arg_dt(c);
-    int64_t steps = arg_count(c, 0, 6);
-    double amplitude = arg_real(c, 0, 0.05);
-    spar_fluid_solver solve;
-    spar_before_step before;
-    host *h = arg_host(c, &solve, &before);
-    int64_t modes = arg_count(c, 1, 3), n = arg_count(c, 0, 3), room = length(n);
-    double *eigenvalue = OUT(c, 2 * room);
-    RUN(c, spar_session_solve_floquet(l->s, dt, steps, amplitude, before, solve, h, modes, n, eigenvalue));
-}
-
-void do_spar_session_advise(call *c) {
-    live_session *l = arg_session(c);
-    double tolerance = arg_real(c, 0.01, 0.5), dt = arg_dt(c), run = arg_real(c, 1e-3, 0.02);
-    int64_t steps = arg_steps(c);
-    spar_fluid_solver solve;
-    spar_before_step before;
-    host *h = arg_host(c, &solve, &before);
-    int64_t n = arg_count(c, 0, SPAR_ADVICE_COUNT + 2);
-    double *advice = OUT_OR_NULL(c, length(n));
-    RUN(c, spar_session_advise(l->s, tolerance, dt, steps, run, before, solve, h, n, advice));
-}
-
-void do_spar_session_apply_advice(call *c) {
-    live_session *l = arg_session(c);
-    double *dt = OUT_OR_NULL(c, 1);
-    RUN(c, spar_session_apply_advice(l->s, dt));
-    for (int i = 0; i < MEMBERS; i++) { /* beams may have other nodes now */
-        live_member *m = c->w->member + i;
-        if (m->m && m->kind == KIND_BEAM && c->w->session[m->session].s == l->s) {
-            (void)spar_beam_get_elements(m->m, &m->elements, &m->per_element);
-        }
-    }
 }

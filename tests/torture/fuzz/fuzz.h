@@ -48,9 +48,6 @@ enum {
     CALL(spar_session_set_predictor, 60, FUZZ_CHANGES)                                                                 \
     CALL(spar_session_set_coupling, 100, FUZZ_CHANGES)                                                                 \
     CALL(spar_session_set_relaxation, 40, FUZZ_CHANGES)                                                                \
-    CALL(spar_session_set_goal, 20, FUZZ_CHANGES)                                                                      \
-    CALL(spar_session_get_goal, 20, FUZZ_PURE)                                                                         \
-    CALL(spar_session_push_numbers, 20, FUZZ_CHANGES)                                                                  \
     CALL(spar_session_set_reproducible, 20, FUZZ_CHANGES)                                                              \
     CALL(spar_session_set_threads, 20, FUZZ_CHANGES)                                                                   \
     CALL(spar_session_set_tolerance, 60, FUZZ_CHANGES)                                                                 \
@@ -91,7 +88,6 @@ enum {
     CALL(spar_session_get_report, 60, FUZZ_PURE)                                                                       \
     CALL(spar_session_get_time, 40, FUZZ_PURE)                                                                         \
     CALL(spar_session_set_log, 40, FUZZ_CHANGES)                                                                       \
-    CALL(spar_session_set_progress, 10, FUZZ_CHANGES)                                                                  \
     CALL(spar_point_create, 25, FUZZ_CHANGES)                                                                          \
     CALL(spar_rigid_create, 25, FUZZ_CHANGES)                                                                          \
     CALL(spar_beam_create, 30, FUZZ_CHANGES)                                                                           \
@@ -139,7 +135,6 @@ enum {
     CALL(spar_member_solve_static, 30, FUZZ_CHANGES)                                                                   \
     CALL(spar_member_solve_modes, 60, FUZZ_PURE)                                                                       \
     CALL(spar_member_solve_eigenvalues, 60, FUZZ_PURE)                                                                 \
-    CALL(spar_member_get_advice, 80, FUZZ_PURE)                                                                        \
     CALL(spar_member_write_vtk, 10, FUZZ_PURE)                                                                         \
     CALL(spar_joint_create, 80, FUZZ_CHANGES)                                                                          \
     CALL(spar_link_create, 40, FUZZ_CHANGES)                                                                           \
@@ -210,12 +205,33 @@ enum {
     CALL(spar_session_solve_static, 60, FUZZ_CHANGES)                                                                  \
     CALL(spar_session_save, 20, FUZZ_PURE)                                                                             \
     CALL(spar_session_load, 20, FUZZ_CHANGES)                                                                          \
-    CALL(spar_session_try, 14, FUZZ_TRIAL)                                                                             \
-    CALL(spar_session_solve_eigenvalues, 5, FUZZ_TRIAL)                                                                \
-    CALL(spar_session_solve_floquet, 3, FUZZ_TRIAL)                                                                    \
-    CALL(spar_session_report_effects, 5, FUZZ_TRIAL)                                                                   \
-    CALL(spar_session_advise, 1, FUZZ_TRIAL)                                                                           \
-    CALL(spar_session_apply_advice, 10, FUZZ_CHANGES)                                                                  \
+    CALL(spar_trial_create, 25, FUZZ_PURE)                                                                             \
+    CALL(spar_trial_destroy, 5, FUZZ_TEXT)                                                                             \
+    CALL(spar_trial_get_session, 10, FUZZ_PURE)                                                                        \
+    CALL(spar_trial_set_steps, 60, FUZZ_PURE)                                                                          \
+    CALL(spar_trial_get_steps, 10, FUZZ_PURE)                                                                          \
+    CALL(spar_trial_set_callbacks, 40, FUZZ_PURE)                                                                      \
+    CALL(spar_trial_set_progress, 10, FUZZ_PURE)                                                                       \
+    CALL(spar_trial_set_goals, 20, FUZZ_PURE)                                                                          \
+    CALL(spar_trial_get_goals, 10, FUZZ_PURE)                                                                          \
+    CALL(spar_trial_push_numbers, 20, FUZZ_PURE)                                                                       \
+    CALL(spar_trial_set_option, 40, FUZZ_PURE)                                                                         \
+    CALL(spar_trial_get_option, 20, FUZZ_PURE)                                                                         \
+    CALL(spar_trial_set_motion, 20, FUZZ_PURE)                                                                         \
+    CALL(spar_trial_get_motion, 10, FUZZ_PURE)                                                                         \
+    CALL(spar_trial_run, 16, FUZZ_TRIAL)                                                                               \
+    CALL(spar_trial_get_errors, 20, FUZZ_PURE)                                                                         \
+    CALL(spar_trial_get_cost, 20, FUZZ_PURE)                                                                           \
+    CALL(spar_trial_report_effects, 5, FUZZ_TRIAL)                                                                     \
+    CALL(spar_trial_get_effect, 30, FUZZ_PURE)                                                                         \
+    CALL(spar_trial_solve_eigenvalues, 8, FUZZ_TRIAL)                                                                  \
+    CALL(spar_trial_solve_floquet, 5, FUZZ_TRIAL)                                                                      \
+    CALL(spar_trial_advise, 1, FUZZ_TRIAL)                                                                             \
+    CALL(spar_trial_get_settings, 20, FUZZ_PURE)                                                                       \
+    CALL(spar_trial_get_beam, 20, FUZZ_PURE)                                                                           \
+    CALL(spar_trial_get_outcome, 20, FUZZ_PURE)                                                                        \
+    CALL(spar_trial_get_search, 20, FUZZ_PURE)                                                                         \
+    CALL(spar_trial_apply, 10, FUZZ_CHANGES)                                                                           \
     CALL(spar_vtk_series_add, 10, FUZZ_PURE)                                                                           \
     CALL(spar_polar_create, 25, FUZZ_CHANGES)                                                                          \
     CALL(spar_polar_set_interpolation, 25, FUZZ_CHANGES)                                                               \
@@ -238,6 +254,7 @@ enum {
     CALL(spar_aero_get_flags, 30, FUZZ_PURE)                                                                           \
     CALL(spar_aero_get_chord, 30, FUZZ_PURE)                                                                           \
     CALL(spar_aero_get_loads, 30, FUZZ_PURE)                                                                           \
+    CALL(spar_aero_get_effect, 30, FUZZ_PURE)                                                                          \
     CALL(spar_aero_report_effects, 4, FUZZ_TRIAL)                                                                      \
     CALL(damage_file, 6, FUZZ_HARNESS)
 
@@ -277,7 +294,7 @@ uint64_t fuzz_next(uint64_t *state);
 
 /* ---- the world: what is alive ---- */
 
-enum { SESSIONS = 3, MEMBERS = 10, JOINTS = 6, FLUIDS = 8, POLARS = 3, AEROS = 3, BLADES = 3 };
+enum { SESSIONS = 3, MEMBERS = 10, JOINTS = 6, FLUIDS = 8, POLARS = 3, AEROS = 3, BLADES = 3, TRIALS = 4 };
 enum { KIND_POINT, KIND_RIGID, KIND_BEAM };
 typedef struct live_session {
     spar_session *s;
@@ -307,12 +324,24 @@ typedef struct live_aero {
     int session, blades, fluid[BLADES], orphan, busy;
     int64_t n, made;
 } live_aero;
+typedef struct host {
+    struct world *w;
+    int session, mode, fail_at, count;
+    uint64_t seed;
+} host;
+typedef struct live_trial {
+    spar_trial *t;
+    int session, busy; /* busy: a call of it is under way, which reads host */
+    host host;         /* of its callbacks */
+    int64_t made;
+} live_trial;
 typedef struct world {
     live_session session[SESSIONS];
     live_member member[MEMBERS];
     live_joint joint[JOINTS];
     live_fluid fluid[FLUIDS];
     live_aero aero[AEROS];
+    live_trial trial[TRIALS];
     spar_polar *polar[POLARS];
     int64_t clock; /* counts what is made */
     int depth;     /* of calls within calls */
@@ -397,6 +426,7 @@ enum { JOINT_ANY, JOINT_PLAIN, JOINT_LINE, JOINT_DRIVEN };
 live_joint *arg_joint(call *c, int kind); /* .j NULL: none */
 live_fluid *arg_fluid(call *c);
 live_aero *arg_aero(call *c);
+live_trial *arg_trial(call *c);
 spar_polar *arg_polar(call *c);
 int arg_int(call *c, int lo, int hi);
 int arg_flags(call *c, int all);
@@ -426,11 +456,6 @@ int64_t fluid_room(const live_fluid *f, int which);
 
 /* ---- the host's callbacks ---- */
 
-typedef struct host {
-    world *w;
-    int session, mode, fail_at, count;
-    uint64_t seed;
-} host;
 enum { HOST_PLAIN, HOST_FAILS, HOST_CHAOS, HOST_NOTHING, HOST_MODES };
 host *arg_host(call *c, spar_fluid_solver *solve, spar_before_step *before);
 int fuzz_progress(spar_session *session, double done, double expected, void *context);

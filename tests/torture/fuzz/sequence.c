@@ -115,17 +115,45 @@ static void step(writer *w) {
     part(w, 10, CALL_spar_session_solve_static);
 }
 
+/* Small motions about an equilibrium, which a static solution mostly is. */
+static void small_motions(writer *w) {
+    part(w, 80, CALL_spar_session_solve_static);
+    for (int k = 0; k < 3; k++) {
+        part(w, 100, CALL_spar_trial_set_motion);
+        part(w, 90, CALL_spar_trial_solve_eigenvalues);
+    }
+    part(w, 80, CALL_spar_trial_solve_floquet);
+}
+
 /* Advice makes hundreds of runs, a report dozens: they are asked for seldom, or all the time is theirs. */
 static void what_if(writer *w) {
     int k = roll(w, 1000);
     put(w, CALL_spar_step_reject, STYLE_GOOD | STYLE_RECENT);
+    part(w, 100, CALL_spar_trial_create);
+    part(w, 98, CALL_spar_trial_set_steps);
+    part(w, 90, CALL_spar_trial_set_callbacks);
+    part(w, 30, CALL_spar_trial_set_option);
+    if (k >= 550 && k < 800) {
+        small_motions(w);
+        return;
+    }
     part(w, 100,
-         k < 500   ? CALL_spar_session_try
-         : k < 550 ? CALL_spar_session_report_effects
+         k < 500   ? CALL_spar_trial_run
+         : k < 550 ? CALL_spar_trial_report_effects
          : k < 950 ? CALL_spar_aero_report_effects
-                   : CALL_spar_session_advise);
-    part(w, 50, k < 500 ? CALL_spar_session_try : CALL_spar_member_get_advice);
-    part(w, k < 950 ? 5 : 80, CALL_spar_session_apply_advice);
+                   : CALL_spar_trial_advise);
+    part(w, 50,
+         k < 500   ? CALL_spar_trial_run
+         : k < 550 ? CALL_spar_trial_get_effect
+         : k < 950 ? CALL_spar_aero_get_effect
+                   : CALL_spar_trial_get_beam);
+    if (k >= 950) {
+        put(w, CALL_spar_trial_get_settings, STYLE_GOOD | STYLE_RECENT);
+        put(w, CALL_spar_trial_get_outcome, STYLE_GOOD | STYLE_RECENT);
+        put(w, CALL_spar_trial_get_search, STYLE_GOOD | STYLE_RECENT);
+        put(w, CALL_spar_trial_get_beam, STYLE_GOOD | STYLE_RECENT);
+    }
+    part(w, k < 950 ? 5 : 95, CALL_spar_trial_apply);
     part(w, 50, CALL_spar_step);
 }
 

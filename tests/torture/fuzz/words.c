@@ -443,6 +443,22 @@ live_aero *arg_aero(call *c) {
     return found;
 }
 
+live_trial *arg_trial(call *c) {
+    static live_trial none;
+    live_trial *found = &none;
+    int first = below(c, TRIALS);
+    for (int k = 0; k < TRIALS; k++) {
+        live_trial *t = c->w->trial + (first + k) % TRIALS;
+        if (t->t && (!found->t || ((c->style & STYLE_RECENT) && t->made > found->made))) {
+            found = t;
+        }
+    }
+    found = odd(c) ? &none : found;
+    whom(c, found->t ? found->session : -1);
+    text(c, found->t ? "%st%d" : "%sNULL", comma(c), (int)(found - c->w->trial));
+    return found;
+}
+
 spar_polar *arg_polar(call *c) {
     int k = below(c, POLARS);
     for (int i = 0; i < POLARS && !c->w->polar[k]; i++) {

@@ -209,7 +209,7 @@ static int names(const call *c, const char *message) {
     int trial = (c->what->flags & FUZZ_TRIAL) != 0;
     return strstr(message, c->what->name) ||
            ((c->index == CALL_spar_step || c->index == CALL_spar_step_adaptive) && strstr(message, "spar_step_")) ||
-           (trial && (strstr(message, "spar_step") || strstr(message, "spar_session_try")));
+           (trial && (strstr(message, "spar_step") || strstr(message, "spar_trial_run")));
 }
 
 /* So many characters twice in a message: the same said twice. */

@@ -260,19 +260,11 @@ static void go(host *h, int steps) {
 
 static void settings(spar_session *s) {
     static const double g[3] = {0, 0, -2};
-    static const char *const option[][2] = {{"newton.stop", "balanced"},
-                                            {"coupling.unconverged", "accept"},
-                                            {"coupling.unstable", "accept"},
-                                            {"coupling.patience", "100"},
-                                            {"coupling.norm", "motion"},
-                                            {"coupling.estimate", "on"},
-                                            {"coupling.columns", "10"},
-                                            {"coupling.reuse", "2"},
-                                            {"coupling.filter", "1e-5"},
-                                            {"coupling.motion_rtol", "1e-3"},
-                                            {"advise.fluid_cost", "0"},
-                                            {"advise.limit", "0"},
-                                            {"advise.coupling", "vary"}};
+    static const char *const option[][2] = {{"newton.stop", "balanced"},     {"coupling.unconverged", "accept"},
+                                            {"coupling.unstable", "accept"}, {"coupling.patience", "100"},
+                                            {"coupling.norm", "motion"},     {"coupling.estimate", "on"},
+                                            {"coupling.columns", "10"},      {"coupling.reuse", "2"},
+                                            {"coupling.filter", "1e-5"},     {"coupling.motion_rtol", "1e-3"}};
     CALL(spar_session_set_gravity, s, g);
     CALL(spar_session_set_integrator, s, 0.8, 1);
     CALL(spar_session_set_newton, s, 1e-10, 1e-9, 30);
@@ -280,8 +272,6 @@ static void settings(spar_session *s) {
     CALL(spar_session_set_tolerance, s, 1e9, 0);
     CALL(spar_session_set_coupling, s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-7, 40);
     CALL(spar_session_set_relaxation, s, 0.9);
-    CALL(spar_session_set_goal, s, SPAR_GOAL_MOTION | SPAR_GOAL_SECTION | SPAR_GOAL_NUMBERS);
-    CALL(spar_session_push_numbers, s, 1, (const double[]){1});
     if (run.ranks == 1) {
         CALL(spar_session_set_reproducible, s, 1);
         CALL(spar_session_set_threads, s, 3);
@@ -351,7 +341,6 @@ static void read_back(const spar_session *s, const spar_member *b, const spar_fl
     CALL(spar_session_get_coupling, s, whole + 0, number + 8, number + 16, whole + 24);
     CALL(spar_session_get_relaxation, s, number + 0);
     CALL(spar_session_get_reproducible, s, whole + 0);
-    CALL(spar_session_get_goal, s, whole + 0);
     CALL(spar_session_get_threads, s, whole + 0);
     CALL(spar_member_get_placement, b, number + 0, number + 8);
     CALL(spar_member_get_root, b, whole + 0);
@@ -755,15 +744,38 @@ static void describe_trial(host *h) {
     }
 }
 
+static int hear_progress(spar_session *session, double done, double expected, void *context) {
+    (void)session, (void)context;
+    return expected < done;
+}
+
+/* A trial of the host, with steps and callbacks. */
+static spar_trial *begin_trial(host *of, double dt, int64_t steps, spar_fluid_solver fluid) {
+    spar_trial *trial = NULL;
+    CALL(spar_trial_create, of->session, &trial);
+    CALL(spar_trial_set_steps, trial, dt, steps);
+    CALL(spar_trial_set_callbacks, trial, before_step, of, fluid, of);
+    return trial;
+}
+
 static void act_try(void) {
     host h = {0};
-    double report[SPAR_TRY_COUNT];
+    double error[3], seconds;
+    int64_t evaluations;
     describe_trial(&h);
     go(&h, 1);
+    spar_trial *trial = begin_trial(&h, 0.02, 8, solve);
     for (int compare = 0; compare < 2; compare++) {
-        CALL(spar_session_try, h.session, 0.02, 8, before_step, solve, &h, compare, SPAR_TRY_COUNT, report);
-        note(report, 3 * sizeof *report);
+        CALL(spar_trial_run, trial, compare);
+        CALL(spar_trial_get_errors, trial, error, error + 1, error + 2);
+        CALL(spar_trial_get_cost, trial, &seconds, &evaluations);
+        note(error, sizeof error);
     }
+    spar_session *of = NULL;
+    int64_t steps;
+    CALL(spar_trial_get_session, trial, &of);
+    CALL(spar_trial_get_steps, trial, &seconds, &steps);
+    PLAIN(spar_trial_destroy, &trial);
     double next = 0.02, taken;
     CALL(spar_session_set_tolerance, h.session, 1, 0.1);
     CALL(spar_step_adaptive, h.session, &next, before_step, solve, &h, &taken);
@@ -805,46 +817,58 @@ static void act_flutter(void) {
     CALL(spar_member_commit, b);
     h.fluid[0] = begin_fluid(b, "air", 10, &h.n[0], h.x[0]);
     CALL(spar_fluid_map, h.fluid[0]);
+    spar_trial *trial = begin_trial(&h, 0.02, 8, solve_flutter);
     for (int64_t memory = 0; memory < 7; memory += 6) {
         CALL(spar_fluid_set_states, h.fluid[0], memory > 0 ? 3 : 0);
-        CALL(spar_session_solve_eigenvalues, s, 0.02, memory, 0, before_step, solve_flutter, &h, 3, 2, shift,
-             &value[0][0], 0, NULL, frame);
+        CALL(spar_trial_set_motion, trial, 3, 0, memory);
+        CALL(spar_trial_solve_eigenvalues, trial, 2, shift, &value[0][0], 0, NULL, frame);
         note(value, sizeof value);
     }
-    CALL(spar_session_solve_floquet, s, 0.02, 8, 0, before_step, solve_flutter, &h, 2, 2, &value[0][0]);
+    int64_t modes, memory;
+    double amplitude;
+    CALL(spar_trial_set_motion, trial, 2, 0, 0);
+    CALL(spar_trial_get_motion, trial, &modes, &amplitude, &memory);
+    CALL(spar_trial_solve_floquet, trial, 2, &value[0][0]);
     note(value, sizeof value);
     end_session(&h.session);
 }
 
-static int hear_progress(spar_session *session, double done, double expected, void *context) {
-    (void)session, (void)context;
-    return expected < done;
-}
-
 static void act_effects(void) {
     host h = {0};
-    double table[SPAR_ROW_COUNT][SPAR_COLUMN_COUNT];
+    int in_force, fails;
+    double x[4];
     describe_trial(&h);
-    CALL(spar_session_set_progress, h.session, hear_progress, NULL);
-    CALL(spar_session_report_effects, h.session, 0.02, 8, before_step, solve, &h, SPAR_ROW_COUNT, SPAR_COLUMN_COUNT,
-         table[0]);
+    spar_trial *trial = begin_trial(&h, 0.02, 8, solve);
+    CALL(spar_trial_set_progress, trial, hear_progress, NULL);
+    CALL(spar_trial_report_effects, trial);
+    CALL(spar_trial_get_effect, trial, SPAR_ROW_INERTIA, &in_force, &fails, x, x + 1, x + 2, x + 3);
+    note(x, 3 * sizeof *x);
     go(&h, 1);
     end_session(&h.session);
 }
 
 static void act_advise(void) {
     host h = {0};
-    double advice[SPAR_ADVICE_COUNT], dt;
-    int fidelity, nodes, points;
-    int64_t modes;
+    double dt, x[4];
+    int fidelity, elements, nodes, points, goals, substeps, scheme, predictor, fails;
+    int64_t modes, runs, skipped;
+    char text[32];
     describe_trial(&h);
-    CALL(spar_session_set_option, h.session, "advise.dt", "keep");
-    CALL(spar_session_set_option, h.session, "advise.coupling", "keep");
-    CALL(spar_session_set_progress, h.session, hear_progress, NULL);
-    CALL(spar_session_advise, h.session, 0.5, 0.01, 8, 0.08, before_step, solve, &h, SPAR_ADVICE_COUNT, advice);
-    CALL(spar_member_get_advice, h.member[0], &fidelity, &modes, &nodes, &points);
+    spar_trial *trial = begin_trial(&h, 0.01, 8, solve);
+    CALL(spar_trial_set_option, trial, "dt", "keep");
+    CALL(spar_trial_set_option, trial, "coupling", "keep");
+    CALL(spar_trial_get_option, trial, "coupling", sizeof text, text);
+    CALL(spar_trial_set_goals, trial, SPAR_GOAL_MOTION | SPAR_GOAL_SECTION | SPAR_GOAL_NUMBERS);
+    CALL(spar_trial_get_goals, trial, &goals);
+    CALL(spar_trial_push_numbers, trial, 1, (const double[]){1});
+    CALL(spar_trial_set_progress, trial, hear_progress, NULL);
+    CALL(spar_trial_advise, trial, 0.5, 0.08);
+    CALL(spar_trial_get_beam, trial, h.member[0], &fidelity, &modes, &elements, &nodes, &points);
+    CALL(spar_trial_get_settings, trial, &dt, &substeps, &scheme, x, &predictor, x + 1);
+    CALL(spar_trial_get_outcome, trial, x, x + 1, &fails, x + 2);
+    CALL(spar_trial_get_search, trial, &runs, &skipped, x, x + 1, x + 2);
     go(&h, 1);
-    CALL(spar_session_apply_advice, h.session, &dt);
+    CALL(spar_trial_apply, trial, &dt);
     go(&h, 1);
     end_session(&h.session);
 }
@@ -885,8 +909,7 @@ static void act_aero(void) {
     enum { N = 5 };
     static const double pi = 3.14159265358979323846, hub[3], axis[3] = {0, 1, 0}, ground[3] = {0, 9, -90},
                         up[3] = {0, 0, 1};
-    double alpha[7], cl[7], cd[7], cm[7], eta[N], a[N], b[N], c[N], force[3 * N], thrust, torque, power,
-        table[SPAR_AERO_ROW_COUNT][SPAR_COLUMN_COUNT];
+    double alpha[7], cl[7], cd[7], cm[7], eta[N], a[N], b[N], c[N], force[3 * N], thrust, torque, power;
     int flags[N];
     int64_t none;
     int here = run.rank == 0;
@@ -933,8 +956,13 @@ static void act_aero(void) {
         NOTE(force);
         PLAIN(spar_aero_effect_name, 0);
         if (run.ranks == 1) {
-            CALL(spar_aero_report_effects, w.aero, s, 0.01, 8, NULL, blow, &w, SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT,
-                 table[0]);
+            spar_trial *trial = NULL;
+            int in_force, fails;
+            CALL(spar_trial_create, s, &trial);
+            CALL(spar_trial_set_steps, trial, 0.01, 8);
+            CALL(spar_trial_set_callbacks, trial, NULL, NULL, blow, &w);
+            CALL(spar_aero_report_effects, w.aero, trial);
+            CALL(spar_aero_get_effect, w.aero, SPAR_AERO_ROW_DRAG, &in_force, &fails, a, a + 1, a + 2, a + 3);
             CALL(spar_step, s, 0.01, blow, &w, NULL);
             note_member(blade);
         }

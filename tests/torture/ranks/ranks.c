@@ -59,6 +59,7 @@ void *__wrap_realloc(void *p, size_t n) {
 
 typedef struct scene {
     spar_session *session;
+    spar_trial *trial;
     spar_member *beam, *body;
     spar_joint *rope; /* between them, on a spring: one of the ranks moves its member to the other */
     spar_fluid *fluid;
@@ -85,9 +86,11 @@ static void describe(scene *c) {
     MUST(s, spar_session_set_gravity(s, gravity));
     MUST(s, spar_session_set_coupling(s, SPAR_COUPLING_IQN_ILS, 0, 1e-8, 60));
     MUST(s, spar_session_set_reproducible(s, binned));
-    MUST(s, spar_session_set_option(s, "advise.nodes", binned ? "vary" : "keep"));
-    MUST(s, spar_session_set_option(s, "advise.fidelity", "keep"));
-    MUST(s, spar_session_set_option(s, "advise.coupling", "keep"));
+    MUST(s, spar_trial_create(s, &c->trial));
+    MUST(s, spar_trial_set_option(c->trial, "nodes", binned ? "vary" : "keep"));
+    MUST(s, spar_trial_set_option(c->trial, "fidelity", "keep"));
+    MUST(s, spar_trial_set_option(c->trial, "coupling", "keep"));
+    MUST(s, spar_trial_set_motion(c->trial, 1, 0, 0));
     c->beam = scene_beam(s, "beam", 1, NODES, 10, K, M);
     scene_mass(mass, 3, centre, J);
     MUST(s, spar_rigid_create(s, "body", where, q, mass, &c->body));
@@ -170,8 +173,8 @@ static void look(const scene *c, double *out) {
 typedef struct arguments {
     double dt, tolerance, length, ratio[2], point[3];
     int64_t steps, mode[2];
-    int load_steps, compare, no_out, no_modes;
-    const char *path;
+    int load_steps, compare, no_out, no_modes, goals;
+    const char *path, *limit;
     spar_before_step before;
     spar_fluid_solver solve;
 } arguments;
@@ -184,7 +187,9 @@ static arguments good(void) {
                        .steps = 8,
                        .mode = {0, 1},
                        .load_steps = 1,
+                       .goals = SPAR_GOAL_MOTION,
                        .path = saved,
+                       .limit = "0",
                        .before = before,
                        .solve = solve};
 }
@@ -262,32 +267,35 @@ static int make_save(scene *c, const arguments *a) {
 static int make_load(scene *c, const arguments *a) {
     return spar_session_load(c->session, a->path);
 }
+/* The trial with these settings; refused while it runs. */
+static spar_trial *trial_with(scene *c, const arguments *a, int64_t steps) {
+    (void)spar_trial_set_steps(c->trial, a->dt, steps);
+    (void)spar_trial_set_callbacks(c->trial, a->before, c, a->solve, c);
+    (void)spar_trial_set_goals(c->trial, a->goals);
+    (void)spar_trial_set_option(c->trial, "limit", a->limit);
+    return c->trial;
+}
 static int make_try(scene *c, const arguments *a) {
-    return spar_session_try(c->session, a->dt, a->steps, a->before, a->solve, c, a->compare,
-                            a->no_out ? -1 : SPAR_TRY_COUNT, out);
+    return spar_trial_run(trial_with(c, a, a->steps), a->compare);
 }
 static int make_effects(scene *c, const arguments *a) {
-    return spar_session_report_effects(c->session, a->dt, a->steps, a->before, a->solve, c,
-                                       a->no_out ? -1 : SPAR_ROW_COUNT, SPAR_COLUMN_COUNT, out);
+    return spar_trial_report_effects(trial_with(c, a, a->steps));
 }
 static int make_advise(scene *c, const arguments *a) {
-    return spar_session_advise(c->session, a->tolerance, a->dt, a->steps, a->length, a->before, a->solve, c,
-                               a->no_out ? -1 : SPAR_ADVICE_COUNT, out);
+    return spar_trial_advise(trial_with(c, a, a->steps), a->tolerance, a->length);
 }
 /* The scene is in no equilibrium, which is as good an answer as any: on all ranks. */
 static int make_eigenvalues(scene *c, const arguments *a) {
-    int status = spar_session_solve_eigenvalues(c->session, a->dt, 0, 0, a->before, a->solve, c, 1, 1, NULL,
-                                                a->no_out ? NULL : out, 0, NULL, NULL);
+    int status = spar_trial_solve_eigenvalues(trial_with(c, a, 8), 1, NULL, a->no_out ? NULL : out, 0, NULL, NULL);
     return status == SPAR_ERR_STATE && strstr(spar_session_message(c->session), "equilibrium") ? SPAR_OK : status;
 }
 static int make_floquet(scene *c, const arguments *a) {
-    int status =
-        spar_session_solve_floquet(c->session, a->dt, 2, 0, a->before, a->solve, c, 1, 1, a->no_out ? NULL : out);
+    int status = spar_trial_solve_floquet(trial_with(c, a, 2), 1, a->no_out ? NULL : out);
     return status == SPAR_ERR_STATE && strstr(spar_session_message(c->session), "not periodic") ? SPAR_OK : status;
 }
 static int make_apply(scene *c, const arguments *a) {
     double advised;
-    return spar_session_apply_advice(c->session, a->no_out ? NULL : &advised);
+    return spar_trial_apply(c->trial, a->no_out ? NULL : &advised);
 }
 static int make_sum(scene *c, const arguments *a) {
     double x[] = {1, 2};
@@ -298,8 +306,7 @@ static int make_balance(scene *c, const arguments *a) {
     return spar_session_sum_balance(c->session, a->no_out ? -1 : 2, members, NULL, NULL);
 }
 static int make_aero(scene *c, const arguments *a) {
-    return spar_aero_report_effects(c->aero, c->session, a->dt, a->steps, a->before, a->solve, c,
-                                    a->no_out ? -1 : SPAR_AERO_ROW_COUNT, SPAR_COLUMN_COUNT, out);
+    return spar_aero_report_effects(c->aero, trial_with(c, a, a->steps));
 }
 
 /* Where a call belongs: nothing committed, before the first step, between steps, and within one. */
@@ -319,7 +326,10 @@ enum { /* what a call has, as bits */
        NEEDS_SOLVE = 1024,
        DESCRIPTION = 2048,
        POINT = 4096,
-       TRIAL = DT | STEPS | CALLBACKS | OUT | SETTINGS
+       GOALS = 16384,
+       SET_DT = 8192, /* of the trial, set before */
+       TRIAL_SETTINGS = SET_DT | CALLBACKS | GOALS | SETTINGS,
+       TRIAL = TRIAL_SETTINGS | STEPS
 };
 
 static const struct call {
@@ -347,15 +357,15 @@ static const struct call {
     {"spar_step_begin_initial", make_begin_start, FIRST, DT | SETTINGS},
     {"spar_session_save", make_save, IDLE, PATH | SETTINGS},
     {"spar_session_load", make_load, IDLE, PATH | SETTINGS},
-    {"spar_session_try", make_try, IDLE, TRIAL | COMPARE},
-    {"spar_session_report_effects", make_effects, IDLE, TRIAL},
-    {"spar_session_advise", make_advise, IDLE, TRIAL | TOLERANCE | NEEDS_SOLVE},
-    {"spar_session_apply_advice", make_apply, IDLE, SETTINGS},
-    {"spar_aero_report_effects", make_aero, IDLE, TRIAL | NEEDS_SOLVE},
+    {"spar_trial_run", make_try, IDLE, TRIAL | COMPARE},
+    {"spar_trial_report_effects", make_effects, IDLE, TRIAL},
+    {"spar_trial_advise", make_advise, IDLE, TRIAL | TOLERANCE | NEEDS_SOLVE},
+    {"spar_trial_apply", make_apply, IDLE, SETTINGS},
+    {"spar_aero_report_effects", make_aero, IDLE, TRIAL},
     {"spar_session_sum", make_sum, IDLE, OUT | SETTINGS},
     {"spar_session_sum_balance", make_balance, IDLE, OUT},
-    {"spar_session_solve_eigenvalues", make_eigenvalues, IDLE, DT | CALLBACKS | OUT | SETTINGS | NEEDS_SOLVE},
-    {"spar_session_solve_floquet", make_floquet, IDLE, DT | CALLBACKS | OUT | SETTINGS},
+    {"spar_trial_solve_eigenvalues", make_eigenvalues, IDLE, TRIAL_SETTINGS | OUT | NEEDS_SOLVE},
+    {"spar_trial_solve_floquet", make_floquet, IDLE, TRIAL_SETTINGS | OUT},
 };
 enum {
     CREATE = 0,
@@ -560,7 +570,7 @@ static const struct spoiler {
     const char *name, *word; /* word: what the message says */
     int of, expected;
 } spoilers[] = {
-    {"another dt", "dt", DT, PEERS},
+    {"another dt", "dt", DT | SET_DT, PEERS},
     {"dt NaN", NULL, DT, SPAR_ERR_ARGUMENT},
     {"another number of steps", "steps", STEPS, PEERS},
     {"7 steps", NULL, STEPS, SPAR_ERR_ARGUMENT},
@@ -586,6 +596,8 @@ static const struct spoiler {
     {"a point that is none", NULL, POINT, SPAR_ERR_ARGUMENT},
     {"another length", "length", TOLERANCE, PEERS},
     {"no length", NULL, TOLERANCE, SPAR_ERR_ARGUMENT},
+    {"other goals", "goals", GOALS, PEERS},
+    {"another limit", "option limit", GOALS, PEERS},
 };
 enum { SPOILERS = sizeof spoilers / sizeof *spoilers };
 
@@ -666,6 +678,12 @@ static void spoil(arguments *a, int k) {
     case 25:
         a->length = 0;
         break;
+    case 26:
+        a->goals = SPAR_GOAL_REACTION;
+        break;
+    case 27:
+        a->limit = "90";
+        break;
     default:
         a->no_out = 1;
         break;
@@ -675,8 +693,7 @@ static void spoil(arguments *a, int k) {
 static int expected_of(const struct call *call, int k, int bad) {
     int expected = spoilers[k].expected;
     if (k == 5 && call->has & NEEDS_SOLVE) { /* refused by itself before it is compared */
-        expected =
-            call->make == make_advise || call->make == make_eigenvalues ? SPAR_ERR_UNSUPPORTED : SPAR_ERR_ARGUMENT;
+        expected = SPAR_ERR_UNSUPPORTED;
     }
     return expected == PEERS ? SPAR_ERR_COMM : expected == FINE ? SPAR_OK : of_one(bad, expected);
 }
@@ -762,7 +779,6 @@ static const struct setting {
     {"max_iterations of spar_session_set_coupling", NULL, NULL, NULL},
     {"omega", NULL, NULL, NULL},
     {"drift of spar_session_set_tolerance", NULL, NULL, NULL},
-    {"goals of spar_session_set_goal", NULL, NULL, NULL},
     {"newton.stop", "newton.stop", "strict", "balanced"},
     {"coupling.unconverged", "coupling.unconverged", "accept", "error"},
     {"coupling.unstable", "coupling.unstable", "accept", "error"},
@@ -774,12 +790,6 @@ static const struct setting {
     {"coupling.filter", "coupling.filter", "0.1", "1e-4"},
     {"coupling.motion_atol", "coupling.motion_atol", "1", "0"},
     {"coupling.motion_rtol", "coupling.motion_rtol", "1", "0"},
-    {"advise.dt", "advise.dt", "keep", "vary"},
-    {"advise.nodes", "advise.nodes", "vary", "keep"},
-    {"advise.fidelity", "advise.fidelity", "vary", "keep"},
-    {"advise.coupling", "advise.coupling", "vary", "keep"},
-    {"advise.fluid_cost", "advise.fluid_cost", "1", "0"},
-    {"advise.limit", "advise.limit", "90", "0"},
 };
 enum { SET = sizeof set / sizeof *set };
 
@@ -806,8 +816,6 @@ static int apply_number(spar_session *s, int k, int other) {
         return spar_session_set_relaxation(s, other ? 0.9 : 1);
     case 14:
         return spar_session_set_tolerance(s, other ? 1e9 : 0, 0);
-    case 15:
-        return spar_session_set_goal(s, other ? SPAR_GOAL_REACTION : SPAR_GOAL_MOTION);
     default:
         return spar_session_set_coupling(s, other && k == 9 ? SPAR_COUPLING_AITKEN : SPAR_COUPLING_IQN_ILS,
                                          other && k == 10 ? 1e-9 : 0, other && k == 11 ? 1e-7 : 1e-8,
@@ -816,9 +824,7 @@ static int apply_number(spar_session *s, int k, int other) {
 }
 
 static void apply(scene *c, int k, int other) {
-    const char *turned = binned ? "advise.nodes" : ""; /* as it was, and the other way */
-    int value = set[k].key && strcmp(set[k].key, turned) == 0 ? !other : other;
-    MUST(c->session, set[k].key ? set_option(c->session, set[k].key, value ? set[k].value : set[k].as_it_was)
+    MUST(c->session, set[k].key ? set_option(c->session, set[k].key, other ? set[k].value : set[k].as_it_was)
                                 : apply_number(c->session, k, other));
 }
 
