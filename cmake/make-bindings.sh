@@ -1,7 +1,6 @@
 #!/bin/sh
 # Writes from the public headers fortran/spar_c.f90, fortran/spar.f90 (what takes thought is by hand in fortran/spar.f90.in; this
-# adds the constants, the plain procedures and those in single precision), and the table of examples/python/spar.py: run it after
-# they have changed.
+# adds the constants and the plain procedures), and the table of examples/python/spar.py: run it after they have changed.
 #   make-bindings.sh [<folder to write to, instead of fortran and examples/python>]
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -64,8 +63,7 @@ for name in $headers; do of "$name" names; done >"$made"
 put_between "$root/fortran/spar.f90.in" 'constants of the headers {'
 for name in $headers; do
     awk -v null=1 -f "$root/cmake/interface.awk" "$root/include/spar/$name.h"
-done | awk -f "$root/cmake/plain.awk" "$made.file" - >"$made"
-awk -f "$root/cmake/single.awk" "$made" "$made" >"$out/spar.f90"
+done | awk -f "$root/cmake/plain.awk" "$made.file" - >"$out/spar.f90"
 
 {
     echo 'TABLE = """'

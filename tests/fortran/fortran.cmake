@@ -32,3 +32,8 @@ if(SPAR_AWK)
   add_test(NAME fortran_arguments_fails COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/arguments_fails" "${PROJECT_BINARY_DIR}/tests/arguments_fails")
   spar_set_test(fortran_arguments_fails fortran 60)
 endif()
+
+# One kind of real in each call.
+add_test(NAME fortran_kinds COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/kinds" "${CMAKE_Fortran_COMPILER}"
+  "$<TARGET_PROPERTY:spar_fortran,Fortran_MODULE_DIRECTORY>" "${PROJECT_BINARY_DIR}/tests/kinds")
+spar_set_test(fortran_kinds fortran 60)
