@@ -28,7 +28,7 @@ install(FILES "${PROJECT_SOURCE_DIR}/examples/python/spar.py" DESTINATION "${CMA
 
 configure_package_config_file(cmake/spar-config.cmake.in "${PROJECT_BINARY_DIR}/spar-config.cmake"
   INSTALL_DESTINATION "${spar_package_dir}" PATH_VARS CMAKE_INSTALL_DATADIR CMAKE_INSTALL_LIBDIR)
-write_basic_package_version_file("${PROJECT_BINARY_DIR}/spar-config-version.cmake" COMPATIBILITY SameMinorVersion)
+configure_file(cmake/spar-config-version.cmake.in "${PROJECT_BINARY_DIR}/spar-config-version.cmake" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/spar-config.cmake" "${PROJECT_BINARY_DIR}/spar-config-version.cmake"
   DESTINATION "${spar_package_dir}")
 

@@ -28,7 +28,7 @@ The headers under include/spar say what each call does; here is what is differen
   keep it.
   What belonged to it is closed with it: further calls raise spar.Error. Nothing of spar can be copied or pickled.
 - Several ranks: spar.Session(comm) with an mpi4py communicator or its Fortran integer.
-The library is sought as SPAR_LIBRARY says, else where the loader finds libspar.so.1.
+The library is sought as SPAR_LIBRARY says, else where the loader finds libspar.so.0.9.
 """
 import ctypes
 import os
@@ -294,7 +294,7 @@ call spar_vtk_series_add int path|char|in|[] time|double|value| part|int|value| 
 """
 # } written by cmake/make-bindings.sh
 
-_library = ctypes.CDLL(os.environ.get('SPAR_LIBRARY', 'libspar.so.1'))
+_library = ctypes.CDLL(os.environ.get('SPAR_LIBRARY', 'libspar.so.0.9'))
 
 
 class Error(Exception):

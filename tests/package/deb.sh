@@ -1,8 +1,8 @@
 #!/bin/sh
-# deb.sh <source> <build> <work> <cpack> <compiler> <release>: the three Debian packages, unpacked side by side, are an installation
-# that a host builds and runs with; each has its files, its licence, and says what it needs.
+# deb.sh <source> <build> <work> <cpack> <compiler> <release> <number of the ABI>: the three Debian packages, unpacked side by side,
+# are an installation that a host builds and runs with; each has its files, its licence, and says what it needs.
 set -eu
-source=$1 build=$2 work=$3 cpack=$4 compiler=$5 release=$6
+source=$1 build=$2 work=$3 cpack=$4 compiler=$5 release=$6 soversion=$7
 rm -rf "$work"
 mkdir -p "$work/root"
 # the book goes into spar-doc where it was made
@@ -13,7 +13,7 @@ if command -v doxygen >/dev/null 2>&1 && [ ! -d "$build/book" ]; then
     "$source/docs/book" "$build/book" >"$work/book.log" 2>&1 || { tail -n 20 "$work/book.log"; exit 1; }
 fi
 "$cpack" -G DEB --config "$build/CPackConfig.cmake" -B "$work" >"$work/cpack.log" 2>&1 || { cat "$work/cpack.log"; exit 1; }
-for package in libspar1 libspar-dev spar-doc; do
+for package in libspar$soversion libspar-dev spar-doc; do
     file=$(find "$work" -maxdepth 1 -name "${package}_${release}_*.deb")
     [ -n "$file" ] || { echo "no $package of release $release"; ls "$work"; exit 1; }
     [ "$(dpkg-deb -f "$file" Package)" = "$package" ]
@@ -25,7 +25,7 @@ done
 # nothing is in two packages, and nothing that an installation has is in none
 sort "$work"/*.files | uniq -d >"$work/twice"
 [ ! -s "$work/twice" ] || { echo "in two packages:"; cat "$work/twice"; exit 1; }
-[ "$(grep -v /doc/ "$work/libspar1.files" | grep -vE 'lib/libspar\.so\.[0-9.]+$|lib/[a-z0-9_-]+/libspar\.so\.[0-9.]+$')" = "" ]
+[ "$(grep -v /doc/ "$work/libspar$soversion.files" | grep -vE 'lib/libspar\.so\.[0-9.]+$|lib/[a-z0-9_-]+/libspar\.so\.[0-9.]+$')" = "" ]
 if [ -d "$build/book" ]; then
     for page in index spar_8h spar__aero_8h spar__output_8h spar__mpi_8h; do
         grep -q "/html/$page\.html$" "$work/spar-doc.files" || { echo "spar-doc has no page $page of the book"; exit 1; }
@@ -36,7 +36,7 @@ if [ -d "$build/book" ]; then
         [ -e "$html/$file" ] || { echo "spar-doc: index.html leads to $file, which is not there"; exit 1; }
     done
 fi
-dpkg-deb -f "$work"/libspar1_*.deb Depends | grep -q libgsl
-dpkg-deb -f "$work"/libspar-dev_*.deb Depends | grep -q "libspar1 (= $release)"
+dpkg-deb -f "$work"/libspar"$soversion"_*.deb Depends | grep -q libgsl
+dpkg-deb -f "$work"/libspar-dev_*.deb Depends | grep -q "libspar$soversion (= $release)"
 sh "$source/tests/package/pkgconfig.sh" "$work/root/usr" "$work/consumer" "$compiler" "$source/tests/package/c/main.c" spar
 rm -rf "$work/_CPack_Packages"

@@ -15,7 +15,10 @@ spar_set_test(package_install package 60)
 set_tests_properties(package_install PROPERTIES FIXTURES_SETUP spar_installed)
 
 spar_package_test(symbols sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${prefix}/${CMAKE_INSTALL_LIBDIR}/libspar.so")
-spar_package_test(soname sh "${here}/soname.sh" "${prefix}/${CMAKE_INSTALL_LIBDIR}/libspar.so" "${PROJECT_VERSION}")
+spar_package_test(soname sh "${here}/soname.sh" "${prefix}/${CMAKE_INSTALL_LIBDIR}/libspar.so" "${PROJECT_VERSION}"
+  "${SPAR_SOVERSION}")
+add_test(NAME package_versions COMMAND "${CMAKE_COMMAND}" "-DSOURCE=${PROJECT_SOURCE_DIR}" "-DWORK=${work}/versions" -P "${here}/versions.cmake")
+spar_set_test(package_versions package 30)
 
 # what hosts were compiled with is still there, and the check would see it go
 find_program(SPAR_AWK awk)
@@ -113,7 +116,7 @@ find_program(SPAR_FILE file) # CPack asks it what is a library
 mark_as_advanced(SPAR_DPKG_SHLIBDEPS SPAR_FILE)
 if(SPAR_DPKG_SHLIBDEPS AND SPAR_FILE AND SPAR_PKG_CONFIG)
   spar_package_test(deb sh "${here}/deb.sh" "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}" "${work}/deb" "${CMAKE_CPACK_COMMAND}"
-    "${CMAKE_C_COMPILER}" "${PROJECT_VERSION}")
+    "${CMAKE_C_COMPILER}" "${PROJECT_VERSION}" "${SPAR_SOVERSION}")
 endif()
 
 if(CMAKE_CXX_COMPILER)

@@ -1,9 +1,12 @@
 #!/bin/sh
-# soname.sh <library> <release>: the binary interface has a number of its own; the file is named by the release, which is that
-# of CITATION.cff.
+# soname.sh <library> <release> <number of the ABI>: the soname has the number of the ABI, and Python's module loads that one; the
+# file is named by the release, which is that of CITATION.cff. The ABI is 0.9 before release 1.0, and 1 from then on.
 set -eu
 soname=$(readelf -d "$1" | sed -n 's/.*SONAME.*\[\(.*\)\].*/\1/p')
 file=$(basename "$(readlink -f "$1")")
 echo "soname $soname, file $file"
-[ "$soname" = libspar.so.1 ] && [ "$file" = "libspar.so.$2" ] || exit 1
+case $2 in 0.*) expected=0.9 ;; *) expected=1 ;; esac
+[ "$3" = "$expected" ] || { echo "SPAR_SOVERSION is $3; in release $2 it must be $expected"; exit 1; }
+[ "$soname" = "libspar.so.$3" ] && [ "$file" = "libspar.so.$2" ] || exit 1
+grep -q "'libspar.so.$3'" "$(dirname "$0")/../../examples/python/spar.py" || { echo "spar.py loads another library than libspar.so.$3"; exit 1; }
 grep -qx "version: $2" "$(dirname "$0")/../../CITATION.cff" || { echo "CITATION.cff is of another release than $2"; exit 1; }
