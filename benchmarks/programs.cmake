@@ -2,7 +2,7 @@
 add_library(benchmarks_scenes STATIC EXCLUDE_FROM_ALL
   "${PROJECT_SOURCE_DIR}/benchmarks/scenes.c" "${PROJECT_SOURCE_DIR}/benchmarks/worlds.c")
 target_include_directories(benchmarks_scenes PUBLIC "${PROJECT_SOURCE_DIR}/benchmarks")
-target_link_libraries(benchmarks_scenes PRIVATE spar_flags PUBLIC spar_example_parts spar m)
+target_link_libraries(benchmarks_scenes PRIVATE spar_flags PUBLIC spar_example_parts spar_aero spar m)
 foreach(program IN ITEMS benchmarks_accuracy benchmarks_advice benchmarks_kept)
   target_link_libraries(${program} PRIVATE benchmarks_scenes)
 endforeach()
@@ -11,14 +11,14 @@ endforeach()
 # the internal headers.
 foreach(program IN ITEMS benchmarks_beam benchmarks_beam_curves benchmarks_stability)
   set_target_properties(${program} PROPERTIES
-    LINK_LIBRARIES "spar_flags;spar_example_parts;spar_static;m;$<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>")
+    LINK_LIBRARIES "spar_flags;spar_example_parts;spar_aero_static;spar_static;m;$<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>")
   target_include_directories(${program} PRIVATE "${PROJECT_SOURCE_DIR}/src")
 endforeach()
 
 # The transfer benchmark beside the plain loop, compiled with the library's flags and for this machine. It measures the
 # nearest point alone, which the shared library hides.
 set_target_properties(benchmarks_transfer PROPERTIES
-  LINK_LIBRARIES "spar_flags;spar_static;spar::algebra;${GSL_LIBRARY};m;$<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>")
+  LINK_LIBRARIES "spar_flags;spar_aero_static;spar_static;spar::algebra;${GSL_LIBRARY};m;$<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>")
 target_include_directories(benchmarks_transfer PRIVATE "${PROJECT_SOURCE_DIR}/src")
 foreach(kind IN ITEMS portable native)
   add_library(benchmarks_plain_${kind} OBJECT "${PROJECT_SOURCE_DIR}/benchmarks/plain.c")
@@ -37,7 +37,7 @@ target_include_directories(benchmarks_coupling PRIVATE "${PROJECT_SOURCE_DIR}/te
 # program runs. Quadrature and tables of a member are the library's own, which the shared one hides.
 target_sources(benchmarks_peers PRIVATE "${PROJECT_SOURCE_DIR}/benchmarks/peer_codes.c")
 set_target_properties(benchmarks_peers PROPERTIES
-  LINK_LIBRARIES "spar_flags;spar_example_parts;spar_static;m;$<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>")
+  LINK_LIBRARIES "spar_flags;spar_example_parts;spar_aero_static;spar_static;m;$<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>")
 target_include_directories(benchmarks_peers PRIVATE "${PROJECT_SOURCE_DIR}/src")
 get_property(spar_languages GLOBAL PROPERTY ENABLED_LANGUAGES)
 if("CXX" IN_LIST spar_languages AND (KynemaFMB_ROOT OR KynemaFMB_DIR))

@@ -1,6 +1,6 @@
 # The plain procedures of the module spar from the table of interface.awk (with null=1): those whose arguments are C's, checked.
 # What takes thought is by hand in fortran/spar.f90.in; a call that appears there is left to it.
-#   awk -f plain.awk <fortran/spar.f90.in> <table>
+#   awk -v file=<its name> -f plain.awk <fortran/spar.f90.in> <table>
 # Out comes the file with each line "! plain procedures of <object>" replaced by them, and each "! plain bindings of <object>"
 # in the type by theirs, unless the file binds them itself.
 #
@@ -58,7 +58,7 @@ function needed(   i, text, e) {
 
 # What cannot be made by these rules is written by hand.
 function cannot(why) {
-    print "plain.awk: " $2 ": " why ": write it by hand in fortran/spar.f90.in" >"/dev/stderr"
+    print "plain.awk: " $2 ": " why ": write it by hand in " file >"/dev/stderr"
     failed = 1
 }
 
@@ -156,7 +156,7 @@ function which_nodes(   text) {
 function head(   i, names, line) {
     for (i = 1; i <= params; i++) if (i != COUNTED) names = names ", " P[i]
     put("  ", "subroutine " procedure "(self" names ", stat, errmsg)")
-    add("    class(spar_" object "), intent(" (name ~ /^(get|pull|write|save|fail)(_|$)/ ? "in" : "inout") ") :: self")
+    add("    class(spar_" object (object == "aero" ? "_object" : "") "), intent(" (name ~ /^(get|pull|write|save|fail)(_|$)/ ? "in" : "inout") ") :: self")
     for (i = 1; i <= params; i++) {
         if (i == COUNTED) continue
         FORM = declare(i)

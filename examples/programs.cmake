@@ -5,7 +5,7 @@ if(TARGET examples_rotor)
     RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/examples")
   target_compile_definitions(examples_spar-effects PRIVATE ROTOR_SHOWS_EFFECTS=1
     SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data" $<$<BOOL:${SPAR_MPI}>:SPAR_WITH_MPI=1>)
-  target_link_libraries(examples_spar-effects PRIVATE spar_flags spar spar_example_parts m $<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>)
+  target_link_libraries(examples_spar-effects PRIVATE spar_flags spar_example_parts spar_aero spar m $<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>)
 endif()
 
 # The same host in single precision.

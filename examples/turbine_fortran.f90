@@ -77,6 +77,7 @@ end module controller
 module machine
   use, intrinsic :: iso_c_binding, only: c_int
   use spar
+  use spar_aero
   use turbine
   implicit none
   private
@@ -89,7 +90,7 @@ module machine
   type(spar_member) :: tower, nacelle, generator, hub_body, blade(3)
   type(spar_joint) :: yaw, shaft_joint, drivetrain, bearing(3)
   type(spar_fluid) :: sections(3)
-  type(spar_aero) :: air
+  type(spar_aero_object) :: air
   integer, parameter :: tower_nodes = 8
   real(dp) :: shaft_axes(4), extra_twist(max_sections)
 

@@ -14,7 +14,7 @@
 ! member%set_axis. The calls of the step belong to the session: session%step_begin, ..., session%step. spar_point_create,
 ! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam, spar_link_create and
 ! spar_link_set_spring joint%create_link and %set_link_spring, spar_spring_create joint%create_spring; a joint to the ground is
-! created without b. spar_status_text, spar_version, spar_has, spar_effect_name, spar_aero_effect_name and spar_vtk_series_add
+! created without b. spar_status_text, spar_version, spar_has, spar_effect_name and spar_vtk_series_add
 ! keep their names. A session has one variable, which owns it: spar_member_get_session and spar_trial_get_session are left to hosts
 ! that use spar_c.
 !
@@ -22,8 +22,8 @@
 ! where something failed, to what went wrong, where, and the cure. Without stat a failure stops the program with that message.
 ! A refused call leaves its results as they were, so these are intent(inout); what C takes as NULL is optional.
 !
-! Arrays. Places x(3,n), orientations q(4,n), node motion q(7,n), v(6,n), a(6,n), loads (6,n), matrices (6,6,n), sections of
-! blades (3,n,blades). n is taken from the shape, and every shape is checked; n = 0 is legal. The library copies, no array is
+! Arrays. Places x(3,n), orientations q(4,n), node motion q(7,n), v(6,n), a(6,n), loads (6,n), matrices (6,6,n).
+! n is taken from the shape, and every shape is checked; n = 0 is legal. The library copies, no array is
 ! kept; array sections such as a(:,1:4:2) are legal and cost a copy. Nodes and sections are counted from 1 in arguments; the
 ! library's own messages count from 0, and so does the node of fluid%get_travel (-1: there are none). A fluid's layout (1, n)
 ! stands for arrays x(n,3), by component, (3, 1) for x(3,n).
@@ -31,30 +31,31 @@
 ! steps would end at 999.99998 s. Hosts in single precision have the four calls of nodes with arrays of real(c_float), as in C:
 ! fluid%pull_motion_f32, %pull_poses_f32, %pull_forces_f32 and %push_forces_f32. theta is real(c_double) there too.
 ! Integers, logicals and the constants SPAR_* have the default kind. A host whose default integers have 8 bytes compiles
-! this file and spar_c.f90 with its own options (-fdefault-integer-8). A count may have 4 or 8 bytes in any case; one too large
+! the files of this folder with its own options (-fdefault-integer-8). A count may have 4 or 8 bytes in any case; one too large
 ! for C is refused as any other that is out of range.
 ! Figures that C names by constants from 0 (SPAR_REPORT_*) are found under these names in arrays declared from 0:
 ! report(0:SPAR_REPORT_COUNT-1). Such an array may have any length: its entries are set as far as it goes, those that the library
 ! does not know to 0.
 !
-! Life. A session, a polar and an aero object are owned by their variables: destroyed by `destroy`, or at the latest when the
+! Life. A session is owned by its variable: destroyed by `destroy`, or at the latest when the
 ! variable goes out of existence (which a variable of the main program never does). Destroy a session before MPI_Finalize.
 ! To destroy twice, or what was never created, does nothing. Members, fluids and trials belong to their session and go with it:
 ! their variables are views, are not finalised, and must not be used when the session is gone; fluid%destroy and trial%destroy take
 ! one out of a living session. The variable of a member or a joint may be copied. To assign any of the others stops the program, since two owners
 ! would destroy one thing: pass it as an argument, point to it, or keep it in an array. allocate with source= copies without
-! asking; do not use it on them. To create a session, polar or aero object that exists is refused.
+! asking; do not use it on them. To create a session that exists is refused.
 module spar
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_float, c_funloc, c_funptr, &
       c_int, c_int64_t, c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
   use spar_calls, c_status_text => spar_status_text, c_version => spar_version, c_has => spar_has, &
-      c_effect_name => spar_effect_name, c_aero_effect_name => spar_aero_effect_name, c_series_add => spar_vtk_series_add
+      c_effect_name => spar_effect_name, c_series_add => spar_vtk_series_add
+  use spar_support
   implicit none
   private
 
-  public :: spar_session, spar_member, spar_joint, spar_fluid, spar_trial, spar_polar, spar_aero
+  public :: spar_session, spar_member, spar_joint, spar_fluid, spar_trial
   public :: spar_fluid_solver, spar_before_step, spar_log, spar_progress
-  public :: spar_status_text, spar_version, spar_has, spar_effect_name, spar_aero_effect_name, spar_vtk_series_add
+  public :: spar_status_text, spar_version, spar_has, spar_effect_name, spar_vtk_series_add
 
   ! constants of the headers {
   integer, parameter, public :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
@@ -101,17 +102,6 @@ module spar
       SPAR_ROW_MASSES = 11, SPAR_ROW_FOUNDATION = 12, SPAR_ROW_PRETENSION = 13, SPAR_ROW_COUNT = 14
   integer, parameter, public :: SPAR_GOAL_MOTION = 1, SPAR_GOAL_REACTION = 2, SPAR_GOAL_SECTION = 4, &
       SPAR_GOAL_LOAD = 8, SPAR_GOAL_NUMBERS = 16
-  integer, parameter, public :: SPAR_AERO_INDUCTION = 1, SPAR_AERO_TIP_LOSS = 2, SPAR_AERO_HUB_LOSS = 4, &
-      SPAR_AERO_SWIRL = 8, SPAR_AERO_DRAG = 16, SPAR_AERO_MOMENT = 32, SPAR_AERO_SHEAR = 64, SPAR_AERO_TOWER = 128, &
-      SPAR_AERO_INFLOW = 256, SPAR_AERO_STALL = 512, SPAR_AERO_UNSTEADY = 1024
-  integer, parameter, public :: SPAR_SHEAR_POWER = 0, SPAR_SHEAR_LOG = 1, SPAR_SHEAR_LINEAR = 2
-  integer, parameter, public :: SPAR_POLAR_LINEAR = 0, SPAR_POLAR_AKIMA = 1, SPAR_POLAR_CUBIC = 2
-  integer, parameter, public :: SPAR_AERO_FLAG_END = 1, SPAR_AERO_FLAG_NO_ROOT = 2, SPAR_AERO_FLAG_BEYOND_POLAR = 4, &
-      SPAR_AERO_FLAG_TOWER = 8
-  integer, parameter, public :: SPAR_AERO_ROW_INDUCTION = 0, SPAR_AERO_ROW_TIP_LOSS = 1, SPAR_AERO_ROW_HUB_LOSS = 2, &
-      SPAR_AERO_ROW_SWIRL = 3, SPAR_AERO_ROW_DRAG = 4, SPAR_AERO_ROW_MOMENT = 5, SPAR_AERO_ROW_SHEAR = 6, &
-      SPAR_AERO_ROW_TOWER = 7, SPAR_AERO_ROW_INFLOW = 8, SPAR_AERO_ROW_STALL = 9, SPAR_AERO_ROW_UNSTEADY = 10, &
-      SPAR_AERO_ROW_COUNT = 11
   ! } written by cmake/make-bindings.sh
 
   type :: spar_session
@@ -151,6 +141,7 @@ module spar
     procedure :: get_reproducible => session_get_reproducible
     procedure :: set_threads => session_set_threads
     procedure :: get_threads => session_get_threads
+    procedure :: fail => session_fail
     procedure :: create => session_create
     procedure :: destroy => session_destroy
     procedure :: exists => session_exists
@@ -312,7 +303,6 @@ module spar
     procedure :: c_handle => fluid_handle
     procedure :: set_motion_weights => fluid_set_motion_weights
     procedure :: fade_motion => fluid_fade_motion
-    procedure :: read_aerodyn => fluid_read_aerodyn
     procedure, private :: fluid_get_count_64, fluid_get_count_32
     generic :: get_count => fluid_get_count_64, fluid_get_count_32
     procedure :: get_member => fluid_get_member
@@ -368,52 +358,6 @@ module spar
     procedure, private :: trial_assign
     generic :: assignment(=) => trial_assign
   end type spar_trial
-
-  type :: spar_polar
-    private
-    type(c_ptr) :: handle = c_null_ptr
-  contains
-    procedure :: set_interpolation => polar_set_interpolation
-    procedure :: create => polar_create
-    procedure :: destroy => polar_destroy
-    procedure :: exists => polar_exists
-    procedure :: c_handle => polar_handle
-    procedure :: evaluate => polar_evaluate
-    procedure, private :: polar_assign
-    generic :: assignment(=) => polar_assign
-    final :: polar_final
-  end type spar_polar
-
-  type :: spar_aero
-    private
-    type(c_ptr) :: handle = c_null_ptr, session = c_null_ptr
-    integer(c_int64_t) :: blades = 0, sections = 0
-  contains
-    procedure :: get_chord => aero_get_chord
-    procedure :: set_rotor => aero_set_rotor
-    procedure :: set_turn => aero_set_turn
-    procedure :: set_blades => aero_set_blades
-    procedure :: set_shear => aero_set_shear
-    procedure :: set_tower => aero_set_tower
-    procedure :: set_effects => aero_set_effects
-    procedure :: solve => aero_solve
-    procedure :: get_rotor => aero_get_rotor
-    procedure :: get_sections => aero_get_sections
-    procedure :: get_loads => aero_get_loads
-    procedure :: get_effect => aero_get_effect
-    procedure :: create => aero_create
-    procedure :: destroy => aero_destroy
-    procedure :: exists => aero_exists
-    procedure :: c_handle => aero_handle
-    procedure, private :: aero_set_section_64, aero_set_section_32
-    generic :: set_section => aero_set_section_64, aero_set_section_32
-    procedure :: read_aerodyn => aero_read_aerodyn
-    procedure :: get_flags => aero_get_flags
-    procedure :: report_effects => aero_report_effects
-    procedure, private :: aero_assign
-    generic :: assignment(=) => aero_assign
-    final :: aero_final
-  end type spar_aero
 
   abstract interface
     ! The host's fluid in session%step, once per iteration: pulls the motion, finds its loads at t + dt, pushes them. context:
@@ -491,21 +435,9 @@ module spar
     procedure :: effect_name
   end interface spar_effect_name
 
-  interface spar_aero_effect_name
-    procedure :: aero_effect_name
-  end interface spar_aero_effect_name
-
   interface spar_vtk_series_add
     procedure :: series_add
   end interface spar_vtk_series_add
-
-  interface
-    pure function strlen(text) bind(c) result(n)
-      import :: c_ptr, c_int64_t
-      type(c_ptr), value :: text
-      integer(c_int64_t) :: n
-    end function strlen
-  end interface
 
 contains
 
@@ -1847,27 +1779,6 @@ contains
     call finish(spar_fluid_fade_motion(self%handle, within, beyond, n, distance, c_held), self%session, stat, errmsg)
   end subroutine fluid_fade_motion
 
-  subroutine fluid_read_aerodyn(self, primary_path, blade_path, q, span, stat, errmsg)
-    class(spar_fluid), intent(inout) :: self
-    character(*), intent(in) :: primary_path
-    character(*), intent(in), optional :: blade_path
-    real(c_double), intent(in), optional :: q(4)
-    real(c_double), contiguous, intent(in), optional :: span(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: n
-    integer(c_int) :: status
-
-    n = 0
-    if (present(span)) n = size(span, kind=c_int64_t)
-    if (present(blade_path)) then
-      status = spar_fluid_read_aerodyn(self%handle, c_text(primary_path), c_text(blade_path), q, n, span)
-    else
-      status = spar_fluid_read_aerodyn(self%handle, c_text(primary_path), q=q, n=n, span=span)
-    end if
-    call finish(status, self%session, stat, errmsg)
-  end subroutine fluid_read_aerodyn
-
   subroutine fluid_get_count_64(self, which, n, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
@@ -2109,226 +2020,6 @@ contains
 
     call finish(spar_fluid_check_loads(self%handle, point, force, moment, rtol), self%session, stat, errmsg)
   end subroutine fluid_check_loads
-
-  ! ---- polars ----
-
-  ! cm left out: 0.
-  subroutine polar_create(self, alpha_rad, cl, cd, cm, stat, errmsg)
-    class(spar_polar), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: alpha_rad(:), cl(:), cd(:)
-    real(c_double), contiguous, intent(in), optional :: cm(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-    integer(c_int64_t) :: n
-
-    n = size(alpha_rad, kind=c_int64_t)
-    if (c_associated(self%handle)) then
-      call occupied('polar%create', stat, errmsg)
-      return
-    end if
-    call need(fault, 'cl', shape(cl, kind=c_int64_t), [n])
-    call need(fault, 'cd', shape(cd, kind=c_int64_t), [n])
-    if (present(cm)) call need(fault, 'cm', shape(cm, kind=c_int64_t), [n])
-    if (allocated(fault)) then
-      call refuse('polar%create', fault, stat, errmsg)
-      return
-    end if
-    call finish(spar_polar_create(n, alpha_rad, cl, cd, cm, self%handle), c_null_ptr, stat, errmsg)
-  end subroutine polar_create
-
-  ! Sections that use the polar keep its table.
-  subroutine polar_destroy(self)
-    class(spar_polar), intent(inout) :: self
-
-    call spar_polar_destroy(self%handle)
-  end subroutine polar_destroy
-
-  impure elemental subroutine polar_final(self)
-    type(spar_polar), intent(inout) :: self
-
-    call self%destroy()
-  end subroutine polar_final
-
-  impure elemental subroutine polar_assign(left, right)
-    class(spar_polar), intent(inout) :: left
-    type(spar_polar), intent(in) :: right
-
-    call forbid_copy('a polar', left%handle, right%handle)
-  end subroutine polar_assign
-
-  logical function polar_exists(self) result(there)
-    class(spar_polar), intent(in) :: self
-
-    there = c_associated(self%handle)
-  end function polar_exists
-
-  type(c_ptr) function polar_handle(self) result(handle)
-    class(spar_polar), intent(in) :: self
-
-    handle = self%handle
-  end function polar_handle
-
-  subroutine polar_evaluate(self, alpha, cl, cd, cm, stat, errmsg)
-    class(spar_polar), intent(in) :: self
-    real(c_double), intent(in) :: alpha
-    real(c_double), intent(inout), optional :: cl, cd, cm
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_polar_evaluate(self%handle, alpha, cl, cd, cm), c_null_ptr, stat, errmsg)
-  end subroutine polar_evaluate
-
-  ! ---- blade element with momentum theory ----
-
-  ! One fluid per blade of this rank; a rank without blades gives an array of none.
-  subroutine aero_create(self, fluids, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    type(spar_fluid), intent(in) :: fluids(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    type(c_ptr), allocatable :: handles(:)
-    type(c_ptr) :: session
-    integer(c_int64_t) :: n
-    integer :: b
-    integer(c_int) :: status
-
-    if (c_associated(self%handle)) then
-      call occupied('aero%create', stat, errmsg)
-      return
-    end if
-    allocate (handles(size(fluids)))
-    session = c_null_ptr
-    n = 0
-    do b = 1, size(fluids)
-      handles(b) = fluids(b)%handle
-      if (b == 1) session = fluids(b)%session
-    end do
-    status = spar_aero_create(int(size(fluids), c_int), handles, self%handle)
-    if (status == SPAR_OK .and. size(fluids) > 0) status = spar_fluid_get_count(handles(1), to_c(SPAR_NODES_MOTION), n)
-    if (status == SPAR_OK) then
-      self%session = session
-      self%blades = size(fluids)
-      self%sections = n
-    end if
-    call finish(status, session, stat, errmsg)
-  end subroutine aero_create
-
-  subroutine aero_destroy(self)
-    class(spar_aero), intent(inout) :: self
-
-    call spar_aero_destroy(self%handle)
-    self%session = c_null_ptr
-    self%blades = 0
-    self%sections = 0
-  end subroutine aero_destroy
-
-  impure elemental subroutine aero_final(self)
-    type(spar_aero), intent(inout) :: self
-
-    call self%destroy()
-  end subroutine aero_final
-
-  impure elemental subroutine aero_assign(left, right)
-    class(spar_aero), intent(inout) :: left
-    type(spar_aero), intent(in) :: right
-
-    call forbid_copy('an aero object', left%handle, right%handle)
-  end subroutine aero_assign
-
-  logical function aero_exists(self) result(there)
-    class(spar_aero), intent(in) :: self
-
-    there = c_associated(self%handle)
-  end function aero_exists
-
-  type(c_ptr) function aero_handle(self) result(handle)
-    class(spar_aero), intent(in) :: self
-
-    handle = self%handle
-  end function aero_handle
-
-  ! Section i, from 1, of every blade.
-  subroutine aero_set_section_64(self, i, chord, twist, polar, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    integer(c_int64_t), intent(in) :: i
-    real(c_double), intent(in) :: chord, twist
-    class(spar_polar), intent(in) :: polar
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    if (c_associated(self%handle) .and. (i < 1 .or. (self%blades > 0 .and. i > self%sections))) then
-      call refuse('aero%set_section', 'sections are 1 to ' // trim(text_of(self%sections)) // '; there is no section ' // &
-          text_of(i), stat, errmsg)
-      return
-    end if
-    call finish(spar_aero_set_section(self%handle, i - 1, chord, twist, polar%handle), self%session, stat, errmsg)
-  end subroutine aero_set_section_64
-
-  subroutine aero_set_section_32(self, i, chord, twist, polar, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    integer(c_int), intent(in) :: i
-    real(c_double), intent(in) :: chord, twist
-    class(spar_polar), intent(in) :: polar
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call self%set_section(int(i, c_int64_t), chord, twist, polar, stat, errmsg)
-  end subroutine aero_set_section_32
-
-  subroutine aero_read_aerodyn(self, primary_path, blade_path, q, span, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    character(*), intent(in) :: primary_path
-    character(*), intent(in), optional :: blade_path
-    real(c_double), intent(in), optional :: q(4)
-    real(c_double), contiguous, intent(in), optional :: span(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-
-    if (present(span)) call need(fault, 'span', shape(span, kind=c_int64_t), [self%sections])
-    if (allocated(fault)) then
-      call refuse('aero%read_aerodyn', fault, stat, errmsg)
-      return
-    end if
-    if (present(blade_path)) then
-      status = spar_aero_read_aerodyn(self%handle, c_text(primary_path), c_text(blade_path), q, span)
-    else
-      status = spar_aero_read_aerodyn(self%handle, c_text(primary_path), q=q, span=span)
-    end if
-    call finish(status, self%session, stat, errmsg)
-  end subroutine aero_read_aerodyn
-
-  subroutine aero_get_flags(self, flags, no_root, stat, errmsg)
-    class(spar_aero), intent(in) :: self
-    integer, intent(inout), optional :: flags(:,:)
-    integer(c_int64_t), intent(inout), optional :: no_root
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-    integer(c_int) :: status
-    integer(c_int), allocatable :: c_flags(:,:)
-
-    if (present(flags)) call need(fault, 'flags', shape(flags, kind=c_int64_t), [self%sections, self%blades])
-    if (allocated(fault)) then
-      call refuse('aero%get_flags', fault, stat, errmsg)
-      return
-    end if
-    if (present(flags)) allocate (c_flags(self%sections, self%blades), source=0_c_int)
-    status = spar_aero_get_flags(self%handle, c_flags, no_root)
-    if (status == SPAR_OK .and. present(flags)) flags(:self%sections, :self%blades) = c_flags
-    call finish(status, self%session, stat, errmsg)
-  end subroutine aero_get_flags
-
-  subroutine aero_report_effects(self, trial, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    class(spar_trial), intent(inout) :: trial
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_aero_report_effects(self%handle, trial%handle), trial%session, stat, errmsg)
-  end subroutine aero_report_effects
 
   ! ---- what needs no thought ----
 
@@ -2650,6 +2341,16 @@ contains
     call hand(status, c_threads, threads)
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_threads
+
+  subroutine session_fail(self, status, message, stat, errmsg)
+    class(spar_session), intent(in) :: self
+    integer, intent(in) :: status
+    character(*), intent(in) :: message
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_session_fail(self%handle, to_c(status), c_text(message)), self%handle, stat, errmsg)
+  end subroutine session_fail
 
   ! Written by cmake/make-bindings.sh.
 
@@ -3983,171 +3684,6 @@ contains
         stat, errmsg)
   end subroutine trial_solve_floquet
 
-  ! Written by cmake/make-bindings.sh.
-
-  subroutine polar_set_interpolation(self, kind, stat, errmsg)
-    class(spar_polar), intent(inout) :: self
-    integer, intent(in) :: kind
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_polar_set_interpolation(self%handle, to_c(kind)), c_null_ptr, stat, errmsg)
-  end subroutine polar_set_interpolation
-
-  ! Written by cmake/make-bindings.sh.
-
-  subroutine aero_get_chord(self, chord, twist, stat, errmsg)
-    class(spar_aero), intent(in) :: self
-    real(c_double), contiguous, intent(inout), optional :: chord(:), twist(:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    if (present(chord)) call need(fault, 'chord', shape(chord, kind=c_int64_t), [self%sections])
-    if (present(twist)) call need(fault, 'twist', shape(twist, kind=c_int64_t), [self%sections])
-    if (allocated(fault)) then
-      call refuse('aero%get_chord', fault, stat, errmsg)
-      return
-    end if
-    call finish(spar_aero_get_chord(self%handle, chord, twist), self%session, stat, errmsg)
-  end subroutine aero_get_chord
-
-  subroutine aero_set_rotor(self, hub, axis, hub_radius, tip_radius, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    real(c_double), intent(in) :: hub(3), axis(3), hub_radius, tip_radius
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_aero_set_rotor(self%handle, hub, axis, hub_radius, tip_radius), self%session, stat, errmsg)
-  end subroutine aero_set_rotor
-
-  subroutine aero_set_turn(self, turn, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    integer, intent(in) :: turn
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_aero_set_turn(self%handle, to_c(turn)), self%session, stat, errmsg)
-  end subroutine aero_set_turn
-
-  subroutine aero_set_blades(self, total, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    integer, intent(in) :: total
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_aero_set_blades(self%handle, to_c(total)), self%session, stat, errmsg)
-  end subroutine aero_set_blades
-
-  subroutine aero_set_shear(self, law, ground, up, height, parameter, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    integer, intent(in) :: law
-    real(c_double), intent(in) :: ground(3), up(3), height, parameter
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_aero_set_shear(self%handle, to_c(law), ground, up, height, parameter), self%session, stat, errmsg)
-  end subroutine aero_set_shear
-
-  subroutine aero_set_tower(self, base, top, base_radius, top_radius, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    real(c_double), intent(in) :: base(3), top(3), base_radius, top_radius
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_aero_set_tower(self%handle, base, top, base_radius, top_radius), self%session, stat, errmsg)
-  end subroutine aero_set_tower
-
-  subroutine aero_set_effects(self, effects, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    integer, intent(in) :: effects
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_aero_set_effects(self%handle, to_c(effects)), self%session, stat, errmsg)
-  end subroutine aero_set_effects
-
-  subroutine aero_solve(self, density, inflow, theta, stat, errmsg)
-    class(spar_aero), intent(inout) :: self
-    real(c_double), intent(in) :: density
-    real(c_double), contiguous, intent(in) :: inflow(:,:,:)
-    real(c_double), intent(in) :: theta
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    call need(fault, 'inflow', shape(inflow, kind=c_int64_t), [3_c_int64_t, self%sections, self%blades])
-    if (allocated(fault)) then
-      call refuse('aero%solve', fault, stat, errmsg)
-      return
-    end if
-    call finish(spar_aero_solve(self%handle, density, inflow, theta), self%session, stat, errmsg)
-  end subroutine aero_solve
-
-  subroutine aero_get_rotor(self, thrust, torque, power, stat, errmsg)
-    class(spar_aero), intent(in) :: self
-    real(c_double), intent(inout), optional :: thrust, torque, power
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    call finish(spar_aero_get_rotor(self%handle, thrust, torque, power), self%session, stat, errmsg)
-  end subroutine aero_get_rotor
-
-  subroutine aero_get_sections(self, alpha, cl, cd, a, a_tangential, stat, errmsg)
-    class(spar_aero), intent(in) :: self
-    real(c_double), contiguous, intent(inout), optional :: alpha(:,:), cl(:,:), cd(:,:), a(:,:), a_tangential(:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    if (present(alpha)) call need(fault, 'alpha', shape(alpha, kind=c_int64_t), [self%sections, self%blades])
-    if (present(cl)) call need(fault, 'cl', shape(cl, kind=c_int64_t), [self%sections, self%blades])
-    if (present(cd)) call need(fault, 'cd', shape(cd, kind=c_int64_t), [self%sections, self%blades])
-    if (present(a)) call need(fault, 'a', shape(a, kind=c_int64_t), [self%sections, self%blades])
-    if (present(a_tangential)) call need(fault, 'a_tangential', shape(a_tangential, kind=c_int64_t), [self%sections, &
-        self%blades])
-    if (allocated(fault)) then
-      call refuse('aero%get_sections', fault, stat, errmsg)
-      return
-    end if
-    call finish(spar_aero_get_sections(self%handle, alpha, cl, cd, a, a_tangential), self%session, stat, errmsg)
-  end subroutine aero_get_sections
-
-  subroutine aero_get_loads(self, per_length, force, moment, stat, errmsg)
-    class(spar_aero), intent(in) :: self
-    real(c_double), contiguous, intent(inout), optional :: per_length(:,:,:), force(:,:,:), moment(:,:,:)
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: fault
-
-    if (present(per_length)) call need(fault, 'per_length', shape(per_length, kind=c_int64_t), [6_c_int64_t, &
-        self%sections, self%blades])
-    if (present(force)) call need(fault, 'force', shape(force, kind=c_int64_t), [3_c_int64_t, self%sections, &
-        self%blades])
-    if (present(moment)) call need(fault, 'moment', shape(moment, kind=c_int64_t), [3_c_int64_t, self%sections, &
-        self%blades])
-    if (allocated(fault)) then
-      call refuse('aero%get_loads', fault, stat, errmsg)
-      return
-    end if
-    call finish(spar_aero_get_loads(self%handle, per_length, force, moment), self%session, stat, errmsg)
-  end subroutine aero_get_loads
-
-  subroutine aero_get_effect(self, row, in_force, fails, size, motion, reaction, share, stat, errmsg)
-    class(spar_aero), intent(in) :: self
-    integer, intent(in) :: row
-    integer, intent(inout), optional :: in_force, fails
-    real(c_double), intent(inout), optional :: size, motion, reaction, share
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, c_in_force, c_fails
-
-    status = spar_aero_get_effect(self%handle, to_c(row), c_in_force, c_fails, size, motion, reaction, share)
-    call hand(status, c_in_force, in_force)
-    call hand(status, c_fails, fails)
-    call finish(status, self%session, stat, errmsg)
-  end subroutine aero_get_effect
-
   ! ---- calls that need no object ----
 
   function status_text(status) result(text)
@@ -4178,14 +3714,6 @@ contains
     call copy_text(c_effect_name(to_c(row)), name)
   end function effect_name
 
-  ! The same of aero%report_effects.
-  function aero_effect_name(row) result(name)
-    integer, intent(in) :: row
-    character(:), allocatable :: name
-
-    call copy_text(c_aero_effect_name(to_c(row)), name)
-  end function aero_effect_name
-
   ! Adds a file to an index of files in time; part counts from 0.
   subroutine series_add(path, time, part, file, stat, errmsg)
     character(*), intent(in) :: path, file
@@ -4197,85 +3725,7 @@ contains
     call finish(c_series_add(c_text(path), time, to_c(part), c_text(file)), c_null_ptr, stat, errmsg)
   end subroutine series_add
 
-  ! ---- status and messages ----
-
-  ! How every call ends: the status goes to the caller that takes it; where none does, a failure stops the program with the
-  ! message.
-  subroutine finish(status, session, stat, errmsg)
-    integer(c_int), intent(in) :: status
-    type(c_ptr), intent(in) :: session ! whose message tells; none: this thread's
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(:), allocatable :: text
-
-    if (present(stat)) stat = status
-    if (status == SPAR_OK) return
-    call copy_text(spar_session_message(session), text)
-    if (len(text) == 0) call copy_text(c_status_text(status), text)
-    call tell(text, present(stat), errmsg)
-  end subroutine finish
-
-  ! How a call ends whose arguments the library has not seen.
-  subroutine refuse(place, fault, stat, errmsg, name)
-    character(*), intent(in) :: place, fault
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-    character(*), intent(in), optional :: name
-
-    if (present(stat)) stat = SPAR_ERR_ARGUMENT
-    if (present(name)) then
-      call tell(place // ': ''' // name // ''': ' // trim(fault), present(stat), errmsg)
-    else
-      call tell(place // ': ' // trim(fault), present(stat), errmsg)
-    end if
-  end subroutine refuse
-
-  subroutine occupied(place, stat, errmsg)
-    character(*), intent(in) :: place
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    if (present(stat)) stat = SPAR_ERR_STATE
-    call tell(place // ': the variable holds one already; destroy it first, or use another variable', present(stat), errmsg)
-  end subroutine occupied
-
-  subroutine tell(text, taken, errmsg)
-    character(*), intent(in) :: text
-    logical, intent(in) :: taken
-    character(*), intent(inout), optional :: errmsg
-
-    if (present(errmsg)) errmsg = text
-    if (.not. taken) error stop text
-  end subroutine tell
-
-  ! Two uncreated variables are alike, and a variable is like itself; anything else would make a second owner.
-  subroutine forbid_copy(what, left, right)
-    character(*), intent(in) :: what
-    type(c_ptr), intent(in) :: left, right
-
-    if (c_associated(right)) then
-      if (c_associated(left, right)) return
-    else
-      if (.not. c_associated(left)) return
-    end if
-    error stop 'spar: ' // what // ' cannot be copied: pass it as an argument or keep a pointer to it'
-  end subroutine forbid_copy
-
-  ! ---- shapes and numbers ----
-
-  ! Puts into fault what is wrong with the shape of an array, unless something is there already. Where there is nothing to be
-  ! read or written, any array without elements will do.
-  subroutine need(fault, array, has, needs)
-    character(:), allocatable, intent(inout) :: fault
-    character(*), intent(in) :: array
-    integer(c_int64_t), intent(in) :: has(:), needs(:)
-
-    if (allocated(fault) .or. all(has == needs) .or. (product(has) == 0 .and. product(needs) == 0)) return
-    fault = array // ' has the shape '
-    call append_extents(fault, has)
-    fault = fault // '; it must be '
-    call append_extents(fault, needs)
-  end subroutine need
+  ! ---- shapes ----
 
   ! Triples of a fluid's n nodes: (3,n), or as large as the set's layout needs.
   subroutine need_triples(fluid, which, fault, array, has, n)
@@ -4302,90 +3752,4 @@ contains
     fault = array // ' has ' // trim(text_of(product(has))) // ' numbers; the layout of its fluid needs ' // &
         trim(text_of(numbers))
   end subroutine need_triples
-
-  subroutine append_extents(text, extents)
-    character(:), allocatable, intent(inout) :: text
-    integer(c_int64_t), intent(in) :: extents(:)
-    integer :: i
-
-    do i = 1, size(extents)
-      text = text // merge('(', ',', i == 1) // trim(text_of(extents(i)))
-    end do
-    text = text // ')'
-  end subroutine append_extents
-
-  pure function text_of(number) result(text)
-    integer(c_int64_t), intent(in) :: number
-    character(20) :: text
-
-    write (text, '(i0)') number
-  end function text_of
-
-  ! A count for a caller with 32-bit integers.
-  subroutine narrow(status, from, to, place, session, stat, errmsg)
-    integer(c_int), intent(in) :: status
-    integer(c_int64_t), intent(in) :: from
-    integer(c_int), intent(inout) :: to
-    character(*), intent(in) :: place
-    type(c_ptr), intent(in) :: session
-    integer, intent(out), optional :: stat
-    character(*), intent(inout), optional :: errmsg
-
-    if (status == SPAR_OK) then
-      if (from > huge(to)) then
-        call refuse(place, trim(text_of(from)) // ' does not fit; take a 64-bit integer', stat, errmsg)
-        return
-      end if
-      to = int(from, c_int)
-    end if
-    call finish(status, session, stat, errmsg)
-  end subroutine narrow
-
-  ! A result of C in the host's kind of integer, which may be absent.
-  pure subroutine hand(status, from, to)
-    integer(c_int), intent(in) :: status, from
-    integer, intent(inout), optional :: to
-
-    if (status == SPAR_OK .and. present(to)) to = from
-  end subroutine hand
-
-  ! An integer of the host for C; what C cannot hold becomes the largest that it can, which no call takes.
-  elemental integer(c_int) function to_c(number)
-    integer, intent(in) :: number
-    integer, parameter :: largest = huge(0_c_int)
-
-    to_c = int(max(-largest, min(number, largest)), c_int)
-  end function to_c
-
-  integer(c_int) function flag(on)
-    logical, intent(in) :: on
-
-    flag = merge(1_c_int, 0_c_int, on)
-  end function flag
-
-  ! ---- text across the border ----
-
-  pure function c_text(text) result(c)
-    character(*), intent(in) :: text
-    character(kind=c_char, len=len_trim(text) + 1) :: c
-
-    c = trim(text) // c_null_char
-  end function c_text
-
-  ! Not a function: gfortran keeps the length of what a function allocates in one place for all threads.
-  subroutine copy_text(c, text)
-    type(c_ptr), intent(in) :: c
-    character(kind=c_char, len=:), allocatable, intent(out) :: text
-    character(kind=c_char), pointer :: letters(:)
-    integer(c_int64_t) :: i, n
-
-    n = 0
-    if (c_associated(c)) n = strlen(c)
-    allocate (character(kind=c_char, len=n) :: text)
-    if (n == 0) return
-    call c_f_pointer(c, letters, [n])
-    do i = 1, n
-      text(i:i) = letters(i)
-    end do
-  end subroutine copy_text
 end module spar

@@ -28,7 +28,7 @@ The headers under include/spar say what each call does; here is what is differen
   keep it.
   What belonged to it is closed with it: further calls raise spar.Error. Nothing of spar can be copied or pickled.
 - Several ranks: spar.Session(comm) with an mpi4py communicator or its Fortran integer.
-The library is sought as SPAR_LIBRARY says, else where the loader finds libspar.so.0.9.
+The library is sought as SPAR_LIBRARY says, else where the loader finds libspar.so.0.9; libspar_aero in the same folder.
 """
 import ctypes
 import os
@@ -182,6 +182,7 @@ call spar_member_set_owner int member|member|value| rank|int|value|
 call spar_member_get_owner int member|member|value| rank|int|out|
 call spar_session_sum_balance int session|session|value| capacity|int64_t|value| members|int64_t|out|[capacity] expected|double|out|[capacity] counted|double|out|[capacity]
 call spar_session_sum int session|session|value| status|int|value| n|int64_t|value| x|double|out|[n]
+call spar_session_fail int session|session|value| status|int|value| message|char|in|[]
 call spar_fluid_get_member int fluid|fluid|value| member|member|out|
 call spar_fluid_get_name text fluid|fluid|value|
 call spar_fluid_set_motion_stations int fluid|fluid|value| n|int64_t|value| eta|double|in|[n] offset|double|in|[n][3]
@@ -259,6 +260,9 @@ call spar_trial_set_motion int trial|trial|value| modes|int64_t|value| amplitude
 call spar_trial_get_motion int trial|trial|value| modes|int64_t|out| amplitude|double|out| memory|int64_t|out|
 call spar_trial_solve_eigenvalues int trial|trial|value| n|int64_t|value| shift|double|in|[2] eigenvalue|double|out|[n][2] nodes|int64_t|value| shapes|double|out|[n][nodes][6][2] frame|double|out|[3]
 call spar_trial_solve_floquet int trial|trial|value| n|int64_t|value| eigenvalue|double|out|[n][2]
+call spar_member_write_vtk int member|member|value| path|char|in|[]
+call spar_fluid_write_vtk int fluid|fluid|value| path|char|in|[]
+call spar_vtk_series_add int path|char|in|[] time|double|value| part|int|value| file|char|in|[]
 constants SPAR_AERO_INDUCTION=1 SPAR_AERO_TIP_LOSS=2 SPAR_AERO_HUB_LOSS=4 SPAR_AERO_SWIRL=8 SPAR_AERO_DRAG=16 SPAR_AERO_MOMENT=32 SPAR_AERO_SHEAR=64 SPAR_AERO_TOWER=128 SPAR_AERO_INFLOW=256 SPAR_AERO_STALL=512 SPAR_AERO_UNSTEADY=1024
 constants SPAR_SHEAR_POWER=0 SPAR_SHEAR_LOG=1 SPAR_SHEAR_LINEAR=2
 constants SPAR_POLAR_LINEAR=0 SPAR_POLAR_AKIMA=1 SPAR_POLAR_CUBIC=2
@@ -288,13 +292,19 @@ constants SPAR_AERO_ROW_INDUCTION=0 SPAR_AERO_ROW_TIP_LOSS=1 SPAR_AERO_ROW_HUB_L
 call spar_aero_effect_name text row|int|value|
 call spar_aero_report_effects int aero|aero|value| trial|trial|value|
 call spar_aero_get_effect int aero|aero|value| row|int|value| in_force|int|out| fails|int|out| size|double|out| motion|double|out| reaction|double|out| share|double|out|
-call spar_member_write_vtk int member|member|value| path|char|in|[]
-call spar_fluid_write_vtk int fluid|fluid|value| path|char|in|[]
-call spar_vtk_series_add int path|char|in|[] time|double|value| part|int|value| file|char|in|[]
 """
 # } written by cmake/make-bindings.sh
 
-_library = ctypes.CDLL(os.environ.get('SPAR_LIBRARY', 'libspar.so.0.9'))
+
+
+def _load(number):
+    """libspar and libspar_aero, which stands on it: of one folder."""
+    path = os.environ.get('SPAR_LIBRARY', f'libspar.so.{number}')
+    folder, name = os.path.split(path)
+    return [ctypes.CDLL(path), ctypes.CDLL(os.path.join(folder, name.replace('libspar', 'libspar_aero', 1)))]
+
+
+_library, _aero_library = _load('0.9')
 
 
 class Error(Exception):
@@ -342,7 +352,7 @@ class _Call:
     def __init__(self, name, answer, parameters):
         self.name, self.answer = name, answer
         self.parameters = [_Parameter(p) for p in parameters]
-        self.function = getattr(_library, name)
+        self.function = getattr(_library if hasattr(_library, name) else _aero_library, name)
         self.function.restype = {'int': ctypes.c_int, 'text': ctypes.c_char_p, 'none': None}[answer]
         self.function.argtypes = [p.c_type() for p in self.parameters]
         shown = {d for p in self.parameters if p.how == 'list' or (p.array and self._given(p)) for d in p.dims}

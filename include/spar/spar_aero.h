@@ -1,8 +1,9 @@
-/* spar_aero.h: blade element with momentum theory, the fluid that comes with the library.
+/* Experimental: the calls of this header may change in any release.
+   spar_aero.h: blade element with momentum theory, a library of its own, libspar_aero.
 
    Lift, drag and pitching moment from polars and the wind relative to the moving section, with or without the induced
    velocity of momentum theory (Ning 2014, doi 10.1002/we.1636); quasi-steady, but for the effects that remember. It is
-   made on the calls of spar.h alone.
+   made on the public calls of libspar alone; messages of failures are found in the session.
 
    A section is a place of a fluid (spar_fluid_set_stations); its aerodynamic centre is the fluid's node. Its frame is
    the one spar_fluid_pull_poses gives: x along the span from root to tip, y from leading to trailing edge, z = x

@@ -286,6 +286,16 @@ SPAR_API int spar_session_sum_balance(const spar_session *session, int64_t capac
      x[n]: in, this rank's; out, the sums, the same bits on all ranks; unchanged after a failure */
 SPAR_API int spar_session_sum(spar_session *session, int status, int64_t n, double *x);
 
+/* ---- failures outside the library ---------------------------------------------------------------------------------- */
+
+/* Writes the message of a failure outside this library, so that it is found where the library's own are: for a solver
+   that is called by spar_step, and for libraries on top of this one. It goes to the log as SPAR_LOG_ERROR.
+     session: in, NULL: the message of this thread
+     status: in, a SPAR_ERR_*; SPAR_OK: the message alone is written, as by who restores an earlier one
+     message: in, what, where, the cure; copied, at most 1023 characters; empty with SPAR_OK alone
+   Local. SPAR_ERR_ARGUMENT: no status, or no message. */
+SPAR_API int spar_session_fail(spar_session *session, int status, const char *message);
+
 /* ---- fluids: description ----------------------------------------------------------------------------------------- */
 
 /* All calls on fluids are local, but spar_fluid_sum_loads and spar_fluid_check_loads. n is the number of nodes of

@@ -2,8 +2,8 @@
    alone. */
 #include "aero.h"
 #include "../base/environment.h"
-#include "../base/message.h"
 #include "../math/rotation.h"
+#include "message.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -67,9 +67,9 @@ static int check_packed(spar_session *session, const spar_fluid *fluid, int stat
     for (int which = SPAR_NODES_MOTION; which <= SPAR_NODES_FORCE; which++) {
         int64_t node = 3, component = 1;
         SPARI_TRY(spar_fluid_get_layout(fluid, which, &node, &component));
-        SPARI_REQUIRE(session, node == 3 && component == 1, status,
-                      "%s: fluid '%s' has a non-default array layout; reset it with spar_fluid_set_layout (3, 1)", call,
-                      spar_fluid_get_name(fluid));
+        SPARI_AERO_REQUIRE(session, node == 3 && component == 1, status,
+                           "%s: fluid '%s' has a non-default array layout; reset it with spar_fluid_set_layout (3, 1)",
+                           call, spar_fluid_get_name(fluid));
     }
     return SPAR_OK;
 }
@@ -78,25 +78,27 @@ static int check_packed(spar_session *session, const spar_fluid *fluid, int stat
 static int check_blade_fluids(int blades, spar_fluid *const *fluid, const char *call, spar_session **first,
                               int64_t *n) {
     for (int b = 0; b < blades; b++) {
-        SPARI_REQUIRE(*first, fluid[b], SPAR_ERR_ARGUMENT, "%s: the fluid of blade %d is NULL", call, b);
+        SPARI_AERO_REQUIRE(*first, fluid[b], SPAR_ERR_ARGUMENT, "%s: the fluid of blade %d is NULL", call, b);
         spar_session *session;
         int64_t nodes, forces;
         SPARI_TRY(find_session(fluid[b], &session));
         *first = b == 0 ? session : *first;
-        SPARI_REQUIRE(*first, session == *first, SPAR_ERR_ARGUMENT,
-                      "%s: fluid '%s' of blade %d belongs to another session than blade 0", call,
-                      spar_fluid_get_name(fluid[b]), b);
+        SPARI_AERO_REQUIRE(*first, session == *first, SPAR_ERR_ARGUMENT,
+                           "%s: fluid '%s' of blade %d belongs to another session than blade 0", call,
+                           spar_fluid_get_name(fluid[b]), b);
         SPARI_TRY(spar_fluid_get_count(fluid[b], SPAR_NODES_MOTION, &nodes));
         SPARI_TRY(spar_fluid_get_count(fluid[b], SPAR_NODES_FORCE, &forces));
-        SPARI_REQUIRE(session, nodes >= 2 && nodes == forces, SPAR_ERR_ARGUMENT,
-                      "%s: fluid '%s' of blade %d has %lld motion and %lld force nodes; give it at least 2 sections "
-                      "with spar_fluid_set_stations",
-                      call, spar_fluid_get_name(fluid[b]), b, (long long)nodes, (long long)forces);
+        SPARI_AERO_REQUIRE(
+            session, nodes >= 2 && nodes == forces, SPAR_ERR_ARGUMENT,
+            "%s: fluid '%s' of blade %d has %lld motion and %lld force nodes; give it at least 2 sections "
+            "with spar_fluid_set_stations",
+            call, spar_fluid_get_name(fluid[b]), b, (long long)nodes, (long long)forces);
         SPARI_TRY(check_packed(session, fluid[b], SPAR_ERR_ARGUMENT, call));
         *n = b == 0 ? nodes : *n;
-        SPARI_REQUIRE(session, nodes == *n, SPAR_ERR_ARGUMENT,
-                      "%s: fluid '%s' of blade %d has %lld sections, blade 0 has %lld; give all blades the same number",
-                      call, spar_fluid_get_name(fluid[b]), b, (long long)nodes, (long long)*n);
+        SPARI_AERO_REQUIRE(
+            session, nodes == *n, SPAR_ERR_ARGUMENT,
+            "%s: fluid '%s' of blade %d has %lld sections, blade 0 has %lld; give all blades the same number", call,
+            spar_fluid_get_name(fluid[b]), b, (long long)nodes, (long long)*n);
     }
     return SPAR_OK;
 }
@@ -112,9 +114,9 @@ static int find_centres(spar_aero *aero, const char *call) {
         for (int64_t i = 0; i + 1 < aero->n; i++) {
             const double *a = x + 3 * i, *c = a + 3;
             double d[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]}, length = spari_norm(d);
-            SPARI_REQUIRE(aero->session, length > 0.0, SPAR_ERR_ARGUMENT,
-                          "%s: fluid '%s': sections %lld and %lld are at the same position", call,
-                          spar_fluid_get_name(aero->fluid[b]), (long long)i, (long long)(i + 1));
+            SPARI_AERO_REQUIRE(aero->session, length > 0.0, SPAR_ERR_ARGUMENT,
+                               "%s: fluid '%s': sections %lld and %lld are at the same position", call,
+                               spar_fluid_get_name(aero->fluid[b]), (long long)i, (long long)(i + 1));
             aero->length[b * aero->n + i] = length;
         }
     }
@@ -122,22 +124,24 @@ static int find_centres(spar_aero *aero, const char *call) {
 }
 
 int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) {
-    SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the pointer to the handle is NULL", __func__);
-    SPARI_REQUIRE(NULL, blades >= 0 && (blades == 0 || sections), SPAR_ERR_ARGUMENT,
-                  "%s: %d blades%s; give one fluid per blade", __func__, blades, sections ? "" : " without fluids");
+    SPARI_AERO_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the pointer to the handle is NULL", __func__);
+    SPARI_AERO_REQUIRE(NULL, blades >= 0 && (blades == 0 || sections), SPAR_ERR_ARGUMENT,
+                       "%s: %d blades%s; give one fluid per blade", __func__, blades,
+                       sections ? "" : " without fluids");
     int64_t n = 0;
     spar_session *session = NULL;
     int status = check_blade_fluids(blades, sections, __func__, &session, &n);
-    SPARI_TRY(spari_named(session, __func__, status));
+    SPARI_TRY(spari_aero_named(session, __func__, status));
     spar_aero *made = spari_zalloc(1, sizeof *made);
-    SPARI_REQUIRE(session, made, SPAR_ERR_MEMORY, "%s: no memory", __func__);
+    SPARI_AERO_REQUIRE(session, made, SPAR_ERR_MEMORY, "%s: no memory", __func__);
     made->session = session;
     made->blades = blades;
     made->n = n;
     made->rotor = (spari_rotor){.turn = 1, .blades = blades, .effects = SPAR_AERO_DRAG};
     status = make_arrays(made);
     if (status != SPAR_OK) {
-        spari_fail(session, status, "%s: no memory for %d blades of %lld sections", __func__, blades, (long long)n);
+        spari_aero_fail(session, status, "%s: no memory for %d blades of %lld sections", __func__, blades,
+                        (long long)n);
     } else {
         for (int b = 0; b < blades; b++) {
             made->fluid[b] = sections[b];
@@ -146,7 +150,7 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
     }
     if (status != SPAR_OK) {
         aero_free(made);
-        return spari_named(session, __func__, status);
+        return spari_aero_named(session, __func__, status);
     }
     *aero = made;
     return SPAR_OK;
@@ -155,8 +159,8 @@ int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero) 
 /* ---- description ---- */
 
 #define REQUIRE_HANDLE(aero)                                                                                           \
-    SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create",       \
-                  __func__)
+    SPARI_AERO_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create",  \
+                       __func__)
 
 /* Effects that follow from the description, unless the host chose them. */
 static int implied_effects(const spar_aero *aero) {
@@ -201,10 +205,10 @@ static int keep_states(const spar_aero *aero, const char *caller) {
     for (int b = 0; b < aero->blades; b++) {
         int64_t width;
         SPARI_TRY(spar_fluid_get_states(aero->fluid[b], &width, NULL));
-        SPARI_REQUIRE(aero->session, width == 0 || width == SPARI_MEMORY_NUMBERS, SPAR_ERR_STATE,
-                      "%s: fluid '%s' has %lld states per node set by the host (spar_fluid_set_states), but these "
-                      "effects store their own states; set 0",
-                      caller, spar_fluid_get_name(aero->fluid[b]), (long long)width);
+        SPARI_AERO_REQUIRE(aero->session, width == 0 || width == SPARI_MEMORY_NUMBERS, SPAR_ERR_STATE,
+                           "%s: fluid '%s' has %lld states per node set by the host (spar_fluid_set_states), but these "
+                           "effects store their own states; set 0",
+                           caller, spar_fluid_get_name(aero->fluid[b]), (long long)width);
         SPARI_TRY(spar_fluid_set_states(aero->fluid[b], SPARI_MEMORY_NUMBERS));
     }
     return SPAR_OK;
@@ -249,9 +253,9 @@ static int adopt(spar_aero *aero, int effects, const char *caller) {
             aero->loss_radius[k] = spari_rotor_radius(&aero->first, aero->place + 3 * k);
         }
     }
-    SPARI_REQUIRE(aero->session, whole, SPAR_ERR_MEMORY, "%s: no memory for the effects", caller);
+    SPARI_AERO_REQUIRE(aero->session, whole, SPAR_ERR_MEMORY, "%s: no memory for the effects", caller);
     if ((effects & memory_effects) && !(aero->rotor.effects & memory_effects)) {
-        SPARI_TRY(spari_named(aero->session, caller, keep_states(aero, caller)));
+        SPARI_TRY(spari_aero_named(aero->session, caller, keep_states(aero, caller)));
     }
     aero->rotor.effects = effects;
     return SPAR_OK;
@@ -260,15 +264,15 @@ static int adopt(spar_aero *aero, int effects, const char *caller) {
 int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist, const spar_polar *polar) {
     SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
-    SPARI_REQUIRE(aero->session, i >= 0 && (aero->blades == 0 || i < aero->n), SPAR_ERR_ARGUMENT,
-                  "%s: there is no section %lld; the blade has %lld, counted from 0", __func__, (long long)i,
-                  (long long)aero->n);
-    SPARI_REQUIRE(aero->session, isfinite(chord) && chord >= 0.0, SPAR_ERR_ARGUMENT,
-                  "%s: section %lld: chord %g; give a length >= 0", __func__, (long long)i, chord);
-    SPARI_REQUIRE(aero->session, isfinite(twist), SPAR_ERR_ARGUMENT, "%s: section %lld: the twist is not finite",
-                  __func__, (long long)i);
-    SPARI_REQUIRE(aero->session, polar, SPAR_ERR_ARGUMENT, "%s: section %lld: the polar is NULL", __func__,
-                  (long long)i);
+    SPARI_AERO_REQUIRE(aero->session, i >= 0 && (aero->blades == 0 || i < aero->n), SPAR_ERR_ARGUMENT,
+                       "%s: there is no section %lld; the blade has %lld, counted from 0", __func__, (long long)i,
+                       (long long)aero->n);
+    SPARI_AERO_REQUIRE(aero->session, isfinite(chord) && chord >= 0.0, SPAR_ERR_ARGUMENT,
+                       "%s: section %lld: chord %g; give a length >= 0", __func__, (long long)i, chord);
+    SPARI_AERO_REQUIRE(aero->session, isfinite(twist), SPAR_ERR_ARGUMENT, "%s: section %lld: the twist is not finite",
+                       __func__, (long long)i);
+    SPARI_AERO_REQUIRE(aero->session, polar, SPAR_ERR_ARGUMENT, "%s: section %lld: the polar is NULL", __func__,
+                       (long long)i);
     if (aero->blades == 0) {
         return SPAR_OK;
     }
@@ -294,15 +298,15 @@ int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[
                         double tip_radius) {
     SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
-    SPARI_REQUIRE(aero->session, hub && axis, SPAR_ERR_ARGUMENT, "%s: hub or axis is NULL", __func__);
-    SPARI_REQUIRE(aero->session, spari_first_nonfinite(hub, 3) < 0 && spari_first_nonfinite(axis, 3) < 0,
-                  SPAR_ERR_ARGUMENT, "%s: hub or axis has an entry that is not finite", __func__);
+    SPARI_AERO_REQUIRE(aero->session, hub && axis, SPAR_ERR_ARGUMENT, "%s: hub or axis is NULL", __func__);
+    SPARI_AERO_REQUIRE(aero->session, spari_first_nonfinite(hub, 3) < 0 && spari_first_nonfinite(axis, 3) < 0,
+                       SPAR_ERR_ARGUMENT, "%s: hub or axis has an entry that is not finite", __func__);
     double length = hypot(hypot(axis[0], axis[1]), axis[2]);
-    SPARI_REQUIRE(aero->session, isfinite(length) && length > 0.0, SPAR_ERR_ARGUMENT,
-                  "%s: the axis has length %g; give a direction, pointing downwind", __func__, length);
-    SPARI_REQUIRE(aero->session, hub_radius >= 0.0 && tip_radius > hub_radius && isfinite(tip_radius),
-                  SPAR_ERR_ARGUMENT, "%s: hub radius %g, tip radius %g; give 0 <= hub radius < tip radius", __func__,
-                  hub_radius, tip_radius);
+    SPARI_AERO_REQUIRE(aero->session, isfinite(length) && length > 0.0, SPAR_ERR_ARGUMENT,
+                       "%s: the axis has length %g; give a direction, pointing downwind", __func__, length);
+    SPARI_AERO_REQUIRE(aero->session, hub_radius >= 0.0 && tip_radius > hub_radius && isfinite(tip_radius),
+                       SPAR_ERR_ARGUMENT, "%s: hub radius %g, tip radius %g; give 0 <= hub radius < tip radius",
+                       __func__, hub_radius, tip_radius);
     spari_rotor old = aero->rotor;
     int was_given = aero->rotor_given;
     for (int i = 0; i < 3; i++) {
@@ -324,7 +328,7 @@ int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[
 /* Allocates the description of the wind. */
 static int have_wind(spar_aero *aero, const char *caller) {
     aero->wind = aero->wind ? aero->wind : spari_zalloc(1, sizeof *aero->wind);
-    SPARI_REQUIRE(aero->session, aero->wind, SPAR_ERR_MEMORY, "%s: no memory for the wind", caller);
+    SPARI_AERO_REQUIRE(aero->session, aero->wind, SPAR_ERR_MEMORY, "%s: no memory for the wind", caller);
     return SPAR_OK;
 }
 
@@ -339,16 +343,16 @@ static int adopt_wind(spar_aero *aero, const spari_wind *old, const char *caller
 
 /* Checks the arguments of a shear law; the messages name the allowed range. */
 static int check_shear(const spar_aero *aero, int law, double height, double parameter, const char *call) {
-    SPARI_REQUIRE(aero->session, law >= SPAR_SHEAR_POWER && law <= SPAR_SHEAR_LINEAR, SPAR_ERR_ARGUMENT,
-                  "%s: shear law %d is not known; give SPAR_SHEAR_POWER, _LOG or _LINEAR", call, law);
-    SPARI_REQUIRE(aero->session, isfinite(height) && height > 0.0, SPAR_ERR_ARGUMENT,
-                  "%s: the reference height is %g; give one > 0 above the ground", call, height);
-    SPARI_REQUIRE(aero->session, isfinite(parameter), SPAR_ERR_ARGUMENT, "%s: the parameter is not finite", call);
-    SPARI_REQUIRE(aero->session, law != SPAR_SHEAR_POWER || parameter >= 0.0, SPAR_ERR_ARGUMENT,
-                  "%s: exponent %g; give one >= 0", call, parameter);
-    SPARI_REQUIRE(aero->session, law != SPAR_SHEAR_LOG || (parameter > 0.0 && parameter < height), SPAR_ERR_ARGUMENT,
-                  "%s: roughness length %g, reference height %g; give 0 < roughness length < height", call, parameter,
-                  height);
+    SPARI_AERO_REQUIRE(aero->session, law >= SPAR_SHEAR_POWER && law <= SPAR_SHEAR_LINEAR, SPAR_ERR_ARGUMENT,
+                       "%s: shear law %d is not known; give SPAR_SHEAR_POWER, _LOG or _LINEAR", call, law);
+    SPARI_AERO_REQUIRE(aero->session, isfinite(height) && height > 0.0, SPAR_ERR_ARGUMENT,
+                       "%s: the reference height is %g; give one > 0 above the ground", call, height);
+    SPARI_AERO_REQUIRE(aero->session, isfinite(parameter), SPAR_ERR_ARGUMENT, "%s: the parameter is not finite", call);
+    SPARI_AERO_REQUIRE(aero->session, law != SPAR_SHEAR_POWER || parameter >= 0.0, SPAR_ERR_ARGUMENT,
+                       "%s: exponent %g; give one >= 0", call, parameter);
+    SPARI_AERO_REQUIRE(
+        aero->session, law != SPAR_SHEAR_LOG || (parameter > 0.0 && parameter < height), SPAR_ERR_ARGUMENT,
+        "%s: roughness length %g, reference height %g; give 0 < roughness length < height", call, parameter, height);
     return SPAR_OK;
 }
 
@@ -356,8 +360,8 @@ static int check_shear(const spar_aero *aero, int law, double height, double par
 static int find_direction(const spar_aero *aero, const double v[3], double unit[3], double *length, const char *what,
                           const char *call) {
     *length = spari_first_nonfinite(v, 3) < 0 ? hypot(hypot(v[0], v[1]), v[2]) : NAN;
-    SPARI_REQUIRE(aero->session, isfinite(*length) && *length > 0.0, SPAR_ERR_ARGUMENT,
-                  "%s: %s has length %g; give a finite one, not 0", call, what, *length);
+    SPARI_AERO_REQUIRE(aero->session, isfinite(*length) && *length > 0.0, SPAR_ERR_ARGUMENT,
+                       "%s: %s has length %g; give a finite one, not 0", call, what, *length);
     for (int i = 0; i < 3; i++) {
         unit[i] = v[i] / *length;
     }
@@ -368,9 +372,9 @@ int spar_aero_set_shear(spar_aero *aero, int law, const double ground[3], const 
                         double parameter) {
     SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
-    SPARI_REQUIRE(aero->session, ground && up, SPAR_ERR_ARGUMENT, "%s: ground or up is NULL", __func__);
-    SPARI_REQUIRE(aero->session, spari_first_nonfinite(ground, 3) < 0, SPAR_ERR_ARGUMENT,
-                  "%s: the point on the ground has an entry that is not finite", __func__);
+    SPARI_AERO_REQUIRE(aero->session, ground && up, SPAR_ERR_ARGUMENT, "%s: ground or up is NULL", __func__);
+    SPARI_AERO_REQUIRE(aero->session, spari_first_nonfinite(ground, 3) < 0, SPAR_ERR_ARGUMENT,
+                       "%s: the point on the ground has an entry that is not finite", __func__);
     spari_shear made = {.law = law, .height = height, .parameter = parameter};
     double length;
     SPARI_TRY(find_direction(aero, up, made.up, &length, "the upward direction", __func__));
@@ -387,15 +391,16 @@ int spar_aero_set_tower(spar_aero *aero, const double base[3], const double top[
                         double top_radius) {
     SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
-    SPARI_REQUIRE(aero->session, base && top, SPAR_ERR_ARGUMENT, "%s: base or top is NULL", __func__);
-    SPARI_REQUIRE(aero->session, spari_first_nonfinite(base, 3) < 0 && spari_first_nonfinite(top, 3) < 0,
-                  SPAR_ERR_ARGUMENT, "%s: base or top has an entry that is not finite", __func__);
+    SPARI_AERO_REQUIRE(aero->session, base && top, SPAR_ERR_ARGUMENT, "%s: base or top is NULL", __func__);
+    SPARI_AERO_REQUIRE(aero->session, spari_first_nonfinite(base, 3) < 0 && spari_first_nonfinite(top, 3) < 0,
+                       SPAR_ERR_ARGUMENT, "%s: base or top has an entry that is not finite", __func__);
     double axis[3] = {top[0] - base[0], top[1] - base[1], top[2] - base[2]};
     spari_tower made = {.base_radius = base_radius, .top_radius = top_radius};
     SPARI_TRY(find_direction(aero, axis, made.up, &made.length, "the vector from base to top", __func__));
-    SPARI_REQUIRE(aero->session, isfinite(base_radius) && base_radius > 0.0 && isfinite(top_radius) && top_radius > 0.0,
-                  SPAR_ERR_ARGUMENT, "%s: radii %g at the base, %g at the top; give lengths > 0", __func__, base_radius,
-                  top_radius);
+    SPARI_AERO_REQUIRE(aero->session,
+                       isfinite(base_radius) && base_radius > 0.0 && isfinite(top_radius) && top_radius > 0.0,
+                       SPAR_ERR_ARGUMENT, "%s: radii %g at the base, %g at the top; give lengths > 0", __func__,
+                       base_radius, top_radius);
     memcpy(made.top, top, sizeof made.top);
     SPARI_TRY(have_wind(aero, __func__));
     spari_wind old = *aero->wind;
@@ -406,7 +411,7 @@ int spar_aero_set_tower(spar_aero *aero, const double base[3], const double top[
 
 int spar_aero_set_turn(spar_aero *aero, int turn) {
     REQUIRE_HANDLE(aero);
-    SPARI_REQUIRE(
+    SPARI_AERO_REQUIRE(
         aero->session, turn == 1 || turn == -1, SPAR_ERR_ARGUMENT,
         "%s: the direction of rotation is %d; give 1 for right-handed about the downwind axis, -1 for left-handed",
         __func__, turn);
@@ -416,8 +421,8 @@ int spar_aero_set_turn(spar_aero *aero, int turn) {
 
 int spar_aero_set_blades(spar_aero *aero, int total) {
     REQUIRE_HANDLE(aero);
-    SPARI_REQUIRE(aero->session, total >= aero->blades, SPAR_ERR_ARGUMENT,
-                  "%s: %d blades in total, but %d of them are on this rank", __func__, total, aero->blades);
+    SPARI_AERO_REQUIRE(aero->session, total >= aero->blades, SPAR_ERR_ARGUMENT,
+                       "%s: %d blades in total, but %d of them are on this rank", __func__, total, aero->blades);
     aero->rotor.blades = total;
     return SPAR_OK;
 }
@@ -425,8 +430,8 @@ int spar_aero_set_blades(spar_aero *aero, int total) {
 int spar_aero_set_effects(spar_aero *aero, int effects) {
     SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
-    SPARI_REQUIRE(aero->session, (effects & ~SPARI_AERO_ALL) == 0, SPAR_ERR_ARGUMENT,
-                  "%s: effects is %d; give a combination of SPAR_AERO_ effects", __func__, effects);
+    SPARI_AERO_REQUIRE(aero->session, (effects & ~SPARI_AERO_ALL) == 0, SPAR_ERR_ARGUMENT,
+                       "%s: effects is %d; give a combination of SPAR_AERO_ effects", __func__, effects);
     SPARI_TRY(adopt(aero, effects, __func__));
     aero->effects_given = 1;
     return SPAR_OK;
@@ -444,15 +449,16 @@ static int check_blades(const spar_aero *aero, const char *call) {
         int64_t motion, force;
         SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_MOTION, &motion));
         SPARI_TRY(spar_fluid_get_count(fluid, SPAR_NODES_FORCE, &force));
-        SPARI_REQUIRE(aero->session, motion == aero->n && force == aero->n, SPAR_ERR_STATE,
-                      "%s: fluid '%s' had %lld sections when the aero object was created and has %lld motion and %lld "
-                      "force nodes now; make a new one",
-                      call, spar_fluid_get_name(fluid), (long long)aero->n, (long long)motion, (long long)force);
+        SPARI_AERO_REQUIRE(
+            aero->session, motion == aero->n && force == aero->n, SPAR_ERR_STATE,
+            "%s: fluid '%s' had %lld sections when the aero object was created and has %lld motion and %lld "
+            "force nodes now; make a new one",
+            call, spar_fluid_get_name(fluid), (long long)aero->n, (long long)motion, (long long)force);
         SPARI_TRY(check_packed(aero->session, fluid, SPAR_ERR_STATE, call));
         SPARI_TRY(spar_fluid_get_map(fluid, SPAR_NODES_MOTION, NULL, NULL, NULL));
         SPARI_TRY(spar_fluid_get_map(fluid, SPAR_NODES_FORCE, NULL, NULL, NULL));
     }
-    SPARI_REQUIRE(
+    SPARI_AERO_REQUIRE(
         aero->session, phase != SPAR_PHASE_BETWEEN, SPAR_ERR_STATE,
         "%s: no step is in progress; call it between spar_step_begin and spar_step_accept, or before the first "
         "step",
@@ -462,8 +468,8 @@ static int check_blades(const spar_aero *aero, const char *call) {
 
 static int check_described(const spar_aero *aero, const char *call) {
     for (int64_t i = 0; i < aero->n; i++) {
-        SPARI_REQUIRE(aero->session, aero->section[i].table, SPAR_ERR_STATE,
-                      "%s: section %lld has no chord and polar; call spar_aero_set_section", call, (long long)i);
+        SPARI_AERO_REQUIRE(aero->session, aero->section[i].table, SPAR_ERR_STATE,
+                           "%s: section %lld has no chord and polar; call spar_aero_set_section", call, (long long)i);
     }
     return SPAR_OK;
 }
@@ -474,11 +480,12 @@ static int check_remembered(const spar_aero *aero, double theta, const char *cal
         double dt;
         int64_t numbers;
         SPARI_TRY(spar_fluid_get_states(aero->fluid[b], &numbers, &dt));
-        SPARI_REQUIRE(aero->session, numbers == SPARI_MEMORY_NUMBERS, SPAR_ERR_STATE,
-                      "%s: fluid '%s' has %lld states per node instead of the %d that the effects with memory (inflow, "
-                      "stall, unsteady) need; call spar_aero_set_effects without these effects, then with them",
-                      call, spar_fluid_get_name(aero->fluid[b]), (long long)numbers, SPARI_MEMORY_NUMBERS);
-        SPARI_REQUIRE(
+        SPARI_AERO_REQUIRE(
+            aero->session, numbers == SPARI_MEMORY_NUMBERS, SPAR_ERR_STATE,
+            "%s: fluid '%s' has %lld states per node instead of the %d that the effects with memory (inflow, "
+            "stall, unsteady) need; call spar_aero_set_effects without these effects, then with them",
+            call, spar_fluid_get_name(aero->fluid[b]), (long long)numbers, SPARI_MEMORY_NUMBERS);
+        SPARI_AERO_REQUIRE(
             aero->session, theta >= 1.0 || dt <= 0.0, SPAR_ERR_ARGUMENT,
             "%s: theta is %g; effects with memory (inflow, stall, unsteady) advance from t^n to t^{n+1}; give 1", call,
             theta);
@@ -488,25 +495,25 @@ static int check_remembered(const spar_aero *aero, double theta, const char *cal
 
 static int check_solve(const spar_aero *aero, double density, const double *inflow, double theta, const char *call) {
     spar_session *session = aero->session;
-    SPARI_REQUIRE(session, isfinite(density) && density >= 0.0, SPAR_ERR_ARGUMENT, "%s: density %g; give a number >= 0",
-                  call, density);
-    SPARI_REQUIRE(session, theta >= 0.0 && theta <= 1.0, SPAR_ERR_ARGUMENT,
-                  "%s: theta = %g lies outside [0,1]; 0 is t^n, 1 is t^{n+1}", call, theta);
-    SPARI_REQUIRE(session, inflow || aero->blades == 0, SPAR_ERR_ARGUMENT, "%s: the inflow is NULL", call);
-    SPARI_REQUIRE(session, aero->rotor_given || !(aero->rotor.effects & SPAR_AERO_INDUCTION), SPAR_ERR_STATE,
-                  "%s: induction is requested but the rotor is not described; call spar_aero_set_rotor", call);
-    SPARI_REQUIRE(session, (aero->wind && aero->wind->has_shear) || !(aero->rotor.effects & SPAR_AERO_SHEAR),
-                  SPAR_ERR_STATE, "%s: shear is requested but not described; call spar_aero_set_shear", call);
-    SPARI_REQUIRE(session, (aero->wind && aero->wind->has_tower) || !(aero->rotor.effects & SPAR_AERO_TOWER),
-                  SPAR_ERR_STATE, "%s: a tower is requested but not described; call spar_aero_set_tower", call);
+    SPARI_AERO_REQUIRE(session, isfinite(density) && density >= 0.0, SPAR_ERR_ARGUMENT,
+                       "%s: density %g; give a number >= 0", call, density);
+    SPARI_AERO_REQUIRE(session, theta >= 0.0 && theta <= 1.0, SPAR_ERR_ARGUMENT,
+                       "%s: theta = %g lies outside [0,1]; 0 is t^n, 1 is t^{n+1}", call, theta);
+    SPARI_AERO_REQUIRE(session, inflow || aero->blades == 0, SPAR_ERR_ARGUMENT, "%s: the inflow is NULL", call);
+    SPARI_AERO_REQUIRE(session, aero->rotor_given || !(aero->rotor.effects & SPAR_AERO_INDUCTION), SPAR_ERR_STATE,
+                       "%s: induction is requested but the rotor is not described; call spar_aero_set_rotor", call);
+    SPARI_AERO_REQUIRE(session, (aero->wind && aero->wind->has_shear) || !(aero->rotor.effects & SPAR_AERO_SHEAR),
+                       SPAR_ERR_STATE, "%s: shear is requested but not described; call spar_aero_set_shear", call);
+    SPARI_AERO_REQUIRE(session, (aero->wind && aero->wind->has_tower) || !(aero->rotor.effects & SPAR_AERO_TOWER),
+                       SPAR_ERR_STATE, "%s: a tower is requested but not described; call spar_aero_set_tower", call);
     SPARI_TRY(check_described(aero, call));
     int64_t bad = aero->blades > 0 ? spari_first_nonfinite(inflow, 3 * count(aero)) : -1;
     if (bad >= 0) {
         int blade = (int)(bad / (3 * aero->n));
-        return spari_fail(session, SPAR_ERR_ARGUMENT,
-                          "%s: fluid '%s', blade %d, section %lld: component %d of the inflow is %g", call,
-                          spar_fluid_get_name(aero->fluid[blade]), blade, (long long)(bad / 3 % aero->n),
-                          (int)(bad % 3), inflow[bad]);
+        return spari_aero_fail(session, SPAR_ERR_ARGUMENT,
+                               "%s: fluid '%s', blade %d, section %lld: component %d of the inflow is %g", call,
+                               spar_fluid_get_name(aero->fluid[blade]), blade, (long long)(bad / 3 % aero->n),
+                               (int)(bad % 3), inflow[bad]);
     }
     SPARI_TRY(check_blades(aero, call));
     return check_remembered(aero, theta, call);
@@ -542,10 +549,10 @@ static void lump(const spar_aero *aero, int blade, int from, double *node) {
 /* Checks that the sums of loads of all fluids stay in the range of numbers. */
 static int check_loads(const spar_aero *aero, const double *load, const char *what, const char *call) {
     for (int64_t i = 0; i < 3 * count(aero); i++) {
-        SPARI_REQUIRE(aero->session, fabs(load[i]) < 1e200, SPAR_ERR_NUMERIC,
-                      "%s: fluid '%s', blade %lld, section %lld: %s is %g; check density, inflow and chords", call,
-                      spar_fluid_get_name(aero->fluid[i / (3 * aero->n)]), (long long)(i / (3 * aero->n)),
-                      (long long)(i / 3 % aero->n), what, load[i]);
+        SPARI_AERO_REQUIRE(aero->session, fabs(load[i]) < 1e200, SPAR_ERR_NUMERIC,
+                           "%s: fluid '%s', blade %lld, section %lld: %s is %g; check density, inflow and chords", call,
+                           spar_fluid_get_name(aero->fluid[i / (3 * aero->n)]), (long long)(i / (3 * aero->n)),
+                           (long long)(i / 3 % aero->n), what, load[i]);
     }
     return SPAR_OK;
 }
@@ -554,7 +561,7 @@ static int check_loads(const spar_aero *aero, const double *load, const char *wh
 static int check_unsteady(const spar_aero *aero, const char *call) {
     for (int64_t k = 0; k < count(aero); k++) {
         int64_t bad = spari_first_nonfinite((const double *)(const void *)(aero->is + k), SPARI_MEMORY_NUMBERS);
-        SPARI_REQUIRE(
+        SPARI_AERO_REQUIRE(
             aero->session, bad < 0, SPAR_ERR_NUMERIC,
             "%s: fluid '%s', blade %lld, section %lld: an unsteady state is %g; check the chord and the inflow", call,
             spar_fluid_get_name(aero->fluid[k / aero->n]), (long long)(k / aero->n), (long long)(k % aero->n),
@@ -666,7 +673,7 @@ int spar_aero_solve(spar_aero *aero, double density, const double *inflow, doubl
     SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     aero->solves++;
-    int status = spari_named(aero->session, __func__, solve_elements(aero, density, inflow, theta, __func__));
+    int status = spari_aero_named(aero->session, __func__, solve_elements(aero, density, inflow, theta, __func__));
     if (status != SPAR_OK && aero->blades > 0) { /* a step must not go on with old loads */
         (void)spar_fluid_fail(aero->fluid[0], status, spar_session_message(aero->session));
     }
@@ -676,8 +683,8 @@ int spar_aero_solve(spar_aero *aero, double density, const double *inflow, doubl
 /* ---- results ---- */
 
 static int check_solved(const spar_aero *aero, const char *caller) {
-    SPARI_REQUIRE(aero->session, aero->solved, SPAR_ERR_STATE, "%s: nothing is solved yet; call spar_aero_solve",
-                  caller);
+    SPARI_AERO_REQUIRE(aero->session, aero->solved, SPAR_ERR_STATE, "%s: nothing is solved yet; call spar_aero_solve",
+                       caller);
     return SPAR_OK;
 }
 
@@ -704,8 +711,8 @@ int spar_aero_get_rotor(const spar_aero *aero, double *thrust, double *torque, d
     SPARI_GUARD_ENVIRONMENT;
     REQUIRE_HANDLE(aero);
     SPARI_TRY(check_solved(aero, __func__));
-    SPARI_REQUIRE(aero->session, aero->rotor_used, SPAR_ERR_STATE,
-                  "%s: there is no shaft; call spar_aero_set_rotor before spar_aero_solve", __func__);
+    SPARI_AERO_REQUIRE(aero->session, aero->rotor_used, SPAR_ERR_STATE,
+                       "%s: there is no shaft; call spar_aero_set_rotor before spar_aero_solve", __func__);
     double thrust_now, torque_now, speed;
     sum_rotor(aero, &thrust_now, &torque_now, &speed);
     double value[] = {thrust_now, torque_now, torque_now * speed}, *out[] = {thrust, torque, power};

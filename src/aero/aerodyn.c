@@ -4,9 +4,9 @@
      rotated by the twist from the third towards the second: the leading edge moves upwind. */
 #include "aerodyn.h"
 #include "../base/environment.h"
-#include "../base/message.h"
 #include "../math/rotation.h"
 #include "aero.h"
+#include "message.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -51,10 +51,10 @@ static int check_spans(const spar_session *session, const char *call, const char
     for (int64_t k = 0; k < n; k++) {
         int i;
         double t;
-        SPARI_REQUIRE(session, find_stations(blade, span[k], &i, &t) == 0, SPAR_ERR_ARGUMENT,
-                      "%s: '%s': section %lld is at span %g; the blade file covers %g to %g", call, name, (long long)k,
-                      span[k], station(blade, 0, SPARI_BLADE_SPAN),
-                      station(blade, blade->stations - 1, SPARI_BLADE_SPAN));
+        SPARI_AERO_REQUIRE(session, find_stations(blade, span[k], &i, &t) == 0, SPAR_ERR_ARGUMENT,
+                           "%s: '%s': section %lld is at span %g; the blade file covers %g to %g", call, name,
+                           (long long)k, span[k], station(blade, 0, SPARI_BLADE_SPAN),
+                           station(blade, blade->stations - 1, SPARI_BLADE_SPAN));
     }
     return SPAR_OK;
 }
@@ -65,9 +65,9 @@ static int find_axes(const spar_session *session, const char *call, const spar_m
     SPARI_TRY(spar_member_get_placement(member, x, axes));
     if (q) {
         double size = sqrt(spari_quat_dot(q, q));
-        SPARI_REQUIRE(session, fabs(size - 1.0) <= SPARI_UNIT_SLACK, SPAR_ERR_ARGUMENT,
-                      "%s: '%s': q has length %g; give a unit quaternion, scalar first", call,
-                      spar_member_get_name(member), size);
+        SPARI_AERO_REQUIRE(session, fabs(size - 1.0) <= SPARI_UNIT_SLACK, SPAR_ERR_ARGUMENT,
+                           "%s: '%s': q has length %g; give a unit quaternion, scalar first", call,
+                           spar_member_get_name(member), size);
         spari_quat_mul(axes, q, axes);
         spari_quat_normalise(axes);
     }
@@ -122,7 +122,7 @@ static int set_centres(spar_fluid *fluid, const spar_session *session, const cha
     SPARI_TRY(span ? check_spans(session, call, name, blade, n, span) : SPAR_OK);
     n = span ? n : blade->stations;
     double *x = spari_zalloc(11 * n, sizeof *x);
-    SPARI_REQUIRE(session, x, SPAR_ERR_MEMORY, "%s: '%s': no memory for %lld sections", call, name, (long long)n);
+    SPARI_AERO_REQUIRE(session, x, SPAR_ERR_MEMORY, "%s: '%s': no memory for %lld sections", call, name, (long long)n);
     place_centres(blade, n, span, root, axes, x);
     int status = find_feet(member, name, n, x, x + 3 * n, x + 4 * n);
     status = status == SPAR_OK ? spar_fluid_set_stations(fluid, n, x + 3 * n, x) : status;
@@ -133,16 +133,17 @@ static int set_centres(spar_fluid *fluid, const spar_session *session, const cha
 int spar_fluid_read_aerodyn(spar_fluid *fluid, const char *primary_path, const char *blade_path, const double q[4],
                             int64_t n, const double *span) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it with spar_fluid_create", __func__);
+    SPARI_AERO_REQUIRE(NULL, fluid, SPAR_ERR_ARGUMENT, "%s: the fluid is NULL; create it with spar_fluid_create",
+                       __func__);
     spar_member *member;
     spar_session *session;
     SPARI_TRY(spar_fluid_get_member(fluid, &member));
     SPARI_TRY(spar_member_get_session(member, &session));
     const char *name = spar_fluid_get_name(fluid);
-    SPARI_REQUIRE(session, primary_path, SPAR_ERR_ARGUMENT, "%s: '%s': primary_path is NULL", __func__, name);
-    SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT, "%s: '%s': %lld sections", __func__, name,
-                  (long long)n);
-    SPARI_REQUIRE(
+    SPARI_AERO_REQUIRE(session, primary_path, SPAR_ERR_ARGUMENT, "%s: '%s': primary_path is NULL", __func__, name);
+    SPARI_AERO_REQUIRE(session, n >= 0 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT, "%s: '%s': %lld sections", __func__, name,
+                       (long long)n);
+    SPARI_AERO_REQUIRE(
         session, span || n == 0, SPAR_ERR_ARGUMENT,
         "%s: '%s': span is NULL for %lld sections; give their spans, or NULL and n = 0 for the stations of the file",
         __func__, name, (long long)n);
@@ -150,7 +151,7 @@ int spar_fluid_read_aerodyn(spar_fluid *fluid, const char *primary_path, const c
     int status = spari_blade_read(&blade, session, __func__, name, primary_path, blade_path, 0);
     status = status == SPAR_OK ? set_centres(fluid, session, __func__, &blade, q, n, span) : status;
     spari_blade_free(&blade);
-    return spari_named(session, __func__, status);
+    return spari_aero_named(session, __func__, status);
 }
 
 /* ---- polars ---- */
@@ -253,10 +254,11 @@ static int find_common_twists(const spar_aero *aero, const char *call, const spa
         double *other = work + 4 * aero->n;
         SPARI_TRY(find_twists(aero, call, b, blade, span, q, other, work));
         for (int64_t k = 0; k < aero->n; k++) {
-            SPARI_REQUIRE(aero->session, fabs(sin(0.5 * (other[k] - twist[k]))) <= SPARI_TWIST_SLACK, SPAR_ERR_ARGUMENT,
-                          "%s: section %lld of blade %d ('%s') has a remaining twist of %g rad, blade 0 has %g; make "
-                          "the blades identical, or create an aero object for each",
-                          call, (long long)k, b, spar_fluid_get_name(aero->fluid[b]), other[k], twist[k]);
+            SPARI_AERO_REQUIRE(
+                aero->session, fabs(sin(0.5 * (other[k] - twist[k]))) <= SPARI_TWIST_SLACK, SPAR_ERR_ARGUMENT,
+                "%s: section %lld of blade %d ('%s') has a remaining twist of %g rad, blade 0 has %g; make "
+                "the blades identical, or create an aero object for each",
+                call, (long long)k, b, spar_fluid_get_name(aero->fluid[b]), other[k], twist[k]);
         }
     }
     return SPAR_OK;
@@ -288,8 +290,8 @@ static int make_polars(const spar_aero *aero, const char *call, const spari_blad
         double t = 0;
         (void)find_stations(blade, span ? span[k] : station(blade, (int)k, SPARI_BLADE_SPAN), &i, &t);
         int status = polar_at(blade, i, t, &polar[k]);
-        SPARI_REQUIRE(aero->session, status == SPAR_OK, status, "%s: the polar of section %lld: %s", call, (long long)k,
-                      status == SPAR_ERR_MEMORY ? "no memory" : spar_session_message(NULL));
+        SPARI_AERO_REQUIRE(aero->session, status == SPAR_OK, status, "%s: the polar of section %lld: %s", call,
+                           (long long)k, status == SPAR_ERR_MEMORY ? "no memory" : spar_session_message(NULL));
     }
     return SPAR_OK;
 }
@@ -299,7 +301,7 @@ static int check_counts(const spar_aero *aero, const char *call) {
     for (int b = 0; b < aero->blades; b++) {
         int64_t n;
         SPARI_TRY(spar_fluid_get_count(aero->fluid[b], SPAR_NODES_MOTION, &n));
-        SPARI_REQUIRE(
+        SPARI_AERO_REQUIRE(
             aero->session, n == aero->n, SPAR_ERR_STATE,
             "%s: fluid '%s' had %lld sections when the aero object was created and has %lld now; make a new one", call,
             spar_fluid_get_name(aero->fluid[b]), (long long)aero->n, (long long)n);
@@ -310,15 +312,16 @@ static int check_counts(const spar_aero *aero, const char *call) {
 static int fill_sections(spar_aero *aero, const char *call, const spari_blade *blade, const double *q,
                          const double *span) {
     int64_t n = aero->n;
-    SPARI_REQUIRE(aero->session, span || n == blade->stations, SPAR_ERR_ARGUMENT,
-                  "%s: the blade file has %d stations and the blades %lld sections; give the spans of the sections",
-                  call, blade->stations, (long long)n);
+    SPARI_AERO_REQUIRE(
+        aero->session, span || n == blade->stations, SPAR_ERR_ARGUMENT,
+        "%s: the blade file has %d stations and the blades %lld sections; give the spans of the sections", call,
+        blade->stations, (long long)n);
     SPARI_TRY(span ? check_spans(aero->session, call, spar_fluid_get_name(aero->fluid[0]), blade, n, span) : SPAR_OK);
     double *twist = spari_zalloc(6 * n, sizeof *twist);
     spar_polar **polar = spari_zalloc(n, sizeof(spar_polar *));
     int status = twist && polar ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status != SPAR_OK) {
-        spari_fail(aero->session, status, "%s: no memory for %lld sections", call, (long long)n);
+        spari_aero_fail(aero->session, status, "%s: no memory for %lld sections", call, (long long)n);
     }
     status = status == SPAR_OK ? find_common_twists(aero, call, blade, span, q, twist, twist + n) : status;
     status = status == SPAR_OK ? make_polars(aero, call, blade, span, polar) : status;
@@ -334,14 +337,14 @@ static int fill_sections(spar_aero *aero, const char *call, const spari_blade *b
 int spar_aero_read_aerodyn(spar_aero *aero, const char *primary_path, const char *blade_path, const double q[4],
                            const double *span) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create",
-                  __func__);
-    SPARI_REQUIRE(aero->session, primary_path, SPAR_ERR_ARGUMENT, "%s: primary_path is NULL", __func__);
-    SPARI_REQUIRE(aero->session, aero->rotor.turn == 1, SPAR_ERR_UNSUPPORTED,
-                  "%s: these files describe blades that rotate right-handed about the downwind axis, but "
-                  "spar_aero_set_turn has mirrored the sections",
-                  __func__);
-    SPARI_TRY(spari_named(aero->session, __func__, check_counts(aero, __func__)));
+    SPARI_AERO_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create",
+                       __func__);
+    SPARI_AERO_REQUIRE(aero->session, primary_path, SPAR_ERR_ARGUMENT, "%s: primary_path is NULL", __func__);
+    SPARI_AERO_REQUIRE(aero->session, aero->rotor.turn == 1, SPAR_ERR_UNSUPPORTED,
+                       "%s: these files describe blades that rotate right-handed about the downwind axis, but "
+                       "spar_aero_set_turn has mirrored the sections",
+                       __func__);
+    SPARI_TRY(spari_aero_named(aero->session, __func__, check_counts(aero, __func__)));
     spari_blade blade = {0};
     const char *name = aero->blades > 0 ? spar_fluid_get_name(aero->fluid[0]) : "no blade";
     int status = spari_blade_read(&blade, aero->session, __func__, name, primary_path, blade_path, 1);
@@ -349,5 +352,5 @@ int spar_aero_read_aerodyn(spar_aero *aero, const char *primary_path, const char
         status = fill_sections(aero, __func__, &blade, q, span);
     }
     spari_blade_free(&blade);
-    return spari_named(aero->session, __func__, status);
+    return spari_aero_named(aero->session, __func__, status);
 }

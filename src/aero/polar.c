@@ -1,8 +1,8 @@
 /* Tables of lift, drag and moment over the angle of attack, and their interpolation. */
 #include "polar.h"
 #include "../base/environment.h"
-#include "../base/message.h"
 #include "../math/spline.h"
+#include "message.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -97,16 +97,18 @@ static spari_table *table_create(int64_t n, const double *alpha, const double *c
 static int check_rows(int64_t n, const double *alpha, const double *const value[], const char *call) {
     static const char *const name[] = {"cl", "cd", "cm"};
     for (int64_t i = 0; i < n; i++) {
-        SPARI_REQUIRE(NULL, isfinite(alpha[i]), SPAR_ERR_ARGUMENT, "%s: alpha of row %lld is not finite", call,
-                      (long long)i);
+        SPARI_AERO_REQUIRE(NULL, isfinite(alpha[i]), SPAR_ERR_ARGUMENT, "%s: alpha of row %lld is not finite", call,
+                           (long long)i);
         for (int c = 0; c < SPARI_COEFFICIENTS; c++) {
-            SPARI_REQUIRE(NULL, !value[c] || isfinite(value[c][i]), SPAR_ERR_ARGUMENT,
-                          "%s: %s of row %lld (alpha %g rad) is not finite", call, name[c], (long long)i, alpha[i]);
+            SPARI_AERO_REQUIRE(NULL, !value[c] || isfinite(value[c][i]), SPAR_ERR_ARGUMENT,
+                               "%s: %s of row %lld (alpha %g rad) is not finite", call, name[c], (long long)i,
+                               alpha[i]);
         }
-        SPARI_REQUIRE(NULL, i == 0 || alpha[i] > alpha[i - 1], SPAR_ERR_ARGUMENT,
-                      "%s: alpha of row %lld (%g rad) is not above that of the previous row (%g rad); sort the rows "
-                      "and remove duplicates",
-                      call, (long long)i, alpha[i], alpha[i > 0 ? i - 1 : 0]);
+        SPARI_AERO_REQUIRE(
+            NULL, i == 0 || alpha[i] > alpha[i - 1], SPAR_ERR_ARGUMENT,
+            "%s: alpha of row %lld (%g rad) is not above that of the previous row (%g rad); sort the rows "
+            "and remove duplicates",
+            call, (long long)i, alpha[i], alpha[i > 0 ? i - 1 : 0]);
     }
     return SPAR_OK;
 }
@@ -115,14 +117,15 @@ static int check_rows(int64_t n, const double *alpha, const double *const value[
 static int check_turn(int64_t n, const double *alpha, const double *const value[], const char *call) {
     static const char *const name[] = {"cl", "cd", "cm"};
     double width = alpha[n - 1] - alpha[0];
-    SPARI_REQUIRE(NULL, width < SPARI_TURN * (1.0 + SPARI_TURN_SLACK), SPAR_ERR_ARGUMENT,
-                  "%s: alpha goes from %g (row 0) to %g (row %lld), more than a full revolution; give radians over a "
-                  "range of at most 2 pi",
-                  call, alpha[0], alpha[n - 1], (long long)(n - 1));
+    SPARI_AERO_REQUIRE(
+        NULL, width < SPARI_TURN * (1.0 + SPARI_TURN_SLACK), SPAR_ERR_ARGUMENT,
+        "%s: alpha goes from %g (row 0) to %g (row %lld), more than a full revolution; give radians over a "
+        "range of at most 2 pi",
+        call, alpha[0], alpha[n - 1], (long long)(n - 1));
     if (width > SPARI_TURN * (1.0 - SPARI_TURN_SLACK)) {
         for (int c = 0; c < SPARI_COEFFICIENTS; c++) {
             double first = value[c] ? value[c][0] : 0.0, last = value[c] ? value[c][n - 1] : 0.0;
-            SPARI_REQUIRE(
+            SPARI_AERO_REQUIRE(
                 NULL, fabs(last - first) <= SPARI_END_SLACK * fmax(1.0, fabs(first)), SPAR_ERR_ARGUMENT,
                 "%s: %s is %g in row 0 and %g in row %lld, but the two rows are one revolution apart; make them equal",
                 call, name[c], first, last, (long long)(n - 1));
@@ -135,19 +138,20 @@ int spar_polar_create(int64_t n, const double *alpha_rad, const double *cl, cons
                       spar_polar **polar) {
     SPARI_GUARD_ENVIRONMENT;
     const double *const value[] = {cl, cd, cm};
-    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the pointer to the polar is NULL; give the address of a handle",
-                  __func__);
-    SPARI_REQUIRE(NULL, n >= 2, SPAR_ERR_ARGUMENT, "%s: %lld rows; a polar needs at least 2", __func__, (long long)n);
-    SPARI_REQUIRE(NULL, n <= INT32_MAX, SPAR_ERR_ARGUMENT, "%s: %lld rows are too many", __func__, (long long)n);
-    SPARI_REQUIRE(NULL, alpha_rad && cl && cd, SPAR_ERR_ARGUMENT, "%s: alpha, cl or cd is NULL; only cm may be",
-                  __func__);
+    SPARI_AERO_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT,
+                       "%s: the pointer to the polar is NULL; give the address of a handle", __func__);
+    SPARI_AERO_REQUIRE(NULL, n >= 2, SPAR_ERR_ARGUMENT, "%s: %lld rows; a polar needs at least 2", __func__,
+                       (long long)n);
+    SPARI_AERO_REQUIRE(NULL, n <= INT32_MAX, SPAR_ERR_ARGUMENT, "%s: %lld rows are too many", __func__, (long long)n);
+    SPARI_AERO_REQUIRE(NULL, alpha_rad && cl && cd, SPAR_ERR_ARGUMENT, "%s: alpha, cl or cd is NULL; only cm may be",
+                       __func__);
     SPARI_TRY(check_rows(n, alpha_rad, value, __func__));
     SPARI_TRY(check_turn(n, alpha_rad, value, __func__));
     spar_polar *made = spari_zalloc(1, sizeof *made);
     spari_table *table = made ? table_create(n, alpha_rad, value, SPAR_POLAR_LINEAR) : NULL;
     if (!table) {
         free(made);
-        return spari_fail(NULL, SPAR_ERR_MEMORY, "%s: no memory for %lld rows", __func__, (long long)n);
+        return spari_aero_fail(NULL, SPAR_ERR_MEMORY, "%s: no memory for %lld rows", __func__, (long long)n);
     }
     made->table = table;
     *polar = made;
@@ -164,16 +168,17 @@ void spar_polar_destroy(spar_polar **polar) {
 
 int spar_polar_set_interpolation(spar_polar *polar, int kind) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the polar is NULL", __func__);
-    SPARI_REQUIRE(NULL, kind >= SPAR_POLAR_LINEAR && kind <= SPAR_POLAR_CUBIC, SPAR_ERR_ARGUMENT,
-                  "%s: kind %d is not known; SPAR_POLAR_LINEAR, _AKIMA or _CUBIC", __func__, kind);
+    SPARI_AERO_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the polar is NULL", __func__);
+    SPARI_AERO_REQUIRE(NULL, kind >= SPAR_POLAR_LINEAR && kind <= SPAR_POLAR_CUBIC, SPAR_ERR_ARGUMENT,
+                       "%s: kind %d is not known; SPAR_POLAR_LINEAR, _AKIMA or _CUBIC", __func__, kind);
     const spari_table *old = polar->table;
     int64_t least = spari_spline_least(fit_kind(kind, old->full));
-    SPARI_REQUIRE(NULL, old->n >= least, SPAR_ERR_ARGUMENT, "%s: kind %d needs at least %lld rows, the polar has %lld",
-                  __func__, kind, (long long)least, (long long)old->n);
+    SPARI_AERO_REQUIRE(NULL, old->n >= least, SPAR_ERR_ARGUMENT,
+                       "%s: kind %d needs at least %lld rows, the polar has %lld", __func__, kind, (long long)least,
+                       (long long)old->n);
     const double *const value[] = {old->value[SPARI_CL], old->value[SPARI_CD], old->value[SPARI_CM]};
     spari_table *table = table_create(old->n, old->alpha, value, kind);
-    SPARI_REQUIRE(NULL, table, SPAR_ERR_MEMORY, "%s: no memory for %lld rows", __func__, (long long)old->n);
+    SPARI_AERO_REQUIRE(NULL, table, SPAR_ERR_MEMORY, "%s: no memory for %lld rows", __func__, (long long)old->n);
     spari_table_release(polar->table);
     polar->table = table;
     return SPAR_OK;
@@ -248,8 +253,8 @@ void spari_table_find_attached(const spari_table *table, double *zero, double *s
 
 int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, double *cl, double *cd, double *cm) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the polar is NULL", __func__);
-    SPARI_REQUIRE(NULL, isfinite(alpha_rad), SPAR_ERR_ARGUMENT, "%s: alpha is not finite", __func__);
+    SPARI_AERO_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the polar is NULL", __func__);
+    SPARI_AERO_REQUIRE(NULL, isfinite(alpha_rad), SPAR_ERR_ARGUMENT, "%s: alpha is not finite", __func__);
     int64_t row = 0;
     int beyond;
     double place = spari_table_wrap(polar->table, alpha_rad, &beyond);

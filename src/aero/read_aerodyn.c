@@ -2,6 +2,7 @@
    airfoil files. Formats: OpenFAST documentation, AeroDyn user's guide, input files. */
 #include "../base/reader.h"
 #include "aerodyn.h"
+#include "message.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -263,7 +264,8 @@ int spari_blade_read(spari_blade *blade, const spar_session *session, const char
                      const char *primary_path, const char *blade_path, int polars) {
     deck d = {0};
     spari_reader *r = spari_zalloc(1, sizeof *r);
-    SPARI_REQUIRE(session, r, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, subject);
+    SPARI_AERO_REQUIRE(session, r, SPAR_ERR_MEMORY, "%s: no memory for '%s'", call, subject);
+    r->fail = spari_aero_fail;
     r->session = session;
     r->call = call;
     r->subject = subject;

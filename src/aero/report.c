@@ -1,8 +1,7 @@
 /* Contribution of each effect of a blade-element fluid: trials of the host's own steps with and without it. Uses
    public calls alone. */
-#include "../base/environment.h"
-#include "../base/message.h"
 #include "aero.h"
+#include "message.h"
 
 #include <math.h>
 #include <spar/spar_aero.h>
@@ -103,10 +102,10 @@ static int try_without(spar_trial *trial, spar_aero *aero, int r, const aero_run
 static int check_solves(spar_session *s, const spar_aero *aero, int64_t before, const char *call) {
     double sum[] = {aero->solves > before, aero->blades};
     SPARI_TRY(spar_session_sum(s, SPAR_OK, 2, sum));
-    SPARI_REQUIRE(s, sum[0] > 0 || sum[1] == 0, SPAR_ERR_STATE,
-                  "%s: the trial's fluid solver does not call spar_aero_solve on this object; give "
-                  "spar_trial_set_callbacks one that does",
-                  call);
+    SPARI_AERO_REQUIRE(s, sum[0] > 0 || sum[1] == 0, SPAR_ERR_STATE,
+                       "%s: the trial's fluid solver does not call spar_aero_solve on this object; give "
+                       "spar_trial_set_callbacks one that does",
+                       call);
     return SPAR_OK;
 }
 
@@ -127,23 +126,25 @@ static int try_all(spar_session *s, spar_trial *trial, spar_aero *aero, int stat
 }
 
 static int check_arguments(spar_session *s, const spar_aero *aero, const char *call) {
-    SPARI_REQUIRE(s, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create", call);
-    SPARI_REQUIRE(s, !aero->session || aero->session == s, SPAR_ERR_ARGUMENT,
-                  "%s: the blades belong to another session; give a trial of the session of the blades", call);
+    SPARI_AERO_REQUIRE(s, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create",
+                       call);
+    SPARI_AERO_REQUIRE(s, !aero->session || aero->session == s, SPAR_ERR_ARGUMENT,
+                       "%s: the blades belong to another session; give a trial of the session of the blades", call);
     return SPAR_OK;
 }
 
+/* Without a guard: libspar calls the host in the environment that its own calls are made in. */
 int spar_aero_report_effects(spar_aero *aero, spar_trial *trial) {
-    SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it with spar_trial_create", __func__);
+    SPARI_AERO_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it with spar_trial_create",
+                       __func__);
     spar_session *session = NULL;
     SPARI_TRY(spar_trial_get_session(trial, &session));
     spari_aero_effect made[SPAR_AERO_ROW_COUNT] = {{0}};
     char message[SPARI_MESSAGE_SIZE] = "";
     (void)snprintf(message, sizeof message, "%s", spar_session_message(session));
     int status = check_arguments(session, aero, __func__);
-    SPARI_TRY(spari_named(session, __func__, try_all(session, trial, aero, status, __func__, made)));
-    spari_put_message_back(session, message);
+    SPARI_TRY(spari_aero_named(session, __func__, try_all(session, trial, aero, status, __func__, made)));
+    spari_aero_put_message_back(session, message);
     memcpy(aero->effect, made, sizeof made);
     aero->reported = 1;
     return SPAR_OK;
@@ -151,12 +152,12 @@ int spar_aero_report_effects(spar_aero *aero, spar_trial *trial) {
 
 int spar_aero_get_effect(const spar_aero *aero, int row, int *in_force, int *fails, double *size, double *motion,
                          double *reaction, double *share) {
-    SPARI_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create",
-                  __func__);
-    SPARI_REQUIRE(aero->session, row >= 0 && row < SPAR_AERO_ROW_COUNT, SPAR_ERR_ARGUMENT,
-                  "%s: there is no row %d; give a SPAR_AERO_ROW_*", __func__, row);
-    SPARI_REQUIRE(aero->session, aero->reported, SPAR_ERR_STATE,
-                  "%s: there is no report; call spar_aero_report_effects first", __func__);
+    SPARI_AERO_REQUIRE(NULL, aero, SPAR_ERR_ARGUMENT, "%s: the aero object is NULL; create it with spar_aero_create",
+                       __func__);
+    SPARI_AERO_REQUIRE(aero->session, row >= 0 && row < SPAR_AERO_ROW_COUNT, SPAR_ERR_ARGUMENT,
+                       "%s: there is no row %d; give a SPAR_AERO_ROW_*", __func__, row);
+    SPARI_AERO_REQUIRE(aero->session, aero->reported, SPAR_ERR_STATE,
+                       "%s: there is no report; call spar_aero_report_effects first", __func__);
     const spari_aero_effect *e = aero->effect + row;
     int *const flags[] = {in_force, fails};
     const int flag[] = {e->in_force, e->fails};

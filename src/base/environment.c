@@ -1,8 +1,6 @@
 /* Saves, replaces and restores the host's floating-point traps, rounding mode, locale and GSL error handler. */
 #include "environment.h"
 
-#include "blas.h"
-
 #include <pthread.h>
 #ifdef SPARI_MXCSR
 #include <xmmintrin.h>
@@ -14,12 +12,6 @@ static locale_t c_locale;
 
 static void make_locale(void) {
     c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-}
-
-static void make_ready(void) {
-    make_locale();
-    /* a lock that another thread holds would stay locked in the child of a fork */
-    (void)pthread_atfork(spari_blas_begin, spari_blas_end, spari_blas_end);
 }
 
 #ifdef SPARI_MXCSR
@@ -86,7 +78,7 @@ static void give_environment_back(const spari_environment *e) {
 static void hold(void) {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     hold_environment(&host.environment);
-    pthread_once(&once, make_ready);
+    pthread_once(&once, make_locale);
     host.locale = uselocale(c_locale); /* without one: it stays */
 }
 

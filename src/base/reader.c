@@ -1,4 +1,4 @@
-/* Reads input files of other codes line by line: see reader.h. */
+/* Reads input files of other codes line by line: see reader.h. Also compiled into libspar_aero. */
 #include "reader.h"
 
 #include <ctype.h>
@@ -9,7 +9,7 @@
 #include <strings.h>
 
 int spari_read_no_memory(const spari_reader *r) {
-    return spari_fail(r->session, SPAR_ERR_MEMORY, "%s: '%s': no memory for %s", r->call, r->subject, r->path);
+    return r->fail(r->session, SPAR_ERR_MEMORY, "%s: '%s': no memory for %s", r->call, r->subject, r->path);
 }
 
 int spari_read_open(spari_reader *r, const char *path) {
@@ -18,8 +18,8 @@ int spari_read_open(spari_reader *r, const char *path) {
     r->file = fopen(path, "r");
     if (!r->file) {
         int reason = errno;
-        return spari_fail(r->session, reason == ENOMEM ? SPAR_ERR_MEMORY : SPAR_ERR_IO, "%s: '%s': cannot open %s: %s",
-                          r->call, r->subject, path, reason == ENOMEM ? "no memory" : strerror(reason));
+        return r->fail(r->session, reason == ENOMEM ? SPAR_ERR_MEMORY : SPAR_ERR_IO, "%s: '%s': cannot open %s: %s",
+                       r->call, r->subject, path, reason == ENOMEM ? "no memory" : strerror(reason));
     }
     return SPAR_OK;
 }
@@ -27,16 +27,16 @@ int spari_read_open(spari_reader *r, const char *path) {
 int spari_read_line(spari_reader *r, const char *what) {
     if (!fgets(r->line, sizeof r->line, r->file)) {
         if (ferror(r->file)) {
-            return spari_fail(r->session, SPAR_ERR_IO, "%s: '%s': reading %s failed after line %d: %s", r->call,
-                              r->subject, r->path, r->number, strerror(errno));
+            return r->fail(r->session, SPAR_ERR_IO, "%s: '%s': reading %s failed after line %d: %s", r->call,
+                           r->subject, r->path, r->number, strerror(errno));
         }
-        return spari_fail(r->session, SPAR_ERR_IO, "%s: '%s': %s ends at line %d; %s is missing", r->call, r->subject,
-                          r->path, r->number, what);
+        return r->fail(r->session, SPAR_ERR_IO, "%s: '%s': %s ends at line %d; %s is missing", r->call, r->subject,
+                       r->path, r->number, what);
     }
     r->number++;
     if (!strchr(r->line, '\n') && !feof(r->file)) {
-        return spari_fail(r->session, SPAR_ERR_IO, "%s: '%s': %s, line %d has more than %d characters", r->call,
-                          r->subject, r->path, r->number, SPARI_READ_LINE - 2);
+        return r->fail(r->session, SPAR_ERR_IO, "%s: '%s': %s, line %d has more than %d characters", r->call,
+                       r->subject, r->path, r->number, SPARI_READ_LINE - 2);
     }
     return SPAR_OK;
 }

@@ -3,13 +3,17 @@
 #ifndef SPARI_READER_H
 #define SPARI_READER_H
 
-#include "message.h"
+#include "status.h"
 
 #include <stdio.h>
 
 enum { SPARI_READ_LINE = 4096, SPARI_READ_MOST = 1000000 };
 
+/* Reports a failure: spari_fail in libspar, spari_aero_fail in libspar_aero. */
+typedef int (*spari_read_report)(const spar_session *session, int status, const char *format, ...) SPARI_PRINTF(3, 4);
+
 typedef struct spari_reader {
+    spari_read_report fail;
     const spar_session *session; /* for messages; may be NULL */
     const char *call, *subject;  /* public call, and the object it reads for */
     const char *path;
@@ -21,8 +25,8 @@ typedef struct spari_reader {
 
 /* Reports an error in the line read last. */
 #define SPARI_READ_FAIL(r, status, format, ...)                                                                        \
-    spari_fail((r)->session, status, "%s: '%s': %s, line %d: " format, (r)->call, (r)->subject, (r)->path,             \
-               (r)->number, __VA_ARGS__)
+    (r)->fail((r)->session, status, "%s: '%s': %s, line %d: " format, (r)->call, (r)->subject, (r)->path, (r)->number, \
+              __VA_ARGS__)
 int spari_read_no_memory(const spari_reader *r);
 
 /* Opens the file. The caller closes it with fclose(r->file). */

@@ -99,6 +99,21 @@ int spari_need_capacity(const spar_session *session, const char *call, int64_t c
     return SPAR_OK;
 }
 
+int spar_session_fail(spar_session *session, int status, const char *message) {
+    SPARI_REQUIRE(session, status >= SPAR_OK && status <= SPAR_ERR_LIMIT, SPAR_ERR_ARGUMENT,
+                  "%s: the status is %d; give a SPAR_ERR_*, or SPAR_OK to write the message alone", __func__, status);
+    SPARI_REQUIRE(session, message && (message[0] || status == SPAR_OK), SPAR_ERR_ARGUMENT,
+                  "%s: the message is missing; give a text that describes the failure", __func__);
+    if (status != SPAR_OK) {
+        (void)spari_fail(session, status, "%s", message);
+        return SPAR_OK;
+    }
+    char text[SPARI_MESSAGE_SIZE] = "";
+    (void)snprintf(text, sizeof text, "%s", message);
+    spari_put_message_back(session, text);
+    return SPAR_OK;
+}
+
 void spari_put_message_back(const spar_session *session, const char *text) {
     memcpy(message_of(session), text, SPARI_MESSAGE_SIZE);
 }

@@ -302,6 +302,7 @@ int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const ch
     blade b = {0};
     spari_reader *r = spari_zalloc(1, sizeof *r);
     SPARI_REQUIRE(beam->session, r, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, beam->name);
+    r->fail = spari_fail;
     r->session = beam->session;
     r->subject = beam->name;
     r->call = __func__;

@@ -5,8 +5,8 @@ spar_set_test(fortran_names fortran 60)
 
 # A whole-program link of C and Fortran compares the types of every call; built when tested, for it takes a while.
 if(CMAKE_C_COMPILER_ID STREQUAL "GNU" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
-  add_executable(fortran_types EXCLUDE_FROM_ALL ${spar_sources}
-    "${PROJECT_SOURCE_DIR}/fortran/spar_c.f90" "${PROJECT_SOURCE_DIR}/tests/fortran/test_bindings.f90")
+  add_executable(fortran_types EXCLUDE_FROM_ALL ${spar_sources} ${spar_blade_sources}
+    "${PROJECT_SOURCE_DIR}/fortran/spar_c.f90" "${PROJECT_SOURCE_DIR}/fortran/spar_aero_c.f90" "${PROJECT_SOURCE_DIR}/tests/fortran/test_bindings.f90")
   set_target_properties(fortran_types PROPERTIES LINKER_LANGUAGE Fortran
     RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests"
     Fortran_MODULE_DIRECTORY "${PROJECT_BINARY_DIR}/tests/modules_types")

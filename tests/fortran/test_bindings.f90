@@ -3,6 +3,7 @@
 program test_bindings
   use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_int64_t, c_null_funptr, c_null_ptr, c_ptr
   use spar_c
+  use spar_aero_c
   implicit none
   type(c_ptr) :: none, made
   integer :: failures = 0
@@ -22,6 +23,7 @@ program test_bindings
       'spar_session_create_fcomm')
   call check(c_associated(spar_session_message(none)), 'spar_session_message')
   call check(c_associated(spar_session_get_warning(none, 0_c_int64_t)), 'spar_session_get_warning')
+  call refused(spar_session_fail(none, 99_c_int), 'spar_session_fail')
   call refused(spar_session_set_gravity(none), 'spar_session_set_gravity')
   call refused(spar_session_set_integrator(none, 0.0_c_double, 0_c_int), 'spar_session_set_integrator')
   call refused(spar_session_set_newton(none, 0.0_c_double, 0.0_c_double, 0_c_int), 'spar_session_set_newton')

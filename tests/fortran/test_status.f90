@@ -4,6 +4,7 @@ program test_status
   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
   use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_int64_t
   use spar
+  use spar_aero
   implicit none
   character(*), parameter :: untouched = 'untouched'
   real(c_double), parameter :: unit(4) = [1, 0, 0, 0], origin(3) = 0
@@ -78,7 +79,7 @@ contains
   subroutine life()
     type(spar_session) :: session, several(3), none(3)
     type(spar_polar) :: polar
-    type(spar_aero) :: aero
+    type(spar_aero_object) :: aero
     type(spar_fluid) :: fluid
     type(spar_member) :: member, copy
     integer(c_int) :: stat
@@ -288,7 +289,7 @@ contains
     type(spar_session) :: session
     type(spar_member) :: body
     type(spar_fluid) :: fluid
-    type(spar_aero) :: aero
+    type(spar_aero_object) :: aero
     type(spar_fluid) :: no_fluids(0)
     real(c_double) :: x(3,0), q(4,0), nowhere(0), inflow(3,5,0), loads(6,1), thrust
     integer(c_int) :: n
@@ -403,7 +404,7 @@ contains
     type(spar_member) :: beam
     type(spar_fluid) :: fluids(1)
     type(spar_polar) :: polar
-    type(spar_aero) :: aero
+    type(spar_aero_object) :: aero
     real(c_double) :: stiffness(6,6,1), inflow(3,2,1), loads(6,2,1)
     integer(c_int) :: stat
     character(300) :: errmsg

@@ -3,6 +3,7 @@
 program test_stop
   use, intrinsic :: iso_c_binding, only: c_double, c_int
   use spar
+  use spar_aero
   implicit none
   character(16) :: what
   integer :: failures = 0
@@ -60,7 +61,7 @@ contains
     type(spar_member) :: point
     type(spar_fluid) :: fluid, second
     type(spar_polar) :: polar, third
-    type(spar_aero) :: aero, fourth
+    type(spar_aero_object) :: aero, fourth
     real(c_double) :: q(7,2)
     character(80) :: errmsg
 

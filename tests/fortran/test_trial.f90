@@ -2,6 +2,7 @@
 module trial_fluid
   use, intrinsic :: iso_c_binding, only: c_double, c_int
   use spar
+  use spar_aero
   implicit none
 
   type :: spring
@@ -18,7 +19,7 @@ module trial_fluid
   type(hearing), target :: heard
 
   type :: wing
-    type(spar_aero), pointer :: aero => null()
+    type(spar_aero_object), pointer :: aero => null()
   end type wing
 
   type(spring), target :: held
@@ -118,6 +119,7 @@ end module trial_fluid
 program test_trial
   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t
   use spar
+  use spar_aero
   use trial_fluid
   implicit none
   real(c_double), parameter :: unit(4) = [1, 0, 0, 0], origin(3) = 0, dt = 0.01_c_double
@@ -363,7 +365,7 @@ contains
     type(spar_member) :: beam
     type(spar_fluid) :: fluid(1)
     type(spar_polar) :: polar
-    type(spar_aero), target, save :: aero ! the context of the trial points to it
+    type(spar_aero_object), target, save :: aero ! the context of the trial points to it
     class(*), pointer :: context
     real(c_double), parameter :: half_turn = 3.14159265358979_c_double
     real(c_double) :: size, motion

@@ -1,8 +1,9 @@
 #!/bin/sh
-# deb.sh <source> <build> <work> <cpack> <compiler> <release> <number of the ABI>: the three Debian packages, unpacked side by side,
-# are an installation that a host builds and runs with; each has its files, its licence, and says what it needs.
+# deb.sh <source> <build> <work> <cpack> <compiler> <release> <number of the ABI> <that of libspar_aero>: the four Debian packages,
+# unpacked side by side, are an installation that a host builds and runs with; each has its files, its licence, and says what it
+# needs.
 set -eu
-source=$1 build=$2 work=$3 cpack=$4 compiler=$5 release=$6 soversion=$7
+source=$1 build=$2 work=$3 cpack=$4 compiler=$5 release=$6 soversion=$7 aero=libspar-aero$8
 rm -rf "$work"
 mkdir -p "$work/root"
 # the book goes into spar-doc where it was made
@@ -13,7 +14,7 @@ if command -v doxygen >/dev/null 2>&1 && [ ! -d "$build/book" ]; then
     "$source/docs/book" "$build/book" >"$work/book.log" 2>&1 || { tail -n 20 "$work/book.log"; exit 1; }
 fi
 "$cpack" -G DEB --config "$build/CPackConfig.cmake" -B "$work" >"$work/cpack.log" 2>&1 || { cat "$work/cpack.log"; exit 1; }
-for package in libspar$soversion libspar-dev spar-doc; do
+for package in "libspar$soversion" "$aero" libspar-dev spar-doc; do
     file=$(find "$work" -maxdepth 1 -name "${package}_${release}_*.deb")
     [ -n "$file" ] || { echo "no $package of release $release"; ls "$work"; exit 1; }
     [ "$(dpkg-deb -f "$file" Package)" = "$package" ]
@@ -36,7 +37,10 @@ if [ -d "$build/book" ]; then
         [ -e "$html/$file" ] || { echo "spar-doc: index.html leads to $file, which is not there"; exit 1; }
     done
 fi
+[ "$(grep -v /doc/ "$work/$aero.files" | grep -vE 'libspar_aero\.so\.[0-9.]+$')" = "" ]
+dpkg-deb -f "$work/$aero"_*.deb Depends | grep -q "libspar$soversion (= $release)"
 dpkg-deb -f "$work"/libspar"$soversion"_*.deb Depends | grep -q libgsl
 dpkg-deb -f "$work"/libspar-dev_*.deb Depends | grep -q "libspar$soversion (= $release)"
 sh "$source/tests/package/pkgconfig.sh" "$work/root/usr" "$work/consumer" "$compiler" "$source/tests/package/c/main.c" spar
+sh "$source/tests/package/pkgconfig.sh" "$work/root/usr" "$work/aero_consumer" "$compiler" "$source/tests/package/aero/main.c" spar_aero
 rm -rf "$work/_CPack_Packages"

@@ -14,7 +14,7 @@ add_test(NAME package_install COMMAND "${CMAKE_COMMAND}" --install "${PROJECT_BI
 spar_set_test(package_install package 60)
 set_tests_properties(package_install PROPERTIES FIXTURES_SETUP spar_installed)
 
-spar_package_test(symbols sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${prefix}/${CMAKE_INSTALL_LIBDIR}/libspar.so")
+spar_package_test(symbols sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${prefix}/${CMAKE_INSTALL_LIBDIR}")
 spar_package_test(soname sh "${here}/soname.sh" "${prefix}/${CMAKE_INSTALL_LIBDIR}/libspar.so" "${PROJECT_VERSION}"
   "${SPAR_SOVERSION}")
 add_test(NAME package_versions COMMAND "${CMAKE_COMMAND}" "-DSOURCE=${PROJECT_SOURCE_DIR}" "-DWORK=${work}/versions" -P "${here}/versions.cmake")
@@ -43,7 +43,7 @@ if(SPAR_MPI)
     --build-generator "${CMAKE_GENERATOR}" --build-target spar --build-options -DSPAR_MPI=OFF -DSPAR_FORTRAN=OFF -DSPAR_OPENBLAS=OFF
     -DSPAR_BUILD_TESTS=OFF -DSPAR_BUILD_EXAMPLES=OFF -DSPAR_BUILD_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=Debug
     "-DCMAKE_C_FLAGS=-O0 -g0"
-    --test-command sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${work}/without_mpi/libspar.so")
+    --test-command sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${work}/without_mpi")
 endif()
 
 # the same symbols with LAPACK in place of GSL, of which nothing is left; a program solves eigenvalue problems with it
@@ -80,11 +80,16 @@ function(spar_consumer name folder)
 endfunction()
 
 spar_consumer(c_cmake c)
+spar_consumer(aero_cmake aero)
 find_program(SPAR_PKG_CONFIG NAMES pkg-config)
 mark_as_advanced(SPAR_PKG_CONFIG)
 if(SPAR_PKG_CONFIG)
   spar_package_test(c_pkgconfig sh "${here}/pkgconfig.sh" "${prefix}" "${work}/c_pkgconfig" "${CMAKE_C_COMPILER}"
     "${here}/c/main.c" spar)
+  spar_package_test(aero_pkgconfig sh "${here}/pkgconfig.sh" "${prefix}" "${work}/aero_pkgconfig" "${CMAKE_C_COMPILER}"
+    "${here}/aero/main.c" spar_aero)
+  spar_package_test(aero_pkgconfig_static sh "${here}/pkgconfig.sh" "${prefix}" "${work}/aero_pkgconfig_static" "${CMAKE_C_COMPILER}"
+    "${here}/aero/main.c" spar_aero --static)
   spar_package_test(c_pkgconfig_static sh "${here}/pkgconfig.sh" "${prefix}" "${work}/c_pkgconfig_static"
     "${CMAKE_C_COMPILER}" "${here}/c/main.c" spar --static)
 endif()
@@ -116,7 +121,7 @@ find_program(SPAR_FILE file) # CPack asks it what is a library
 mark_as_advanced(SPAR_DPKG_SHLIBDEPS SPAR_FILE)
 if(SPAR_DPKG_SHLIBDEPS AND SPAR_FILE AND SPAR_PKG_CONFIG)
   spar_package_test(deb sh "${here}/deb.sh" "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}" "${work}/deb" "${CMAKE_CPACK_COMMAND}"
-    "${CMAKE_C_COMPILER}" "${PROJECT_VERSION}" "${SPAR_SOVERSION}")
+    "${CMAKE_C_COMPILER}" "${PROJECT_VERSION}" "${SPAR_SOVERSION}" "${SPAR_AERO_SOVERSION}")
 endif()
 
 if(CMAKE_CXX_COMPILER)
@@ -127,11 +132,11 @@ if(CMAKE_CXX_COMPILER)
   endif()
   spar_package_test(cxx "${CMAKE_CXX_COMPILER}" -std=c++11 -Wall -Wextra -Wpedantic -Wconversion -Werror
     "-I${prefix}/${CMAKE_INSTALL_INCLUDEDIR}" "${here}/headers.cpp" -o "${work}/headers_cxx"
-    "-L${prefix}/${CMAKE_INSTALL_LIBDIR}" "-Wl,-rpath,${prefix}/${CMAKE_INSTALL_LIBDIR}" -lspar ${mpi_flags})
+    "-L${prefix}/${CMAKE_INSTALL_LIBDIR}" "-Wl,-rpath,${prefix}/${CMAKE_INSTALL_LIBDIR}" -lspar_aero -lspar ${mpi_flags})
   if(TARGET spar_example_parts AND TARGET spar_host_parts AND NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
     add_dependencies(test_case spar_example_parts spar_host_parts)
     spar_package_test(cxx_examples sh "${here}/cxx_examples" "${PROJECT_SOURCE_DIR}" "${work}/cxx_examples" "${CMAKE_CXX_COMPILER}"
       "$<TARGET_FILE:spar_example_parts>" "$<TARGET_FILE:spar_host_parts>" "-L${prefix}/${CMAKE_INSTALL_LIBDIR}"
-      "-Wl,-rpath,${prefix}/${CMAKE_INSTALL_LIBDIR}" -lspar -lm)
+      "-Wl,-rpath,${prefix}/${CMAKE_INSTALL_LIBDIR}" -lspar_aero -lspar -lm)
   endif()
 endif()

@@ -8,7 +8,7 @@ export PKG_CONFIG_PATH
 eval "libdir=$(pkg-config --variable=libdir "$package")"
 mkdir -p "$work"
 if [ -n "$static" ]; then
-    eval "set -- $(pkg-config --cflags "$package") \"\$source\" -o \"\$work/consumer\" $(pkg-config --static --libs "$package" | sed 's,-lspar ,"$libdir/libspar.a" ,') -lm"
+    eval "set -- $(pkg-config --cflags "$package") \"\$source\" -o \"\$work/consumer\" $(pkg-config --static --libs "$package" | sed 's,-lspar_aero ,"$libdir/libspar_aero.a" ,; s,-lspar ,"$libdir/libspar.a" ,') -lm"
 else
     eval "set -- $(pkg-config --cflags "$package") \"\$source\" -o \"\$work/consumer\" $(pkg-config --libs "$package") -lm"
 fi

@@ -8,5 +8,5 @@ echo "soname $soname, file $file"
 case $2 in 0.*) expected=0.9 ;; *) expected=1 ;; esac
 [ "$3" = "$expected" ] || { echo "SPAR_SOVERSION is $3; in release $2 it must be $expected"; exit 1; }
 [ "$soname" = "libspar.so.$3" ] && [ "$file" = "libspar.so.$2" ] || exit 1
-grep -q "'libspar.so.$3'" "$(dirname "$0")/../../examples/python/spar.py" || { echo "spar.py loads another library than libspar.so.$3"; exit 1; }
+grep -q "_load('$3')" "$(dirname "$0")/../../examples/python/spar.py" || { echo "spar.py loads another library than libspar.so.$3"; exit 1; }
 grep -qx "version: $2" "$(dirname "$0")/../../CITATION.cff" || { echo "CITATION.cff is of another release than $2"; exit 1; }

@@ -5,7 +5,7 @@ set -eu
 build=$1 work=$2 compiler=$3
 here=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "$work"
-sh "$here/symbols.sh" "$here/../.." "$build/libspar.so"
+sh "$here/symbols.sh" "$here/../.." "$build"
 if ldd "$build/libspar.so" | grep -i gsl || nm -D "$build/libspar.so" | grep -i ' gsl'; then
     echo "the library needs GSL"
     exit 1

@@ -1,7 +1,7 @@
 # The rotor on AeroDyn: with the library where the user has one, and with the stand-in in the tests.
 function(spar_aerodyn_rotor target)
   add_executable(${target} "${SPAR_HOST_DIR}/rotor.c" "${SPAR_HOST_DIR}/spar_aerodyn.c")
-  target_link_libraries(${target} PRIVATE spar_flags spar spar_example_parts m)
+  target_link_libraries(${target} PRIVATE spar_flags spar_example_parts spar_aero spar m)
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/examples/hosts")
 endfunction()
 

@@ -27,7 +27,7 @@ target_compile_options(amr_wind_stand_in PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wall
 target_compile_definitions(amr_wind_stand_in PRIVATE SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data")
 target_include_directories(amr_wind_stand_in PRIVATE "${tree}" "${SPAR_HOST_DIR}/stand_in" "${SPAR_HOST_DIR}/spar"
   "${PROJECT_SOURCE_DIR}/examples")
-target_link_libraries(amr_wind_stand_in PRIVATE spar_flags spar spar_example_parts m)
+target_link_libraries(amr_wind_stand_in PRIVATE spar_flags spar_example_parts spar_aero spar m)
 
 if(SPAR_BUILD_TESTS)
   add_test(NAME host_amr_wind COMMAND amr_wind_stand_in --steps 60 WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")

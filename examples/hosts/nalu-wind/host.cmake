@@ -23,7 +23,7 @@ target_compile_options(nalu_wind_stand_in PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wal
 target_compile_definitions(nalu_wind_stand_in PRIVATE SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data" OMPI_SKIP_MPICXX
   MPICH_SKIP_MPICXX)
 target_include_directories(nalu_wind_stand_in PRIVATE "${tree}" "${SPAR_HOST_DIR}/stand_in" "${PROJECT_SOURCE_DIR}/examples")
-target_link_libraries(nalu_wind_stand_in PRIVATE spar_flags spar spar_example_parts m MPI::MPI_C)
+target_link_libraries(nalu_wind_stand_in PRIVATE spar_flags spar_example_parts spar_aero spar m MPI::MPI_C)
 
 if(SPAR_BUILD_TESTS)
   foreach(ranks IN ITEMS 1 2)

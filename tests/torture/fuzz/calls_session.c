@@ -143,6 +143,27 @@ void do_spar_session_get_warning(call *c) {
     RUN_VOID(c, is_text(spar_session_get_warning(l->s, i)));
 }
 
+/* The message of an earlier failure is put back, so that the checks of messages hold. */
+static int fail_and_restore(spar_session *s, int status, const char *message) {
+    char before[1024];
+    (void)snprintf(before, sizeof before, "%s", spar_session_message(s));
+    int answer = spar_session_fail(s, status, message);
+    if (answer == SPAR_OK) {
+        if (strcmp(spar_session_message(s), message) != 0) {
+            fuzz_finding("message", "the message is '%s', not '%s'", spar_session_message(s), message);
+        }
+        (void)spar_session_fail(s, SPAR_OK, before);
+    }
+    return answer;
+}
+
+void do_spar_session_fail(call *c) {
+    live_session *l = arg_session(c);
+    int status = odd(c) ? 99 : below(c, SPAR_ERR_LIMIT + 1);
+    const char *message = arg_name(c, "why");
+    RUN(c, fail_and_restore(l->s, status, message));
+}
+
 void do_spar_session_set_gravity(call *c) {
     live_session *l = arg_session(c);
     double *g = arg_reals(c, 3, -10, 10);

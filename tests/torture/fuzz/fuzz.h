@@ -42,6 +42,7 @@ enum {
     CALL(spar_session_destroy, 4, FUZZ_TEXT)                                                                           \
     CALL(spar_session_message, 20, FUZZ_PURE | FUZZ_TEXT)                                                              \
     CALL(spar_session_get_warning, 20, FUZZ_PURE | FUZZ_TEXT)                                                          \
+    CALL(spar_session_fail, 20, FUZZ_CHANGES)                                                                          \
     CALL(spar_session_set_gravity, 60, FUZZ_CHANGES)                                                                   \
     CALL(spar_session_set_integrator, 60, FUZZ_CHANGES)                                                                \
     CALL(spar_session_set_newton, 40, FUZZ_CHANGES)                                                                    \

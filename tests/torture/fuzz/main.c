@@ -2,7 +2,7 @@
 
      fuzz [--calls n] [--seed s] [--jobs j] [--stats] [--all] [--keep]  random sequences; the answer is 1 if one showed
    something fuzz --replay seed       one sequence, told call by call fuzz --shrink seed       one sequence, made as
-   short as it can be fuzz --names spar.map    whether every function of the library is among the calls fuzz --fault
+   short as it can be fuzz --names functions  whether every function of the library is among the calls fuzz --fault
    proof: finds a fault put into the fuzzer itself, and makes its sequence short */
 #include "fuzz.h"
 
@@ -489,11 +489,8 @@ static int check_names(const char *path) {
     char line[256];
     int missing = 0, names = 0;
     while (f && fgets(line, sizeof line, f)) {
-        char *name = strstr(line, "spar_"), *end_of = strchr(line, ';');
-        if (line[0] == '#' || !name || !end_of) {
-            continue;
-        }
-        *end_of = '\0';
+        const char *name = line;
+        line[strcspn(line, "\n")] = '\0';
         int k = 0;
         while (k < CALL_COUNT && strcmp(fuzz_calls[k].name, name) != 0) {
             k++;
@@ -515,7 +512,7 @@ static int check_names(const char *path) {
 
 static int usage(void) {
     (void)fputs("fuzz [--calls n] [--seed s] [--jobs j] [--stats] [--all] [--keep] | --replay seed | --shrink seed | "
-                "--names map |"
+                "--names functions |"
                 " --fault\n",
                 stderr);
     return 2;

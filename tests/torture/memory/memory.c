@@ -84,23 +84,20 @@ static int64_t torture(const act *a, int victim, int64_t stride, int64_t most) {
     return faults;
 }
 
-/* Functions of the map file that no scene has called. */
+/* Public functions that no scene has called. */
 static int missing(void) {
     char line[200];
     int count = 0;
-    FILE *f = fopen(SPAR_SOURCE_DIR "/cmake/spar.map", "r");
+    FILE *f = fopen(SPAR_FUNCTIONS, "r");
     if (!f) {
-        printf("there is no map file\n");
+        printf("there is no %s\n", SPAR_FUNCTIONS);
         return 1;
     }
     while (fgets(line, sizeof line, f)) {
-        char *name = line + strspn(line, " "), *end = strchr(name, ';');
-        if (strncmp(name, "spar_", 5) == 0 && end) {
-            *end = '\0';
-            if (!scenario_has_called(name) && strcmp(name, "spar_session_create_fcomm") != 0) {
-                printf("%s is part of no scene\n", name);
-                count++;
-            }
+        line[strcspn(line, "\n")] = '\0';
+        if (!scenario_has_called(line) && strcmp(line, "spar_session_create_fcomm") != 0) {
+            printf("%s is part of no scene\n", line);
+            count++;
         }
     }
     (void)fclose(f);

@@ -430,6 +430,7 @@ static void act_step(void) {
     CALL(spar_session_sum, whole, SPAR_OK, 6, load);
     CALL(spar_session_sum_balance, whole, 2, solved, load, NULL);
     CALL(spar_fluid_fail, h.fluid[0], SPAR_ERR_NUMERIC, "between steps nobody waits for it");
+    CALL(spar_session_fail, whole, SPAR_ERR_USER, "the message takes no memory");
     NOTE(audit);
     CALL(spar_member_get_loads, b, all);
     note(all, 36 * sizeof *all);

@@ -1252,7 +1252,7 @@ static int is_known(const char *function) {
 }
 
 static void all_calls(void) {
-    FILE *map = fopen(SPAR_SOURCE_DIR "/cmake/spar.map", "r");
+    FILE *map = fopen(SPAR_FUNCTIONS, "r");
     char line[256], function[128];
     int known = 0, missing = map == NULL;
     while (map && fgets(line, sizeof line, map)) {

@@ -3,7 +3,7 @@
 add_executable(twins "${spar_torture_dir}/twins.c")
 set_target_properties(twins PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
 target_compile_definitions(twins PRIVATE _GNU_SOURCE)
-target_link_libraries(twins PRIVATE spar_flags spar_static m)
+target_link_libraries(twins PRIVATE spar_flags spar_aero_static spar_static m)
 add_test(NAME torture_twins COMMAND twins --scenes 150 --seed 1)
 add_test(NAME torture_twins_fresh COMMAND twins --scenes 50 --seed ${spar_torture_seed})
 foreach(name IN ITEMS torture_twins torture_twins_fresh)
