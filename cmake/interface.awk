@@ -1,6 +1,7 @@
 # A public header as a table, for the scripts that write it in other languages; fields are parted by tabs:
 #   constants  NAME=number ...                           of one enumeration
 #   call  name  int|text|none  name|type|pass|shape ...  and its parameters
+#   collective  name                                     whose comment has the word "Collective"; the others are local
 # type: int, int64_t, double, float, char, context, the callback's or the handle's (session, member, ...). pass: value, in or out
 # (by address), list (of handles, in), callback. shape: [n][3], "" of a single number.
 # Whether an address is an array's, the comments say: "x[n][3]: out" is one, "t: out" a single number; what is said of a name
@@ -95,6 +96,7 @@ function call(prototype,   head, f, answer, n, i, part, line) {
         else if (null) line = line "|"
     }
     print line
+    if (collective) print "collective\t" f
 }
 
 BEGIN { LIST = "[a-z_][a-z0-9_]*([[][^]]*[]])*(, [a-z_][a-z0-9_]*([[][^]]*[]])*)*: " }
@@ -109,6 +111,7 @@ END {
         if (substr(text, 1, 2) == "/*") {
             stop = index(text, "*/")
             hear(substr(text, 1, stop + 1))
+            collective = substr(text, 1, stop + 1) ~ /Collective/
             text = substr(text, stop + 2)
             continue
         }

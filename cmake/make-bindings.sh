@@ -1,14 +1,19 @@
 #!/bin/sh
-# Writes from the public headers the Fortran modules and the table of examples/python/spar.py: run it after they have changed. Of
-# each library: its raw bindings (spar_c.f90, spar_aero_c.f90), and its module (spar.f90, spar_aero.f90), where what takes thought is by
-# hand in a file .f90.in; this adds the constants and the plain procedures.
-#   make-bindings.sh [<folder to write to, instead of fortran and examples/python>]
+# Writes what follows from the public headers alone: run it after they have changed (cmake/generate does).
+#   fortran/spar_c.f90, spar_aero_c.f90       raw bindings of each library
+#   fortran/spar.f90, spar_aero.f90           its module: what takes thought is by hand in the file .f90.in; this adds the constants and the
+#                                             plain procedures
+#   examples/python/spar.py                   its table
+#   tests/fortran/test_bindings.f90           each raw binding once
+#   tests/torture/calls.h, fuzz/calls_plain.* names of all calls, and callers of those that the fuzzer has none for by hand
+#   make-bindings.sh [<folder to write to, instead of the sources>]
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
-out=${1:-$root/fortran} out_python=${1:-$root/examples/python}
+out=${1:-$root}
+mkdir -p "$out/fortran" "$out/examples/python" "$out/tests/fortran" "$out/tests/torture/fuzz"
 headers='spar spar_structure spar_coupling spar_analysis spar_output' aero_headers='spar_aero'
 made=$(mktemp)
-trap 'rm -f "$made" "$made.file"' EXIT
+trap 'rm -f "$made" "$made.file" "$made.table"' EXIT
 # of <header> calls|constants|names
 of() { awk -f "$root/cmake/interface.awk" "$root/include/spar/$1.h" | awk -v pass="$2" -v title="$1.h" -f "$root/cmake/fortran.awk"; }
 
@@ -66,20 +71,42 @@ module() {
     put_between "$root/fortran/$1.f90.in" 'constants of the headers {'
     for name in $2; do
         awk -v null=1 -f "$root/cmake/interface.awk" "$root/include/spar/$name.h"
-    done | awk -v file="fortran/$1.f90.in" -f "$root/cmake/plain.awk" "$made.file" - >"$out/$1.f90"
+    done | awk -v file="fortran/$1.f90.in" -f "$root/cmake/plain.awk" "$made.file" - >"$out/fortran/$1.f90"
 }
 
-raw libspar spar_calls spar_c "$headers" >"$out/spar_c.f90"
-raw libspar_aero spar_aero_calls spar_aero_c "$aero_headers" >"$out/spar_aero_c.f90"
+raw libspar spar_calls spar_c "$headers" >"$out/fortran/spar_c.f90"
+raw libspar_aero spar_aero_calls spar_aero_c "$aero_headers" >"$out/fortran/spar_aero_c.f90"
 module spar "$headers"
 module spar_aero "$aero_headers"
 {
     echo 'TABLE = """'
     for name in $headers $aero_headers; do
-        awk -f "$root/cmake/interface.awk" "$root/include/spar/$name.h" | tr '\t' ' '
+        awk -f "$root/cmake/interface.awk" "$root/include/spar/$name.h" | grep -v '^collective' | tr '\t' ' '
     done
     echo '"""'
 } >"$made"
 put_between "$root/examples/python/spar.py" 'as cmake/interface.awk reads it {'
-cat "$made.file" >"$out_python/spar.py"
-rm "$made.file"
+cat "$made.file" >"$out/examples/python/spar.py"
+
+# what the instruments of tests/ know of every call
+for name in $headers $aero_headers; do awk -v null=1 -f "$root/cmake/interface.awk" "$root/include/spar/$name.h"; done >"$made.table"
+awk -v pass=bindings -f "$root/cmake/calls.awk" "$made.table" >"$made"
+put_between "$root/tests/fortran/test_bindings.f90" 'calls of the headers {'
+cat "$made.file" >"$out/tests/fortran/test_bindings.f90"
+{
+    echo '/* All public calls by name. Written by cmake/make-bindings.sh from the headers. */'
+    echo '/* clang-format off */'
+    awk -v pass=names -f "$root/cmake/calls.awk" "$made.table"
+} >"$out/tests/torture/calls.h"
+cat "$root"/tests/torture/fuzz/calls_[!p]*.c | sed -n 's/^void do_\([a-z0-9_]*\)(call .*/\1/p' >"$made"
+{
+    echo '/* The calls of calls_plain.c, as FUZZ_CALLS has those by hand. Written by cmake/make-bindings.sh from the headers. */'
+    echo '/* clang-format off */'
+    printf '#define FUZZ_PLAIN_CALLS(CALL)'
+    awk -v pass=table -f "$root/cmake/calls.awk" "$made" "$made.table"
+} >"$out/tests/torture/fuzz/calls_plain.h"
+{
+    echo '/* Callers whose arguments follow from their types. Written by cmake/make-bindings.sh from the headers. */'
+    echo '#include "fuzz.h"'
+    awk -v pass=fuzz -f "$root/cmake/calls.awk" "$made" "$made.table"
+} >"$out/tests/torture/fuzz/calls_plain.c"

@@ -16,24 +16,12 @@ set(spar_test_environment
   OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
   ASAN_OPTIONS=allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1)
 
-# All public functions, for instruments that know every call.
-set(spar_functions "")
-foreach(map IN ITEMS spar spar_aero)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/cmake/${map}.map")
-  file(STRINGS "${PROJECT_SOURCE_DIR}/cmake/${map}.map" lines REGEX "^ *spar_")
-  list(APPEND spar_functions ${lines})
-endforeach()
-list(TRANSFORM spar_functions STRIP)
-list(REMOVE_ITEM spar_functions "")
-list(JOIN spar_functions "\n" lines)
-file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/tests/functions" CONTENT "${lines}\n")
-
 # What tests share: tests/support/*.c, and any header under tests/ or src/.
 add_library(spar_test_base INTERFACE)
 target_include_directories(spar_test_base INTERFACE "${PROJECT_SOURCE_DIR}/src" "${PROJECT_SOURCE_DIR}/tests" "${PROJECT_SOURCE_DIR}/examples")
 target_include_directories(spar_test_base SYSTEM INTERFACE "${SPAR_CMOCKA_INCLUDE}")
 target_compile_definitions(spar_test_base INTERFACE
-  SPAR_TEST_VERSION="${PROJECT_VERSION}" SPAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SPAR_FUNCTIONS="${PROJECT_BINARY_DIR}/tests/functions" SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data"
+  SPAR_TEST_VERSION="${PROJECT_VERSION}" SPAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data"
   $<$<BOOL:${SPAR_MPI}>:SPARI_HAVE_MPI=1>)
 # cmocka.h wants these before it, and the formatter sorts includes
 target_compile_options(spar_test_base INTERFACE

@@ -126,20 +126,22 @@ SPAR_API void spar_session_destroy(spar_session **session);
    motion is that of the last solve, the loads are those pushed last. All step calls are collective. */
 
 /* Part 1: predicts the loads at t^{n+1} (option: spar_session_set_predictor).
-     dt: in, s, >= 1e-100; may change from step to step by any factor */
+     dt: in, s, >= 1e-100; may change from step to step by any factor
+   Collective. */
 SPAR_API int spar_step_begin(spar_session *session, double dt);
 /* Part 2: solves all members from t^n to t^{n+1} under the current loads. Each call starts again from t^n.
-   SPAR_ERR_NUMERIC: Newton did not converge, or the tangent is singular. */
+   SPAR_ERR_NUMERIC: Newton did not converge, or the tangent is singular. Collective. */
 SPAR_API int spar_step_solve(spar_session *session);
 /* Part 8: gathers the loads of all ranks, computes the residual and the loads of the next iteration.
      done: out, 1: accept the step, 0: solve, push and check again
    SPAR_ERR_NUMERIC: no convergence in max_iterations (spar_session_set_coupling); or the steps have one evaluation of
-   the fluid each, and the error of the predicted loads grows from step to step (option coupling.unstable). */
+   the fluid each, and the error of the predicted loads grows from step to step (option coupling.unstable).
+   Collective. */
 SPAR_API int spar_step_check(spar_session *session, int *done);
-/* Accepts the step: the clock moves to t^{n+1}. SPAR_ERR_STATE after a check that failed. */
+/* Accepts the step: the clock moves to t^{n+1}. SPAR_ERR_STATE after a check that failed. Collective. */
 SPAR_API int spar_step_accept(spar_session *session);
 /* Rejects the step: state, loads and coupling are again those at t^n. A tangent formed in the step may be reused, so a
-   repeated step agrees within Newton's tolerance, not to the bit. */
+   repeated step agrees within Newton's tolerance, not to the bit. Collective. */
 SPAR_API int spar_step_reject(spar_session *session);
 
 /* Parts 3 and 4: motion of the motion nodes at t^n + theta dt; before the first step, the initial state. Local.
@@ -174,7 +176,8 @@ typedef int (*spar_fluid_solver)(spar_session *session, double t, double dt, int
      dt: in, s
      solve: in, NULL: this rank has no fluid
      context: in, handed to solve
-     iterations: out, how many iterations were made, NULL: not wanted */
+     iterations: out, how many iterations were made, NULL: not wanted
+   Collective. */
 SPAR_API int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations);
 
 /* ---- settings of the session ------------------------------------------------------------------------------------- */
@@ -430,7 +433,7 @@ SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, int which, double theta, d
    them as before. After a failure the session is as it was. SPAR_ERR_IO: the file cannot be read, or is damaged;
    SPAR_ERR_ARGUMENT: it does not match the session. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
-/* path: in */
+/* path: in. Collective. */
 SPAR_API int spar_session_load(spar_session *session, const char *path);
 
 #ifdef __cplusplus

@@ -19,7 +19,7 @@ functions() {
 check() {
     version=$2_$(sed -n "s/^set($2_SOVERSION \([0-9.]*\)).*/\1/p" "$source/CMakeLists.txt")
     sed -n '/global:/,/local:/p' "$source/cmake/$1.map" | grep -oE 'spar_[a-z0-9_]+' | sort -u >"$work/map"
-    diff "$work/$1" "$work/map" || { echo "the headers (<) and cmake/$1.map (>) differ: run cmake/make-map.sh"; exit 1; }
+    diff "$work/$1" "$work/map" || { echo "the headers (<) and cmake/$1.map (>) differ: run cmake/generate"; exit 1; }
     nm -D --defined-only "$folder/lib$1.so" | awk '$2 != "A" {print $3}' | sort -u >"$work/exported"
     sed "s/\$/@@$version/" "$work/$1" | diff - "$work/exported" ||
         { echo "the headers (<) and what lib$1.so exports (>) differ"; exit 1; }

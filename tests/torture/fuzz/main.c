@@ -2,9 +2,11 @@
 
      fuzz [--calls n] [--seed s] [--jobs j] [--stats] [--all] [--keep]  random sequences; the answer is 1 if one showed
    something fuzz --replay seed       one sequence, told call by call fuzz --shrink seed       one sequence, made as
-   short as it can be fuzz --names functions  whether every function of the library is among the calls fuzz --fault
+   short as it can be fuzz --names            whether every function of the library is among the calls fuzz --fault
    proof: finds a fault put into the fuzzer itself, and makes its sequence short */
 #include "fuzz.h"
+
+#include "../calls.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -484,36 +486,31 @@ static int many(const options *o) {
 
 /* ---- the table is complete ---- */
 
-static int check_names(const char *path) {
-    FILE *f = fopen(path, "r");
-    char line[256];
-    int missing = 0, names = 0;
-    while (f && fgets(line, sizeof line, f)) {
-        const char *name = line;
-        line[strcspn(line, "\n")] = '\0';
+static int check_names(void) {
+#define NAME(name) #name,
+    static const char *const names[] = {SPAR_LOCAL_CALLS(NAME) SPAR_COLLECTIVE_CALLS(NAME)};
+#undef NAME
+    enum { NAMES = sizeof names / sizeof *names };
+    int missing = 0;
+    for (int i = 0; i < NAMES; i++) {
         int k = 0;
-        while (k < CALL_COUNT && strcmp(fuzz_calls[k].name, name) != 0) {
+        while (k < CALL_COUNT && strcmp(fuzz_calls[k].name, names[i]) != 0) {
             k++;
         }
-        names++;
         if (k == CALL_COUNT) {
-            printf("the fuzzer does not call %s: add it to FUZZ_CALLS in fuzz.h\n", name);
+            printf("the fuzzer does not call %s: run cmake/generate\n", names[i]);
             missing++;
         }
     }
-    if (f) {
-        (void)fclose(f);
-    }
-    printf("%d functions in %s, %d missing\n", names, path, missing);
-    return names < 50 || missing > 0;
+    printf("%d functions, %d missing\n", NAMES, missing);
+    return NAMES < 50 || missing > 0;
 }
 
 /* ---- main ---- */
 
 static int usage(void) {
     (void)fputs("fuzz [--calls n] [--seed s] [--jobs j] [--stats] [--all] [--keep] | --replay seed | --shrink seed | "
-                "--names functions |"
-                " --fault\n",
+                "--names | --fault\n",
                 stderr);
     return 2;
 }
@@ -531,6 +528,8 @@ static int run(int argc, char **argv) {
             o.keep = 1;
         } else if (strcmp(argv[i], "--fault") == 0) {
             o.fault = 1;
+        } else if (strcmp(argv[i], "--names") == 0) {
+            return check_names();
         } else if (!value) {
             return usage();
         } else if (strcmp(argv[i], "--calls") == 0) {
@@ -542,8 +541,6 @@ static int run(int argc, char **argv) {
         } else if (strcmp(argv[i], "--jobs") == 0) {
             o.jobs = atoi(argv[++i]);
             o.jobs = o.jobs < 1 ? 1 : o.jobs > JOBS ? JOBS : o.jobs;
-        } else if (strcmp(argv[i], "--names") == 0) {
-            return check_names(value);
         } else if (strcmp(argv[i], "--shrink") == 0) {
             return show(strtoull(value, NULL, 0), o.fault) != -1;
         } else if (strcmp(argv[i], "--replay") == 0) {

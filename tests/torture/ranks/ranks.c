@@ -11,6 +11,8 @@
    an allocation fails here. */
 #include "scene.h"
 
+#include "torture/calls.h"
+
 #include <mpi.h>
 #include <signal.h>
 #include <spar/spar_aero.h>
@@ -377,11 +379,6 @@ enum {
     BEGIN_START = 16,
     TRY = 19,
     CALLS = sizeof calls / sizeof *calls
-};
-
-/* What else the headers have: every function is here or above. */
-static const char *const local[] = {
-#include "local.h"
 };
 
 static int inner_call(scene *c) {
@@ -1235,37 +1232,34 @@ static void failed_create(void) {
 
 /* ---- that no call is missing ---- */
 
-static int is_known(const char *function) {
-    char line[160];
-    for (int i = 0; i < CALLS; i++) {
-        if (strcmp(calls[i].name, function) == 0) {
-            return 1;
-        }
-    }
-    (void)snprintf(line, sizeof line, " %s ", function);
-    for (size_t i = 0; i < sizeof local / sizeof *local; i++) {
-        if (strstr(local[i], line)) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
+/* Every call whose comment says "Collective" has a row above, and no other. */
 static void all_calls(void) {
-    FILE *map = fopen(SPAR_FUNCTIONS, "r");
-    char line[256], function[128];
-    int known = 0, missing = map == NULL;
-    while (map && fgets(line, sizeof line, map)) {
-        if (sscanf(line, " %127[a-z0-9_];", function) == 1 && strncmp(function, "spar_", 5) == 0) {
-            known++;
-            if (!is_known(function)) {
-                fprintf(stderr, "ranks: %s is neither among the collective calls nor in local.h\n", function);
-                missing++;
-            }
+#define NAME(name) #name,
+    static const char *const collective[] = {SPAR_COLLECTIVE_CALLS(NAME)};
+#undef NAME
+    enum { COLLECTIVE = sizeof collective / sizeof *collective };
+    for (int k = 0; k < COLLECTIVE; k++) {
+        int i = 0;
+        while (i < CALLS && strcmp(calls[i].name, collective[k]) != 0) {
+            i++;
+        }
+        if (i == CALLS) {
+            fprintf(stderr, "ranks: %s is collective and has no row in the table of calls\n", collective[k]);
+            failures++;
         }
     }
-    failures += missing > 0 || known < 90;
-    (void)(map && fclose(map));
+    for (int i = 0; i < CALLS; i++) {
+        int k = 0;
+        while (k < COLLECTIVE && strcmp(calls[i].name, collective[k]) != 0) {
+            k++;
+        }
+        if (k == COLLECTIVE) {
+            fprintf(stderr,
+                    "ranks: %s has a row in the table of calls, but its comment does not say that it is collective\n",
+                    calls[i].name);
+            failures++;
+        }
+    }
 }
 
 /* ---- all of it ---- */

@@ -1,0 +1,78 @@
+/* Callers whose arguments follow from their types. Written by cmake/make-bindings.sh from the headers. */
+#include "fuzz.h"
+
+void do_spar_session_get_gravity(call *c) {
+    live_session *session = arg_session(c);
+    double *g = arg_out(c, 3 * (int64_t)sizeof *g, 0);
+    RUN(c, spar_session_get_gravity(session->s, g));
+}
+
+void do_spar_session_get_coupling(call *c) {
+    live_session *session = arg_session(c);
+    int *scheme = arg_out(c, (int64_t)sizeof *scheme, 0);
+    double *atol = arg_out(c, (int64_t)sizeof *atol, 0);
+    double *rtol = arg_out(c, (int64_t)sizeof *rtol, 0);
+    int *max_iterations = arg_out(c, (int64_t)sizeof *max_iterations, 0);
+    RUN(c, spar_session_get_coupling(session->s, scheme, atol, rtol, max_iterations));
+}
+
+void do_spar_session_get_time(call *c) {
+    live_session *session = arg_session(c);
+    double *t = arg_out(c, (int64_t)sizeof *t, 1);
+    int64_t *step = arg_out(c, (int64_t)sizeof *step, 1);
+    int *iteration = arg_out(c, (int64_t)sizeof *iteration, 1);
+    RUN(c, spar_session_get_time(session->s, t, step, iteration));
+}
+
+void do_spar_session_get_integrator(call *c) {
+    live_session *session = arg_session(c);
+    double *rho_inf = arg_out(c, (int64_t)sizeof *rho_inf, 1);
+    int *substeps = arg_out(c, (int64_t)sizeof *substeps, 1);
+    RUN(c, spar_session_get_integrator(session->s, rho_inf, substeps));
+}
+
+void do_spar_session_get_newton(call *c) {
+    live_session *session = arg_session(c);
+    double *atol = arg_out(c, (int64_t)sizeof *atol, 1);
+    double *rtol = arg_out(c, (int64_t)sizeof *rtol, 1);
+    int *max_iterations = arg_out(c, (int64_t)sizeof *max_iterations, 1);
+    RUN(c, spar_session_get_newton(session->s, atol, rtol, max_iterations));
+}
+
+void do_spar_session_get_predictor(call *c) {
+    live_session *session = arg_session(c);
+    int *order = arg_out(c, (int64_t)sizeof *order, 0);
+    RUN(c, spar_session_get_predictor(session->s, order));
+}
+
+void do_spar_session_get_relaxation(call *c) {
+    live_session *session = arg_session(c);
+    double *omega = arg_out(c, (int64_t)sizeof *omega, 0);
+    RUN(c, spar_session_get_relaxation(session->s, omega));
+}
+
+void do_spar_session_get_residual(call *c) {
+    live_session *session = arg_session(c);
+    double *residual = arg_out(c, (int64_t)sizeof *residual, 1);
+    double *size = arg_out(c, (int64_t)sizeof *size, 1);
+    RUN(c, spar_session_get_residual(session->s, residual, size));
+}
+
+void do_spar_session_get_tolerance(call *c) {
+    live_session *session = arg_session(c);
+    double *drift = arg_out(c, (int64_t)sizeof *drift, 1);
+    double *rtol = arg_out(c, (int64_t)sizeof *rtol, 1);
+    RUN(c, spar_session_get_tolerance(session->s, drift, rtol));
+}
+
+void do_spar_session_get_reproducible(call *c) {
+    live_session *session = arg_session(c);
+    int *on = arg_out(c, (int64_t)sizeof *on, 0);
+    RUN(c, spar_session_get_reproducible(session->s, on));
+}
+
+void do_spar_session_get_threads(call *c) {
+    live_session *session = arg_session(c);
+    int *threads = arg_out(c, (int64_t)sizeof *threads, 0);
+    RUN(c, spar_session_get_threads(session->s, threads));
+}

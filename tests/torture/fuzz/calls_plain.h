@@ -1,0 +1,14 @@
+/* The calls of calls_plain.c, as FUZZ_CALLS has those by hand. Written by cmake/make-bindings.sh from the headers. */
+/* clang-format off */
+#define FUZZ_PLAIN_CALLS(CALL) \
+    CALL(spar_session_get_gravity, 30, FUZZ_PURE) \
+    CALL(spar_session_get_coupling, 30, FUZZ_PURE) \
+    CALL(spar_session_get_time, 30, FUZZ_PURE) \
+    CALL(spar_session_get_integrator, 30, FUZZ_PURE) \
+    CALL(spar_session_get_newton, 30, FUZZ_PURE) \
+    CALL(spar_session_get_predictor, 30, FUZZ_PURE) \
+    CALL(spar_session_get_relaxation, 30, FUZZ_PURE) \
+    CALL(spar_session_get_residual, 30, FUZZ_PURE) \
+    CALL(spar_session_get_tolerance, 30, FUZZ_PURE) \
+    CALL(spar_session_get_reproducible, 30, FUZZ_PURE) \
+    CALL(spar_session_get_threads, 30, FUZZ_PURE)
