@@ -1,5 +1,5 @@
-/* Experimental: the calls of this header may change in any release.
-   spar_aero.h: blade element with momentum theory, a library of its own, libspar_aero.
+/* spar_aero.h: experimental, may change in any release. Blade elements with momentum theory, in a library of their own,
+   libspar_aero.
 
    Lift, drag and pitching moment from polars and the wind relative to the moving section, with or without the induced
    velocity of momentum theory (Ning 2014, doi 10.1002/we.1636); quasi-steady, but for the effects that remember. It is

@@ -30,20 +30,19 @@ if(SPAR_AWK)
   spar_package_test(interface_fails sh "${here}/interface_fails" "${CMAKE_C_COMPILER}" "${work}/interface")
 endif()
 
-# the same by the debug information, where there are abidiff and gcc's view of the types
-if(CMAKE_C_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64" AND NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
-  spar_package_test(abi sh "${here}/abi" "$<TARGET_FILE:spar>")
-  spar_package_test(abi_fails sh "${here}/abi_fails" "${CMAKE_C_COMPILER}" "${PROJECT_BINARY_DIR}" "${work}/abi")
-  set_tests_properties(package_abi package_abi_fails PROPERTIES SKIP_RETURN_CODE 77)
-endif()
-
-# the same symbols with nothing but GSL: no MPI, no OpenBLAS (the short form of tests/configurations)
-if(SPAR_MPI)
+# the same symbols with nothing but GSL: no MPI, no OpenBLAS (the short form of tests/configurations). It has debug information, so
+# the binary interface is compared here, where there are abidiff and gcc's view of the types.
+if(SPAR_GSL)
   spar_package_test(without_mpi "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}" "${work}/without_mpi"
     --build-generator "${CMAKE_GENERATOR}" --build-target spar --build-options -DSPAR_MPI=OFF -DSPAR_FORTRAN=OFF -DSPAR_OPENBLAS=OFF
     -DSPAR_BUILD_TESTS=OFF -DSPAR_BUILD_EXAMPLES=OFF -DSPAR_BUILD_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=Debug
-    "-DCMAKE_C_FLAGS=-O0 -g0"
+    "-DCMAKE_C_FLAGS=-O0 -g"
     --test-command sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${work}/without_mpi")
+  if(CMAKE_C_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64" AND NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
+    spar_package_test(abi sh "${here}/abi" "${work}/without_mpi/libspar.so")
+    spar_package_test(abi_fails sh "${here}/abi_fails" "${CMAKE_C_COMPILER}" "${work}/without_mpi" "${work}/abi")
+    set_tests_properties(package_abi package_abi_fails PROPERTIES SKIP_RETURN_CODE 77 DEPENDS package_without_mpi)
+  endif()
 endif()
 
 # the same symbols with LAPACK in place of GSL, of which nothing is left; a program solves eigenvalue problems with it
@@ -124,12 +123,20 @@ if(SPAR_DPKG_SHLIBDEPS AND SPAR_FILE AND SPAR_PKG_CONFIG)
     "${CMAKE_C_COMPILER}" "${PROJECT_VERSION}" "${SPAR_SOVERSION}" "${SPAR_AERO_SOVERSION}")
 endif()
 
-if(CMAKE_CXX_COMPILER)
-  set(mpi_flags)
-  if(SPAR_MPI)
-    list(TRANSFORM MPI_C_INCLUDE_DIRS PREPEND -isystem OUTPUT_VARIABLE mpi_flags)
-    list(APPEND mpi_flags -DSPAR_TEST_MPI -DOMPI_SKIP_MPICXX -DMPICH_SKIP_MPICXX ${MPI_C_LIBRARIES})
+set(mpi_flags)
+if(SPAR_MPI)
+  list(TRANSFORM MPI_C_INCLUDE_DIRS PREPEND -isystem OUTPUT_VARIABLE mpi_flags)
+  list(APPEND mpi_flags -DSPAR_TEST_MPI -DOMPI_SKIP_MPICXX -DMPICH_SKIP_MPICXX ${MPI_C_LIBRARIES})
+endif()
+if(NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
+  set(spar_alone "-;-")
+  if(TARGET spar_fortran)
+    set(spar_alone "${CMAKE_Fortran_COMPILER};${prefix}/${SPAR_FORTRAN_MODULE_DIR}")
   endif()
+  spar_package_test(headers sh "${here}/headers" "${prefix}" "${prefix}/${CMAKE_INSTALL_LIBDIR}" "${work}/headers" "${CMAKE_C_COMPILER}"
+    "$<IF:$<BOOL:${CMAKE_CXX_COMPILER}>,${CMAKE_CXX_COMPILER},->" ${spar_alone} ${mpi_flags})
+endif()
+if(CMAKE_CXX_COMPILER)
   spar_package_test(cxx "${CMAKE_CXX_COMPILER}" -std=c++11 -Wall -Wextra -Wpedantic -Wconversion -Werror
     "-I${prefix}/${CMAKE_INSTALL_INCLUDEDIR}" "${here}/headers.cpp" -o "${work}/headers_cxx"
     "-L${prefix}/${CMAKE_INSTALL_LIBDIR}" "-Wl,-rpath,${prefix}/${CMAKE_INSTALL_LIBDIR}" -lspar_aero -lspar ${mpi_flags})
