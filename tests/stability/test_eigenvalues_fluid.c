@@ -539,7 +539,7 @@ static void test_refusals(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "amplitude", ASK(0.1, 0, 0.2, blow, 6, 1, NULL, value, 0, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "amplitude", ASK(0.1, 0, NAN, blow, 6, 1, NULL, value, 0, NULL));
     REFUSED(s, SPAR_ERR_UNSUPPORTED, "spar_member_solve_eigenvalues", ASK(0.1, 0, 0, NULL, 6, 1, NULL, value, 0, NULL));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "1 to 200", ASK(0.1, 0, 0, blow, 0, 1, NULL, value, 0, NULL));
+    REFUSED(s, SPAR_ERR_STATE, "the number of modes is not set", ASK(0.1, 0, 0, blow, 0, 1, NULL, value, 0, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "1 to 200", ASK(0.1, 0, 0, blow, 201, 1, NULL, value, 0, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "6 unknowns", ASK(0.1, 0, 0, blow, 7, 1, NULL, value, 0, NULL));
     REFUSED(s, SPAR_ERR_ARGUMENT, "-1 eigenvalues", ASK(0.1, 0, 0, blow, 6, -1, NULL, value, 0, NULL));
