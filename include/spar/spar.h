@@ -230,9 +230,9 @@ typedef void (*spar_log)(const spar_session *session, int level, const char *tex
      log: in, NULL: none (default)
      context: in, handed to log; must live as long as the session uses it */
 SPAR_API int spar_session_set_log(spar_session *session, spar_log log, void *context);
-/* Warnings of this session on this rank, with or without a log: descriptions and runs that are legal and probably wrong.
-   Warnings about members are given on rank 0, about fluids on their rank. The text belongs to the session; "" for i
-   beyond the last. The first 32 are kept. Local, at any time.
+/* Warnings of this session on this rank, with or without a log: descriptions and runs that are legal and probably
+   wrong. Warnings about members are given on rank 0, about fluids on their rank. The text belongs to the session;
+   "" for i beyond the last. The first 32 are kept. Local, at any time.
      i: in, from 0 */
 SPAR_API const char *spar_session_get_warning(const spar_session *session, int64_t i);
 

@@ -161,7 +161,8 @@ SPAR_API int spar_aero_set_tower(spar_aero *aero, const double base[3], const do
    whose numbers are theirs then): it goes through iterations, rejected steps, trials, save and load as these do.
    Momentum theory takes the static polar's lift. Stall: lift alone; attached flow is the steepest line from the angle
    without lift, 4 c / V the time. Unsteady: lift acts by the flow at three quarters of the chord, moments are pushed;
-   induced velocities count as steady. It asks for accelerations, so the start should be balanced (spar_session_solve_initial).
+   induced velocities count as steady. It asks for accelerations, so the start should be balanced
+   (spar_session_solve_initial).
    SPAR_ERR_STATE: a step is under way, where one of these three is asked for first, or the fluids have states of the
    host's own. */
 SPAR_API int spar_aero_set_effects(spar_aero *aero, int effects);

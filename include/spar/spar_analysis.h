@@ -1,5 +1,5 @@
-/* spar_analysis.h: experimental, may change in any release. Trial runs, effects, advice, eigenvalues with the fluid, error
-   estimates. The conventions are those of spar.h. */
+/* spar_analysis.h: experimental, may change in any release. Error estimates, learned added mass, trial runs, effects,
+   advice, eigenvalues with the fluid. The conventions of spar.h apply. */
 #ifndef SPAR_ANALYSIS_H
 #define SPAR_ANALYSIS_H
 
@@ -10,42 +10,38 @@
 extern "C" {
 #endif
 
-/* ---- error estimates and learned added mass ------------------------------------------------------------------------ */
+/* ---- error estimates and learned added mass ---------------------------------------------------------------------- */
 
-/* What the numbers of a member leave of error in its motion now: root of the mean square over its nodes, m. In the mean
-   over a run that of steps is true to a factor of 3, that of nodes to a factor of 4 where the run forgets within some
-   periods (docs/advice.md has what that was measured on); a single one may be off by more. Too few nodes also have
-   frequencies that are a little off: where nothing damps that adds up as phase, and only trials see it
-   (spar_trial_advise). Each NULL: not wanted. Local, the same on all ranks.
-     step: out, what the last step added, or what the step under way adds once it is solved, as the tolerance takes it:
-           SPAR_ERR_STATE where none is set
-     nodes: out, how far the motion between steps, and the loads there, would take a beam with four more nodes an
-   element from the shape it has: its equations with their tangent, solved up to five times in this call. 0 for what has
-           no shape; -1: not known (fidelity linear or modal, 24 nodes an element, a root that is free before the first
-           step, no solution)
-   SPAR_ERR_STATE too in trials, statics and starts, and of the nodes within a step. */
+/* Estimates the present error of a member's motion, as the root of the mean square over its nodes. In the mean over
+   a run the step's estimate is right to a factor of 3. The nodes' estimate is right to a factor of 4 if the run
+   forgets its past within some periods; a single one may be farther off. Without damping, a frequency that is
+   slightly wrong shifts the phase more and more; only trials show this (spar_trial_advise). docs/advice.md has the
+   measurements. Local, the same on all ranks; the estimate of the nodes solves up to five systems.
+     step: out, m, error of the last step, or of the step in progress once it is solved, NULL: not wanted
+     nodes: out, m, displacement towards the shape of a beam with four more nodes per element, between steps; 0: the
+           member has no shape; -1: not known (linear or modal, 24 nodes per element, a free root before the first step,
+           no solution); NULL: not wanted
+   SPAR_ERR_STATE: no tolerance is set (step), within a step (nodes), in trials, static solutions and initial steps. */
 SPAR_API int spar_member_estimate_error(spar_member *member, double *step, double *nodes);
-/* The fluid's added mass learned while steps are iterated, from the differences of their iterations: loads that came
-   back against accelerations, with any scheme that iterates. From the step on in which it is known well enough, and as
-   long as it is, it stands in the equations in place of the guess that was given (none, or the last run's); then few
-   iterations, fixed points or explicit steps do, in which nothing more is learned. It is what comes back within a step:
-   of a fluid that takes accelerations from the velocities at both ends of the step half the added mass, which is what
-   belongs there. The converged answer does not change. On all ranks; none of it happens in a trial. Default: off, which
-   costs nothing. Before commit; replaces an earlier call. Local.
-     n: in, stations of a beam at which it is found, linear in eta between them, at most 20: 1 if it is the same all
-        along; 1 of a rigid body; 0: learn nothing
-     eta[n]: in, of a beam, strictly increasing in [0,1]; else not looked at
+/* Learns the fluid's added mass during iterations, from the changes of loads and accelerations, with any scheme that
+   iterates. Once it is known well enough, it replaces the given added mass in the equations. Then few iterations,
+   fixed-point iterations or explicit steps are enough. It is the response within a step: half the added mass for a
+   fluid that takes accelerations from the velocities at both ends of the step. The converged solution does not
+   change. Trials do not learn. Default: off. Local, on all ranks, before the commit.
+     n: in, stations of a beam, linear between them, at most 20; 1: constant along it, or a rigid body; 0: off
+     eta[n]: in, of a beam, strictly increasing in [0,1]; else ignored
    SPAR_ERR_UNSUPPORTED: as spar_member_set_added_mass. */
 SPAR_API int spar_member_learn_added_mass(spar_member *member, int64_t n, const double *eta);
-/* What has been learned, of steps accepted; a host may give it as the guess at the start of the next run. Local, and
-   the same on every rank.
-     used: out, whether it stands in the equations (from the next step on)
-     spread: out, the part of a change of the loads that it has left, of differences before it knew them, root of the
-             mean of the squares: iterations will contract by about as much. Used below 1/4, and not any more beyond
-             1/2. 1: there have been less than two and a half
-     n: out, stations, 0: nothing is to be learned; capacity: in, of the arrays; eta[capacity], mass[capacity][36]: out,
-        as spar_member_set_added_mass takes them, 0 behind the last, and as long as nothing is known
-   Each out may be NULL: not wanted. */
+/* The added mass learned so far. The next run may start with it (spar_member_set_added_mass). Local, the same on every
+   rank.
+     used: out, 1: it is in the equations from the next step on, NULL: not wanted
+     spread: out, relative error of the predicted load change, measured before each update (root mean square); about the
+           factor by which iterations will contract. Used below 1/4, no longer above 1/2. 1: too few measurements. NULL:
+           not wanted
+     n: out, stations, 0: nothing is to be learned, NULL: not wanted
+     capacity: in, of the arrays
+     eta[capacity]: out, NULL: not wanted
+     mass[capacity][36]: out, as spar_member_set_added_mass takes it, 0 while nothing is known, NULL: not wanted */
 SPAR_API int spar_member_get_learned_added_mass(const spar_member *member, int *used, double *spread, int64_t *n,
                                                 int64_t capacity, double *eta, double *mass);
 

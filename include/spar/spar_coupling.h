@@ -63,26 +63,24 @@ SPAR_API int spar_session_get_relaxation(const spar_session *session, double *om
      key: in
      value: in, a number or a word
    newton.stop            balanced (default) | strict: where Newton's iteration of a step stops. Strict: at the
-   tolerances
-                          of spar_session_set_newton; choose it for bitwise comparison of runs. Balanced: when its error
-                          is a thousandth of the time-step error, (E4) of docs/theory.md, and of the coupling tolerance,
-                          between rtol and 1e-7 of the increments. If the time-step error is unknown, balanced is strict
+                          tolerances of spar_session_set_newton; choose it for bitwise comparison of runs. Balanced:
+                          when its error is a thousandth of the time-step error, (E4) of docs/theory.md, and of the
+                          coupling tolerance, between rtol and 1e-7 of the increments. If the time-step error is
+                          unknown, balanced is strict
    coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations. Choose accept if the
                           host cannot repeat a step, and look at SPAR_REPORT_UNCONVERGED
-   coupling.unstable      error (default) | accept: what spar_step_check does if the error of the predicted loads has grown
-                          to the size of the loads, in steps with one evaluation of the fluid each: explicit, or accepted
-                          before done. Choose accept to see an instability grow
+   coupling.unstable      error (default) | accept: what spar_step_check does if the error of the predicted loads has
+                          grown to the size of the loads, in steps with one evaluation of the fluid each: explicit, or
+                          accepted before done. Choose accept to see an instability grow
    coupling.patience      1 to 1000000, default 3: with accept, so many consecutive unconverged steps are an error
    coupling.norm          motion (default) | loads: how the stop test, Aitken's factor and IQN-ILS weigh loads. Motion:
                           by the motion that they cause in the step, so a load on a stiff direction counts little.
                           Sessions with external members, points, or connected members without INERTIA use loads
-   coupling.estimate      off (default) | on: with explicit coupling spar_step_check computes
-   SPAR_REPORT_MOTION_ERROR, by
-                          one back-substitution. Choose on to see what iterating would change
+   coupling.estimate      off (default) | on: with explicit coupling spar_step_check computes SPAR_REPORT_MOTION_ERROR,
+                          by one back-substitution. Choose on to see what iterating would change
    coupling.columns       1 to 10000, default 30: IQN-ILS, largest number of difference columns
    coupling.reuse         0 to 10000, default 5: IQN-ILS, accepted steps whose columns are used again. Choose 0 for
-   fluids
-                          that change quickly
+                          fluids that change quickly
    coupling.filter        0 to 0.5, default 1e-4: IQN-ILS, a column is dropped if newer ones contain all but this part
    coupling.motion_atol   >= 0, m, default 0, and
    coupling.motion_rtol   0 to 1, default 0: if one is set, the iteration also continues until the nodes move between
@@ -286,7 +284,7 @@ SPAR_API int spar_session_sum_balance(const spar_session *session, int64_t capac
      x[n]: in, this rank's; out, the sums, the same bits on all ranks; unchanged after a failure */
 SPAR_API int spar_session_sum(spar_session *session, int status, int64_t n, double *x);
 
-/* ---- failures outside the library ---------------------------------------------------------------------------------- */
+/* ---- failures outside the library -------------------------------------------------------------------------------- */
 
 /* Writes the message of a failure outside this library, so that it is found where the library's own are: for a solver
    that is called by spar_step, and for libraries on top of this one. It goes to the log as SPAR_LOG_ERROR.
@@ -378,7 +376,8 @@ SPAR_API int spar_fluid_get_interpolation(const spar_fluid *fluid, int *kind);
    far      take (default) | refuse: spar_fluid_map flags nodes beyond max_distance (spar_fluid_set_projection), or is
             SPAR_ERR_MAPPING
    audit    on (default) | off: whether a push computes the figures of spar_fluid_get_audit
-   velocity pulled (default) | own: own: the flow solver finds wall velocities from its moving mesh, so there is no warning
+   velocity pulled (default) | own: own: the flow solver finds wall velocities from its moving mesh, so there is no
+   warning
             if positions are pulled and velocities are not
    Local, between steps and not in a trial. SPAR_ERR_ARGUMENT: no such key or value; the message lists them. */
 SPAR_API int spar_fluid_set_option(spar_fluid *fluid, const char *key, const char *value);

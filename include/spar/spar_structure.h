@@ -163,7 +163,7 @@ SPAR_API int spar_member_set_effects(spar_member *member, int switch_on, int swi
 /* effects: out, SPAR_EFFECT_* combined, those in force. After commit. Local. */
 SPAR_API int spar_member_get_effects(const spar_member *member, int *effects);
 
-/* ---- members: description --------------------------------------------------------------------------------------- */
+/* ---- members: description ---------------------------------------------------------------------------------------- */
 
 /* x[3]: out, m, NULL: not wanted
    q[4]: out, NULL: not wanted */
