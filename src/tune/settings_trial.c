@@ -361,12 +361,11 @@ static void weigh_fluid(spari_advisor *d, const spari_record *r) {
                        SPARI_ADVISE, d->fluid, r->fluid, spari_rule.price.second);
         spari_log(s, SPAR_LOG_INFO, text);
     }
-    if (s->callbacks.log && spari_cost_wavers(d->search->fluid_cost, r->fluid, r->fluid_seconds, r->solutions)) {
-        (void)snprintf(text, sizeof text,
-                       "%s: the fluid's time, %.3g s per solution, is between two cost classes, so the advice may vary "
-                       "between runs; set the option fluid_cost of the trial",
-                       SPARI_ADVISE, r->fluid_seconds / (double)r->solutions);
-        spari_log(s, SPAR_LOG_WARNING, text);
+    if (spari_cost_wavers(d->search->fluid_cost, r->fluid, r->fluid_seconds, r->solutions)) {
+        spari_warn(s,
+                   "%s: the fluid's time, %.3g s per solution, is between two cost classes, so the advice may vary "
+                   "between runs; set the option fluid_cost of the trial",
+                   SPARI_ADVISE, r->fluid_seconds / (double)r->solutions);
     }
 }
 
@@ -654,14 +653,12 @@ static int refine(spari_advisor *d, const spari_plan *present, int level, int mo
 
 /* Warns if the motion still grows at the end of the trials: a longer run is then not covered. */
 static void tell_growth(const spari_advisor *d, double T, double swells) {
-    char text[SPARI_MESSAGE_SIZE];
-    if (d->session->callbacks.log && d->longer > spari_rule.foreseen && swells > spari_rule.swells) {
-        (void)snprintf(text, sizeof text,
-                       "%s: the motion still grows in the trials of %.4g s (%.3g times from the second third to the "
-                       "last): the trials do not show the motion after %.4g s, and only phase errors are extrapolated; "
-                       "give more steps if the motion changes later",
-                       SPARI_ADVISE, T, swells, T * d->longer);
-        spari_log(d->session, SPAR_LOG_WARNING, text);
+    if (d->longer > spari_rule.foreseen && swells > spari_rule.swells) {
+        spari_warn(d->session,
+                   "%s: the motion still grows in the trials of %.4g s (%.3g times from the second third to the "
+                   "last): the trials do not show the motion after %.4g s, and only phase errors are extrapolated; "
+                   "give more steps if the motion changes later",
+                   SPARI_ADVISE, T, swells, T * d->longer);
     }
 }
 
