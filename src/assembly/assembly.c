@@ -6,7 +6,7 @@
 #include "../math/rotation.h"
 #include "../time/fidelity.h"
 #include "../time/newton.h"
-#include "../time/newton_stop.h"
+#include "../time/newton_tolerance.h"
 #include "system.h"
 
 #include <float.h>

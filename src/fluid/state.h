@@ -52,7 +52,7 @@ typedef struct spari_parts {
     int ended;               /* end[0] comes from parts; otherwise the loads at t^n are those in use */
 } spari_parts;
 
-/* New state of a fluid, assembled from the states of a file (restore.c); layout as in their heads. */
+/* New state of a fluid, assembled from the states of a file (saved_state.c); layout as in their heads. */
 typedef struct spari_taking {
     double head[SPARI_FLUID_HEAD]; /* over all states: sums, or whether any has it */
     double *load;                  /* [2][nodes][6]: load and load_accepted, summed over the states */
@@ -90,7 +90,7 @@ struct spar_fluid {
     int gone;   /* destroyed during a trial: freed when the trial has ended */
     int shared; /* sections: the motion set serves as both */
     int asked;  /* SPARI_MUTE_*: what has been pulled so far */
-    int warned; /* SPARI_WARNED_*: what the host was warned of (warnings.c) */
+    int warned; /* SPARI_WARNED_*: what the host was warned of (plausible.c) */
     int steps;  /* accepted since the nodes were mapped, up to a few */
     int mute;   /* trials: SPARI_MUTE_* that are switched off */
     spari_node_set set[2];
@@ -109,10 +109,10 @@ struct spar_fluid {
     spari_parts *parts;     /* loads over parts of a step; NULL: never pushed */
     spari_history *history; /* NULL: not kept */
     spari_states *states;   /* NULL: none */
-    spari_taking *taking;   /* while a file is loaded (restore.c), or after giving up; otherwise NULL */
+    spari_taking *taking;   /* while a file is loaded (saved_state.c), or after giving up; otherwise NULL */
 };
 
-/* Warnings, once per fluid: at the map, and at the end of an accepted step (warnings.c). */
+/* Warnings, once per fluid: at the map, and at the end of an accepted step (plausible.c). */
 void spari_fluid_warn_far(spar_fluid *fluid);
 void spari_fluid_warn_step(spar_fluid *fluid);
 /* Message that begins with caller, fluid and member; returns status. */

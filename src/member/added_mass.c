@@ -6,7 +6,7 @@
 #include "../math/resample.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "checks.h"
+#include "check_arguments.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -7,7 +7,7 @@
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "checks.h"
+#include "check_arguments.h"
 #include "mean_acceleration.h"
 
 #include <math.h>

@@ -7,7 +7,7 @@
 #include "../math/rotation.h"
 #include "beam.h"
 #include "body.h"
-#include "checks.h"
+#include "check_arguments.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "../math/rotation.h"
 #include "added_mass_fit.h"
 #include "beam.h"
-#include "checks.h"
+#include "check_arguments.h"
 
 #include <stdlib.h>
 #include <string.h>

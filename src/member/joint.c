@@ -3,7 +3,7 @@
 
 #include "../base/environment.h"
 #include "../math/rotation.h"
-#include "checks.h"
+#include "check_arguments.h"
 
 #include <float.h>
 #include <math.h>
@@ -183,8 +183,8 @@ static int check_spring(spar_session *s, const char *name, int free_motions, con
 }
 
 /* Checks all spring data of a joint. */
-static int check_springs(spar_session *s, const char *name, int free_motions, const char *call,
-                         const double *stiffness, const double *damping, const double *preload) {
+static int check_springs(spar_session *s, const char *name, int free_motions, const char *call, const double *stiffness,
+                         const double *damping, const double *preload) {
     SPARI_TRY(check_spring(s, name, free_motions, call, "stiffness", stiffness));
     SPARI_TRY(check_spring(s, name, free_motions, call, "damping", damping));
     if (preload) {

@@ -4,7 +4,7 @@
 #include "added_mass.h"
 #include "applied.h"
 #include "body.h"
-#include "checks.h"
+#include "check_arguments.h"
 #include "joint.h"
 #include "structure.h"
 

@@ -2,7 +2,7 @@
    the body without stiffness (beam.c), so inertia, weight and everything derived from them include it. */
 #include "../base/environment.h"
 #include "beam.h"
-#include "checks.h"
+#include "check_arguments.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
    linear members include them. */
 #include "../base/environment.h"
 #include "beam.h"
-#include "checks.h"
+#include "check_arguments.h"
 
 static int check_pretension(const spar_member *m, const char *call, int64_t n, const double *eta, const double *force) {
     spar_session *s = m->session;

@@ -10,7 +10,7 @@
 #include "../math/rotation.h"
 #include "../math/spline.h"
 #include "beam.h"
-#include "checks.h"
+#include "check_arguments.h"
 
 #include <ctype.h>
 #include <stdio.h>

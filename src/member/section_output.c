@@ -4,7 +4,7 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "checks.h"
+#include "check_arguments.h"
 #include "pose.h"
 #include "section_forces.h"
 
@@ -195,8 +195,8 @@ static int section_outputs(const spar_member *m, int64_t n, const spari_station 
     return SPAR_OK;
 }
 
-int spar_beam_evaluate(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force,
-                          double *x, double *q) {
+int spar_beam_evaluate(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force, double *x,
+                       double *q) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *session = beam->session;

@@ -9,7 +9,7 @@
 #include "../exchange/exchange.h"
 #include "../fluid/fluid.h"
 #include "../time/fidelity.h"
-#include "saved.h"
+#include "common_state.h"
 
 #include <stdlib.h>
 #include <string.h>

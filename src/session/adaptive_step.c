@@ -2,7 +2,7 @@
 #include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../exchange/session_private.h"
-#include "../member/checks.h"
+#include "../member/check_arguments.h"
 #include "callbacks.h"
 #include "step.h"
 #include "step_control.h"
@@ -55,8 +55,8 @@ static int fail_within(const spar_session *s, const char *call, const tries *t) 
                       call, s->clock.time, t->dt, t->ratio, why);
 }
 
-int spar_step_adaptive(spar_session *session, double *dt, spar_before_step before, spar_fluid_solver solve, void *context,
-                     double *dt_done) {
+int spar_step_adaptive(spar_session *session, double *dt, spar_before_step before, spar_fluid_solver solve,
+                       void *context, double *dt_done) {
     SPARI_GUARD_ENVIRONMENT;
     enum { TRIES = 12, STUCK = 7 };
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);

@@ -8,7 +8,7 @@
 #include "../exchange/exchange.h"
 #include "../exchange/session_private.h"
 #include "../fluid/fluid.h"
-#include "../member/checks.h"
+#include "../member/check_arguments.h"
 #include "../member/joint.h"
 #include "../solve/life.h"
 #include "../time/fidelity.h"

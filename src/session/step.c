@@ -8,7 +8,7 @@
 #include "../fluid/fluid.h"
 #include "../member/added_mass.h"
 #include "../member/added_mass_fit.h"
-#include "../member/checks.h"
+#include "../member/check_arguments.h"
 #include "../member/joint.h"
 #include "../member/mean_acceleration.h"
 #include "../solve/life.h"
@@ -469,7 +469,8 @@ int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *c
     return run_begun(session, __func__, solve, context, iterations);
 }
 
-int spar_session_solve_initial(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
+int spar_session_solve_initial(spar_session *session, double dt, spar_fluid_solver solve, void *context,
+                               int *iterations) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_callback_refuse(session, __func__));

@@ -10,10 +10,10 @@
 #include "../member/added_mass_fit.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
-#include "../member/checks.h"
+#include "../member/check_arguments.h"
 #include "../member/mean_acceleration.h"
 #include "../time/fidelity.h"
-#include "../time/newton_stop.h"
+#include "../time/newton_tolerance.h"
 #include "work.h"
 
 #include <math.h>

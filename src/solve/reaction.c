@@ -5,7 +5,7 @@
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/body.h"
-#include "../member/checks.h"
+#include "../member/check_arguments.h"
 #include "../member/joint.h"
 #include "../time/fidelity.h"
 

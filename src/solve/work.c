@@ -5,7 +5,7 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
-#include "../member/checks.h"
+#include "../member/check_arguments.h"
 #include "reaction.h"
 
 #include <stdlib.h>

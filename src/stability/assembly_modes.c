@@ -9,7 +9,7 @@
 #include "../base/environment.h"
 #include "../base/session.h"
 #include "../member/body.h"
-#include "../member/checks.h"
+#include "../member/check_arguments.h"
 #include "../member/joint.h"
 #include "../time/fidelity.h"
 #include "modes.h"

@@ -9,7 +9,7 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
-#include "../member/checks.h"
+#include "../member/check_arguments.h"
 #include "../time/fidelity.h"
 #include "modes.h"
 

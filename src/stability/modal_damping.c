@@ -5,7 +5,7 @@
 #include "../base/environment.h"
 #include "../math/rotation.h"
 #include "../member/beam.h"
-#include "../member/checks.h"
+#include "../member/check_arguments.h"
 #include "../time/fidelity.h"
 #include "modes.h"
 

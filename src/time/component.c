@@ -4,7 +4,7 @@
 #include "../base/session.h"
 #include "fidelity.h"
 #include "newton.h"
-#include "newton_stop.h"
+#include "newton_tolerance.h"
 
 #include <float.h>
 

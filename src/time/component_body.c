@@ -286,8 +286,8 @@ static double advance_nodes(spari_component *p, double longest, double *way) {
 enum { PATIENCE = 5, PRICE = 10 };
 
 /* Whether the tangent is reused after a solution of so many iterations. fresh: it was formed in this solution. If
-   Newton stops earlier (newton_stop.h), a solution takes fewer iterations; an early stop for a coupling saves hardly
-   any. */
+   Newton stops earlier (newton_tolerance.h), a solution takes fewer iterations; an early stop for a coupling saves
+   hardly any. */
 static int serves_on(spari_solver *s, const spar_session *session, int iterations, int fresh) {
     int patience = session->newton.strict || isfinite(session->newton.share) ? PATIENCE : PATIENCE - 2;
     if (fresh) { /* the first iterations may have used another tangent */

@@ -2,7 +2,7 @@
 #include "fidelity.h"
 
 #include "../member/beam.h"
-#include "../member/checks.h"
+#include "../member/check_arguments.h"
 
 #define SPARI_FIDELITY_ENTRY(number, name) [SPAR_FIDELITY_##number] = &spari_fidelity_##name,
 static const spari_fidelity *const table[] = {SPARI_FIDELITIES(SPARI_FIDELITY_ENTRY)};

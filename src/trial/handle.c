@@ -4,7 +4,7 @@
 #include "../base/environment.h"
 #include "../base/setting.h"
 #include "../comm/enter.h"
-#include "../member/checks.h"
+#include "../member/check_arguments.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -10,7 +10,7 @@
 #include "../exchange/exchange.h"
 #include "../exchange/session_private.h"
 #include "../fluid/fluid.h"
-#include "../member/checks.h"
+#include "../member/check_arguments.h"
 #include "../session/callbacks.h"
 #include "../session/initial_accelerations.h"
 #include "../solve/life.h"

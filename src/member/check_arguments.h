@@ -1,7 +1,7 @@
 /* Argument checks shared by the public calls on members. They return 0, or a status with a message that begins with
    the name of the call. */
-#ifndef SPARI_CHECKS_H
-#define SPARI_CHECKS_H
+#ifndef SPARI_CHECK_ARGUMENTS_H
+#define SPARI_CHECK_ARGUMENTS_H
 
 #include "../comm/comm.h"
 #include "structure.h"

@@ -1,5 +1,5 @@
 /* Reads and writes the data of a session that are common to all ranks: see saved.h. */
-#include "saved.h"
+#include "common_state.h"
 
 #include "../comm/comm.h"
 #include "../coupling/coupling.h"

@@ -1,7 +1,7 @@
 /* Newton's stopping rule (option newton.stop = balanced). Newton stops once its estimated error is negligible compared
    with the time-step error and with the coupling tolerance. Where these are not known, the strict tolerances hold. */
-#ifndef SPARI_NEWTON_STOP_H
-#define SPARI_NEWTON_STOP_H
+#ifndef SPARI_NEWTON_TOLERANCE_H
+#define SPARI_NEWTON_TOLERANCE_H
 
 #include "../base/session.h"
 #include "scheme.h"

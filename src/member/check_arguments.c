@@ -1,5 +1,5 @@
-/* Argument checks shared by the public calls on members: see checks.h. */
-#include "checks.h"
+/* Argument checks shared by the public calls on members: see check_arguments.h. */
+#include "check_arguments.h"
 
 #include "../comm/enter.h"
 #include "../math/rotation.h"

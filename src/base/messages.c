@@ -1,4 +1,4 @@
-/* Messages of a session, and of the thread if there is no session. */
+/* Messages, log and warnings of a session; messages of the thread if there is no session. */
 #include "session.h"
 
 #include "environment.h"

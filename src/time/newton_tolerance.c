@@ -1,5 +1,5 @@
-/* Newton's stopping rule: see newton_stop.h. */
-#include "newton_stop.h"
+/* The tolerance of Newton in a step, balanced with the errors of step and coupling: see newton_tolerance.h. */
+#include "newton_tolerance.h"
 
 #include "../base/session.h"
 #include "fidelity.h"

@@ -1,7 +1,7 @@
 /* Data of a session that are common to all ranks, as in a file: ranks, names and descriptions of members and joints,
    clock, state of members and joints, coupling. The data of single ranks follow, rank by rank (save.c, load.c). */
-#ifndef SPARI_SAVED_H
-#define SPARI_SAVED_H
+#ifndef SPARI_COMMON_STATE_H
+#define SPARI_COMMON_STATE_H
 
 #include "../base/saved_file.h"
 #include "../base/session.h"
