@@ -370,15 +370,13 @@ SPAR_API int spar_fluid_get_interpolation(const spar_fluid *fluid, int *kind);
 /* Options of a fluid, by name. Each concerns the nodes of this rank alone; ranks may differ.
      key: in
      value: in
-   theta    average (default) | group: a pull at 0 < theta < 1 gives the average of the states at both ends (T12),
-   or the
-            motion of the member's nodes interpolated on the group. The average cuts the corner of a rotation
+   theta    average (default) | group: a pull at 0 < theta < 1 gives the average of the states at both ends (T12), or
+            the motion of the member's nodes interpolated on the group. The average cuts the corner of a rotation
    far      take (default) | refuse: spar_fluid_map flags nodes beyond max_distance (spar_fluid_set_projection), or is
             SPAR_ERR_MAPPING
    audit    on (default) | off: whether a push computes the figures of spar_fluid_get_audit
-   velocity pulled (default) | own: own: the flow solver finds wall velocities from its moving mesh, so there is no
-   warning
-            if positions are pulled and velocities are not
+   velocity pulled (default) | own: own: the fluid needs no velocities, or finds them from its moving mesh; there is no
+            warning if positions are pulled and velocities are not
    Local, between steps and not in a trial. SPAR_ERR_ARGUMENT: no such key or value; the message lists them. */
 SPAR_API int spar_fluid_set_option(spar_fluid *fluid, const char *key, const char *value);
 /* The value of an option, as a text that spar_fluid_set_option takes.

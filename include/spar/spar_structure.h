@@ -126,12 +126,11 @@ enum {
    linear      Fixed or driven root: the root moves exactly, the deformation relative to it is linear, with Coriolis,
                gyroscopic and centrifugal terms and centrifugal stiffening. Second-order terms of the deformation are
                neglected, and stiffening by other loads. The factorisation stays while dt and the root's angular
-               velocity do. Free or pinned root: linear about the reference configuration; a node that rotates by
-               half a turn is
-               SPAR_ERR_NUMERIC. With joints the root may move freely; centrifugal stiffening is that along the line.
-   modal       As linear, with the lowest `modes` modes with the root constrained; free and pinned roots count their
-   6 or
-               3 rigid modes. The initial deformation is projected onto the modes. With joints: rigid motions of the
+               velocity do. Free or pinned root: linear about the reference configuration; a node that rotates by half
+               a turn is SPAR_ERR_NUMERIC. With joints the root may move freely; centrifugal stiffening is that along
+               the line.
+   modal       As linear, with the lowest `modes` modes with the root constrained; free and pinned roots count their 6
+               or 3 rigid modes. The initial deformation is projected onto the modes. With joints: rigid motions of the
                root, six interface shapes for each other connected node (Craig and Bampton), and `modes` modes with all
                connected nodes constrained.
    SPAR_ERR_ARGUMENT at the commit: too many modes for the nodes, or fewer than the rigid ones; SPAR_ERR_STATE:

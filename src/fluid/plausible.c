@@ -64,8 +64,8 @@ void spari_fluid_warn_step(spar_fluid *fluid) {
         spari_warn(
             m->session,
             "fluid '%s' of member '%s' pulls positions and no velocities: its loads do not damp the motion; pull "
-            "v with spar_fluid_pull_motion. If the flow solver takes wall velocities from its moving mesh, set "
-            "the option velocity = own of the fluid",
+            "v with spar_fluid_pull_motion. If the fluid needs none, or takes them from its "
+            "moving mesh, set its option velocity = own",
             fluid->name, m->name);
     }
 }

@@ -176,6 +176,7 @@ contains
     call fluid%set_motion_nodes(reshape(origin, [3, 1]))
     call fluid%set_force_nodes(reshape(origin, [3, 1]))
     call fluid%map()
+    call fluid%set_option('velocity', 'own') ! a spring needs none
     f(:,1) = [1, -2, 3]
     call fluid%push_forces(f)
     do i = 1, 10
@@ -233,6 +234,7 @@ contains
     call fluid%set_motion_nodes(x)
     call fluid%set_force_nodes(x)
     call fluid%map()
+    call fluid%set_option('velocity', 'own') ! a spring needs none
     call fluid%get_nearest(SPAR_NODES_FORCE, con=con)
     call check(all(abs(con - reshape([2, 0, 0, 0, 1, 5] * 1.0_c_double, [3, 2])) < 1e-15_c_double), 'from the foot to the node')
     q(:,1) = [0.0_c_double, 0.0_c_double, 10.0_c_double, h, 0.0_c_double, 0.0_c_double, h]
@@ -289,6 +291,7 @@ contains
     call fluid%set_force_nodes(x)
     call fluid%fade_motion(1.0_c_double, 3.0_c_double)
     call fluid%map()
+    call fluid%set_option('velocity', 'own') ! a spring needs none
     call fluid%get_motion_weights(w)
     call check(all(abs(w - [1.0_c_double, 0.5_c_double, 0.0_c_double]) < 1e-15_c_double), 'weights by distance')
     call fluid%fade_motion(1.0_c_double, 3.0_c_double, distance=[2, 0, 2] * 1.0_c_double, held=[0, 1, 0])
@@ -356,6 +359,7 @@ contains
     call fluid%set_motion_nodes(reshape(origin, [3, 1]))
     call fluid%set_force_nodes(reshape(origin, [3, 1]))
     call fluid%map()
+    call fluid%set_option('velocity', 'own') ! a spring needs none
   end subroutine make_oscillator
 
   ! 1 kg on a spring of 4 N/m, with 1 m/s at x = 0: x = sin(2 t) / 2. The trapezoidal rule (rho_inf = 1) lags by w^3 dt^2 t / 12
@@ -523,6 +527,7 @@ contains
     call fluid%set_motion_nodes(reshape([2, 0, 0] * 1.0_c_double, [3, 1]))
     call fluid%set_force_nodes(reshape([2, 0, 0] * 1.0_c_double, [3, 1]))
     call fluid%map()
+    call fluid%set_option('velocity', 'own') ! a spring needs none
     p = 0
     p(2) = 0.01_c_double
     call beam%set_load(4, SPAR_LOAD_DEAD, p)
@@ -552,6 +557,7 @@ contains
     call fluid%create(body, 'tip')
     call fluid%set_motion_nodes(reshape([2, 0, 0] * 1.0_c_double, [3, 1]))
     call fluid%map()
+    call fluid%set_option('velocity', 'own') ! a spring needs none
     w = [0.0_c_double, 0.0_c_double, 0.0_c_double, 0.0_c_double, 0.0_c_double, 2 * pi]
     a = 0
     do i = 1, 20

@@ -54,6 +54,7 @@ static void create(scene *c, int me, int ranks) {
     OK(s, spar_fluid_set_motion_nodes(c->pull, c->body_here, c->body_here ? where : NULL));
     OK(s, spar_fluid_set_force_nodes(c->pull, c->body_here, c->body_here ? where : NULL));
     OK(s, spar_fluid_map(c->pull));
+    OK(s, spar_fluid_set_option(c->pull, "velocity", "own"));
 }
 
 /* A viscous medium around the beam with a load that comes and goes, and moments; a spring on the body. */

@@ -114,6 +114,7 @@ contains
     call fluid%set_motion_nodes(reshape([0.0_c_double, 0.0_c_double, 0.0_c_double], [3, 1]))
     call fluid%set_force_nodes(reshape([0.0_c_double, 0.0_c_double, 0.0_c_double], [3, 1]))
     call fluid%map()
+    call fluid%set_option('velocity', 'own') ! the load does not depend on the motion
     force(:, 1) = [0.0_c_double, 0.0_c_double, 4.0_c_double]
     call fluid%push_forces(force)
   end subroutine bear_start
