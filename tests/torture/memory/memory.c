@@ -85,16 +85,20 @@ static int64_t torture(const act *a, int victim, int64_t stride, int64_t most) {
     return faults;
 }
 
-/* Public functions that no scene has called: a call that takes memory belongs in one. */
-static void say_missing(void) {
+/* Number of public functions that no scene calls. A call that takes memory must be in one, and nothing else shows which
+   do: so all must, but the one that needs MPI. */
+static int missing(void) {
+    int count = 0;
 #define NAME(name) #name,
     static const char *const names[] = {SPAR_LOCAL_CALLS(NAME) SPAR_COLLECTIVE_CALLS(NAME)};
 #undef NAME
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        if (!scenario_has_called(names[i])) {
-            printf("in no scene: %s\n", names[i]);
+        if (!scenario_has_called(names[i]) && strcmp(names[i], "spar_session_create_fcomm") != 0) {
+            printf("%s is part of no scene (tests/torture/memory/scenario.c)\n", names[i]);
+            count++;
         }
     }
+    return count;
 }
 
 static int64_t all_acts(int brief, const char *only) {
@@ -155,7 +159,7 @@ int main(int argc, char **argv) {
                          ? one(argv[2], atoll(argv[3]), argc > 4 ? atoi(argv[4]) : 0, argc > 5 ? atoll(argv[5]) : 0)
                          : all_acts(brief, argc > 2 ? argv[2] : NULL);
     if (rank == 0 && ranks == 1 && argc <= 2) {
-        say_missing();
+        faults += missing();
     }
     (void)snprintf(command, sizeof command, "rm -rf %s", folder);
     if (rank == 0 && system(command) != 0) {
