@@ -1,5 +1,5 @@
 /* A constraint of an assembly: poses of its nodes, relative motion, and forces on the nodes. */
-#include "system.h"
+#include "constraint.h"
 
 #include "../base/session.h"
 #include "../math/rotation.h"
@@ -80,23 +80,6 @@ double spari_constraint_rate_gap(const spari_constraint *l, int k) {
     return l->joint->after.rate[k] - (l->joint->driven >> k & 1 ? l->drive.rate[k] : 0);
 }
 
-void spari_constraints_add_forces(spari_assembly *a) {
-    for (int i = 0; i < a->constraints; i++) {
-        spari_constraint *l = a->constraint + i;
-        double f[12];
-        spari_kinematics_forces(l->B, l->joint->after.load, f);
-        for (int side = 0; side < 2; side++) {
-            spari_component *p = l->component[side];
-            for (int k = 0; k < 6 && p; k++) {
-                p->force[6 * l->joint->unique[side] + k] -= f[6 * side + k];
-            }
-        }
-    }
-    for (int i = 0; i < a->components; i++) {
-        memset(a->component[i].force, 0, (size_t)spari_member_constrained(a->component[i].member) * sizeof(double));
-    }
-}
-
 int spari_constraint_fixed_side(const spari_constraint *l) {
     const spar_joint *j = l->joint;
     for (int side = 0; side < 2; side++) {
@@ -128,14 +111,6 @@ void spari_constraint_rotate_dampers(spari_constraint *l, const double w[3]) {
         double d = (given >> p & 1) || (given >> q & 1) ? 0 : j->damping[pq];
         for (int i = 0; i < 144 && d != 0; i++) {
             l->joint_tangent[i / 12][i % 12] -= d * l->B[p][i / 12] * R[q][i % 12];
-        }
-    }
-}
-
-void spari_constraints_correct_loads(spari_assembly *a, double cut) {
-    for (int i = 0; i < a->constraints; i++) {
-        for (int k = 0; k < 6; k++) {
-            a->constraint[i].joint->after.load[k] -= cut * a->constraint[i].correction[k];
         }
     }
 }

@@ -653,6 +653,31 @@ static int solve_reduced(spari_assembly *a, double cv) {
     return 0;
 }
 
+void spari_constraints_add_forces(spari_assembly *a) {
+    for (int i = 0; i < a->constraints; i++) {
+        spari_constraint *l = a->constraint + i;
+        double f[12];
+        spari_kinematics_forces(l->B, l->joint->after.load, f);
+        for (int side = 0; side < 2; side++) {
+            spari_component *p = l->component[side];
+            for (int k = 0; k < 6 && p; k++) {
+                p->force[6 * l->joint->unique[side] + k] -= f[6 * side + k];
+            }
+        }
+    }
+    for (int i = 0; i < a->components; i++) {
+        memset(a->component[i].force, 0, (size_t)spari_member_constrained(a->component[i].member) * sizeof(double));
+    }
+}
+
+void spari_constraints_correct_loads(spari_assembly *a, double cut) {
+    for (int i = 0; i < a->constraints; i++) {
+        for (int k = 0; k < 6; k++) {
+            a->constraint[i].joint->after.load[k] -= cut * a->constraint[i].correction[k];
+        }
+    }
+}
+
 int spari_system_solve(spari_assembly *a, double cv) {
     /* first, because the system uses the rotations of the components */
     for (int i = 0; i < a->components; i++) {

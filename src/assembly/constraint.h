@@ -1,0 +1,67 @@
+/* A constraint of an assembly: the equations of a joint between the components that it connects. */
+#ifndef SPARI_CONSTRAINT_H
+#define SPARI_CONSTRAINT_H
+
+#include "../member/joint.h"
+#include "../time/component.h"
+
+/* Numbers in `joint_tangent` of a constraint. */
+enum { SPARI_JOINT_TANGENT = 144 };
+
+typedef enum spari_constraint_role {
+    SPARI_CONSTRAINT_SPRING,
+    SPARI_CONSTRAINT_TREE,
+    SPARI_CONSTRAINT_LOOP
+} spari_constraint_role;
+
+/* A constraint: the equations of a joint in an assembly. */
+typedef struct spari_constraint {
+    spar_joint *joint;
+    spari_component *component[2]; /* NULL: the ground, or a node with prescribed motion */
+    int node[2];                   /* interface nodes; -1: prescribed motion */
+    spari_constraint_role role;
+    int block;          /* in the system, if it closes a loop */
+    spari_driven drive; /* prescribed motion of the joint at the end of the substep, */
+    spari_driven to;    /* and on the way there */
+    spari_relative begin;
+    spari_node_pose pose[2];
+    double v[12], a[12], B[6][12];
+    int springs;                  /* springs and dampers act */
+    double joint_tangent[12][12]; /* geometric stiffness of its load, in the axes of the reused tangents */
+    double gap[6], correction[6]; /* of the constraints; of the multipliers */
+    /* As the system was formed: B, a stiffness that scales its rows, whether it has a tangent, and that. */
+    double rows[6][12], scale;
+    int stiff;
+    double K[12][12];
+} spari_constraint;
+
+/* Whether motion k is constrained. */
+static inline int spari_constraint_holds(const spari_constraint *l, int k) {
+    return l->joint->constrained >> k & 1;
+}
+/* The number of constrained motions. */
+static inline int spari_constraint_count(const spari_constraint *l) {
+    int count = 0;
+    for (int k = 0; k < 6; k++) {
+        count += spari_constraint_holds(l, k);
+    }
+    return count;
+}
+/* Finds the relative motion of a constraint from the states of its components, and the loads on its free motions.
+   Nodes with prescribed motion are at the part s of the step dt. The loads on constrained motions are the
+   multipliers, which stay. factor: of the host's load and of preloads. */
+void spari_constraint_find(spari_constraint *l, double s, double dt, double factor);
+/* rate := B v */
+void spari_constraint_times(double B[6][12], const double v[12], double rate[6]);
+/* The error of constrained motion k, and of its rate. */
+double spari_constraint_gap(const spari_constraint *l, int k);
+double spari_constraint_rate_gap(const spari_constraint *l, int k);
+/* Sets the gaps to the errors of the accelerations. */
+void spari_constraint_set_acceleration_gaps(spari_constraint *l);
+/* The side that is the ground or has prescribed motion; -1: none. */
+int spari_constraint_fixed_side(const spari_constraint *l);
+/* Adds the dampers to joint_tangent where the other side rotates steadily with w: there velocities depend on
+   positions. */
+void spari_constraint_rotate_dampers(spari_constraint *l, const double w[3]);
+
+#endif
