@@ -42,8 +42,8 @@
    - Vectors are in one right-handed inertial frame, "global", unless a line says "own frame" or "section frame".
    - Arrays are contiguous: x[n][3] is the double array with component i of node j at 3 j + i, Fortran's x(3,n).
    - Quaternions are unit, scalar first, [w,x,y,z]. R(q) takes local components to global ones. q and -q are equal.
-   - Motion of a member's nodes: q[7] is the displacement and the quaternion of the rotation relative to the reference
-     configuration, in global axes. v[6] is velocity and angular velocity, a[6] their rates. load[6] is force and
+   - Motion of a member's nodes, in global axes, relative to the reference configuration: q[7] is the displacement and
+     the quaternion of the rotation. v[6] is velocity and angular velocity, a[6] their rates. load[6] is force and
      moment.
    - 6x6 matrices are row-major, in the section frame, in the order axial, shear y, shear z, torsion, bending y,
      bending z. Axis x of the section frame is the tangent, y and z follow the rule at spar_beam_set_axis.

@@ -322,8 +322,8 @@ SPAR_API int spar_fluid_set_motion_stations(spar_fluid *fluid, int64_t n, const 
 SPAR_API int spar_fluid_set_motion_weights(spar_fluid *fluid, int64_t n, const double *w);
 /* w[n]: out, 1 without weights */
 SPAR_API int spar_fluid_get_motion_weights(const spar_fluid *fluid, double *w);
-/* Sets weights that decrease with a distance d: 1 for s <= 0, 0 for s >= 1, and 1 - 10 s^3 + 15 s^4 - 6 s^5
-   between, with s = (d - within) / (beyond - within).
+/* Sets weights that decrease with a distance d. With s = (d - within) / (beyond - within) the weight is 1 for s <= 0
+   and 0 for s >= 1. Between them it is 1 - 10 s^3 + 15 s^4 - 6 s^5.
      within: in, m, must contain the body's section if the distance is that from the line
      beyond: in, m, > within, and below the line's least radius of curvature
      n: in, number of motion nodes
@@ -477,9 +477,10 @@ SPAR_API int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *for
    SPAR_ERR_STATE: they are not kept (SPAR_KIND_FORCES). */
 SPAR_API int spar_fluid_get_forces(const spar_fluid *fluid, double *force);
 /* Pushes loads of a fluid that makes several steps within dt: the mean loads over the part of the step that ends at
-   t^n + theta dt. In use at t^{n+1} is m + (e - e^n) / 2, (T13), with the mean m of the parts so far and the ends
-   e, e^n of the least-squares lines through the parts of this step and of the one before. This is of second order
-   in dt and keeps the impulse. Use spar_fluid_push_forces for loads known at t^{n+1}. Not before the first step.
+   t^n + theta dt. The loads in use at t^{n+1} are m + (e - e^n) / 2, (T13). m is the mean of the parts so far. e and
+   e^n are the ends of the least-squares lines through the parts of this step and of the step before. This is of
+   second order in dt and keeps the impulse. Use spar_fluid_push_forces for loads known at t^{n+1}. Not before the
+   first step.
      theta: in, in (0, 1], increasing; a smaller one begins a new iteration
      force[n][3]: in, N
      moment[n][3]: in, N m, about each node, NULL: none */

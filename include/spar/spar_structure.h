@@ -256,8 +256,8 @@ SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
      shapes[n][nodes][6]: out, displacement and rotation of this member's nodes, for unit modal mass of all connected
            members, NULL: not wanted */
 SPAR_API int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
-/* Eigenvalues lambda of small motions x e^(lambda t) about the present state, at rest or in steady rotation, with
-   damping, Coriolis, gyroscopic and unsymmetric stiffness terms (docs/theory.md). lambda is growth rate, 1/s, plus
+/* Eigenvalues lambda of small motions x e^(lambda t) about the present state, at rest or in steady rotation. Damping,
+   Coriolis, gyroscopic and unsymmetric stiffness terms are included (docs/theory.md). lambda is growth rate, 1/s, plus
    i times angular frequency, rad/s. A growth rate > 0 is an instability. Of conjugate pairs only the one with
    frequency >= 0 counts. Fluid loads stay constant. With joints: of all connected members. Local.
      n: in, at most the number of free unknowns
