@@ -6,6 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+const spari_setting *spari_setting_find(const spari_setting *table, int count, int by, const char *key) {
+    for (int i = 0; i < count; i++) {
+        if (table[i].by == by && table[i].key && strcmp(table[i].key, key) == 0) {
+            return table + i;
+        }
+    }
+    return NULL;
+}
+
 double spari_setting_value(const void *object, const spari_setting *of) {
     const void *field = (const char *)object + of->field;
     return of->kind == SPARI_IS_REAL ? *(const double *)field : *(const int *)field;

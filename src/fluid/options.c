@@ -5,7 +5,6 @@
 #include "state.h"
 
 #include <stddef.h>
-#include <string.h>
 
 #define FLUID_WORD(key, field, zero, one)                                                                              \
     {                                                                                                                  \
@@ -18,22 +17,14 @@ static const spari_setting options[] = {
     FLUID_WORD("audit", audit_off, "on", "off"),
     FLUID_WORD("velocity", own_velocity, "pulled", "own"),
 };
-
-static const spari_setting *find_fluid_option(const char *key) {
-    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
-        if (strcmp(options[i].key, key) == 0) {
-            return options + i;
-        }
-    }
-    return NULL;
-}
+enum { OPTIONS = sizeof options / sizeof *options };
 
 int spar_fluid_set_option(spar_fluid *fluid, const char *key, const char *value) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, key && value, SPAR_ERR_ARGUMENT, "key or value is NULL");
-    const spari_setting *of = find_fluid_option(key);
+    const spari_setting *of = spari_setting_find(options, OPTIONS, 0, key);
     SPARI_FLUID_REQUIRE(fluid, of, SPAR_ERR_ARGUMENT, "there is no option '%s'; give theta, far, audit or velocity",
                         key);
     double x;
@@ -47,7 +38,7 @@ int spar_fluid_get_option(const spar_fluid *fluid, const char *key, int64_t capa
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     SPARI_FLUID_REQUIRE(fluid, key && text, SPAR_ERR_ARGUMENT, "key or text is NULL");
-    const spari_setting *of = find_fluid_option(key);
+    const spari_setting *of = spari_setting_find(options, OPTIONS, 0, key);
     SPARI_FLUID_REQUIRE(fluid, of, SPAR_ERR_ARGUMENT, "there is no option '%s'; give theta, far, audit or velocity",
                         key);
     return spari_setting_write(fluid->member->session, __func__, of, spari_setting_value(fluid, of), capacity, text);

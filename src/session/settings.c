@@ -320,20 +320,11 @@ int spar_session_get_tolerance(const spar_session *session, double *drift, doubl
 
 /* ---- options ---- */
 
-static const spari_setting *find_option(const char *key) {
-    for (int i = 0; i < SETTINGS; i++) {
-        if (settings[i].by == OPTION && strcmp(settings[i].key, key) == 0) {
-            return settings + i;
-        }
-    }
-    return NULL;
-}
-
 int spar_session_set_option(spar_session *session, const char *key, const char *value) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(settable(session, __func__));
     SPARI_REQUIRE(session, key && value, SPAR_ERR_ARGUMENT, "%s: key or value is NULL", __func__);
-    const spari_setting *of = find_option(key);
+    const spari_setting *of = spari_setting_find(settings, SETTINGS, OPTION, key);
     SPARI_REQUIRE(session, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
     double x;
     SPARI_REQUIRE(session, spari_setting_read(of, value, &x), SPAR_ERR_ARGUMENT,
@@ -346,7 +337,7 @@ int spar_session_get_option(const spar_session *session, const char *key, int64_
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_REQUIRE(session, key && text, SPAR_ERR_ARGUMENT, "%s: key or text is NULL", __func__);
-    const spari_setting *of = find_option(key);
+    const spari_setting *of = spari_setting_find(settings, SETTINGS, OPTION, key);
     SPARI_REQUIRE(session, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
     return spari_setting_write(session, __func__, of, spari_setting_value(session, of), capacity, text);
 }

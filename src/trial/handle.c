@@ -202,20 +202,11 @@ static const spari_setting options[] = {KEEP("dt", keep_dt),
                                         AMOUNT("fluid_cost", fluid_cost, "seconds")};
 enum { OPTIONS = sizeof options / sizeof *options };
 
-static const spari_setting *find_trial_option(const char *key) {
-    for (int i = 0; i < OPTIONS; i++) {
-        if (strcmp(options[i].key, key) == 0) {
-            return options + i;
-        }
-    }
-    return NULL;
-}
-
 int spar_trial_set_option(spar_trial *trial, const char *key, const char *value) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(trial_settable(trial, __func__));
     SPARI_REQUIRE(trial->session, key && value, SPAR_ERR_ARGUMENT, "%s: key or value is NULL", __func__);
-    const spari_setting *of = find_trial_option(key);
+    const spari_setting *of = spari_setting_find(options, OPTIONS, 0, key);
     SPARI_REQUIRE(trial->session, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar_analysis.h lists them",
                   __func__, key);
     double x;
@@ -229,7 +220,7 @@ int spar_trial_get_option(const spar_trial *trial, const char *key, int64_t capa
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
     SPARI_REQUIRE(trial->session, key && text, SPAR_ERR_ARGUMENT, "%s: key or text is NULL", __func__);
-    const spari_setting *of = find_trial_option(key);
+    const spari_setting *of = spari_setting_find(options, OPTIONS, 0, key);
     SPARI_REQUIRE(trial->session, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar_analysis.h lists them",
                   __func__, key);
     return spari_setting_write(trial->session, __func__, of, spari_setting_value(trial, of), capacity, text);
