@@ -429,6 +429,14 @@ static void test_host(void **state) {
     assert_non_null(strstr(spar_case_message(), "[host mine]"));
     assert_int_equal(spar_case_get_numbers(c, "patch", 2, NULL, x), SPAR_ERR_ARGUMENT);
     assert_true(x[0] == 7 && x[1] == 8);
+    int values = -1;
+    GOOD(spar_case_get_word(c, "patch", 1, &values, &text));
+    assert_true(values == 2 && strcmp(text, "right") == 0);
+    GOOD(spar_case_get_word(c, "nothing", 0, &values, NULL));
+    assert_int_equal(values, 0);
+    assert_int_equal(spar_case_get_word(c, "patch", 2, NULL, &text), SPAR_ERR_ARGUMENT);
+    assert_non_null(strstr(spar_case_message(), "patch has 2 values; give 3"));
+    assert_int_equal(spar_case_get_word(c, "nothing", 0, NULL, &text), SPAR_ERR_ARGUMENT);
     GOOD(spar_case_get_text(c, "solver", "none", &text));
     assert_string_equal(text, "none");
     spar_case_free(&c);
@@ -900,6 +908,82 @@ static void test_restart(void **state) {
     spar_session_destroy(&s);
 }
 
+/* A flow that goes on: the structure with it, from the file of that time and step, or not at all. */
+static void test_resume(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *file; /* more of the case; the file beside the flow's checkpoint, NULL: the flow starts */
+        double t;
+        int64_t step;
+        int status;
+        const char *message;
+    } run[] = {
+        {"", NULL, 0, 0, SPAR_OK, ""},
+        {"", "test_case_resume.000003", 0.03, 3, SPAR_OK, ""},
+        {"", "test_case_resume.000003", 0.03 * (1 + 1e-12), -1, SPAR_OK, ""},
+        {"[session]\nrestart test_case_resume.000003\n", "nowhere", 0.03, 3, SPAR_OK, ""},
+        {"", "nowhere", 0.03, 3, SPAR_ERR_IO, "the flow goes on from t = 0.03 s, and the structure cannot"},
+        {"", NULL, 0.03, 3, SPAR_ERR_ARGUMENT, "the flow starts at t = 0.03 s and the structure at 0"},
+        {"", "test_case_resume.000003", 0.04, 3, SPAR_ERR_ARGUMENT, "from 0.03 s (step 3)"},
+        {"", "test_case_resume.000003", 0.03, 4, SPAR_ERR_ARGUMENT, "from t = 0.03 s (step 4)"},
+        {"[session]\nrestart test_case_resume.000003\n", NULL, 0, 0, SPAR_ERR_ARGUMENT, "line "},
+        {"", NULL, -1, 0, SPAR_ERR_ARGUMENT, "t below 0"},
+    };
+    char text[1024];
+    (void)snprintf(text, sizeof text, "%s[output]\nsave test_case_resume 3\n", wing_text);
+    spar_session *s = scene_session();
+    spar_case *c = read_text(s, NULL, text);
+    for (int i = 0; i < 3; i++) {
+        OK(s, spar_step(s, 0.01, NULL, NULL, NULL));
+        GOOD(spar_case_output(c, 0, 0, NULL));
+    }
+    spar_case_free(&c);
+    spar_session_destroy(&s);
+    for (size_t i = 0; i < sizeof run / sizeof *run; i++) {
+        double t = -1;
+        s = scene_session();
+        (void)snprintf(text, sizeof text, "%s%s", wing_text, run[i].text);
+        c = read_text(s, NULL, text);
+        const int status = spar_case_resume(c, run[i].file, run[i].t, run[i].step);
+        if (status != run[i].status || (status != SPAR_OK && !strstr(spar_case_message(), run[i].message))) {
+            fail_msg("run %d: %d, %s", (int)i, status, spar_case_message());
+        }
+        OK(s, spar_session_get_time(s, &t, NULL, NULL));
+        assert_true(status != SPAR_OK || fabs(t - run[i].t) < 1e-12);
+        spar_case_free(&c);
+        spar_session_destroy(&s);
+    }
+    (void)remove("test_case_resume.000003");
+}
+
+/* Rows up to the time stay, whatever their length, and so do headings. */
+static void test_cut(void **state) {
+    (void)state;
+    static const struct {
+        double t;
+        size_t left;
+    } cut[] = {{9, 120}, {0.2, 120}, {0.15, 26 + 85}, {0.1, 26 + 85}, {0.05, 26}, {0, 26}};
+    char text[200];
+    (void)snprintf(text, sizeof text, "# t and more of a heading\n0.1,%080d\n0.2,5e-1\n", 0);
+    for (size_t i = 0; i < sizeof cut / sizeof *cut; i++) {
+        char got[200] = "";
+        FILE *file = fopen("test_case_cut.csv", "w");
+        assert_non_null(file);
+        (void)fputs(text, file);
+        (void)fclose(file);
+        GOOD(spar_case_cut_history("test_case_cut.csv", cut[i].t));
+        file = fopen("test_case_cut.csv", "r");
+        assert_non_null(file);
+        const size_t left = fread(got, 1, sizeof got, file);
+        (void)fclose(file);
+        assert_int_equal(left, cut[i].left);
+        assert_memory_equal(got, text, left);
+    }
+    (void)remove("test_case_cut.csv");
+    GOOD(spar_case_cut_history("test_case_cut.csv", 1));
+    assert_int_equal(spar_case_cut_history("test_case_cut.csv", NAN), SPAR_ERR_ARGUMENT);
+}
+
 int main(void) {
     (void)setlocale(LC_ALL, "C"); /* examples/nrel5mw.c and what is read back below keep to it */
     const struct CMUnitTest tests[] = {
@@ -909,6 +993,7 @@ int main(void) {
         cmocka_unit_test(test_comma),      cmocka_unit_test(test_output),        cmocka_unit_test(test_no_output),
         cmocka_unit_test(test_added_mass), cmocka_unit_test(test_stations),      cmocka_unit_test(test_aero),
         cmocka_unit_test(test_aero_files), cmocka_unit_test(test_aero_mistakes), cmocka_unit_test(test_restart),
+        cmocka_unit_test(test_resume),     cmocka_unit_test(test_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

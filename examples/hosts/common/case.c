@@ -266,6 +266,27 @@ int spar_case_get_numbers(spar_case *scene, const char *key, int n, const double
     return status;
 }
 
+int spar_case_get_word(spar_case *scene, const char *key, int i, int *n, const char **word) {
+    if (!scene || !key) {
+        return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_get_word: scene or key is NULL");
+    }
+    int64_t at = 0;
+    const case_line *line = host_line(scene, key, &at);
+    const int values = line ? line->n : 0;
+    if (word && (i < 0 || i >= values)) {
+        return line ? case_fail(&scene->text, line->number, SPAR_ERR_ARGUMENT, "%s has %d values; give %d", key, values,
+                                i + 1)
+                    : missing_key(scene, key);
+    }
+    if (word) {
+        *word = line->word[1 + i];
+    }
+    if (n) {
+        *n = values;
+    }
+    return SPAR_OK;
+}
+
 /* What a host does only if it calls for it. */
 static int check_host(const spar_case *c, const case_block *block) {
     if (case_is(block, "aero") && !c->blown) {

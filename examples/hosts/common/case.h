@@ -121,6 +121,11 @@ int spar_case_joint(const spar_case *scene, const char *name, spar_joint **joint
      n: in; x[n]: out */
 int spar_case_get_text(spar_case *scene, const char *key, const char *otherwise, const char **text);
 int spar_case_get_numbers(spar_case *scene, const char *key, int n, const double *otherwise, double *x);
+/* One value of a key whose line is a list, as the file has it: "6 or 7" in quotes is one value.
+     n: out, number of values, 0: no such key, NULL: not wanted
+     i: in, from 0
+     word: out, belongs to the scene, NULL: not wanted; SPAR_ERR_ARGUMENT if there is no value i */
+int spar_case_get_word(spar_case *scene, const char *key, int i, int *n, const char **word);
 /* Refuses a key of [host] or [host HOST] that has not been asked for: it was misspelt. To be called when all were. */
 int spar_case_check(const spar_case *scene);
 
@@ -136,6 +141,21 @@ int spar_case_aero(const spar_case *scene, const char *name, spar_aero **aero);
    Collective.
      restarted: out, NULL: not wanted */
 int spar_case_restart(spar_case *scene, int *restarted);
+
+/* The same for a flow that has checkpoints of its own: the structure goes on where the flow does. After all fluids are
+   mapped, at their first positions, before the first step. Collective.
+     path: in, the structure's file that was written with the flow's checkpoint; `restart` of the case file replaces it;
+       NULL: the flow starts anew
+     t: in, s, the flow's time
+     step: in, number of steps that the flow has behind it; -1: the flow does not count them
+   SPAR_ERR_IO: the flow goes on and the file is not there or cannot be read; SPAR_ERR_ARGUMENT: the file is of another
+   time or step, or of another structure. The session is then to be destroyed. */
+int spar_case_resume(spar_case *scene, const char *path, double t, int64_t step);
+/* Removes the rows after the time t from a history, so that a run that goes on from t adds its own. Rows begin with
+   their time; lines that do not begin with a number stay. No file is legal. Local; for the rank that writes it.
+     path: in
+     t: in, s */
+int spar_case_cut_history(const char *path, double t);
 
 /* After spar_step_accept: pictures and the history line that are due at this step, and the session where the file has
    `save`. Called by all ranks; local but where the session is saved. Members and history are written by rank 0, fluids

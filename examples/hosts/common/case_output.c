@@ -6,12 +6,17 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <spar/spar_output.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { LONGEST_PATH = 1024, WATCHED = 9 };
+
+/* Two clocks that add the same steps differ less, relatively. */
+static const double SAME_TIME = 1e-9;
 
 /* A call of spar that no line of the file stands for. */
 #define DO(c, call) CASE_TRY(case_told(c, 0, call))
@@ -131,16 +136,57 @@ static int write_pictures(const spar_case *c, int rank, int fluids, spar_fluid *
 
 /* ---- history ---- */
 
-/* A run that goes on from a saved one goes on in its file. */
-static int open_history(spar_case *c, int64_t step) {
+static int no_history(const char *path, const char *cure) {
+    return case_fail(NULL, 0, SPAR_ERR_IO, "cannot write the history %.300s: %s; %s", path, strerror(errno), cure);
+}
+
+/* Where the first row after t begins; the length of the file: there is none. */
+static long find_row_after(FILE *file, double t) {
+    char start[64];
+    long at = 0;
+    int c = 0;
+    for (; c != EOF; at = ftell(file)) {
+        char *end;
+        if (!fgets(start, sizeof start, file)) {
+            break;
+        }
+        const double row = strtod(start, &end);
+        if (end != start && row > t) {
+            break;
+        }
+        for (c = strchr(start, '\n') ? '\n' : 0; c != '\n' && c != EOF;) {
+            c = fgetc(file);
+        }
+    }
+    return at;
+}
+
+int spar_case_cut_history(const char *path, double t) {
+    if (!path || !(t >= 0)) {
+        return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_cut_history: path is NULL, or t below 0 or NaN");
+    }
+    case_quiet quiet;
+    FILE *file = fopen(path, "r");
+    if (!file) {
+        return errno == ENOENT ? SPAR_OK : no_history(path, "check folder and rights");
+    }
+    int status = case_quiet_begin(&quiet);
+    if (status == SPAR_OK) {
+        const long end = find_row_after(file, t * (1 + SAME_TIME));
+        case_quiet_end(&quiet);
+        status = end >= 0 && truncate(path, end) == 0 ? SPAR_OK : no_history(path, "check folder and rights");
+    }
+    (void)fclose(file);
+    return status;
+}
+
+/* A run that goes on from a saved one goes on in its file, behind the row of its first time. */
+static int open_history(spar_case *c, double t, int64_t step) {
     case_output *o = &c->output;
     o->headed = step > 1;
+    CASE_TRY(o->headed ? spar_case_cut_history(o->history_path, t * (1 - 2 * SAME_TIME)) : SPAR_OK);
     o->history = fopen(o->history_path, o->headed ? "a" : "w");
-    if (!o->history) {
-        return case_fail(&c->text, 0, SPAR_ERR_IO, "cannot write the history %.300s: %s; check folder and rights",
-                         o->history_path, strerror(errno));
-    }
-    return SPAR_OK;
+    return o->history ? SPAR_OK : no_history(o->history_path, "check folder and rights");
 }
 
 static void write_heading(const case_output *o) {
@@ -176,7 +222,7 @@ static int write_watch(const spar_case *c, const case_watch *w) {
 static int write_history(spar_case *c, double t, int64_t step, int iteration) {
     case_output *o = &c->output;
     double report[SPAR_REPORT_COUNT], residual, size;
-    CASE_TRY(o->history ? SPAR_OK : open_history(c, step));
+    CASE_TRY(o->history ? SPAR_OK : open_history(c, t, step));
     if (!o->headed) {
         write_heading(o);
         o->headed = 1;
@@ -190,8 +236,7 @@ static int write_history(spar_case *c, double t, int64_t step, int iteration) {
     }
     (void)fprintf(o->history, "\n");
     if (fflush(o->history) != 0) {
-        return case_fail(&c->text, 0, SPAR_ERR_IO, "cannot write the history %.300s: %s; is the disk full?",
-                         o->history_path, strerror(errno));
+        return no_history(o->history_path, "is the disk full?");
     }
     return SPAR_OK;
 }
@@ -232,26 +277,67 @@ int spar_case_output(spar_case *scene, int rank, int fluids, spar_fluid *const *
 
 /* ---- a run that goes on ---- */
 
-int spar_case_restart(spar_case *scene, int *restarted) {
+/* The line that holds, what is this host's before what is all hosts'; NULL: none. */
+static const case_line *restart_line(const spar_case *c) {
     const case_line *line = NULL;
-    if (!scene) {
-        return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_restart: scene is NULL");
-    }
-    for (int own = 0; own < 2; own++) { /* what is this host's holds */
-        for (int64_t b = 0; b < scene->text.n; b++) {
-            const case_block *block = scene->text.block + b;
-            if (case_is(block, "session") && case_is_for(block, scene->host) && own == (block->name[0] != '\0')) {
+    for (int own = 0; own < 2; own++) {
+        for (int64_t b = 0; b < c->text.n; b++) {
+            const case_block *block = c->text.block + b;
+            if (case_is(block, "session") && case_is_for(block, c->host) && own == (block->name[0] != '\0')) {
                 const case_line *found = case_find(block, "restart");
                 line = found ? found : line;
             }
         }
     }
+    return line;
+}
+
+int spar_case_restart(spar_case *scene, int *restarted) {
+    if (!scene) {
+        return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_restart: scene is NULL");
+    }
+    const case_line *line = restart_line(scene);
     scene->restarts = 1;
     if (line) {
         CASE_TRY(case_told(scene, line->number, spar_session_load(scene->session, line->word[1])));
     }
     if (restarted) {
         *restarted = line != NULL;
+    }
+    return SPAR_OK;
+}
+
+int spar_case_resume(spar_case *scene, const char *path, double t, int64_t step) {
+    if (!scene || !(t >= 0)) {
+        return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_resume: scene is NULL, or t below 0 or NaN");
+    }
+    const case_line *line = restart_line(scene);
+    const char *file = line ? line->word[1] : path;
+    const int number = line ? line->number : 0;
+    double saved_t = 0;
+    int64_t saved_step = 0;
+    char flow[96];
+    scene->restarts = 1;
+    if (!file && t == 0 && step < 1) {
+        return SPAR_OK;
+    }
+    (void)snprintf(flow, sizeof flow, path ? "the flow goes on from t = %.10g s" : "the flow starts at t = %.10g s", t);
+    if (!file) {
+        return case_fail(&scene->text, 0, SPAR_ERR_ARGUMENT, "%s and the structure at 0; give restart FILE", flow);
+    }
+    const int status = spar_session_load(scene->session, file);
+    if (status != SPAR_OK) {
+        return case_fail(&scene->text, number, status,
+                         "%s, and the structure cannot: %.300s; the file of that time was saved with the flow's own "
+                         "checkpoint",
+                         flow, spar_session_message(scene->session));
+    }
+    DO(scene, spar_session_get_time(scene->session, &saved_t, &saved_step, NULL));
+    if (!(fabs(saved_t - t) <= SAME_TIME * fmax(t, saved_t)) || (step >= 0 && saved_step != step)) {
+        return case_fail(&scene->text, number, SPAR_ERR_ARGUMENT,
+                         "%s (step %" PRId64 "), and the structure in %.200s from %.10g s (step %" PRId64
+                         "); give the file that was saved with the flow's own checkpoint",
+                         flow, step, file, saved_t, saved_step);
     }
     return SPAR_OK;
 }
