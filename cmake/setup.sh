@@ -5,6 +5,16 @@ say() {
     printf '== %s\n' "$*"
 }
 
+# spar_missing <package>...: those of the Debian packages that are not installed
+spar_missing() {
+    for package; do
+        case "$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null)" in
+        *"ok installed") ;;
+        *) printf ' %s' "$package" ;;
+        esac
+    done
+}
+
 # spar_packages <package>...: installs those of the Debian packages that are missing; needs root (or sudo without a password)
 # only then. Names the command where it cannot.
 spar_packages() {
@@ -12,13 +22,7 @@ spar_packages() {
         say "no dpkg here: taking for granted that there are $*"
         return 0
     fi
-    missing=
-    for package in "$@"; do
-        case "$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null)" in
-        *"ok installed") ;;
-        *) missing="$missing $package" ;;
-        esac
-    done
+    missing=$(spar_missing "$@")
     if [ -z "$missing" ]; then
         say "packages: all there"
         return 0
@@ -66,8 +70,8 @@ spar_jobs() {
     nproc 2>/dev/null || echo 2
 }
 
-# spar_build <source> <build> [cmake options]: configures and builds; all, or $spar_targets
-spar_build() {
+# spar_configure <source> <build> [cmake options]
+spar_configure() {
     source_dir=$1
     build_dir=$2
     shift 2
@@ -75,8 +79,18 @@ spar_build() {
     if [ ! -f "$build_dir/CMakeCache.txt" ] && command -v ninja >/dev/null 2>&1; then
         set -- -G Ninja "$@"
     fi
-    cmake -S "$source_dir" -B "$build_dir" "$@" || return 1
-    say "building $build_dir"
+    cmake -S "$source_dir" -B "$build_dir" "$@"
+}
+
+# spar_compile <build>: all, or $spar_targets
+spar_compile() {
+    say "building $1"
     # shellcheck disable=SC2086
-    cmake --build "$build_dir" -j "$(spar_jobs)" ${spar_targets:+--target $spar_targets}
+    cmake --build "$1" -j "$(spar_jobs)" ${spar_targets:+--target $spar_targets}
+}
+
+# spar_build <source> <build> [cmake options]: both
+spar_build() {
+    spar_configure "$@" || return 1
+    spar_compile "$2"
 }
