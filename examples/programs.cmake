@@ -27,6 +27,16 @@ if(SPAR_MPI)
   set(spar_example_environment ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0)
 endif()
 
+# spar-run, which is installed: what a case file describes, without a flow solver.
+file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/examples/spar-run/*.c")
+add_executable(spar-run ${files})
+set_target_properties(spar-run PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/examples"
+  INSTALL_RPATH "$<$<PLATFORM_ID:Linux>:$ORIGIN/../${CMAKE_INSTALL_LIBDIR}>")
+target_link_libraries(spar-run PRIVATE spar_flags spar_host_parts spar_aero spar m)
+if(SPAR_INSTALL)
+  install(TARGETS spar-run RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT development)
+endif()
+
 # Adapters to hosts: each folder's programs and their tests.
 file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/examples/hosts/*/host.cmake")
 foreach(file IN LISTS files)
@@ -62,6 +72,10 @@ if(TARGET test_turbine AND TARGET examples_turbine)
   endif()
   spar_set_test(test_turbine unit 300 ${spar_example_environment})
 endif()
+
+add_test(NAME example_spar_run COMMAND sh "${PROJECT_SOURCE_DIR}/tests/examples/spar_run" $<TARGET_FILE:spar-run>
+  "${PROJECT_SOURCE_DIR}/examples/spar-run/cases" "${PROJECT_BINARY_DIR}/tests/spar_run")
+spar_set_test(example_spar_run unit 60 ${spar_example_environment})
 
 # A host whose dt follows a CFL condition finds what even steps find.
 add_test(NAME example_cfl COMMAND examples_cfl)

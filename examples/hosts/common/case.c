@@ -208,11 +208,23 @@ static int missing_key(const spar_case *c, const char *key) {
                      c->host ? c->host : "NAME");
 }
 
+static void remember_key(spar_case *c, const char *key) {
+    for (int i = 0; i < c->asks; i++) {
+        if (strcmp(c->ask[i], key) == 0) {
+            return;
+        }
+    }
+    if (c->asks < CASE_ASKS && strlen(key) < CASE_NAME) {
+        memcpy(c->ask[c->asks++], key, strlen(key) + 1);
+    }
+}
+
 int spar_case_get_text(spar_case *scene, const char *key, const char *otherwise, const char **text) {
     if (!scene || !key || !text) {
         return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_get_text: scene, key or text is NULL");
     }
     int64_t at = 0;
+    remember_key(scene, key);
     case_line *line = host_line(scene, key, &at);
     if (!line && !otherwise) {
         return missing_key(scene, key);
@@ -241,6 +253,7 @@ int spar_case_get_numbers(spar_case *scene, const char *key, int n, const double
         return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_get_numbers: scene, key or x is NULL, or n below 1");
     }
     int64_t at = 0;
+    remember_key(scene, key);
     const case_line *line = host_line(scene, key, &at);
     if (!line && !otherwise) {
         return missing_key(scene, key);
@@ -271,6 +284,7 @@ int spar_case_get_word(spar_case *scene, const char *key, int i, int *n, const c
         return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_get_word: scene or key is NULL");
     }
     int64_t at = 0;
+    remember_key(scene, key);
     const case_line *line = host_line(scene, key, &at);
     const int values = line ? line->n : 0;
     if (word && (i < 0 || i >= values)) {
@@ -300,21 +314,37 @@ static int check_host(const spar_case *c, const case_block *block) {
                                 : SPAR_OK;
 }
 
-int spar_case_check(const spar_case *scene) {
-    if (!scene) {
-        return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_check: scene is NULL");
+static int check_keys(const spar_case *c, const case_block *block) {
+    const char *names[CASE_ASKS];
+    for (int i = 0; i < c->asks; i++) {
+        names[i] = c->ask[i];
     }
-    for (int64_t b = 0; b < scene->text.n; b++) {
-        const case_block *block = scene->text.block + b;
-        CASE_TRY(check_host(scene, block));
-        for (int64_t i = 0; case_is(block, "host") && case_is_for(block, scene->host) && i < block->n; i++) {
-            if (!block->line[i].used) {
-                return case_fail(&scene->text, block->line[i].number, SPAR_ERR_ARGUMENT,
-                                 "the host has not asked for '%.60s'; take it out, or look in its README how it is "
-                                 "spelt",
-                                 block->line[i].word[0]);
-            }
+    for (int64_t i = 0; i < block->n; i++) {
+        if (!block->line[i].used) {
+            const char *near = case_nearest(block->line[i].word[0], c->asks, names);
+            return case_fail(&c->text, block->line[i].number, SPAR_ERR_ARGUMENT,
+                             "the host has not asked for '%.60s'; did you mean '%s'? Otherwise take it out",
+                             block->line[i].word[0], near);
         }
     }
     return SPAR_OK;
+}
+
+static int check_all(const spar_case *scene, int common) {
+    for (int64_t b = 0; b < scene->text.n; b++) {
+        const case_block *block = scene->text.block + b;
+        CASE_TRY(check_host(scene, block));
+        if (case_is(block, "host") && case_is_for(block, scene->host) && (common || block->name[0] != '\0')) {
+            CASE_TRY(check_keys(scene, block));
+        }
+    }
+    return SPAR_OK;
+}
+
+int spar_case_check(const spar_case *scene) {
+    return scene ? check_all(scene, 1) : case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_check: scene is NULL");
+}
+
+int spar_case_check_own(const spar_case *scene) {
+    return scene ? check_all(scene, 0) : case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_check_own: scene is NULL");
 }

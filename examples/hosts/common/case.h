@@ -87,6 +87,7 @@
 #define SPAR_CASE_H
 
 #include <spar/spar_aero.h>
+#include <stdio.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -128,6 +129,8 @@ int spar_case_get_numbers(spar_case *scene, const char *key, int n, const double
 int spar_case_get_word(spar_case *scene, const char *key, int i, int *n, const char **word);
 /* Refuses a key of [host] or [host HOST] that has not been asked for: it was misspelt. To be called when all were. */
 int spar_case_check(const spar_case *scene);
+/* The same for [host HOST] alone: for a program that reads files of other hosts too. */
+int spar_case_check_own(const spar_case *scene);
 
 /* Makes what [aero] describes, once, on rank 0, whose fluids they are; the members may be solved anywhere. Collective.
      rank: in, of this process */
@@ -136,6 +139,16 @@ int spar_case_make_aero(spar_case *scene, int rank);
 int spar_case_blow(spar_case *scene);
 /* One of them, on rank 0, for spar_aero_get_*. */
 int spar_case_aero(const spar_case *scene, const char *name, spar_aero **aero);
+
+/* How many [aero] there are; and one of them, on rank 0, after spar_case_make_aero.
+     i: in, from 0
+     name: out, NULL: not wanted
+   NULL: there are not so many. */
+int64_t spar_case_aero_count(const spar_case *scene);
+spar_aero *spar_case_aero_at(const spar_case *scene, int64_t i, const char **name);
+
+/* Prints all headings and keys, with units and defaults. */
+void spar_case_explain(FILE *to);
 
 /* Goes on from the file that `restart` names, if it names one: after all fluids are mapped, before the first step.
    Collective.

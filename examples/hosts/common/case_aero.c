@@ -293,6 +293,18 @@ int spar_case_aero(const spar_case *scene, const char *name, spar_aero **aero) {
                      "there is no [aero %.60s] on this rank; rank 0 has them, after spar_case_make_aero", name);
 }
 
+int64_t spar_case_aero_count(const spar_case *scene) {
+    return scene ? scene->airs : 0;
+}
+
+spar_aero *spar_case_aero_at(const spar_case *scene, int64_t i, const char **name) {
+    int there = scene && i >= 0 && i < scene->airs;
+    if (there && name) {
+        *name = scene->air[i].name;
+    }
+    return there ? scene->air[i].aero : NULL;
+}
+
 int spar_case_blow(spar_case *scene) {
     if (!scene) {
         return case_fail(NULL, 0, SPAR_ERR_ARGUMENT, "spar_case_blow: scene is NULL");

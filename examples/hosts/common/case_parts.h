@@ -104,6 +104,8 @@ typedef struct case_air {
     double density, *inflow;
 } case_air;
 
+enum { CASE_ASKS = 64, CASE_NAME = 32 };
+
 struct spar_case {
     spar_session *session;
     char *host; /* NULL: none */
@@ -112,6 +114,8 @@ struct spar_case {
     const char **member_name, **joint_name; /* parts of the text */
     spar_member **member;
     spar_joint **joint;
+    int asks;                       /* keys that the host has asked for, */
+    char ask[CASE_ASKS][CASE_NAME]; /* for the nearest name to a misspelt one */
     char **joined; /* [lines of the text] the values of a line of the host as one text, NULL: not asked for */
     case_output output;
     int64_t airs;
