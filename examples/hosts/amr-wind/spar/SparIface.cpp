@@ -5,14 +5,13 @@
 #include "amr-wind/core/SimTime.H"
 
 #include "AMReX.H"
-#include "AMReX_FileSystem.H"
-#include "AMReX_ParmParse.H"
-#include "AMReX_Utility.H"
 
-#include <cstdio>
+#include <cmath>
 
 namespace ext_turb {
 namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180.0;
 
 void check(const SparTurbine& fi, int status)
 {
@@ -32,6 +31,11 @@ void make_machine(SparTurbine& fi)
             "SparIface: turbine " + fi.tlabel +
             ": num_blades is 3 and num_points_tower is 0");
     }
+    if (actuator_scheme(fi.scheme.c_str()) < 0) {
+        amrex::Abort(
+            "SparIface: turbine " + fi.tlabel +
+            ": spar_scheme is iqn_ils, aitken or fixed_point, not " + fi.scheme);
+    }
     actuator_options options;
     actuator_default(&options);
     options.data = fi.data_folder.c_str();
@@ -39,8 +43,16 @@ void make_machine(SparTurbine& fi)
     options.whole = fi.whole ? 1 : 0;
     options.nodes = fi.num_nodes_blade;
     options.rpm = static_cast<double>(fi.rotor_speed_rpm);
-    options.pitch = static_cast<double>(fi.pitch_deg) * 3.14159265358979323846 / 180.0;
+    options.pitch = static_cast<double>(fi.pitch_deg) * degree;
     options.wind = static_cast<double>(fi.wind_speed);
+    options.downwind = (270.0 - static_cast<double>(fi.wind_direction)) * degree;
+    options.yaw = static_cast<double>(fi.yaw_deg) * degree;
+    options.scheme = actuator_scheme(fi.scheme.c_str());
+    options.rtol = static_cast<double>(fi.rtol);
+    options.iterations = fi.max_iterations;
+    options.accepted = static_cast<double>(fi.accepted);
+    options.substeps = fi.structure_substeps;
+    options.rho_inf = static_cast<double>(fi.rho_inf);
     options.density = static_cast<double>(fi.fluid_density);
     options.gravity = static_cast<double>(fi.gravity);
     actuator_machine* made = nullptr;
@@ -49,16 +61,42 @@ void make_machine(SparTurbine& fi)
     check(fi, status);
     // one step of spar for one of the flow, with its own substeps inside
     fi.num_substeps = 1;
+    fi.chkpt_interval = -1; // by AMR-Wind's interval alone; see ProcessOutputsOp
     fi.num_blade_elem = fi.num_pts_blade;
     fi.dt_ext = fi.dt_cfd;
     fi.allocate_buffers();
 }
 
-std::string checkpoint_name(const SparTurbine& fi)
+// The 1st, 2nd, 4th, 8th ... warning of a turbine.
+void warn(SparTurbine& fi)
 {
-    char step[32];
-    std::snprintf(step, sizeof step, "%08d", fi.time_index);
-    return fi.output_folder + "/" + fi.tlabel + "." + step;
+    const char* text = actuator_warning(fi.machine.get());
+    if (text[0] == '\0') {
+        return;
+    }
+    const long n = ++fi.num_warnings;
+    if ((n & (n - 1)) == 0) {
+        amrex::OutStream() << "WARNING: SparIface: turbine " << fi.tlabel
+                           << ", warning " << n << ": " << text << std::endl;
+    }
+}
+
+// Says so where the turbine does not face the wind at its hub, whose velocity is the last.
+void compare_directions(const SparTurbine& fi)
+{
+    const int hub = fi.length_fluid_velocity(0) - 1;
+    const auto u = static_cast<double>(fi.fluid_velocity(0)[hub]);
+    const auto v = static_cast<double>(fi.fluid_velocity(1)[hub]);
+    const double from = 270.0 - std::atan2(v, u) / degree;
+    const double faced = static_cast<double>(fi.wind_direction - fi.yaw_deg);
+    if (std::hypot(u, v) > 1.0 &&
+        std::cos((from - faced) * degree) < std::cos(30.0 * degree)) {
+        amrex::OutStream() << "WARNING: SparIface: turbine " << fi.tlabel
+                           << " faces " << faced
+                           << " degrees, the wind at its hub comes from "
+                           << std::fmod(from, 360.0)
+                           << " degrees: see spar_wind_direction" << std::endl;
+    }
 }
 
 } // namespace
@@ -86,10 +124,12 @@ void ExtTurbIface<SparTurbine, SparSolverData>::init_solution(
     const int local_id)
 {
     auto& fi = *m_turbine_data[local_id];
+    compare_directions(fi);
     if (!fi.is_loaded) {
         check(fi, actuator_start(fi.machine.get(), fi.fluid_velocity(0)));
     }
     check(fi, fi.populate_buffers());
+    fi.put_hub_first();
     fi.is_solution0 = false;
 }
 
@@ -118,18 +158,16 @@ void ExtTurbIface<SparTurbine, SparSolverData>::do_turbine_step(SparTurbine& fi)
         fi, actuator_step(
                 fi.machine.get(), static_cast<double>(fi.dt_ext),
                 fi.fluid_velocity(0)));
+    warn(fi);
     check(fi, fi.populate_buffers());
+    fi.put_hub_first();
 }
 
 template <>
 void ExtTurbIface<SparTurbine, SparSolverData>::write_turbine_checkpoint(
     int& tid)
 {
-    auto& fi = *m_turbine_data[tid];
-    if (!amrex::UtilCreateDirectory(fi.output_folder, 0755)) {
-        amrex::CreateDirectoryFailed(fi.output_folder);
-    }
-    check(fi, actuator_save(fi.machine.get(), checkpoint_name(fi).c_str()));
+    m_turbine_data[tid]->save();
 }
 
 template <>
@@ -140,20 +178,20 @@ void ExtTurbIface<SparTurbine, SparSolverData>::ext_init_turbine(
     check(fi, fi.populate_buffers());
 }
 
-// The name ends in the step: the count of steps goes on from there.
+// The file's step and time must be the flow's.
 template <>
 void ExtTurbIface<SparTurbine, SparSolverData>::ext_restart_turbine(
     SparTurbine& fi)
 {
     make_machine(fi);
-    check(fi, actuator_load(fi.machine.get(), fi.checkpoint_file.c_str()));
-    const auto dot = fi.checkpoint_file.rfind('.');
-    if (dot == std::string::npos ||
-        std::sscanf(
-            fi.checkpoint_file.c_str() + dot + 1, "%d", &fi.time_index) != 1) {
+    const int status = actuator_load(
+        fi.machine.get(), fi.checkpoint_file.c_str(), fi.time_index,
+        static_cast<double>(fi.start_time));
+    if (status != SPAR_OK) {
         amrex::Abort(
-            "SparIface: " + fi.checkpoint_file +
-            " does not end in the number of its step");
+            "SparIface: turbine " + fi.tlabel + ": " +
+            actuator_message(fi.machine.get()) +
+            "; spar_restart_file names another file, and spar_sim_mode = init begins a turbine in a flow that had none");
     }
     fi.is_loaded = true;
     check(fi, fi.populate_buffers());
@@ -165,7 +203,7 @@ void ExtTurbIface<SparTurbine, SparSolverData>::ext_replay_turbine(
     SparTurbine& fi)
 {
     amrex::Abort(
-        "SparIface: turbine " + fi.tlabel + ": spar_sim_mode is init or restart");
+        "SparIface: turbine " + fi.tlabel + ": spar_sim_mode is auto, init or restart");
 }
 
 template <>
