@@ -3,14 +3,14 @@
 #   fortran/spar_c.f90, spar_aero_c.f90       raw bindings of each library
 #   fortran/spar.f90, spar_aero.f90           its module: what takes thought is by hand in the file .f90.in; this adds the constants and the
 #                                             plain procedures
-#   examples/python/spar.py                   its table
+#   python/spar/_interface.py                 the table of the Python package
 #   tests/fortran/test_bindings.f90           each raw binding once
 #   tests/torture/calls.h, fuzz/calls_plain.* names of all calls, and callers of those that the fuzzer has none for by hand
 #   make-bindings.sh [<folder to write to, instead of the sources>]
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 out=${1:-$root}
-mkdir -p "$out/fortran" "$out/examples/python" "$out/tests/fortran" "$out/tests/torture/fuzz"
+mkdir -p "$out/fortran" "$out/python/spar" "$out/tests/fortran" "$out/tests/torture/fuzz"
 headers='spar spar_structure spar_coupling spar_analysis spar_output' aero_headers='spar_aero'
 made=$(mktemp)
 trap 'rm -f "$made" "$made.file" "$made.table"' EXIT
@@ -79,14 +79,13 @@ raw libspar_aero spar_aero_calls spar_aero_c "$aero_headers" >"$out/fortran/spar
 module spar "$headers"
 module spar_aero "$aero_headers"
 {
+    echo '"""The interface, as cmake/interface.awk reads it. Written by cmake/make-bindings.sh from the headers."""'
     echo 'TABLE = """'
     for name in $headers $aero_headers; do
         awk -f "$root/cmake/interface.awk" "$root/include/spar/$name.h" | grep -v '^collective' | tr '\t' ' '
     done
     echo '"""'
-} >"$made"
-put_between "$root/examples/python/spar.py" 'as cmake/interface.awk reads it {'
-cat "$made.file" >"$out/examples/python/spar.py"
+} >"$out/python/spar/_interface.py"
 
 # what the instruments of tests/ know of every call
 for name in $headers $aero_headers; do awk -v null=1 -f "$root/cmake/interface.awk" "$root/include/spar/$name.h"; done >"$made.table"

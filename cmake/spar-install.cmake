@@ -1,5 +1,5 @@
 # What is installed: libraries, headers, the CMake package, the pkg-config files, the Fortran modules (by compiler) and their
-# source (for any other compiler), Python's module, the documents. Four components, which are Debian's four packages: `cpack` writes them.
+# source (for any other compiler), the Python package, the documents. Four components, which are Debian's four packages: `cpack` writes them.
 include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 set(spar_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/spar")
@@ -28,7 +28,8 @@ if(TARGET spar_fortran)
   endforeach()
 endif()
 install(FILES ${spar_fortran_sources} ${spar_aero_fortran_sources} DESTINATION "${CMAKE_INSTALL_DATADIR}/spar/fortran")
-install(FILES "${PROJECT_SOURCE_DIR}/examples/python/spar.py" DESTINATION "${CMAKE_INSTALL_DATADIR}/spar/python")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/python/spar" DESTINATION "${CMAKE_INSTALL_DATADIR}/spar/python" FILES_MATCHING PATTERN "*.py*"
+  PATTERN __pycache__ EXCLUDE)
 
 configure_package_config_file(cmake/spar-config.cmake.in "${PROJECT_BINARY_DIR}/spar-config.cmake"
   INSTALL_DESTINATION "${spar_package_dir}" PATH_VARS CMAKE_INSTALL_DATADIR CMAKE_INSTALL_LIBDIR)

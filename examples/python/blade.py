@@ -1,5 +1,6 @@
 """Frequencies of the NREL 5-MW blade over the rotor's speed (a Campbell diagram's lines), then a gust on the turning blade.
     blade.py [<csv of the tip's motion>]
+Needs the package spar: `pip install .`, or PYTHONPATH=python with SPAR_LIBRARY.
 """
 import os
 import sys

@@ -1,4 +1,4 @@
-# examples/python where there is an interpreter with numpy; a sanitized or foreign library cannot be loaded into one.
+# The Python package where there is an interpreter with numpy; a sanitized or foreign library cannot be loaded into one.
 find_package(Python3 QUIET COMPONENTS Interpreter)
 if(CMAKE_CROSSCOMPILING OR CMAKE_C_FLAGS MATCHES "sanitize" OR CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
   return()
@@ -13,7 +13,7 @@ foreach(candidate IN ITEMS "${Python3_EXECUTABLE}" /usr/bin/python3) # the syste
   endif()
 endforeach()
 if(NOT python)
-  message(STATUS "no Python with numpy: examples/python is not tried")
+  message(STATUS "no Python with numpy: the Python package is not tried")
   return()
 endif()
 add_test(NAME python COMMAND "${python}" -B -W error "${CMAKE_CURRENT_LIST_DIR}/test_python.py" "${PROJECT_BINARY_DIR}/tests")
@@ -21,5 +21,5 @@ add_test(NAME python_blade COMMAND "${python}" -B -W error "${PROJECT_SOURCE_DIR
 set_tests_properties(python_blade PROPERTIES PASS_REGULAR_EXPRESSION "12.1   0.737[0-9]   1.09.*the tip goes 0.7[0-9]+ m")
 foreach(test IN ITEMS python python_blade)
   spar_set_test(${test} unit 60)
-  set_tests_properties(${test} PROPERTIES ENVIRONMENT "SPAR_LIBRARY=$<TARGET_FILE:spar>")
+  set_tests_properties(${test} PROPERTIES ENVIRONMENT "SPAR_LIBRARY=$<TARGET_FILE:spar>;PYTHONPATH=${PROJECT_SOURCE_DIR}/python")
 endforeach()

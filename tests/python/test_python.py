@@ -1,4 +1,4 @@
-"""examples/python/spar.py against closed forms, and what it promises of arguments, results and failures.
+"""The package spar against closed forms, and what it promises of arguments, results and failures.
     test_python.py <folder to write in>
 """
 import copy
@@ -10,7 +10,7 @@ import unittest
 
 import numpy
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), '..', '..', 'examples', 'python'))
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), '..', '..', 'python'))
 import spar  # noqa: E402 pylint: disable=wrong-import-position
 
 UNIT = [1, 0, 0, 0]
