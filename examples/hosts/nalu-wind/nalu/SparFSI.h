@@ -1,14 +1,15 @@
-// Blades of spar in Nalu-Wind's aero container, beside OpenfastFSI and with its calls: spar moves the mesh blocks
-// around the blades, and takes the forces of their walls.
+// Turbines of spar in Nalu-Wind's AeroContainer, beside OpenfastFSI and with its calls: spar moves the mesh blocks of
+// blades, hub, nacelle and tower, and takes the forces of their walls.
 #ifndef SPARFSI_H
 #define SPARFSI_H
 
 #include "aero/fsi/CalcLoads.h"
-#include "aero/fsi/fsi_rotor.h"
+#include "aero/spar/fsi_turbine.h"
 #include "stk_mesh/base/BulkData.hpp"
 #include "stk_mesh/base/MetaData.hpp"
 #include "yaml-cpp/yaml.h"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,12 +25,17 @@ class SparFSI {
     SparFSI &operator=(const SparFSI &) = delete;
 
     void setup(double dtNalu, std::shared_ptr<stk::mesh::BulkData> bulk);
-    void initialize(int restartFreqNalu, double curTime);
+    //! Nalu-Wind calls this before it reads a restart: curTime is the time at which the input begins
+    void initialize(double curTime);
+    //! Moves the mesh to where the structure is; outside a step only when a restart has been read
     void map_displacements(double curTime, bool updateCurCoor);
-    void predict_struct_states();
-    void predict_struct_timestep(const double curTime);
-    void advance_struct_timestep(const double curTime);
+    //! The structure goes to curTime under predicted loads
+    void predict_struct_states(double curTime);
+    void predict_struct_timestep(double curTime);
+    void advance_struct_timestep(double curTime, double dT);
     void compute_div_mesh_velocity();
+    //! Beside each restart that Nalu-Wind writes
+    void write_restart(int stepCount);
     void end_spar();
 
     //! The blocks that spar moves, and their walls
@@ -39,30 +45,64 @@ class SparFSI {
     const stk::mesh::PartVector &bndry_parts() const {
         return bndryParts_;
     }
-
-    fsi_rotor *rotor() {
-        return rotor_;
+    const std::vector<std::string> &bndry_part_names() const {
+        return bndryPartNames_;
+    }
+    //! Seconds so far
+    double structure_time() const {
+        return structureTime_;
+    }
+    double mesh_time() const {
+        return meshTime_;
     }
 
   private:
-    void check(int status, const std::string &what) const;
-    std::vector<stk::mesh::Entity> nodes_of(int blade) const;
-    std::vector<double> wall_points(int blade) const;
-    void set_meshes();
-    void push_loads();
+    struct Face {
+        stk::mesh::Entity entity;
+        int points; // integration points
+    };
+    struct Part {
+        std::vector<std::string> names, wallNames;
+        stk::mesh::PartVector blocks, walls;
+        std::vector<stk::mesh::Entity> nodes; // on this rank
+        std::vector<Face> faces;              // that this rank owns, in the order in which their points were registered
+    };
+    struct Turbine {
+        std::string name, data;
+        fsi_options options;
+        std::array<Part, FSI_PARTS> parts;
+        fsi_turbine *fsi{nullptr};
+        std::array<double, 3> meshTip{}; // tip of blade 1 where the mesh was moved to
+    };
+
+    Turbine read_turbine(const YAML::Node &node, size_t number) const;
+    void check(const Turbine &turbine, int status, const std::string &what) const;
+    int agree(int status) const;
+    void find_parts(Turbine &turbine);
+    void declare_fields();
+    int set_mesh(Turbine &turbine, int part);
+    std::vector<double> node_positions(Part &part) const;
+    std::vector<double> wall_points(Part &part) const;
+    void start(double curTime);
+    void load();
+    double clock() const;
+    void move_mesh(bool updateCurCoor);
     void set_old_displacements();
+    void push_loads(Turbine &turbine, int part);
+    void begin_output() const;
+    void write_output(const Turbine &turbine) const;
 
     std::shared_ptr<stk::mesh::BulkData> bulk_;
-    std::string data_, restartFile_;
-    std::vector<std::string> partNames_, bndryPartNames_;
+    std::string restartFile_;
+    std::vector<Turbine> turbines_;
     stk::mesh::PartVector parts_, bndryParts_;
+    std::vector<std::string> bndryPartNames_;
     std::unique_ptr<CalcLoads> calcLoads_;
-    fsi_rotor_options options_{};
-    fsi_rotor *rotor_{nullptr};
-    std::vector<std::vector<stk::mesh::Entity>> nodes_; // of each blade, on this rank
-    double dt_{-1.0};
-    int restartFreq_{0};
-    int tStep_{0};
+    double dt_{-1.0};     // of Nalu-Wind's input
+    double stepDt_{-1.0}; // of the last step
+    bool inStep_{false}, restarted_{false};
+    int accepted_{0}; // steps of this run
+    double structureTime_{0.0}, meshTime_{0.0};
 };
 
 } // namespace nalu

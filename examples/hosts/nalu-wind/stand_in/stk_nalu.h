@@ -1,65 +1,20 @@
-// A stand-in for what SparFSI needs of Nalu-Wind, STK and yaml-cpp, for tests: the same names, as Nalu-Wind has them at
-// a40e39cc, over a mesh of lists that the driver fills. Each header that the sources in ../nalu include is, in the
-// tests, one that includes this. Written anew: no line of theirs is here.
-#ifndef NALU_WIND_STAND_IN_H
-#define NALU_WIND_STAND_IN_H
+// A stand-in for what SparFSI needs of STK and of Nalu-Wind, for tests: the same names, as Nalu-Wind has them at
+// a40e39cc, over a mesh of lists that the driver fills. As there, fields are declared before the mesh is read and have
+// values after it, a field that is missing is a null pointer, and buckets come in another order after a change of the
+// mesh. Written anew: no line of theirs is here.
+#ifndef STK_NALU_STAND_IN_H
+#define STK_NALU_STAND_IN_H
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mpi.h>
 #include <set>
-#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
-
-namespace YAML {
-// A map of names to texts; lists stand between brackets.
-class Node {
-  public:
-    Node() = default;
-    explicit Node(std::map<std::string, std::string> all) : m_all(std::move(all)) {
-    }
-    Node operator[](const std::string &key) const {
-        Node found;
-        const auto it = m_all.find(key);
-        if (it != m_all.end()) {
-            found.m_text = it->second;
-            found.m_there = true;
-        }
-        return found;
-    }
-    explicit operator bool() const {
-        return m_there;
-    }
-    template <typename T> T as() const {
-        T value{};
-        read(m_text, value);
-        return value;
-    }
-
-  private:
-    static void read(const std::string &text, std::string &value) {
-        value = text;
-    }
-    template <typename T> static void read(const std::string &text, T &value) {
-        std::istringstream(text) >> value;
-    }
-    template <typename T> static void read(const std::string &text, std::vector<T> &values) {
-        std::string inner = text.substr(1, text.size() - 2), item;
-        std::istringstream all(inner);
-        while (std::getline(all, item, ',')) {
-            T value{};
-            read(item, value);
-            values.push_back(value);
-        }
-    }
-    std::map<std::string, std::string> m_all;
-    std::string m_text;
-    bool m_there{false};
-};
-} // namespace YAML
 
 namespace stk {
 struct topology {
@@ -106,10 +61,16 @@ inline Selector operator|(const Part &a, const Part &b) {
 inline Selector operator&(const Part &a, const Selector &b) {
     return Selector(a) & b;
 }
+inline Selector selectUnion(const PartVector &parts) {
+    return Selector(Selector::Rule([parts](topology::rank_t r, size_t i) {
+        return std::any_of(parts.begin(), parts.end(), [r, i](const Part *p) { return p->members[r].count(i) > 0; });
+    }));
+}
 
-template <typename T> class Field {
+class FieldBase {};
+template <typename T> class Field : public FieldBase {
   public:
-    std::vector<T> values;
+    std::vector<T> values; // none before the mesh is read
     size_t length{0};
     Field *older[2] = {nullptr, nullptr};
     void sync_to_host() const {
@@ -123,7 +84,20 @@ template <typename T> class Field {
     }
 };
 template <typename T> T *field_data(const Field<T> &field, Entity entity) {
-    return const_cast<T *>(field.values.data()) + field.length * entity.id;
+    const size_t at = field.length * entity.id;
+    return at < field.values.size() ? const_cast<T *>(field.values.data()) + at : nullptr;
+}
+template <typename T> void put_field_on_mesh(Field<T> &field, const Part &, unsigned length, const T *) {
+    field.length = length;
+}
+template <typename T> void put_field_on_mesh(Field<T> &field, const Part &, const T *) {
+    field.length = 1;
+}
+inline void put_field_on_mesh(Field<double> &field, const Part &, unsigned length, std::nullptr_t) {
+    field.length = length;
+}
+inline void put_field_on_mesh(Field<double> &field, const Part &, std::nullptr_t) {
+    field.length = 1;
 }
 
 class Bucket {
@@ -144,13 +118,19 @@ class MetaData {
   public:
     std::map<std::string, Part> parts;
     std::map<std::string, Field<double>> fields;
-    Part owned, shared;
+    std::map<std::string, topology::rank_t> rank;
+    Part owned, shared, all;
     Part *get_part(const std::string &name) {
         const auto it = parts.find(name);
         return it == parts.end() ? nullptr : &it->second;
     }
     template <typename T> Field<T> *get_field(topology::rank_t, const std::string &name) {
-        return &fields.at(name);
+        const auto it = fields.find(name);
+        return it == fields.end() ? nullptr : &it->second;
+    }
+    template <typename T> Field<T> &declare_field(topology::rank_t where, const std::string &name) {
+        rank[name] = where;
+        return fields[name];
     }
     topology::rank_t side_rank() const {
         return topology::FACE_RANK;
@@ -161,28 +141,39 @@ class MetaData {
     const Part &globally_shared_part() const {
         return shared;
     }
+    const Part &universal_part() const {
+        return all;
+    }
 };
 
 class BulkData {
   public:
+    explicit BulkData(MPI_Comm comm) : m_comm(comm) {
+    }
     MetaData meta;
     size_t count[3] = {0, 0, 0};
     std::vector<std::array<Entity, 4>> faces;
+    std::vector<double> areas; // of the faces
+    bool reversed{false};      // order of buckets and of what is in them
+    size_t lost{SIZE_MAX};     // a face that has left this rank
     MetaData &mesh_meta_data() {
         return meta;
     }
     MPI_Comm parallel() const {
-        return MPI_COMM_WORLD;
+        return m_comm;
     }
     int parallel_rank() const {
         int rank;
-        MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+        MPI_Comm_rank(m_comm, &rank);
         return rank;
     }
     int parallel_size() const {
         int size;
-        MPI_Comm_size(MPI_COMM_WORLD, &size);
+        MPI_Comm_size(m_comm, &size);
         return size;
+    }
+    bool is_valid(Entity entity) const {
+        return entity.id != lost;
     }
     const Entity *begin_nodes(Entity face) const {
         return faces[face.id].data();
@@ -190,7 +181,8 @@ class BulkData {
     // buckets of five, so that there are some
     std::vector<const Bucket *> get_buckets(topology::rank_t rank, const Selector &selector) {
         std::vector<const Bucket *> found;
-        for (size_t id = 0; id < count[rank]; ++id) {
+        for (size_t i = 0; i < count[rank]; ++i) {
+            const size_t id = reversed ? count[rank] - 1 - i : i;
             if (!selector(rank, id)) {
                 continue;
             }
@@ -204,6 +196,7 @@ class BulkData {
     }
 
   private:
+    MPI_Comm m_comm;
     std::vector<std::unique_ptr<Bucket>> m_buckets;
 };
 } // namespace mesh
@@ -212,6 +205,7 @@ class BulkData {
 namespace sierra {
 namespace nalu {
 using VectorFieldType = stk::mesh::Field<double>;
+using GenericFieldType = stk::mesh::Field<double>;
 
 struct HostShmem {};
 template <typename T, typename Space> class SharedMemView;
@@ -253,7 +247,7 @@ struct MasterElementRepo {
     }
 };
 
-// Forces of the walls, by the driver's flow.
+// Forces of the walls, by the driver's flow; none before the initial condition of the flow, as there is no pressure.
 class CalcLoads {
   public:
     explicit CalcLoads(stk::mesh::PartVector &parts) : m_parts(parts) {
@@ -264,18 +258,22 @@ class CalcLoads {
     void initialize() {
     }
     void execute() {
-        flow(*m_bulk, m_parts);
+        if (flow) {
+            flow(*m_bulk, m_parts);
+        }
     }
     static std::function<void(stk::mesh::BulkData &, const stk::mesh::PartVector &)> flow;
 
   private:
-    stk::mesh::PartVector &m_parts;
+    stk::mesh::PartVector m_parts;
     std::shared_ptr<stk::mesh::BulkData> m_bulk;
 };
 
-inline void compute_edge_scalar_divergence(stk::mesh::BulkData &, const stk::mesh::PartVector &,
-                                           const stk::mesh::PartVector &, stk::mesh::Field<double> *,
-                                           stk::mesh::Field<double> *) {
+inline void compute_edge_scalar_divergence(stk::mesh::BulkData &, stk::mesh::PartVector &, stk::mesh::PartVector &,
+                                           GenericFieldType *face, stk::mesh::FieldBase *divergence) {
+    if (face == nullptr || divergence == nullptr) {
+        throw std::runtime_error("divergence of the mesh velocity: a field is missing");
+    }
 }
 } // namespace nalu
 } // namespace sierra
