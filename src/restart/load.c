@@ -224,13 +224,16 @@ static int read_common(spar_session *s, reading *l) {
         }
         SPARI_TRY(tell_why(s, l, spari_loading_read(&l->source, 0, n, image->word, l->why, sizeof l->why)));
         image->count = image->capacity = n;
+        char unheard[SPARI_MESSAGE_SIZE]; /* what is read may end too soon */
+        char *before = spari_messages_redirect(unheard);
         int status = spari_saved_check(s, &l->common);
+        (void)spari_messages_redirect(before);
         if (status == SPAR_OK) {
             image->count = image->at;
         }
         if (status == SPAR_OK || status == SPAR_ERR_MEMORY || n == l->source.count ||
             (status != SPAR_ERR_IO && !image->failed)) {
-            return status == SPAR_ERR_MEMORY ? status : SPAR_OK; /* all ranks find other errors */
+            return status == SPAR_ERR_MEMORY ? spari_saved_no_memory(s) : SPAR_OK; /* all ranks find other errors */
         }
     }
 }

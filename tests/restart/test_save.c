@@ -350,8 +350,35 @@ static int remove_file(void **state) {
     return remove(file) != 0;
 }
 
+static void count_errors(const spar_session *s, int level, const char *text, void *errors) {
+    (void)s, (void)text;
+    *(int *)errors += level == SPAR_LOG_ERROR;
+}
+
+/* A file of more than the 16384 words that are read first is loaded without a word in the log. */
+static void large_file(void **state) {
+    (void)state;
+    int errors = 0;
+    for (int again = 0; again < 2; again++) {
+        double K[36], M[36];
+        spar_session *s = scene_session();
+        OK(s, spar_session_set_log(s, count_errors, &errors));
+        scene_box(K, M);
+        OK(s, spar_member_commit(scene_beam(s, "long", 200, 4, 100, K, M)));
+        if (again) {
+            OK(s, spar_session_load(s, file));
+        } else {
+            OK(s, spar_step(s, 0.01, NULL, NULL, NULL));
+            OK(s, spar_session_save(s, file));
+        }
+        spar_session_destroy(&s);
+    }
+    assert_int_equal(errors, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits), cmocka_unit_test(bad_files),
-                                       cmocka_unit_test(other_settings), cmocka_unit_test(leaves_one_file)};
+                                       cmocka_unit_test(other_settings), cmocka_unit_test(leaves_one_file),
+                                       cmocka_unit_test(large_file)};
     return cmocka_run_group_tests(tests, name_file, remove_file);
 }
