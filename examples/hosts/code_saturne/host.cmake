@@ -10,11 +10,44 @@ if(SPAR_BUILD_TESTS AND SPAR_MPI)
   set(out "${PROJECT_BINARY_DIR}/tests/host_code_saturne_np")
   add_test(NAME host_code_saturne_np1 COMMAND ${run} --out ${out}1)
   add_test(NAME host_code_saturne_np2 COMMAND ${run} --out ${out}2 --ranks 2 --against ${out}1)
-  foreach(name IN ITEMS host_code_saturne_np1 host_code_saturne_np2)
-    spar_set_test(${name} hosts 1200)
-    set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2)
+  # half of a run, and the rest of it from code_saturne's checkpoint: every digit of the whole run; without the structure's
+  # file, or with that of another step, the rest is refused
+  set(run sh "${CMAKE_CURRENT_LIST_DIR}/run" flag --refine 0.4 --no-install --build "${PROJECT_BINARY_DIR}")
+  set(out "${PROJECT_BINARY_DIR}/tests/host_code_saturne_")
+  add_test(NAME host_code_saturne_whole COMMAND ${run} --steps 6 --out ${out}whole)
+  add_test(NAME host_code_saturne_half COMMAND ${run} --steps 3 --out ${out}half)
+  add_test(NAME host_code_saturne_rest COMMAND ${run} --steps 6 --restart ${out}half --out ${out}rest --against ${out}whole)
+  foreach(what IN ITEMS without other)
+    add_test(NAME host_code_saturne_${what} COMMAND sh -c "
+      rm -rf '${out}${what}' && cp -r '${out}half' '${out}${what}' && cd '${out}${what}/checkpoint' && rm spar || exit 77
+      [ ${what} = without ] || cp '${out}whole/checkpoint/spar' .
+      exec sh '${CMAKE_CURRENT_LIST_DIR}/run' flag --refine 0.4 --no-install --build '${PROJECT_BINARY_DIR}' \\
+        --steps 6 --restart '${out}${what}' --out '${out}${what}_rest'")
+  endforeach()
+  set_tests_properties(host_code_saturne_without PROPERTIES
+    PASS_REGULAR_EXPRESSION "the flow goes on from t = 0.0075 s, and the structure cannot")
+  set_tests_properties(host_code_saturne_other PROPERTIES
+    PASS_REGULAR_EXPRESSION "from t = 0.0075 s .step 3., and the structure in restart/spar from 0.015 s .step 6.")
+  # groups that the mesh does not have
+  file(READ "${CMAKE_CURRENT_LIST_DIR}/../cases/flag.case" text)
+  foreach(change IN ITEMS "wetted 6|wetted 66|wetted '66': the mesh has no boundary face of '66'"
+          "fixed \"1 or 2|fixed \"1 or 77 or 2|fixed '1 or 77 or 2 or 3 or 4': the mesh has no boundary face of '77'")
+    string(REPLACE "|" ";" change "${change}")
+    list(GET change 0 old)
+    list(GET change 1 new)
+    list(GET change 2 message)
+    string(REGEX MATCH "^[a-z]+" name "${old}")
+    string(REPLACE "${old}" "${new}" other "${text}")
+    file(WRITE "${PROJECT_BINARY_DIR}/tests/${name}.case" "${other}")
+    add_test(NAME host_code_saturne_${name} COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/run" "${PROJECT_BINARY_DIR}/tests/${name}.case"
+      --refine 0.4 --steps 2 --no-install --build "${PROJECT_BINARY_DIR}" --out ${out}${name})
+    set_tests_properties(host_code_saturne_${name} PROPERTIES PASS_REGULAR_EXPRESSION "${message}")
+  endforeach()
+  foreach(name IN ITEMS _np1 _np2 _whole _half _rest _without _other _wetted _fixed "")
+    spar_set_test(host_code_saturne${name} hosts 1200)
+    set_tests_properties(host_code_saturne${name} PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2)
   endforeach()
   set_tests_properties(host_code_saturne_np2 PROPERTIES DEPENDS host_code_saturne_np1)
-  spar_set_test(host_code_saturne hosts 1200)
-  set_tests_properties(host_code_saturne PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2)
+  set_tests_properties(host_code_saturne_rest host_code_saturne_without host_code_saturne_other PROPERTIES
+    DEPENDS "host_code_saturne_whole;host_code_saturne_half")
 endif()

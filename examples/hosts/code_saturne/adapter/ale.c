@@ -14,10 +14,10 @@ void cs_user_model(void) {
 void CS_PROCF(usalcl, USALCL)(const int *itrale, const int *nvar, const int *nscal, int *icodcl, int *itypfb,
                               int *ialtyb, int *impale, const cs_real_t *dt, cs_real_t *rcodcl, const cs_real_t *xyzno0,
                               cs_real_t *disale) {
-    (void)itrale, (void)nvar, (void)nscal, (void)icodcl, (void)itypfb, (void)dt, (void)rcodcl, (void)xyzno0;
-    (void)disale;
-    saturne_mark(saturne_text("fixed", ""), 1, ialtyb);
-    saturne_mark(saturne_text("sliding", ""), 2, ialtyb);
+    (void)itrale, (void)nvar, (void)nscal, (void)icodcl, (void)itypfb, (void)dt, (void)rcodcl, (void)disale;
+    saturne_set_reference(xyzno0);
+    saturne_mark("fixed", saturne_text("fixed", ""), 1, ialtyb);
+    saturne_mark("sliding", saturne_text("sliding", ""), 2, ialtyb);
     if (*saturne_text("fade", "") != '\0') {
         for (cs_lnum_t v = 0; v < cs_glob_mesh->n_vertices; v++) {
             impale[v] = 1;
@@ -27,5 +27,5 @@ void CS_PROCF(usalcl, USALCL)(const int *itrale, const int *nvar, const int *nsc
 
 /* Wetted faces belong to an external structure: -1. */
 void CS_PROCF(usaste, USASTE)(int *idfstr) {
-    saturne_mark(saturne_text("wetted", NULL), -1, idfstr);
+    saturne_bodies_select(-1, idfstr);
 }

@@ -12,7 +12,7 @@ static struct {
 } seen = {.least = 1};
 
 void saturne_mesh_begin(void) {
-    seen.n = saturne_faces(saturne_text("sliding", ""), &seen.faces);
+    seen.n = saturne_faces("sliding", saturne_text("sliding", ""), &seen.faces);
 }
 
 static const double *corner(cs_lnum_t face, cs_lnum_t i) {

@@ -17,9 +17,17 @@ static struct {
 
 void saturne_report_begin(void) {
     const double metre = 1;
+    const char *loaded = saturne_text("loaded", "");
     saturne_mesh_begin();
     report.span = saturne_number("span", &metre);
-    report.n_loaded = saturne_faces(saturne_text("loaded", saturne_text("wetted", NULL)), &report.loaded);
+    if (*loaded != '\0') {
+        report.n_loaded = saturne_faces("loaded", loaded, &report.loaded);
+        return;
+    }
+    const saturne_body *first = saturne_body_at(0);
+    report.n_loaded = first->n_faces;
+    BFT_MALLOC(report.loaded, first->n_faces, cs_lnum_t);
+    memcpy(report.loaded, first->faces, (size_t)first->n_faces * sizeof *first->faces);
 }
 
 /* The whole force on the loaded faces, by the slab's span. */
@@ -44,47 +52,83 @@ static void keep_errors(const spar_fluid *surface) {
     }
 }
 
-/* Displacement and velocity of the last node. */
-static void watch(const spar_member *wet, double u[3], double v[3]) {
+/* Displacement and velocity of the last node, and the force on the member by the slab's span. Collective. */
+static void watch(const saturne_body *body, double row[9]) {
     double *q, *rate;
     int64_t n;
-    saturne_check(spar_member_get_count(wet, &n));
+    saturne_check(spar_member_get_count(body->member, &n));
     BFT_MALLOC(q, 7 * n, double);
     BFT_MALLOC(rate, 6 * n, double);
-    saturne_check(spar_member_get_motion(wet, q, rate, NULL));
-    memcpy(u, q + 7 * (n - 1), 3 * sizeof(double));
-    memcpy(v, rate + 6 * (n - 1), 3 * sizeof(double));
+    saturne_check(spar_member_get_motion(body->member, q, rate, NULL));
+    memcpy(row, q + 7 * (n - 1), 3 * sizeof(double));
+    memcpy(row + 3, rate + 6 * (n - 1), 3 * sizeof(double));
+    row[6] = row[7] = row[8] = 0;
+    for (cs_lnum_t i = 0; i < 3 * body->n_faces; i++) {
+        row[6 + i % 3] += body->force[i] / report.span;
+    }
+    cs_parall_sum(3, CS_DOUBLE, row + 6);
     BFT_FREE(q);
     BFT_FREE(rate);
 }
 
-void saturne_report_step(spar_member *wet, spar_fluid *surface) {
-    double t, u[3], v[3], force[3], entry[SPAR_REPORT_COUNT];
+static void open_history(double t) {
+    static const char *const columns[9] = {"ux_m",   "uy_m",   "uz_m",   "vx_m_s", "vy_m_s",
+                                           "vz_m_s", "fx_N_m", "fy_N_m", "fz_N_m"};
+    const int n = saturne_body_count();
+    size_t used, size = 200;
+    char *all;
+    for (int b = 1; b < n; b++) {
+        size += 9 * (strlen(saturne_body_at(b)->name) + 10);
+    }
+    BFT_MALLOC(all, size, char);
+    used = (size_t)snprintf(all, size,
+                            "time_s,ux_m,uy_m,uz_m,vx_m_s,vy_m_s,vz_m_s,fx_N_m,fy_N_m,fz_N_m,iterations,"
+                            "added_mass,least_cell_m3");
+    for (int i = 9; i < 9 * n; i++) {
+        used += (size_t)snprintf(all + used, size - used, ",%s.%s", columns[i % 9], saturne_body_at(i / 9)->name);
+    }
+    report.history = saturne_open_history(t, all);
+    BFT_FREE(all);
+}
+
+static void write_columns(const double row[9]) {
+    for (int c = 0; c < 9; c++) {
+        fprintf(report.history, c < 3 ? ",%.12e" : ",%.9e", row[c]);
+    }
+}
+
+void saturne_report_step(void) {
+    const int n = saturne_body_count();
+    double t, *row, out = 0, entry[SPAR_REPORT_COUNT];
     int iterations;
-    total_force(force);
-    keep_errors(surface);
-    watch(wet, u, v);
+    BFT_MALLOC(row, 9 * n, double);
+    for (int b = 0; b < n; b++) {
+        watch(saturne_body_at(b), row + 9 * b);
+        keep_errors(saturne_body_at(b)->surface);
+        out = CS_MAX(out, cs_math_3_norm(row + 9 * b));
+    }
+    total_force(row + 6);
     saturne_check(spar_session_get_time(saturne_session(), &t, NULL, &iterations));
     saturne_check(spar_session_get_report(saturne_session(), SPAR_REPORT_COUNT, entry));
-    saturne_mesh_step(cs_math_3_norm(u));
+    saturne_mesh_step(out);
     report.steps++;
     report.iterations += iterations;
     report.most = CS_MAX(report.most, iterations);
-    if (cs_glob_rank_id > 0) {
-        return;
-    }
-    if (report.history == NULL) {
-        report.history = fopen("history.csv", "w");
+    if (cs_glob_rank_id < 1) {
         if (report.history == NULL) {
-            bft_error(__FILE__, __LINE__, 0, "history.csv cannot be written here");
+            open_history(t);
         }
-        fprintf(report.history, "time_s,ux_m,uy_m,uz_m,vx_m_s,vy_m_s,vz_m_s,fx_N_m,fy_N_m,fz_N_m,iterations,"
-                                "added_mass,least_cell_m3\n");
+        fprintf(report.history, "%.9g", t);
+        write_columns(row);
+        fprintf(report.history, ",%d,%.3g,%.6e", iterations, entry[SPAR_REPORT_ADDED_MASS],
+                cs_glob_mesh_quantities->min_vol);
+        for (int b = 1; b < n; b++) {
+            write_columns(row + 9 * b);
+        }
+        fprintf(report.history, "\n");
+        fflush(report.history);
     }
-    fprintf(report.history, "%.9g,%.12e,%.12e,%.12e,%.9e,%.9e,%.9e,%.9e,%.9e,%.9e,%d,%.3g,%.6e\n", t, u[0], u[1], u[2],
-            v[0], v[1], v[2], force[0], force[1], force[2], iterations, entry[SPAR_REPORT_ADDED_MASS],
-            cs_glob_mesh_quantities->min_vol);
-    fflush(report.history);
+    BFT_FREE(row);
 }
 
 void saturne_report_run(void) {
@@ -97,7 +141,7 @@ void saturne_report_run(void) {
     }
     FILE *f = fopen("summary.txt", "w");
     if (f == NULL) {
-        bft_error(__FILE__, __LINE__, 0, "summary.txt cannot be written here");
+        bft_error(__FILE__, __LINE__, 0, "spar: summary.txt cannot be written here");
     }
     fprintf(f, "steps %ld\niterations_mean %.3f\niterations_most %d\n", report.steps,
             (double)report.iterations / (double)report.steps, report.most);

@@ -3,9 +3,10 @@
 #include "cs_base.h"
 #include "cs_headers.h"
 #include "cs_prototypes.h"
-#include "cs_selector.h"
+#include "fvm_selector.h"
 #include "spar_saturne.h"
 #include <spar/spar_mpi.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
@@ -24,8 +25,7 @@ void saturne_check_case(int status) {
     }
 }
 
-static void tell(const spar_session *from, int level, const char *text, void *context) {
-    (void)from, (void)context;
+void saturne_tell(int level, const char *text) {
     if (cs_glob_rank_id < 1) {
         bft_printf("spar%s: %s\n",
                    level == SPAR_LOG_ERROR     ? ", error"
@@ -34,6 +34,11 @@ static void tell(const spar_session *from, int level, const char *text, void *co
                    text);
         bft_printf_flush();
     }
+}
+
+static void tell(const spar_session *from, int level, const char *text, void *context) {
+    (void)from, (void)context;
+    saturne_tell(level, text);
 }
 
 static void begin(void) {
@@ -77,17 +82,39 @@ const char *saturne_text(const char *key, const char *otherwise) {
     return text;
 }
 
-cs_lnum_t saturne_faces(const char *criterion, cs_lnum_t **faces) {
+/* A group that the mesh does not have would leave its faces uncoupled, or loose: nobody means that. */
+static void refuse_selection(const char *what, const char *criterion, const char *missing) {
+    const cs_mesh_t *mesh = cs_glob_mesh;
+    char groups[400] = "none";
+    size_t used = 0;
+    for (int i = 0; i < mesh->n_groups && used + 80 < sizeof groups; i++) {
+        used += (size_t)snprintf(groups + used, sizeof groups - used, "%s%.60s", i > 0 ? ", " : "",
+                                 mesh->group + mesh->group_idx[i]);
+    }
+    bft_error(__FILE__, __LINE__, 0, "spar: %s '%s': the mesh has no boundary face of '%s'; its groups are %s", what,
+              criterion, missing, groups);
+}
+
+cs_lnum_t saturne_faces(const char *what, const char *criterion, cs_lnum_t **faces) {
+    const cs_mesh_t *mesh = cs_glob_mesh;
     cs_lnum_t n = 0;
-    BFT_MALLOC(*faces, cs_glob_mesh->n_b_faces, cs_lnum_t);
-    if (*criterion != '\0') {
-        cs_selector_get_b_face_list(criterion, &n, *faces);
+    BFT_MALLOC(*faces, mesh->n_b_faces, cs_lnum_t);
+    if (*criterion == '\0') {
+        return 0;
+    }
+    const int id = fvm_selector_get_list(mesh->select_b_faces, criterion, 0, &n, *faces);
+    cs_gnum_t all = (cs_gnum_t)n;
+    cs_parall_counter(&all, 1);
+    if (fvm_selector_n_missing(mesh->select_b_faces, id) > 0) {
+        refuse_selection(what, criterion, fvm_selector_get_missing(mesh->select_b_faces, id, 0));
+    } else if (all == 0) {
+        refuse_selection(what, criterion, criterion);
     }
     return n;
 }
 
-void saturne_mark(const char *criterion, int type, int *types) {
-    cs_lnum_t *faces, n = saturne_faces(criterion, &faces);
+void saturne_mark(const char *what, const char *criterion, int type, int *types) {
+    cs_lnum_t *faces, n = saturne_faces(what, criterion, &faces);
     for (cs_lnum_t i = 0; i < n; i++) {
         types[faces[i]] = type;
     }

@@ -5,17 +5,24 @@
      flow NAME            folder of flow.c, mesh and comparison, for the run script
      dt S, steps N        the run's; precision R: that of its linear solvers [1e-8]
      later T S            from the time T on steps of S seconds, of a mesh that moves; steps N counts all
-     wetted CRITERION     faces that the structure moves, and member NAME that they hang on; its last node is watched
+     member NAME ...      members in the flow, and wetted CRITERION ..., the faces that each of them moves: as many; a
+                          member that stands twice has both groups. The last node of each is in the history.
      loaded CRITERION     faces whose force the history has, per metre of span S; default: the wetted ones, 1 m
      fixed CRITERION      faces whose vertices stand still; sliding CRITERION: faces that vertices stay in
      fade WITHIN BEYOND   spar moves all vertices: as the structure up to WITHIN metres from its line, not at all from
-                          BEYOND metres on. Without it code_saturne's own equation moves what is not wetted. */
+                          BEYOND metres on. Without it code_saturne's own equation moves what is not wetted. Between
+                          two members the vertices follow the nearer one more.
+   A criterion that selects no face, or names a group that the mesh does not have, ends the run.
+
+   Restart: the structure's file is checkpoint/spar, written with each of code_saturne's checkpoints, and restart/spar
+   is read when code_saturne goes on from its own. */
 #ifndef SPAR_SATURNE_H
 #define SPAR_SATURNE_H
 
 #include "case.h"
 #include "cs_defs.h"
 #include "cs_domain.h"
+#include <stdio.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -35,10 +42,51 @@ void saturne_end(void);
 void saturne_check(int status);
 void saturne_check_case(int status);
 
-/* Boundary faces that meet a criterion, numbered from 0; to be freed by BFT_FREE. */
-cs_lnum_t saturne_faces(const char *criterion, cs_lnum_t **faces);
+/* A message in run_solver.log, on rank 0. level: SPAR_LOG_*. */
+void saturne_tell(int level, const char *text);
+
+/* Boundary faces that meet a criterion, numbered from 0; to be freed by BFT_FREE. Collective: a criterion that selects
+   none ends the run; "" is legal and has none. what: the key, for the message. */
+cs_lnum_t saturne_faces(const char *what, const char *criterion, cs_lnum_t **faces);
 /* types[face] = type for these. */
-void saturne_mark(const char *criterion, int type, int *types);
+void saturne_mark(const char *what, const char *criterion, int type, int *types);
+
+/* The members in the flow. reference: [n_vertices][3], the vertices at the start of the first run. */
+typedef struct saturne_body {
+    const char *name;
+    spar_member *member;
+    spar_fluid *surface;
+    cs_lnum_t n_faces, n_vertices, *faces, *vertices; /* of this rank, from 0; faces are the wetted ones */
+    double *x0, *x;                                   /* [n_vertices][3], at the start and now */
+    double *force;                                    /* [n_faces][3] */
+} saturne_body;
+/* First the members and their faces, types[face] = mark for these; then the fluids. */
+void saturne_bodies_select(int mark, int *types);
+void saturne_bodies_create(const double *reference);
+int saturne_body_count(void);
+const saturne_body *saturne_body_at(int i);
+/* displacement: out, [n_vertices][3], since the start; of vertices that follow no member it stays. */
+void saturne_bodies_pull(cs_real_3_t *displacement);
+void saturne_bodies_push(void);
+/* What the case file wants written of an accepted step. */
+void saturne_bodies_output(void);
+void saturne_bodies_free(void);
+/* Total force pushed last, in units of the largest of the accepted steps. */
+double saturne_bodies_growth(void);
+
+/* Where the vertices are at the start of the first run, [n_vertices][3]; kept, not copied. */
+void saturne_set_reference(const double *vertices);
+
+/* Ends the run, and says what the flow is like. Collective. */
+void saturne_flow_broke(const char *why);
+
+/* From now on spar's file goes with code_saturne's checkpoints; and the structure goes on where the flow does. After
+   the fluids are mapped. Collective. reference: as of saturne_bodies_create, NULL: the mesh does not move. */
+void saturne_resume(const double *reference);
+/* Whether this run goes on from another one. */
+int saturne_resumed(void);
+/* history.csv, on the rank that writes it; a run that goes on goes on in it, from the row of the time t, s. */
+FILE *saturne_open_history(double t, const char *columns);
 
 /* Forces of the fluid on boundary faces, from the pressure and velocity as they are now: what astfor_ is given has the
    pressure of the iteration before. Collective. n: faces; faces[n]; force[n][3]: out, N. */
@@ -55,7 +103,7 @@ void saturne_clock_read(double seconds[2]);
 /* What the history is about. */
 void saturne_report_begin(void);
 /* A line of history.csv, after a step was accepted. Collective. */
-void saturne_report_step(spar_member *wet, spar_fluid *surface);
+void saturne_report_step(void);
 /* summary.txt, at the end of the run. Collective. */
 void saturne_report_run(void);
 

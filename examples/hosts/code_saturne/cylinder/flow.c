@@ -2,6 +2,7 @@
 #include "cs_base.h"
 #include "cs_headers.h"
 #include "cs_prototypes.h"
+#include "cs_restart_default.h"
 #include "spar_saturne.h"
 #include <math.h>
 
@@ -17,11 +18,19 @@ void cs_user_parameters(cs_domain_t *domain) {
     cs_field_set_key_struct(CS_F_(vel), cs_field_key_id("var_cal_opt"), &scheme);
 }
 
-/* The mesh, where code_saturne moves it, is stiff near the cylinder, where its cells are small. */
+/* The mesh, where code_saturne moves it, is stiff near the cylinder, where its cells are small at the start. A run that
+   goes on has that from the checkpoint. */
+void cs_user_finalize_setup(cs_domain_t *domain) {
+    (void)domain;
+    cs_field_set_key_int(cs_field_by_name("mesh_viscosity"), cs_field_key_id("restart_file"), CS_RESTART_AUXILIARY);
+}
+
 void cs_user_initialization(cs_domain_t *domain) {
     cs_real_3_t *u = (cs_real_3_t *)CS_F_(vel)->val;
     cs_field_t *stiffness = cs_field_by_name("mesh_viscosity");
-    (void)domain;
+    if (domain->time_step->nt_prev > 0) {
+        return;
+    }
     for (cs_lnum_t cell = 0; cell < cs_glob_mesh->n_cells; cell++) {
         const cs_real_t *x = cs_glob_mesh_quantities->cell_cen + 3 * cell;
         u[cell][0] = speed, u[cell][1] = u[cell][2] = 0;
@@ -35,10 +44,10 @@ void cs_user_boundary_conditions(int nvar, int bc_type[], int icodcl[], cs_real_
     const int iu = cs_field_get_key_int(CS_F_(vel), cs_field_key_id("variable_id")) - 1;
     const cs_lnum_t faces = cs_glob_mesh->n_b_faces;
     (void)nvar, (void)icodcl;
-    saturne_mark("1", CS_INLET, bc_type);
-    saturne_mark("2", CS_OUTLET, bc_type);
-    saturne_mark("3 or 5", CS_SYMMETRY, bc_type);
-    saturne_mark("4", CS_SMOOTHWALL, bc_type);
+    saturne_mark("cylinder flow", "1", CS_INLET, bc_type);
+    saturne_mark("cylinder flow", "2", CS_OUTLET, bc_type);
+    saturne_mark("cylinder flow", "3 or 5", CS_SYMMETRY, bc_type);
+    saturne_mark("cylinder flow", "4", CS_SMOOTHWALL, bc_type);
     for (cs_lnum_t face = 0; face < faces; face++) {
         if (bc_type[face] == CS_INLET) {
             rcodcl[iu * faces + face] = speed;

@@ -37,10 +37,10 @@ void cs_user_boundary_conditions(int nvar, int bc_type[], int icodcl[], cs_real_
     const int iu = cs_field_get_key_int(CS_F_(vel), cs_field_key_id("variable_id")) - 1;
     const cs_lnum_t faces = cs_glob_mesh->n_b_faces;
     (void)nvar, (void)icodcl;
-    saturne_mark("1", CS_INLET, bc_type);
-    saturne_mark("2", CS_OUTLET, bc_type);
-    saturne_mark("5", CS_SYMMETRY, bc_type);
-    saturne_mark("3 or 4 or 6", CS_SMOOTHWALL, bc_type);
+    saturne_mark("flag flow", "1", CS_INLET, bc_type);
+    saturne_mark("flag flow", "2", CS_OUTLET, bc_type);
+    saturne_mark("flag flow", "5", CS_SYMMETRY, bc_type);
+    saturne_mark("flag flow", "3 or 4 or 6", CS_SMOOTHWALL, bc_type);
     for (cs_lnum_t face = 0; face < faces; face++) {
         if (bc_type[face] == CS_INLET) {
             const double y = cs_glob_mesh_quantities->b_face_cog[3 * face + 1];

@@ -67,13 +67,15 @@ void cs_user_extra_operations_initialize(cs_domain_t *domain) {
     lines.n = BLADES * (int)lines.data.aero_n;
     lines.speed = saturne_number("rpm", NULL) * acos(-1.) / 30;
     lines.width = saturne_number("kernel", NULL);
-    saturne_check_case(spar_case_check(saturne_scene()));
     for (int b = 0; b < BLADES; b++) {
         make_blade(b, twist);
     }
     check_data(
         nrel5mw_create_aero(&lines.data, &lines.rotor, first_rank() ? BLADES : 0, lines.sections, twist, &lines.aero));
     saturne_check(spar_aero_set_effects(lines.aero, SPAR_AERO_DRAG | SPAR_AERO_MOMENT));
+    saturne_resume(NULL);
+    saturne_check_case(spar_case_check(saturne_scene()));
+    lines.angle = lines.speed * cs_glob_time_step->t_prev;
     saturne_clock_end();
 }
 
@@ -175,13 +177,9 @@ static void record(const cs_real_3_t *source, double dt, const double tip[3]) {
     saturne_check(spar_aero_get_rotor(lines.aero, &thrust, &torque, &shaft));
     saturne_check(spar_session_get_time(saturne_session(), &t, NULL, &iterations));
     if (lines.history == NULL) {
-        lines.history = fopen("history.csv", "w");
-        if (lines.history == NULL) {
-            bft_error(__FILE__, __LINE__, 0, "history.csv cannot be written here");
-        }
-        fprintf(lines.history,
-                "time_s,thrust_N,shaft_power_W,line_x_N,line_y_N,line_z_N,spread_x_N,spread_y_N,spread_z_N,"
-                "line_power_W,flow_power_W,kernel_least,kernel_most,tip_x_m,iterations\n");
+        lines.history = saturne_open_history(t + dt, "time_s,thrust_N,shaft_power_W,line_x_N,line_y_N,line_z_N,"
+                                                     "spread_x_N,spread_y_N,spread_z_N,line_power_W,flow_power_W,"
+                                                     "kernel_least,kernel_most,tip_x_m,iterations");
     }
     fprintf(lines.history, "%.9g,%.9e,%.9e,%.9e,%.9e,%.9e,%.9e,%.9e,%.9e,%.9e,%.9e,%.6f,%.6f,%.6e,%d\n", t + dt, thrust,
             shaft, line[0], line[1], line[2], spread[0], spread[1], spread[2], line_power(), taken, least, most, tip[0],

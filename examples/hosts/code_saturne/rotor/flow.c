@@ -16,9 +16,12 @@ void cs_user_parameters(cs_domain_t *domain) {
 
 void cs_user_initialization(cs_domain_t *domain) {
     cs_real_3_t *u = (cs_real_3_t *)CS_F_(vel)->val;
-    (void)domain;
+    const double wind = saturne_number("wind", NULL);
+    if (domain->time_step->nt_prev > 0) {
+        return;
+    }
     for (cs_lnum_t cell = 0; cell < cs_glob_mesh->n_cells; cell++) {
-        u[cell][0] = saturne_number("wind", NULL), u[cell][1] = u[cell][2] = 0;
+        u[cell][0] = wind, u[cell][1] = u[cell][2] = 0;
     }
 }
 
@@ -27,9 +30,9 @@ void cs_user_boundary_conditions(int nvar, int bc_type[], int icodcl[], cs_real_
     const cs_lnum_t faces = cs_glob_mesh->n_b_faces;
     const double wind = saturne_number("wind", NULL);
     (void)nvar, (void)icodcl;
-    saturne_mark("1", CS_INLET, bc_type);
-    saturne_mark("2", CS_OUTLET, bc_type);
-    saturne_mark("3", CS_SYMMETRY, bc_type);
+    saturne_mark("rotor flow", "1", CS_INLET, bc_type);
+    saturne_mark("rotor flow", "2", CS_OUTLET, bc_type);
+    saturne_mark("rotor flow", "3", CS_SYMMETRY, bc_type);
     for (cs_lnum_t face = 0; face < faces; face++) {
         if (bc_type[face] == CS_INLET) {
             rcodcl[iu * faces + face] = wind;
