@@ -77,6 +77,20 @@ add_test(NAME example_spar_run COMMAND sh "${PROJECT_SOURCE_DIR}/tests/examples/
   "${PROJECT_SOURCE_DIR}/examples/spar-run/cases" "${PROJECT_BINARY_DIR}/tests/spar_run")
 spar_set_test(example_spar_run unit 60 ${spar_example_environment})
 
+# A controller's library: the published one behind Bladed's interface, and one without that interface.
+if(UNIX AND NOT CMAKE_C_FLAGS MATCHES "sanitize")
+  add_library(spar_test_discon MODULE "${PROJECT_SOURCE_DIR}/tests/examples/discon.c" "${PROJECT_SOURCE_DIR}/examples/turbine_control.c")
+  add_library(spar_test_other MODULE "${PROJECT_SOURCE_DIR}/examples/turbine_control.c")
+  foreach(library IN ITEMS spar_test_discon spar_test_other)
+    target_include_directories(${library} PRIVATE "${PROJECT_SOURCE_DIR}/examples")
+    target_link_libraries(${library} PRIVATE spar_flags m)
+    set_target_properties(${library} PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  endforeach()
+  add_test(NAME example_turbine_controller COMMAND sh "${PROJECT_SOURCE_DIR}/tests/examples/controller" $<TARGET_FILE:examples_turbine>
+    $<TARGET_FILE:spar_test_discon> $<TARGET_FILE:spar_test_other> "${PROJECT_BINARY_DIR}/tests/controller")
+  spar_set_test(example_turbine_controller unit 120 ${spar_example_environment})
+endif()
+
 # A host whose dt follows a CFL condition finds what even steps find.
 add_test(NAME example_cfl COMMAND examples_cfl)
 spar_set_test(example_cfl stability 120 ${spar_example_environment})

@@ -6,6 +6,7 @@
 #include "rotor_report.h"
 #include "turbine_case.h"
 #include "turbine_control.h"
+#include "turbine_discon.h"
 #include "turbine_model.h"
 #include "turbine_report.h"
 #include "turbine_view.h"
@@ -29,6 +30,7 @@ typedef struct options {
     double no_plots, quiet, help;
     double case_start;
     const char *out, *data, *blades, *tower, *kind;
+    const char *controller, *controller_input; /* NULL: the published one */
 } options;
 
 static const struct {
@@ -41,6 +43,9 @@ static const struct {
      "gust, parked, idling, pitch-step, emergency-stop [gust]; all but gust without controller"},
     {"case-start", "S", offsetof(options, case_start), 0, 1e9,
      "when pitch step or stop begin, and a gust beside them [2]"},
+    {"controller", "LIBRARY", offsetof(options, controller), 0, 0,
+     "a shared library with the function DISCON (Bladed's interface) [the published controller]"},
+    {"controller-input", "FILE", offsetof(options, controller_input), 0, 0, "its own file, as DISCON.IN"},
     {"wind", "M/S", offsetof(options, wind), 0, 60, "wind at hub height [8; parked, idling 50, at full load 18]"},
     {"shear", "EXPONENT", offsetof(options, shear), -1, 1, "power law of the wind over height [0]"},
     {"gust", "M/S", offsetof(options, gust), -60, 60,
@@ -170,6 +175,10 @@ static int read_options(options *o, int argc, char **argv) {
             return 1;
         }
     }
+    if (!o->controller != !o->controller_input || (o->controller && turbine_case_of(o->kind) != TURBINE_GUST)) {
+        fprintf(stderr, "turbine: --controller and --controller-input go together, and with --case gust\n");
+        return 1;
+    }
     return fidelity_of("blades", o->blades) < 0 || fidelity_of("tower", o->tower) < 0 || fill_case(o) != 0;
 }
 
@@ -180,6 +189,7 @@ typedef struct scene {
     spar_session *session;
     turbine turbine;
     turbine_control control; /* of the other cases: their pitch and torque now */
+    turbine_discon *discon;
     turbine_case happens;
     turbine_report report;
     turbine_view view;
@@ -257,6 +267,7 @@ static int set_up(scene *s) {
 }
 
 static void release(scene *s) {
+    turbine_discon_close(&s->discon);
     turbine_view_free(&s->view);
     turbine_report_free(&s->report);
     turbine_free(&s->turbine);
@@ -345,6 +356,46 @@ static int take_picture(scene *s, double t) {
 
 /* ---- the run ---- */
 
+static int measure(scene *s, turbine_measures *m) {
+    for (int b = 0; b < TURBINE_BLADES; b++) {
+        TRY(turbine_get_root_moment(&s->turbine, b, s->control.pitch, &m->root_moment[b], &m->in_plane[b]));
+    }
+    double *motion = s->motion;
+    TRY(spar_member_get_motion(s->turbine.tower, NULL, NULL, motion));
+    m->top_fore = motion[6 * (s->turbine.tower_nodes - 1)];
+    m->top_side = motion[6 * (s->turbine.tower_nodes - 1) + 1];
+    return SPAR_OK;
+}
+
+/* Asks a controller's library on rank 0; all ranks get what it demands. */
+static int ask_library(scene *s, double t, double dt, double angle, double speed) {
+    turbine_measures m = {.t = t,
+                          .dt = dt,
+                          .pitch = s->control.pitch,
+                          .generator_speed = turbine_gear * speed,
+                          .rotor_speed = speed,
+                          .torque = s->control.torque,
+                          .power = turbine_efficiency * s->control.torque * turbine_gear * speed,
+                          .wind = wind_speed(&s->options, t),
+                          .azimuth = fmod(angle, 2 * pi)};
+    char message[1024] = "";
+    double shared[4] = {0};
+    TRY(measure(s, &m));
+    if (s->rank == 0) {
+        shared[0] = s->discon ? 0
+                              : turbine_discon_open(s->options.controller, s->options.controller_input, &s->discon,
+                                                    message, sizeof message);
+        shared[0] = shared[0] != 0 ? 1 : turbine_discon_step(s->discon, &m, &s->control, message, sizeof message);
+        shared[1] = s->control.pitch, shared[2] = s->control.rate, shared[3] = s->control.torque;
+    }
+    ranks_sum(s->ranks, shared, 4);
+    s->control.pitch = shared[1], s->control.rate = shared[2], s->control.torque = shared[3];
+    if (shared[0] != 0 && s->rank == 0) {
+        fprintf(stderr, "\nturbine: %s\n", message);
+    }
+    return shared[0] != 0 ? SPAR_ERR_USER : SPAR_OK;
+}
+
 /* What the controller sees at t^n decides on torque and pitch until t^{n+1}. Without it: the case's pitch and torque
    at t^{n+1}. */
 static int steer(scene *s, double t, double dt) {
@@ -357,7 +408,13 @@ static int steer(scene *s, double t, double dt) {
         return SPAR_OK;
     }
     TRY(turbine_get_shaft(&s->turbine, &angle, &speed, &twist));
-    turbine_control_step(&s->control, turbine_gear * speed, dt);
+    if (s->options.controller) {
+        if (ask_library(s, t, dt, angle, speed) != SPAR_OK) {
+            return 1;
+        }
+    } else {
+        turbine_control_step(&s->control, turbine_gear * speed, dt);
+    }
     TRY(turbine_set_torque(&s->turbine, turbine_gear * s->control.torque));
     TRY(turbine_set_pitch(&s->turbine, s->control.pitch, s->control.rate));
     return SPAR_OK;

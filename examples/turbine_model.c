@@ -238,6 +238,16 @@ int turbine_get_shaft(const turbine *t, double *angle, double *speed, double *tw
     return SPAR_OK;
 }
 
+int turbine_get_root_moment(const turbine *t, int blade, double pitch, double *out_of_plane, double *in_plane) {
+    double load[6];
+    TRY(spar_joint_get_load(t->bearing[blade], load));
+    /* on the blade, in axes that turn with it: x along the span, y to the trailing edge, z upwind, turned by -pitch */
+    double y = cos(pitch) * load[4] + sin(pitch) * load[5], z = cos(pitch) * load[5] - sin(pitch) * load[4];
+    *out_of_plane = -y;
+    *in_plane = z;
+    return SPAR_OK;
+}
+
 int turbine_turn_blades(turbine *t, double pitch, double rate, double acceleration) {
     const double to[6] = {0, 0, 0, t->rotor.pitch - pitch}, by[6] = {0, 0, 0, -rate},
                  more[6] = {0, 0, 0, -acceleration}; /* feather: minus about the span */

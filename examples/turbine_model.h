@@ -74,6 +74,9 @@ int turbine_brake(turbine *turbine, int on);
 int turbine_set_torque(turbine *turbine, double torque);
 /* Aerodynamic loads of the blades in their latest motion, in the wind at time t. */
 int turbine_blow(turbine *turbine, turbine_wind wind, void *context, double t);
+/* Moments at a blade's root, N m, at a pitch: out of the rotor's plane, positive bending downwind, and in it, positive
+   about the shaft. */
+int turbine_get_root_moment(const turbine *turbine, int blade, double pitch, double *out_of_plane, double *in_plane);
 /* Hub now: place of its centre, and the rotor's axis. */
 int turbine_get_hub(const turbine *turbine, double x[3], double axis[3], double q[4]);
 
