@@ -4,11 +4,20 @@
 ! module coupling below fills its meshes from spar, calls it, and hands its loads back, on each MPI rank for the blades that
 ! are there (none is normal).
 !
-!   rotor --seconds 2 --out out
+!   rotor --seconds 2 --newton 1e-12 --out out
 !   aerodyn_style --seconds 2 --compare out/history.csv        (or: mpirun -np 2 aerodyn_style ...)
 !
-! In double precision the history agrees with that of the C program to rounding. aerodyn_style_single is the same source with
-! a host in single precision, as such codes often are: spar keeps double, and the loads arrive with 7 digits.
+! In double precision the history agrees with that of the C program to rounding, if that one iterates as closely as this one does
+! (--newton 1e-12): the differences are 1e-12 of the largest entry of a column, where 1e-10 is allowed. aerodyn_style_single is the same
+! source with a host in single precision, as such codes often are: spar keeps double, and the loads arrive with 7 digits; it needs
+! --coupling-tolerance 1e-5 --allowed 1e-4.
+!
+! Compiled alone, with spar installed (SPAR: its sources; with mpif90, add -DSPAR_WITH_MPI to run on several ranks; single precision:
+! -DSPAR_EXAMPLE_SINGLE):
+!
+!   gfortran -cpp -ffree-line-length-none -DSPAR_DATA_DIR="\"$SPAR/examples/data\"" $(pkg-config --cflags spar_aero_fortran) \
+!       $SPAR/examples/nrel5mw_parts.f90 $SPAR/examples/rotor_parts.f90 $SPAR/examples/aerodyn_style.f90 \
+!       $(pkg-config --libs spar_aero_fortran) -o aerodyn_style
 
 !-----------------------------------------------------------------------------------------------------------------------
 ! The host as one finds it: it knows nothing of spar. Orientation matrices have the local axes as rows (global to local), in

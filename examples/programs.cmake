@@ -174,6 +174,11 @@ if(TARGET examples_rotor_fortran)
   endif()
   add_test(NAME example_aerodyn_style COMMAND examples_aerodyn_style ${run})
   add_test(NAME example_aerodyn_style_single COMMAND examples_aerodyn_style_single ${run} --coupling-tolerance 1e-5 --allowed 1e-4)
+  # the recipe at the top of aerodyn_style.f90
+  add_test(NAME example_aerodyn_style_recipe COMMAND sh -c "out='${PROJECT_BINARY_DIR}/tests/aerodyn_style_recipe' && \
+    '$<TARGET_FILE:examples_rotor>' --seconds 2 --newton 1e-12 --out \"$out\" --no-plots --quiet >/dev/null && \
+    '$<TARGET_FILE:examples_aerodyn_style>' --seconds 2 --compare \"$out/history.csv\"")
+  spar_set_test(example_aerodyn_style_recipe fortran 120 ${spar_example_environment})
   spar_set_test(example_aerodyn_style fortran 120 ${spar_example_environment})
   spar_set_test(example_aerodyn_style_single fortran 120 ${spar_example_environment})
   list(APPEND spar_rotor_tests example_aerodyn_style example_aerodyn_style_single)

@@ -3,7 +3,7 @@
 ! (none is normal), pulls the motion of its sections out of spar, finds the loads and pushes them back. The equations are
 ! those of spar_aero.h, programmed a second time, so that the history agrees with that of the C program rotor to rounding:
 !
-!   rotor --seconds 2 --out out
+!   rotor --seconds 2 --newton 1e-12 --out out
 !   rotor_fortran --seconds 2 --compare out/history.csv        (or: mpirun -np 2 rotor_fortran ...)
 !
 ! --help lists the options.

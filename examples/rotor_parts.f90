@@ -595,7 +595,8 @@ contains
     write (output_unit, '(a,es8.1,a,i0)') 'against ' // trim(path) // ': differences up to ', maxval(difference), &
         ' of the largest entry of the column, in column ', maxloc(difference, dim=1)
     flush (output_unit)
-    if (maxval(difference) > allowed) error stop 'rotor: the runs differ'
+    if (maxval(difference) > allowed) error stop &
+        'rotor: the runs differ: do both have the same options, and the C program --newton 1e-12?'
   end subroutine compare_history
 
   ! Reads the options and the tables and makes session and blades; false: there is nothing to run.

@@ -1,5 +1,6 @@
 /* The NREL 5-MW rotor with AeroDyn as its fluid, at a given speed. Beside it, where it is asked for, the same rotor
    with spar's own blade elements, so that the two can be compared. --help lists the options. */
+#include "deck.h"
 #include "nrel5mw.h"
 #include "plate.h"
 #include "spar_aerodyn.h"
@@ -15,9 +16,9 @@ static const double pi = 3.14159265358979323846;
 static const double hub_height = 90; /* m: InflowWind has no wind below the ground */
 
 typedef struct options {
-    const char *aerodyn, *inflow, *data;
-    double wind, rpm, pitch, seconds, dt, tolerance, allowed;
-    int beside, iterations;
+    const char *aerodyn, *inflow, *deck, *data;
+    double wind, rpm, pitch, tilt, precone, seconds, dt, tolerance, allowed;
+    int beside, iterations, rigid;
 } options;
 
 /* One rotor: with AeroDyn, or with spar's own blade elements. */
@@ -33,7 +34,7 @@ typedef struct scene {
     spar_aerodyn *aerodyn; /* or */
     spar_aero *aero;
     double *inflow;
-    double thrust, flap; /* N, m: of the last step */
+    double thrust, torque, flap; /* N, N m, m: of the last step */
 } scene;
 
 #define TRY(call)                                                                                                      \
@@ -53,7 +54,7 @@ static int create_blades(scene *s, double *twist) {
     }
     for (int b = 0; b < BLADES; b++) {
         nrel5mw data = *s->data; /* its message alone is written to */
-        TRY(nrel5mw_create_blade(&data, &s->rotor, s->session, b, 1, 8, &s->blade[b]));
+        TRY(nrel5mw_create_blade(&data, &s->rotor, s->session, b, s->o->rigid ? 0 : 1, 8, &s->blade[b]));
         TRY(spar_member_commit(s->blade[b]));
         TRY(spar_member_set_initial_velocity(s->blade[b], s->rotor.hub, NULL, omega));
         TRY(nrel5mw_create_sections(&data, &s->rotor, b, s->blade[b], &s->fluid[b], twist));
@@ -160,7 +161,7 @@ static int bend(scene *s) {
     }
     TRY(solve_at(s, 0, 0));
     for (int b = 0; b < BLADES; b++) {
-        TRY(spar_member_solve_static(s->blade[b], 4));
+        TRY(s->o->rigid ? SPAR_OK : spar_member_solve_static(s->blade[b], 4));
         TRY(spar_member_set_initial_velocity(s->blade[b], s->rotor.hub, NULL, omega));
     }
     return solve_at(s, 0, 0);
@@ -180,21 +181,22 @@ static int create(scene *s, const options *o, const nrel5mw *data, int with_aero
     return bend(s);
 }
 
-/* Force along the shaft, and how far the first blade's tip is from where a rigid one would be, downwind. */
+/* Force along the shaft and moment about it, and how far the first blade's tip is from where a rigid one would be,
+ * downwind. */
 static int look(scene *s, double t) {
-    double motion[7 * 64], place[3 * 64], force[3] = {0}, sum[3], q[7], v[6], a[6];
+    double motion[7 * 64], place[3 * 64], force[3], moment[3], q[7], v[6], a[6];
+    s->thrust = s->torque = s->flap = 0;
     for (int b = 0; b < BLADES; b++) {
-        TRY(spar_fluid_sum_loads(s->fluid[b], NULL, sum, NULL));
+        TRY(spar_fluid_sum_loads(s->fluid[b], s->rotor.hub, force, moment));
         for (int i = 0; i < 3; i++) {
-            force[i] += sum[i];
+            s->thrust += force[i] * s->rotor.axis[i];
+            s->torque += moment[i] * s->rotor.axis[i];
         }
     }
     TRY(spar_member_get_motion(s->blade[0], motion, NULL, NULL));
     TRY(spar_member_get_reference(s->blade[0], place, NULL));
     nrel5mw_root_motion(s->data, &s->rotor, 0, s->speed * t, s->speed, 0, q, v, a);
-    s->thrust = s->flap = 0;
     for (int i = 0; i < 3; i++) { /* turning about the shaft moves nothing along it */
-        s->thrust += force[i] * s->rotor.axis[i];
         s->flap += motion[7 * (s->nodes - 1) + i] * s->rotor.axis[i];
     }
     return SPAR_OK;
@@ -223,9 +225,9 @@ static int complain(const scene *s, int status) {
 /* Steps of both; the largest differences, relative to the largest of each figure. */
 static int run(const options *o, scene *with, scene *beside) {
     const int steps = (int)ceil(o->seconds / o->dt - 1e-9), shown = steps > 20 ? steps / 20 : 1;
-    double difference[2] = {0}, largest[2] = {1e-300, 1e-300}, impulse = 0;
-    printf("%8s %12s %10s %5s%s\n", "time", "thrust", "tip", "iter",
-           o->beside ? "   spar's own: thrust        tip" : "");
+    double difference[3] = {0}, largest[3] = {1e-300, 1e-300, 1e-300}, impulse = 0;
+    printf("%8s %12s %13s %12s %10s %5s%s\n", "time", "thrust", "torque", "power", "tip", "iter",
+           o->beside ? "   spar's own: thrust        torque        tip" : "");
     for (int i = 0; i < steps; i++) {
         int iterations, own = 0, status = step(with, i * o->dt, &iterations);
         if (status != SPAR_OK) {
@@ -235,19 +237,29 @@ static int run(const options *o, scene *with, scene *beside) {
             return complain(beside, status);
         }
         impulse += o->dt * with->thrust;
-        largest[0] = fmax(largest[0], fabs(with->thrust));
-        largest[1] = fmax(largest[1], fabs(with->flap));
-        difference[0] = fmax(difference[0], fabs(with->thrust - beside->thrust));
-        difference[1] = fmax(difference[1], fabs(with->flap - beside->flap));
+        const double here[3] = {with->thrust, with->torque, with->flap},
+                     there[3] = {beside->thrust, beside->torque, beside->flap};
+        for (int k = 0; k < 3; k++) {
+            largest[k] = fmax(largest[k], fabs(here[k]));
+            difference[k] = fmax(difference[k], fabs(here[k] - there[k]));
+        }
         if ((i + 1) % shown == 0 || i + 1 == steps) {
-            printf("%8.3f %9.3f kN %8.4f m %5d", (i + 1) * o->dt, with->thrust * 1e-3, with->flap, iterations);
-            printf(o->beside ? "     %9.3f kN %8.4f m\n" : "\n", beside->thrust * 1e-3, beside->flap);
+            printf("%8.3f %9.3f kN %8.3f kN m %9.3f kW %8.4f m %5d", (i + 1) * o->dt, with->thrust * 1e-3,
+                   with->torque * 1e-3, with->torque * with->speed * 1e-3, with->flap, iterations);
+            if (o->beside) {
+                printf("     %9.3f kN %8.3f kN m %8.4f m", beside->thrust * 1e-3, beside->torque * 1e-3, beside->flap);
+            }
+            printf("\n");
         }
     }
     if (o->beside) {
-        const double worst = fmax(difference[0] / largest[0], difference[1] / largest[1]);
-        printf("the two differ by %.1e of the thrust, %.1e of the tip\n", difference[0] / largest[0],
+        double worst = 0;
+        for (int k = 0; k < 3; k++) {
+            worst = fmax(worst, o->rigid && k == 2 ? 0 : difference[k] / largest[k]);
+        }
+        printf("the two differ by %.1e of the thrust, %.1e of the torque", difference[0] / largest[0],
                difference[1] / largest[1]);
+        printf(o->rigid ? "\n" : ", %.1e of the tip\n", difference[2] / largest[2]);
         if (o->beside == BESIDE_PLATE) { /* the stand-in's state, which must not count corrections */
             const double own = spar_aerodyn_get_channel(with->aerodyn, 0);
             printf("impulse of the thrust: %.6g N s, as the stand-in has it %.6g N s\n", impulse, own);
@@ -261,14 +273,20 @@ static int run(const options *o, scene *with, scene *beside) {
 /* ---- options ---- */
 
 static void help(void) {
-    puts("usage: aerodyn_rotor --aerodyn FILE --inflow FILE [options]\n\n"
-         "  --aerodyn FILE    AeroDyn's primary input file, of the NREL 5-MW turbine\n"
+    puts("usage: aerodyn_rotor [options]\n\n"
+         "  --deck FOLDER     writes the files of AeroDyn and InflowWind there, for this turbine and wind, and runs "
+         "with "
+         "them [aerodyn_deck]\n"
+         "  --aerodyn FILE    in their place: AeroDyn's primary input file, of the NREL 5-MW turbine\n"
          "  --inflow FILE     InflowWind's\n"
-         "  --wind M/S        that of the file, for --beside [8]\n"
+         "  --wind M/S        of --deck; of the given files, for --beside [8]\n"
          "  --rpm REV/MIN     rotor speed [9.16]\n"
          "  --pitch DEG       blade pitch [0]\n"
+         "  --tilt DEG        of the shaft [5]\n"
+         "  --precone DEG     of the blades [2.5]\n"
+         "  --rigid 1         rigid blades, as AeroDyn's own driver has them [0]\n"
          "  --seconds S       time to simulate [10]\n"
-         "  --dt S            step of AeroDyn and of the coupling [0.02]\n"
+         "  --dt S            step of AeroDyn and of the coupling, one for the whole run [0.02]\n"
          "  --tolerance R     of the coupling; AeroDyn in single precision has noise of some 3e-5 [1e-4]\n"
          "  --iterations N    of the coupling at most [20]\n"
          "  --beside bem|plate runs the rotor with spar's own blade elements too: those of the turbine, or the "
@@ -277,39 +295,82 @@ static void help(void) {
          "  --data FOLDER     the tables of the turbine");
 }
 
+/* Says what is wrong with an option. */
+static int wrong(const char *name, const char *value) {
+    if (strcmp(name, "--cfl") == 0) {
+        fprintf(stderr,
+                "aerodyn_rotor: --cfl: AeroDyn's library counts steps of one dt from t = 0, so that dt cannot follow "
+                "the flow; give --dt\n");
+    } else if (strcmp(name, "--help") == 0) {
+        help();
+    } else {
+        fprintf(stderr, "aerodyn_rotor: %s %s: no such option or value; --help lists them\n", name, value);
+    }
+    return 0;
+}
+
 static int options_read(options *o, int argc, char **argv) {
+    double rigid = 0, iterations = o->iterations;
     struct {
         const char *name;
         double *number;
         const char **text;
-    } known[] = {{"--aerodyn", NULL, &o->aerodyn},    {"--inflow", NULL, &o->inflow}, {"--data", NULL, &o->data},
-                 {"--wind", &o->wind, NULL},          {"--rpm", &o->rpm, NULL},       {"--pitch", &o->pitch, NULL},
-                 {"--seconds", &o->seconds, NULL},    {"--dt", &o->dt, NULL},         {"--allowed", &o->allowed, NULL},
-                 {"--tolerance", &o->tolerance, NULL}};
+    } known[] = {
+        {"--aerodyn", NULL, &o->aerodyn},     {"--inflow", NULL, &o->inflow}, {"--data", NULL, &o->data},
+        {"--wind", &o->wind, NULL},           {"--rpm", &o->rpm, NULL},       {"--pitch", &o->pitch, NULL},
+        {"--seconds", &o->seconds, NULL},     {"--dt", &o->dt, NULL},         {"--allowed", &o->allowed, NULL},
+        {"--tolerance", &o->tolerance, NULL}, {"--deck", NULL, &o->deck},     {"--tilt", &o->tilt, NULL},
+        {"--precone", &o->precone, NULL},     {"--rigid", &rigid, NULL},      {"--iterations", &iterations, NULL}};
     for (int i = 1; i < argc; i += 2) {
         const char *value = i + 1 < argc ? argv[i + 1] : "";
+        char *end = "";
         size_t k = 0, n = sizeof known / sizeof known[0];
         while (k < n && strcmp(argv[i], known[k].name) != 0) {
             k++;
         }
-        if (k < n && known[k].text) {
+        if (k < n && known[k].text && value[0]) {
             *known[k].text = value;
-        } else if (k < n) {
-            *known[k].number = strtod(value, NULL);
-        } else if (strcmp(argv[i], "--iterations") == 0) {
-            o->iterations = (int)strtol(value, NULL, 10);
-        } else if (strcmp(argv[i], "--beside") == 0) {
+        } else if (k < n && known[k].number && value[0]) {
+            *known[k].number = strtod(value, &end);
+        } else if (strcmp(argv[i], "--beside") == 0 && (strcmp(value, "plate") == 0 || strcmp(value, "bem") == 0)) {
             o->beside = strcmp(value, "plate") == 0 ? BESIDE_PLATE : BESIDE_BEM;
         } else {
-            return 0;
+            return wrong(argv[i], value);
+        }
+        if (*end) {
+            return wrong(argv[i], value);
         }
     }
-    return o->aerodyn && o->inflow && o->dt > 0 && o->seconds > 0 && o->iterations > 0;
+    o->iterations = (int)iterations;
+    o->rigid = rigid != 0;
+    if (!(o->dt > 0 && o->seconds > 0 && o->iterations > 0)) {
+        return wrong("--dt, --seconds, --iterations", "are positive");
+    }
+    if (!o->aerodyn != !o->inflow) {
+        return wrong("--aerodyn", "goes with --inflow");
+    }
+    return 1;
+}
+
+/* The files that it runs with, where none are given. */
+static int make_deck(options *o, nrel5mw *data) {
+    static char aerodyn[1024], inflow[1024];
+    if (o->aerodyn) {
+        return SPAR_OK;
+    }
+    snprintf(aerodyn, sizeof aerodyn, "%.1000s/AeroDyn.dat", o->deck);
+    snprintf(inflow, sizeof inflow, "%.1000s/InflowWind.dat", o->deck);
+    o->aerodyn = aerodyn;
+    o->inflow = inflow;
+    return deck_write(data, o->deck, o->wind);
 }
 
 int main(int argc, char **argv) {
     options o = {.data = SPAR_DATA_DIR "/nrel5mw",
+                 .deck = "aerodyn_deck",
                  .wind = 8,
+                 .tilt = NAN,
+                 .precone = NAN,
                  .rpm = 9.16,
                  .seconds = 10,
                  .dt = 0.02,
@@ -319,10 +380,12 @@ int main(int argc, char **argv) {
     nrel5mw data;
     static scene with, beside;
     if (!options_read(&o, argc, argv)) {
-        help();
         return 2;
     }
     int status = nrel5mw_load(&data, o.data), failed;
+    data.tilt = isnan(o.tilt) ? data.tilt : o.tilt * pi / 180;
+    data.precone = isnan(o.precone) ? data.precone : o.precone * pi / 180;
+    status = status ? status : make_deck(&o, &data);
     if (status != SPAR_OK) {
         fprintf(stderr, "aerodyn_rotor: %s\n", data.message);
         nrel5mw_free(&data);

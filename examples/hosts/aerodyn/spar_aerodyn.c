@@ -25,7 +25,7 @@ struct spar_aerodyn {
     double *root_axes;
     float *load, *force, *moment, *channel;
     char *names;
-    char message[ADI_TEXT + 64];
+    char message[ADI_MESSAGE + 64];
 };
 
 typedef struct pose {
@@ -43,7 +43,7 @@ static int say(spar_aerodyn *s, int status, const char *format, ...) {
 
 /* The library's answer as a status. */
 static int answer(spar_aerodyn *s, const char *call, int status, char *message) {
-    message[ADI_TEXT - 1] = '\0';
+    message[ADI_MESSAGE - 1] = '\0';
     return status >= ADI_FATAL ? say(s, SPAR_ERR_USER, "%s: %s", call, message) : SPAR_OK;
 }
 
@@ -168,7 +168,7 @@ static int begin_library(spar_aerodyn *s) {
     const float gravity = (float)o->gravity, density = (float)o->density, viscosity = (float)o->viscosity,
                 sound = (float)o->sound, pressure = 101325, vapour = 2000, none = 0, nacelle[6] = {0};
     const double never = 1e30;
-    char folder[ADI_TEXT] = "", message[ADI_TEXT] = "";
+    char folder[ADI_TEXT] = "", message[ADI_MESSAGE] = "";
     int status = 0;
     ADI_C_PreInit(&one, &zero, &one, &gravity, &density, &viscosity, &sound, &pressure, &vapour, &none, &none, &zero,
                   &zero, folder, &zero, &zero, &never, nacelle, &none, &zero, &status, message);
@@ -181,7 +181,7 @@ static int begin_rotor(spar_aerodyn *s, const spar_aerodyn_body *hub, const spar
     const float origin[3] = {0};
     const int one = 1;
     int status = 0, *blade_of = calloc((size_t)s->points + 1, sizeof *blade_of), k = 0;
-    char message[ADI_TEXT] = "";
+    char message[ADI_MESSAGE] = "";
     if (!blade_of) {
         return say(s, SPAR_ERR_MEMORY, "no memory");
     }
@@ -196,10 +196,33 @@ static int begin_rotor(spar_aerodyn *s, const spar_aerodyn_body *hub, const spar
     return answer(s, "ADI_C_SetupRotor", status, message);
 }
 
+/* The library gives velocities in the projection of BEM_Mod 1, whatever the file says. With BEM_Mod 2 it finds no
+   induction and says nothing. */
+static int look_at_model(spar_aerodyn *s) {
+    char line[1024], model[16], name[32];
+    FILE *file = fopen(s->options.aerodyn_file, "r");
+    int wrong = 0;
+    while (file && !wrong && fgets(line, sizeof line, file)) {
+        wrong = sscanf(line, "%15s %31s", model, name) == 2 && strcmp(name, "BEM_Mod") == 0 &&
+                strcmp(model, "2") == 0; /* NOLINT */
+    }
+    if (file) { /* a file that is not there is the library's to tell */
+        fclose(file);
+    }
+    return wrong ? say(s, SPAR_ERR_ARGUMENT,
+                       "BEM_Mod is 2 in %s: the library serves BEM_Mod 1 alone, and with 2 there is no induction; set "
+                       "BEM_Mod to 1",
+                       s->options.aerodyn_file)
+                 : SPAR_OK;
+}
+
 static int begin_run(spar_aerodyn *s) {
     const spar_aerodyn_options *o = &s->options;
+    if (strlen(o->aerodyn_file) >= ADI_TEXT || strlen(o->inflow_file) >= ADI_TEXT || strlen(o->output) >= ADI_TEXT) {
+        return say(s, SPAR_ERR_ARGUMENT, "AeroDyn's library takes names of %d characters at most", ADI_TEXT - 1);
+    }
     const int zero = 0, one = 1, aerodyn = (int)strlen(o->aerodyn_file) + 1, inflow = (int)strlen(o->inflow_file) + 1;
-    char output[ADI_TEXT] = "", message[ADI_TEXT] = "";
+    char output[ADI_TEXT] = "", message[ADI_MESSAGE] = "";
     int status = 0, channels = 0;
     snprintf(output, sizeof output, "%s", o->output);
     ADI_C_Init(&zero, &o->aerodyn_file, &aerodyn, &zero, &o->inflow_file, &inflow, output, &o->order, &o->dt,
@@ -262,6 +285,7 @@ int spar_aerodyn_create(const spar_aerodyn_options *options, int blades, spar_fl
     }
     int status = take_fluids(s, blades, sections);
     status = status ? status : take_blades(s, 1);
+    status = status ? status : look_at_model(s);
     status = status ? status : begin_library(s);
     status = status ? status : begin_rotor(s, hub, nacelle);
     return status ? status : begin_run(s);
@@ -273,7 +297,7 @@ void spar_aerodyn_destroy(spar_aerodyn **aerodyn) {
         return;
     }
     if (s->begun) {
-        char message[ADI_TEXT];
+        char message[ADI_MESSAGE];
         int status;
         ADI_C_End(&status, message);
     }
@@ -310,7 +334,7 @@ void spar_aerodyn_destroy(spar_aerodyn **aerodyn) {
 static int give_motion(spar_aerodyn *s, const spar_aerodyn_body *hub, const spar_aerodyn_body *nacelle) {
     const pose h = pose_of(hub), n = pose_of(nacelle);
     const int one = 1;
-    char message[ADI_TEXT] = "";
+    char message[ADI_MESSAGE] = "";
     int status = take_blades(s, 0);
     if (status != SPAR_OK) {
         return status;
@@ -324,7 +348,7 @@ static int give_motion(spar_aerodyn *s, const spar_aerodyn_body *hub, const spar
 static int take_loads(spar_aerodyn *s, double t) {
     const int one = 1;
     float wind[3];
-    char message[ADI_TEXT] = "";
+    char message[ADI_MESSAGE] = "";
     int status = 0;
     ADI_C_CalcOutput(&t, s->channel, &status, message);
     if (answer(s, "ADI_C_CalcOutput", status, message) != SPAR_OK) {
@@ -349,19 +373,23 @@ static int give_loads(spar_aerodyn *s) {
     return SPAR_OK;
 }
 
-/* The library counts steps of dt from t = 0, whatever times it is given. */
+/* The library counts steps of dt from t = 0, whatever times it is given: with another dt it would go on without a word,
+   at a time of its own. */
 static int look_at_clock(spar_aerodyn *s, double t, double dt) {
     const double own = s->options.dt;
     if (fabs(dt - own) > 1e-9 * own || fabs(t - own * round(t / own)) > 1e-6 * own) {
-        return say(s, SPAR_ERR_ARGUMENT, "a step of %g s from t = %g: AeroDyn takes steps of %g s from t = 0", dt, t,
-                   own);
+        return say(
+            s, SPAR_ERR_ARGUMENT,
+            "a step of %g s from t = %g s: AeroDyn's library counts steps of the dt that it was made with, %g s, from "
+            "t = 0; keep dt, or make the adapter with the dt that is wanted",
+            dt, t, own);
     }
     return SPAR_OK;
 }
 
 static int advance(spar_aerodyn *s, double t, double dt) {
     const double next = t + dt;
-    char message[ADI_TEXT] = "";
+    char message[ADI_MESSAGE] = "";
     int status = look_at_clock(s, t, dt);
     if (status == SPAR_OK) {
         ADI_C_UpdateStates(&t, &next, &status, message);

@@ -25,15 +25,17 @@ static struct {
     double impulse, impulse_last;
 } rotor;
 
+/* Every character of a message is written, as the library's Fortran may do. */
 static int fatal(int *status, char *message, const char *text) {
     *status = ADI_FATAL;
-    snprintf(message, ADI_TEXT, "%s", text);
+    memset(message, 0, ADI_MESSAGE);
+    snprintf(message, ADI_MESSAGE, "%s", text);
     return 0;
 }
 
 static int good(int *status, char *message) {
     *status = 0;
-    message[0] = '\0';
+    memset(message, 0, ADI_MESSAGE);
     return 1;
 }
 
@@ -68,7 +70,7 @@ void ADI_C_PreInit(const int *turbines, const int *transpose, const int *point_l
                    const float *vapour, const float *depth, const float *sea_level, const int *hydrokinetic,
                    const int *external_flow, const char vtk_folder[ADI_TEXT], const int *vtk, const int *vtk_kind,
                    const double *vtk_dt, const float vtk_nacelle[6], const float *vtk_hub_radius, const int *debug,
-                   int *status, char message[ADI_TEXT]) {
+                   int *status, char message[ADI_MESSAGE]) {
     memset(&rotor, 0, sizeof rotor);
     (void)gravity, (void)viscosity, (void)sound, (void)pressure, (void)vapour, (void)depth, (void)sea_level;
     (void)vtk_folder, (void)vtk_kind, (void)vtk_dt, (void)vtk_nacelle, (void)vtk_hub_radius, (void)debug;
@@ -115,7 +117,7 @@ static int roots_point_along(const float *root, const double *root_axes, const f
 void ADI_C_SetupRotor(const int *i, const int *horizontal, const float origin[3], const float hub[3],
                       const double hub_axes[9], const float nacelle[3], const double nacelle_axes[9], const int *blades,
                       const float *root, const double *root_axes, const int *points, const float *place,
-                      const double *axes, const int *blade_of, int *status, char message[ADI_TEXT]) {
+                      const double *axes, const int *blade_of, int *status, char message[ADI_MESSAGE]) {
     double rows[9];
     (void)origin, (void)hub, (void)nacelle, (void)nacelle_axes;
     if (rotor.stage != PREPARED || *i != 1 || !*horizontal || *points > POINTS_MOST || *blades > BLADES_MOST) {
@@ -160,15 +162,49 @@ static int read_wind(const char *path, double *speed) {
     return found;
 }
 
+/* The files that a primary file names in quotes, beside it. A missing one is told as the library does: each routine
+   that it passes adds its name, and the path stands in it more than once. */
+static int find_files(const char *path, char text[ADI_MESSAGE]) {
+    char line[1024], name[4 * ADI_TEXT], where[512];
+    const char *slash = strrchr(path, '/');
+    FILE *file = fopen(path, "r"), *one;
+    if (!file) {
+        snprintf(text, ADI_MESSAGE, "no file %s", path);
+        return 0;
+    }
+    int all = 1;
+    while (all && fgets(line, sizeof line, file)) {
+        if (sscanf(line, " \"%511[^\"]\"", where) != 1 || !strstr(where, ".dat")) { /* NOLINT */
+            continue;
+        }
+        snprintf(name, sizeof name, "%.*s%s", slash ? (int)(slash + 1 - path) : 0, path, where);
+        one = fopen(name, "r");
+        all = one != NULL;
+        if (one) {
+            fclose(one);
+        }
+    }
+    fclose(file);
+    for (size_t at = 0; !all && at + 1 < ADI_MESSAGE;) {
+        at += (size_t)snprintf(text + at, ADI_MESSAGE - at, "AD_Init:ReadFile: the file \"%s\" was not found. ", name);
+    }
+    return all;
+}
+
 void ADI_C_Init(const int *aerodyn_passed, const char *const *aerodyn, const int *aerodyn_length,
                 const int *inflow_passed, const char *const *inflow, const int *inflow_length,
                 const char output[ADI_TEXT], const int *order, const double *dt, const double *seconds,
                 const int *keep_hub_wind, const int *write, const double *write_dt, int *channels, char *channel_names,
-                char *channel_units, int *status, char message[ADI_TEXT]) {
-    (void)aerodyn, (void)output, (void)seconds, (void)keep_hub_wind, (void)write, (void)write_dt;
+                char *channel_units, int *status, char message[ADI_MESSAGE]) {
+    char text[ADI_MESSAGE];
+    (void)output, (void)seconds, (void)keep_hub_wind, (void)write, (void)write_dt;
     if (rotor.stage != ROTOR || *aerodyn_passed || *inflow_passed || *order < 1 || *order > 2 || !(*dt > 0) ||
         *aerodyn_length < 1 || *inflow_length != (int)strlen(*inflow) + 1) {
         fatal(status, message, "Init comes after SetupRotor, with paths, order 1 or 2 and dt > 0");
+        return;
+    }
+    if (!find_files(*aerodyn, text)) {
+        fatal(status, message, text);
         return;
     }
     if (!read_wind(*inflow, &rotor.wind[0])) {
@@ -191,7 +227,7 @@ void ADI_C_SetRotorMotion(const int *i, const float hub[3], const double hub_axe
                           const float nacelle_v[6], const float nacelle_a[6], const float *root,
                           const double *root_axes, const float *root_v, const float *root_a, const int *points,
                           const float *place, const double *axes, const float *v, const float *a, int *status,
-                          char message[ADI_TEXT]) {
+                          char message[ADI_MESSAGE]) {
     double rows[9];
     (void)hub, (void)hub_v, (void)hub_a, (void)nacelle, (void)nacelle_axes, (void)nacelle_v, (void)nacelle_a;
     (void)root_v, (void)root_a, (void)a;
@@ -260,7 +296,7 @@ static double thrust(void) {
     return sum;
 }
 
-void ADI_C_UpdateStates(const double *t, const double *t_next, int *status, char message[ADI_TEXT]) {
+void ADI_C_UpdateStates(const double *t, const double *t_next, int *status, char message[ADI_MESSAGE]) {
     if (rotor.stage != READY || !rotor.moved || fabs(*t_next - *t - rotor.dt) > 1e-6 * rotor.dt) {
         fatal(status, message, "a step is dt long, after motion was given");
         return;
@@ -280,7 +316,7 @@ void ADI_C_UpdateStates(const double *t, const double *t_next, int *status, char
     good(status, message);
 }
 
-void ADI_C_CalcOutput(const double *t, float *channel_values, int *status, char message[ADI_TEXT]) {
+void ADI_C_CalcOutput(const double *t, float *channel_values, int *status, char message[ADI_MESSAGE]) {
     if (rotor.stage != READY || !rotor.moved || fabs(*t - rotor.steps * rotor.dt) > 1e-6 * rotor.dt) {
         fatal(status, message, "loads are those at the end of the last step");
         return;
@@ -291,7 +327,7 @@ void ADI_C_CalcOutput(const double *t, float *channel_values, int *status, char 
 }
 
 void ADI_C_GetRotorLoads(const int *i, const int *points, float *load, float hub_wind[3], int *status,
-                         char message[ADI_TEXT]) {
+                         char message[ADI_MESSAGE]) {
     if (rotor.stage != READY || *i != 1 || *points != rotor.points) {
         fatal(status, message, "no loads yet");
         return;
@@ -307,7 +343,7 @@ void ADI_C_GetRotorLoads(const int *i, const int *points, float *load, float hub
     good(status, message);
 }
 
-void ADI_C_End(int *status, char message[ADI_TEXT]) {
+void ADI_C_End(int *status, char message[ADI_MESSAGE]) {
     rotor.stage = NOTHING;
     good(status, message);
 }
