@@ -1,9 +1,53 @@
-# OpenFOAM with spar in it, a few steps on two ranks: skipped, with a word, where it or its headers are not installed. What is
-# checked, and where the figures are from: ../code_saturne/cylinder/compare.awk.
-if(SPAR_BUILD_TESTS AND SPAR_MPI)
-  add_test(NAME host_openfoam
-    COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/run" cylinder --refine 0.5 --steps 20 --ranks 2 --no-install --headers "${PROJECT_SOURCE_DIR}/build/openfoam"
-            --build "${PROJECT_BINARY_DIR}" --out "${PROJECT_BINARY_DIR}/tests/host_openfoam")
-  spar_set_test(host_openfoam hosts 1200)
-  set_tests_properties(host_openfoam PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2)
+# OpenFOAM with spar in it, a few steps: skipped, with a word, where it or its headers are not installed. What is checked, and where
+# the figures are from: ../code_saturne/cylinder/compare.awk, and here.
+if(NOT SPAR_BUILD_TESTS OR NOT SPAR_MPI)
+  return()
 endif()
+set(out "${PROJECT_BINARY_DIR}/tests/host_openfoam")
+# foam_test(<name> <case> <options>...)
+function(foam_test name case)
+  add_test(NAME host_openfoam${name}
+    COMMAND sh "${SPAR_HOST_DIR}/run" ${case} --no-install --headers "${PROJECT_SOURCE_DIR}/build/openfoam" --build "${PROJECT_BINARY_DIR}"
+            --out "${out}${name}" ${ARGN})
+  spar_set_test(host_openfoam${name} hosts 1200)
+  set_tests_properties(host_openfoam${name} PROPERTIES SKIP_RETURN_CODE 77)
+endfunction()
+
+foam_test("" cylinder --refine 0.5 --steps 20 --ranks 2)
+set_tests_properties(host_openfoam PROPERTIES PROCESSORS 2)
+
+# A run that goes on half-way has the digits of one in one go; where the structure's file is missing or is another's, it is refused.
+foam_test(_whole cylinder --refine 0.5 --steps 8)
+foam_test(_half cylinder --refine 0.5 --steps 4)
+foam_test(_restart cylinder --refine 0.5 --steps 8 --restart "${out}_half" --against "${out}_whole" --within 0)
+add_test(NAME host_openfoam_refused COMMAND sh "${SPAR_HOST_DIR}/refused" "${out}_restart")
+spar_set_test(host_openfoam_refused hosts 300)
+set_tests_properties(host_openfoam_refused PROPERTIES SKIP_RETURN_CODE 77)
+
+# One body on two patches moves as on one; two bodies, each on a patch, tied together, as the one that has both masses. (explicit:
+# where the iteration of two bodies ends is rounded otherwise)
+foam_test(_patches cylinder --refine 0.5 --steps 8 --set halves=1 --against "${out}_whole")
+file(READ "${SPAR_HOST_DIR}/../cases/cylinder.case" text)
+file(WRITE "${out}_cases/one.case" "${text}")
+string(REPLACE "mass 2 2 2 0.25 0.25 0.25" "mass 1 1 1 0.125 0.125 0.125" text "${text}")
+file(WRITE "${out}_cases/members.case" "${text}
+[rigid other]
+place 0 0 0.5
+mass 1 1 1 0.125 0.125 0.125
+velocity 0 0.05 0
+
+[joint weld]
+a cylinder first
+b other first
+
+[host openfoam]
+half other
+")
+foam_test(_one "${out}_cases/one.case" --refine 0.5 --steps 4 --scheme explicit --correctors 1)
+foam_test(_members "${out}_cases/members.case" --refine 0.5 --steps 4 --scheme explicit --correctors 1 --set halves=1
+  --against "${out}_one" --columns 7)
+
+set_tests_properties(host_openfoam_restart PROPERTIES DEPENDS "host_openfoam_whole;host_openfoam_half")
+set_tests_properties(host_openfoam_refused PROPERTIES DEPENDS host_openfoam_restart)
+set_tests_properties(host_openfoam_patches PROPERTIES DEPENDS host_openfoam_whole)
+set_tests_properties(host_openfoam_members PROPERTIES DEPENDS host_openfoam_one)

@@ -1,6 +1,8 @@
 // A cylinder of D = 1 in a stream, one cell thick: an O-grid in a square, that in a box. gmsh 4.
 // -setnumber n: refinement, 1: 4056 cells. Faces: inlet, outlet, sides, cylinder, frontback.
+// -setnumber halves 1: half of the cylinder is cylinder_half, the rest cylinder.
 If (!Exists(n)) n = 1; EndIf
+If (!Exists(halves)) halves = 0; EndIf
 R = 0.5; B = 2.5; s = Sqrt(2)/2;                                // radius, half the square
 X[] = {-8, -B, B, 20}; Y[] = {-8, -B, B, 8};                    // the box, cut by the square
 arc = Ceil(16*n) + 1; ring = Ceil(28*n) + 1; up = Ceil(10*n) + 1; down = Ceil(44*n) + 1; side = Ceil(10*n) + 1;
@@ -78,6 +80,11 @@ EndFor
 Physical Surface("inlet", 1) = inlet[];
 Physical Surface("outlet", 2) = outlet[];
 Physical Surface("sides", 3) = sides[];
-Physical Surface("cylinder", 4) = wall[];
+If (halves)
+  Physical Surface("cylinder", 4) = {wall[0], wall[1]};
+  Physical Surface("cylinder_half", 6) = {wall[2], wall[3]};
+Else
+  Physical Surface("cylinder", 4) = wall[];
+EndIf
 Physical Surface("frontback", 5) = plane[];
 Physical Volume("fluid", 10) = fluid[];

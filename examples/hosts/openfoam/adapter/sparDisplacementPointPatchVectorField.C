@@ -1,9 +1,8 @@
 #include "sparDisplacementPointPatchVectorField.H"
 #include "addToRunTimeSelectionTable.H"
+#include "pointFields.H"
 #include "pointPatchFields.H"
-#include "surfaceFields.H"
-#include "turbulentTransportModel.H"
-#include "volFields.H"
+#include "sparFoam.H"
 
 Foam::sparDisplacementPointPatchVectorField::sparDisplacementPointPatchVectorField
 (
@@ -13,7 +12,8 @@ Foam::sparDisplacementPointPatchVectorField::sparDisplacementPointPatchVectorFie
 :
     fixedValuePointPatchField<vector>(patch, field),
     density_(1),
-    timeIndex_(-1)
+    resumes_(false),
+    begun_(0)
 {}
 
 Foam::sparDisplacementPointPatchVectorField::sparDisplacementPointPatchVectorField
@@ -24,10 +24,11 @@ Foam::sparDisplacementPointPatchVectorField::sparDisplacementPointPatchVectorFie
 )
 :
     fixedValuePointPatchField<vector>(patch, field, dict),
-    structure_(dict.get<fileName>("structure")),
-    member_(dict.get<word>("member")),
-    density_(dict.get<scalar>("density")),
-    timeIndex_(-1)
+    structure_(sparFoam::get<fileName>(dict, "structure")),
+    member_(sparFoam::get<word>(dict, "member")),
+    density_(sparFoam::get<scalar>(dict, "density")),
+    resumes_(dict.found("begun")),
+    begun_(resumes_ ? sparFoam::get<scalar>(dict, "begun") : 0)
 {}
 
 Foam::sparDisplacementPointPatchVectorField::sparDisplacementPointPatchVectorField
@@ -42,7 +43,8 @@ Foam::sparDisplacementPointPatchVectorField::sparDisplacementPointPatchVectorFie
     structure_(other.structure_),
     member_(other.member_),
     density_(other.density_),
-    timeIndex_(-1)
+    resumes_(other.resumes_),
+    begun_(other.begun_)
 {}
 
 Foam::sparDisplacementPointPatchVectorField::sparDisplacementPointPatchVectorField
@@ -55,26 +57,47 @@ Foam::sparDisplacementPointPatchVectorField::sparDisplacementPointPatchVectorFie
     structure_(other.structure_),
     member_(other.member_),
     density_(other.density_),
-    timeIndex_(-1)
+    resumes_(other.resumes_),
+    begun_(other.begun_)
 {}
 
-void Foam::sparDisplacementPointPatchVectorField::start()
+Foam::fileName Foam::sparDisplacementPointPatchVectorField::caseFile() const
 {
-    const polyBoundaryMesh& patches = internalField().mesh()().boundaryMesh();
-    const vectorField centres(patches[patches.findPatchID(patch().name())].faceCentres());
-    fileName structure(structure_);
-    host_.reset(new sparHost(structure.expand(), member_, patch().localPoints(), centres));
+    fileName file(structure_);
+    return file.expand();
 }
 
-Foam::tmp<Foam::vectorField> Foam::sparDisplacementPointPatchVectorField::forces() const
+void Foam::sparDisplacementPointPatchVectorField::makeHost()
 {
+    typedef sparDisplacementPointPatchVectorField own;
     const fvMesh& mesh = refCast<const fvMesh>(internalField().mesh()());
-    const label id = mesh.boundaryMesh().findPatchID(patch().name());
-    const incompressible::turbulenceModel& turbulence =
-        mesh.lookupObject<incompressible::turbulenceModel>(turbulenceModel::propertiesName);
-    const vectorField& area = mesh.Sf().boundaryField()[id];
-    const scalarField& p = mesh.lookupObject<volScalarField>("p").boundaryField()[id]; // over density
-    return density_*(area*p + (area & turbulence.devReff()().boundaryField()[id]));
+    const pointVectorField& field = mesh.lookupObject<pointVectorField>(internalField().name());
+    std::vector<sparHost::wetted> patches;
+    forAll(field.boundaryField(), i)
+    {
+        if (!isA<own>(field.boundaryField()[i]))
+        {
+            continue;
+        }
+        const own& other = refCast<const own>(field.boundaryField()[i]);
+        if (other.caseFile() != caseFile())
+        {
+            continue;
+        }
+        if (other.resumes_ != resumes_ || other.begun_ != begun_)
+        {
+            FatalErrorInFunction<< "spar: the entries `begun` of the patches " << patch().name() << " and "
+                << other.patch().name() << " differ; all patches of a structure start or go on together" << exit(FatalError);
+        }
+        if (!resumes_ && gMax(mag(other)()) > 0)
+        {
+            FatalErrorInFunction<< "spar: the patch " << other.patch().name() << " starts displaced, by "
+                << gMax(mag(other)()) << " m, and has no entry `begun` of a saved structure to go on from; give value uniform"
+                << " (0 0 0), or the pointDisplacement that the coupled run has written" << exit(FatalError);
+        }
+        patches.push_back({other.patch().name(), other.member_, other.density_});
+    }
+    host_ = sparHost::make(mesh, caseFile(), patches, resumes_, begun_);
 }
 
 void Foam::sparDisplacementPointPatchVectorField::updateCoeffs()
@@ -83,40 +106,44 @@ void Foam::sparDisplacementPointPatchVectorField::updateCoeffs()
     {
         return;
     }
-    const polyMesh& mesh = internalField().mesh()();
-    const Time& time = mesh.time();
+    const fvMesh& mesh = refCast<const fvMesh>(internalField().mesh()());
     // asked for before the first step too, when there is no flow
-    if (time.timeIndex() > 0 && mesh.foundObject<volVectorField>("U"))
+    if (mesh.time().timeIndex() > mesh.time().startTimeIndex() && mesh.foundObject<volVectorField>("U"))
     {
-        if (!host_.valid())
+        if (!host_)
         {
-            start();
+            host_ = sparHost::find(mesh, caseFile());
         }
-        else
+        if (!host_)
         {
-            host_->push(forces()); // at the first corrector of a step: pressure and velocity that the last one ended with
+            makeHost();
         }
-        if (timeIndex_ != time.timeIndex())
-        {
-            if (timeIndex_ >= 0)
-            {
-                host_->accept();
-            }
-            host_->begin(time.deltaTValue());
-            timeIndex_ = time.timeIndex();
-        }
-        Field<vector>::operator=(host_->solve());
+        Field<vector>::operator=(host_->displacement(patch().name()));
     }
     fixedValuePointPatchField<vector>::updateCoeffs();
 }
 
 void Foam::sparDisplacementPointPatchVectorField::write(Ostream& os) const
 {
+    if (host_)
+    {
+        host_->save();
+    }
     pointPatchField<vector>::write(os);
-    os.writeEntry("structure", structure_);
-    os.writeEntry("member", member_);
-    os.writeEntry("density", density_);
+    sparFoam::write(os, "structure", structure_);
+    sparFoam::write(os, "member", member_);
+    sparFoam::write(os, "density", density_);
+    if (host_ || resumes_)
+    {
+        const int digits = os.precision(17);
+        sparFoam::write(os, "begun", host_ ? host_->begun() : begun_);
+        os.precision(digits);
+    }
+#if SPAR_FOAM_FOUNDATION
+    writeEntry(os, "value", *this);
+#else
     writeEntry("value", os);
+#endif
 }
 
 namespace Foam

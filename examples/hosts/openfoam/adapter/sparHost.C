@@ -1,9 +1,14 @@
 // The calls of spar, and what they cost.
 #include "sparHost.H"
+#include "OSspecific.H"
 #include "Pstream.H"
 #include "error.H"
+#include "pointIOField.H"
+#include "sparFoam.H"
+#include "surfaceFields.H"
 #include <spar/spar_mpi.h>
 #include <ctime>
+#include <map>
 
 namespace
 {
@@ -46,14 +51,74 @@ void tell(const spar_session*, int level, const char* text, void*)
     }
 }
 
+//- Where the points were before anything moved, as OpenFOAM's own displacement solvers find them
+Foam::pointField pointsAtStart(const Foam::fvMesh& mesh)
+{
+    using namespace Foam;
+    IOobject io
+    (
+        "points0",
+        mesh.time().constant(),
+        polyMesh::meshSubDir,
+        mesh,
+        IOobject::READ_IF_PRESENT,
+        IOobject::NO_WRITE,
+        false
+    );
+    pointIOField points(io, pointField());
+    if (returnReduce(points.empty(), andOp<bool>()))
+    {
+        io.rename("points");
+        io.readOpt() = IOobject::MUST_READ;
+        points = pointIOField(io);
+    }
+    if (points.size() != mesh.nPoints())
+    {
+        FatalErrorInFunction<< "spar: the mesh has " << mesh.nPoints() << " points and constant/polyMesh " << points.size()
+            << "; a mesh that changes its topology is not supported" << exit(FatalError);
+    }
+    return points;
+}
+
+typedef std::map<std::pair<const Foam::fvMesh*, std::string>, std::weak_ptr<Foam::sparHost>> hostMap;
+
+hostMap& hosts()
+{
+    static hostMap all;
+    return all;
+}
+
+}
+
+std::shared_ptr<Foam::sparHost> Foam::sparHost::find(const fvMesh& mesh, const fileName& caseFile)
+{
+    return hosts()[{&mesh, caseFile}].lock();
+}
+
+std::shared_ptr<Foam::sparHost> Foam::sparHost::make
+(
+    const fvMesh& mesh,
+    const fileName& caseFile,
+    const std::vector<wetted>& patches,
+    bool resumes,
+    scalar begun
+)
+{
+    std::shared_ptr<sparHost> host(new sparHost(mesh, caseFile, patches, resumes, begun));
+    hosts()[{&mesh, caseFile}] = host;
+    return host;
+}
+
+void Foam::sparHost::refuse(const string& text) const
+{
+    FatalErrorInFunction<< "spar: " << text.c_str() << exit(FatalError);
 }
 
 void Foam::sparHost::check(int status) const
 {
     if (status != SPAR_OK)
     {
-        FatalErrorInFunction<< "spar: " << spar_status_text(status) << ": " << spar_session_message(session_)
-            << exit(FatalError);
+        refuse(string(spar_status_text(status)) + ": " + spar_session_message(session_));
     }
 }
 
@@ -61,23 +126,30 @@ void Foam::sparHost::checkCase(int status) const
 {
     if (status != SPAR_OK)
     {
-        FatalErrorInFunction<< "spar: " << spar_status_text(status) << ": " << spar_case_message() << exit(FatalError);
+        refuse(string(spar_status_text(status)) + ": " + spar_case_message());
     }
 }
 
 Foam::sparHost::sparHost
 (
+    const fvMesh& mesh,
     const fileName& caseFile,
-    const word& member,
-    const pointField& points,
-    const vectorField& faceCentres
+    const std::vector<wetted>& patches,
+    bool resumes,
+    scalar begun
 )
 :
+    mesh_(mesh),
+    name_(caseFile.lessExt().name()),
     session_(nullptr),
     scene_(nullptr),
-    surface_(nullptr),
-    x0_(points),
-    x_(points),
+    directions_(Zero),
+    begun_(resumes ? begun : sparFoam::startTime(mesh.time())),
+    open_(false),
+    timeIndex_(-1),
+    motion_(0),
+    solves_(0),
+    saved_(-1),
     errors_{0, 0, 0},
     steps_(0),
     iterations_(0),
@@ -85,19 +157,29 @@ Foam::sparHost::sparHost
     spar_(0)
 {
     const stopwatch watch(spar_);
-    spar_member* wet = nullptr;
+    for (direction d = 0; d < vector::nComponents; d++)
+    {
+        directions_[d] = mesh.geometricD()[d] > 0;
+    }
     // a serial run has not initialised MPI
     check(Pstream::parRun() ? spar_session_create_mpi(MPI_COMM_WORLD, &session_) : spar_session_create(&session_));
     check(spar_session_set_log(session_, tell, nullptr));
     checkCase(spar_case_read(caseFile.c_str(), "openfoam", session_, &scene_));
-    checkCase(spar_case_member(scene_, member.c_str(), &wet));
+    const pointField points(pointsAtStart(mesh));
+    for (const wetted& patch : patches)
+    {
+        addSurface(patch, points);
+    }
     checkCase(spar_case_make_aero(scene_, Pstream::myProcNo()));
+    const scalar t = sparFoam::startTime(mesh.time()) - begun_;
+    const fileName file(stateFile(mesh.time().timeName(mesh.time().startTime().value())));
+    checkCase(spar_case_resume(scene_, resumes ? file.c_str() : nullptr, max(t, scalar(0)), resumes ? -1 : 0));
+    for (const char* key : {"flow", "dt", "steps", "speed", "density", "pressure", "half"}) // those of the script run
+    {
+        const char* text;
+        checkCase(spar_case_get_text(scene_, key, "", &text));
+    }
     checkCase(spar_case_check(scene_));
-    check(spar_fluid_create(wet, "openfoam", &surface_));
-    check(spar_fluid_set_motion_nodes(surface_, x0_.size(), triples(x0_)));
-    check(spar_fluid_set_force_nodes(surface_, faceCentres.size(), triples(faceCentres)));
-    check(spar_fluid_map(surface_));
-    check(spar_fluid_set_option(surface_, "velocity", "own")); // OpenFOAM takes wall velocities from the moving mesh
 }
 
 Foam::sparHost::~sparHost()
@@ -107,45 +189,152 @@ Foam::sparHost::~sparHost()
     spar_session_destroy(&session_);
 }
 
-void Foam::sparHost::begin(scalar dt)
+void Foam::sparHost::addSurface(const wetted& patch, const pointField& points)
 {
-    const stopwatch watch(spar_);
-    check(spar_step_begin(session_, dt));
+    const polyPatch& boundary = mesh_.boundaryMesh()[mesh_.boundaryMesh().findPatchID(patch.patch)];
+    if (returnReduce(boundary.size(), sumOp<label>()) == 0)
+    {
+        refuse("the patch " + patch.patch + " has no faces; nothing would move " + patch.member);
+    }
+    surface wet{boundary.index(), patch.density, nullptr, pointField(points, boundary.meshPoints()), pointField(), vectorField(), 0};
+    wet.position = wet.reference;
+    wet.displacement.setSize(wet.reference.size(), Zero);
+    vectorField centres(boundary.size());
+    forAll(boundary, i)
+    {
+        centres[i] = boundary[i].centre(points);
+    }
+    spar_member* member = nullptr;
+    checkCase(spar_case_member(scene_, patch.member.c_str(), &member));
+    check(spar_fluid_create(member, patch.patch.c_str(), &wet.fluid));
+    check(spar_fluid_set_motion_nodes(wet.fluid, wet.reference.size(), triples(wet.reference)));
+    check(spar_fluid_set_force_nodes(wet.fluid, centres.size(), triples(centres)));
+    check(spar_fluid_map(wet.fluid));
+    check(spar_fluid_set_option(wet.fluid, "velocity", "own")); // OpenFOAM takes wall velocities from the moving mesh
+    fluids_.push_back(wet.fluid);
+    surfaces_.push_back(wet);
 }
 
-Foam::tmp<Foam::vectorField> Foam::sparHost::solve()
+Foam::fileName Foam::sparHost::stateFile(const word& timeName) const
+{
+    const Time& time = mesh_.time();
+    return time.rootPath()/time.globalCaseName()/"spar"/(name_ + "." + timeName);
+}
+
+Foam::vectorField Foam::sparHost::forces(const surface& wet) const
+{
+    const vectorField& area = mesh_.Sf().boundaryField()[wet.id];
+    const scalarField& p = mesh_.lookupObject<volScalarField>("p").boundaryField()[wet.id]; // over density
+    const tmp<volSymmTensorField> stress(sparFoam::stress(mesh_));
+    return wet.density*cmptMultiply(area*p + (area & stress().boundaryField()[wet.id]), directions_);
+}
+
+void Foam::sparHost::begin()
+{
+    const stopwatch watch(spar_);
+    check(spar_step_begin(session_, mesh_.time().deltaTValue()));
+    open_ = true;
+    timeIndex_ = mesh_.time().timeIndex();
+    solves_ = 0;
+}
+
+void Foam::sparHost::solve()
 {
     const stopwatch watch(spar_);
     check(spar_step_solve(session_));
     checkCase(spar_case_blow(scene_));
-    check(spar_fluid_pull_motion(surface_, 1, triples(x_), nullptr));
-    return x_ - x0_;
+    for (surface& wet : surfaces_)
+    {
+        check(spar_fluid_pull_motion(wet.fluid, 1, triples(wet.position), nullptr));
+        wet.displacement = cmptMultiply(wet.position - wet.reference, directions_);
+    }
+    motion_++;
+    solves_++;
 }
 
-void Foam::sparHost::push(const vectorField& force)
+void Foam::sparHost::push()
 {
+    for (const surface& wet : surfaces_)
+    {
+        const vectorField force(forces(wet));
+        const stopwatch watch(spar_);
+        check(spar_fluid_push_forces(wet.fluid, triples(force), nullptr));
+    }
     const stopwatch watch(spar_);
     int done;
-    check(spar_fluid_push_forces(surface_, triples(force), nullptr));
     check(spar_step_check(session_, &done)); // when to stop is OpenFOAM's affair: residualControl
 }
 
-void Foam::sparHost::accept()
+const Foam::vectorField& Foam::sparHost::displacement(const word& patch)
 {
+    const label id = mesh_.boundaryMesh().findPatchID(patch);
+    for (surface& wet : surfaces_)
+    {
+        if (wet.id != id)
+        {
+            continue;
+        }
+        if (wet.received == motion_)
+        {
+            if (open_ && timeIndex_ == mesh_.time().timeIndex())
+            {
+                push();
+            }
+            else
+            {
+                finish(); // at the first corrector of a step: pressure and velocity that the last one ended with
+                begin();
+            }
+            solve();
+        }
+        wet.received = motion_;
+        return wet.displacement;
+    }
+    refuse("the patch " + patch + " has been added in the run");
+    return surfaces_[0].displacement;
+}
+
+void Foam::sparHost::finish()
+{
+    if (!open_)
+    {
+        return;
+    }
+    push();
     const stopwatch watch(spar_);
-    double audit[SPAR_AUDIT_COUNT];
     int iterations;
     check(spar_step_accept(session_));
-    checkCase(spar_case_output(scene_, Pstream::myProcNo(), 1, &surface_));
+    open_ = false;
+    checkCase(spar_case_output(scene_, Pstream::myProcNo(), int(fluids_.size()), fluids_.data()));
     check(spar_session_get_time(session_, nullptr, nullptr, &iterations));
-    check(spar_fluid_get_audit(surface_, SPAR_AUDIT_COUNT, audit));
-    for (int i = 0; i < 3; i++)
+    for (spar_fluid* fluid : fluids_)
     {
-        errors_[i] = max(errors_[i], audit[SPAR_AUDIT_FORCE_ERROR + i]);
+        double audit[SPAR_AUDIT_COUNT];
+        check(spar_fluid_get_audit(fluid, SPAR_AUDIT_COUNT, audit));
+        for (int i = 0; i < 3; i++)
+        {
+            errors_[i] = max(errors_[i], audit[SPAR_AUDIT_FORCE_ERROR + i]);
+        }
     }
     steps_++;
     iterations_ += iterations;
     most_ = max(most_, label(iterations));
+}
+
+void Foam::sparHost::save()
+{
+    if (!mesh_.time().writeTime() || saved_ == mesh_.time().timeIndex())
+    {
+        return;
+    }
+    finish();
+    saved_ = mesh_.time().timeIndex();
+    const fileName file(stateFile(mesh_.time().timeName()));
+    if (Pstream::master())
+    {
+        mkDir(file.path());
+    }
+    check(spar_session_save(session_, file.c_str()));
 }
 
 void Foam::sparHost::report()
@@ -163,7 +352,7 @@ void Foam::sparHost::report()
     {
         return;
     }
-    if (FILE* f = fopen("summary.txt", "w"))
+    if (FILE* f = fopen((name_ + "_summary.txt").c_str(), "w"))
     {
         fprintf(f, "steps %d\niterations_mean %.3f\niterations_most %d\n", int(steps_), double(iterations_)/steps_, int(most_));
         fprintf(f, "force_error %.1e\nmoment_error %.1e\npower_error %.1e\n", errors_[0], errors_[1], errors_[2]);

@@ -1,7 +1,9 @@
 #include "sparActuatorLines.H"
 #include "addToRunTimeSelectionTable.H"
 #include "fvMatrices.H"
+#include "OSspecific.H"
 #include "fvMesh.H"
+#include "sparFoam.H"
 #include "volFields.H"
 #include <spar/spar_mpi.h>
 #include <cstdlib>
@@ -109,11 +111,30 @@ void Foam::fv::sparActuatorLines::start()
     }
     check(nrel5mw_create_aero(&data_, &rotor_, Pstream::master() ? blades_ : 0, sections_, twist.begin(), &aero_));
     check(spar_aero_set_effects(aero_, SPAR_AERO_DRAG | SPAR_AERO_MOMENT));
+    resume(structure.lessExt().name());
     const label n = blades_*label(data_.aero_n);
     x_.setSize(n, Zero);
     u_.setSize(n, Zero);
     force_.setSize(n, Zero);
     weight_.setSize(n, Zero);
+}
+
+Foam::fileName Foam::fv::sparActuatorLines::stateFile(const word& timeName) const
+{
+    const Time& time = mesh_.time();
+    return time.rootPath()/time.globalCaseName()/"spar"/(caseName_ + "." + timeName);
+}
+
+// The rotor goes on where the flow does. A flow that was computed before the rotor was there: `begun`, its time then.
+void Foam::fv::sparActuatorLines::resume(const word& name)
+{
+    caseName_ = name;
+    const Time& time = mesh_.time();
+    const scalar start = sparFoam::startTime(time), begun = coeffs_.lookupOrDefault<scalar>("begun", 0);
+    const bool resumes = start > begun + 0.5*time.deltaTValue();
+    checkCase(spar_case_resume(scene_, resumes ? stateFile(time.timeName(time.startTime().value())).c_str() : nullptr,
+        resumes ? start - begun : 0, resumes ? -1 : 0));
+    angle_ = resumes ? speed_*(start - begun) : 0;
 }
 
 Foam::fv::sparActuatorLines::~sparActuatorLines()
@@ -126,7 +147,7 @@ Foam::fv::sparActuatorLines::~sparActuatorLines()
     if (history_)
     {
         fclose(history_);
-        if (FILE* f = fopen("summary.txt", "w"))
+        if (FILE* f = fopen((caseName_ + "_summary.txt").c_str(), "w"))
         {
             fprintf(f, "seconds %.3f\nspar_seconds %.3f\nspar_share %.5f\n", seconds[1], seconds[0], seconds[0]/seconds[1]);
             fclose(f);
@@ -254,13 +275,17 @@ void Foam::fv::sparActuatorLines::record(const volVectorField& U, const vectorFi
     check(spar_session_get_time(session_, nullptr, nullptr, &iterations));
     if (!history_)
     {
-        history_ = fopen("history.csv", "w");
+        checkCase(spar_case_cut_history("history.csv", t - 0.5*mesh_.time().deltaTValue()));
+        history_ = fopen("history.csv", "a");
         if (!history_)
         {
             FatalErrorInFunction<< "history.csv cannot be written here" << exit(FatalError);
         }
-        fprintf(history_, "time_s,thrust_N,shaft_power_W,line_x_N,line_y_N,line_z_N,spread_x_N,spread_y_N,spread_z_N,"
-            "line_power_W,flow_power_W,kernel_least,kernel_most,tip_x_m,iterations\n");
+        if (ftell(history_) == 0)
+        {
+            fprintf(history_, "time_s,thrust_N,shaft_power_W,line_x_N,line_y_N,line_z_N,spread_x_N,spread_y_N,spread_z_N,"
+                "line_power_W,flow_power_W,kernel_least,kernel_most,tip_x_m,iterations\n");
+        }
     }
     fprintf(history_, "%.9g,%.9e,%.9e,%.9e,%.9e,%.9e,%.9e,%.9e,%.9e,%.9e,%.9e,%.6f,%.6f,%.6e,%d\n", t, thrust, shaft, line.x(),
         line.y(), line.z(), spreadForce.x(), spreadForce.y(), spreadForce.z(), power, taken, min(kernel), max(kernel),
@@ -289,6 +314,15 @@ void Foam::fv::sparActuatorLines::addSup(fvMatrix<vector>& eqn, const label)
     {
         record(U, source.primitiveField(), time.value());
         check(spar_step_accept(session_));
+        if (time.writeTime())
+        {
+            const fileName file(stateFile(time.timeName()));
+            if (Pstream::master())
+            {
+                mkDir(file.path());
+            }
+            check(spar_session_save(session_, file.c_str()));
+        }
     }
     eqn += source;
 }
