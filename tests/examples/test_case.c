@@ -429,6 +429,8 @@ static void test_host(void **state) {
     assert_non_null(strstr(spar_case_message(), "[host mine]"));
     assert_int_equal(spar_case_get_numbers(c, "patch", 2, NULL, x), SPAR_ERR_ARGUMENT);
     assert_true(x[0] == 7 && x[1] == 8);
+    assert_string_equal(spar_case_others(c), "[host other] (line 7)");
+    assert_string_equal(spar_case_others(NULL), "");
     int values = -1;
     GOOD(spar_case_get_word(c, "patch", 1, &values, &text));
     assert_true(values == 2 && strcmp(text, "right") == 0);
@@ -439,6 +441,12 @@ static void test_host(void **state) {
     assert_int_equal(spar_case_get_word(c, "nothing", 0, NULL, &text), SPAR_ERR_ARGUMENT);
     GOOD(spar_case_get_text(c, "solver", "none", &text));
     assert_string_equal(text, "none");
+    spar_case_free(&c);
+    spar_session_destroy(&s);
+    s = scene_session();
+    c = read_text(s, "openfoam", "[session]\nrho_inf 0.9\n[session opnfoam]\nrtol 1e-3\n");
+    assert_int_equal(spar_case_check(c), SPAR_ERR_ARGUMENT);
+    assert_non_null(strstr(spar_case_message(), "line 3: [session opnfoam] is for another host than 'openfoam'"));
     spar_case_free(&c);
     spar_session_destroy(&s);
 }

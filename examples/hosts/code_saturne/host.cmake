@@ -1,5 +1,9 @@
 # code_saturne with spar in it, a few steps on two ranks: skipped, with a word, where it is not installed. What is checked, and
 # where the figures are from: compare.awk of the flow. The light cylinder: the water's added mass is four times its own.
+if(SPAR_BUILD_TESTS)
+  add_test(NAME host_cycles COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/../common/test_cycles")
+  spar_set_test(host_cycles hosts 60)
+endif()
 if(SPAR_BUILD_TESTS AND SPAR_MPI)
   add_test(NAME host_code_saturne
     COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/run" cylinder_light --refine 0.5 --steps 20 --ranks 2 --no-install
@@ -10,6 +14,9 @@ if(SPAR_BUILD_TESTS AND SPAR_MPI)
   set(out "${PROJECT_BINARY_DIR}/tests/host_code_saturne_np")
   add_test(NAME host_code_saturne_np1 COMMAND ${run} --out ${out}1)
   add_test(NAME host_code_saturne_np2 COMMAND ${run} --out ${out}2 --ranks 2 --against ${out}1)
+  # several members: two flaps, each the other's mirror image, one of them with two groups of faces
+  add_test(NAME host_code_saturne_flaps COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/run" flaps --refine 0.5 --ranks 2 --no-install
+           --build "${PROJECT_BINARY_DIR}" --out "${PROJECT_BINARY_DIR}/tests/host_code_saturne_flaps")
   # half of a run, and the rest of it from code_saturne's checkpoint: every digit of the whole run; without the structure's
   # file, or with that of another step, the rest is refused
   set(run sh "${CMAKE_CURRENT_LIST_DIR}/run" flag --refine 0.4 --no-install --build "${PROJECT_BINARY_DIR}")
@@ -43,7 +50,7 @@ if(SPAR_BUILD_TESTS AND SPAR_MPI)
       --refine 0.4 --steps 2 --no-install --build "${PROJECT_BINARY_DIR}" --out ${out}${name})
     set_tests_properties(host_code_saturne_${name} PROPERTIES PASS_REGULAR_EXPRESSION "${message}")
   endforeach()
-  foreach(name IN ITEMS _np1 _np2 _whole _half _rest _without _other _wetted _fixed "")
+  foreach(name IN ITEMS _np1 _np2 _flaps _whole _half _rest _without _other _wetted _fixed "")
     spar_set_test(host_code_saturne${name} hosts 1200)
     set_tests_properties(host_code_saturne${name} PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2)
   endforeach()

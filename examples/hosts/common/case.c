@@ -5,6 +5,7 @@
 #endif
 #include "case_parts.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,6 +25,26 @@ int case_is_for(const case_block *block, const char *host) {
     return block->name[0] == '\0' || (host && strcmp(block->name, host) == 0);
 }
 
+static int is_of_host(const case_block *block) {
+    return case_is(block, "session") || case_is(block, "output") || case_is(block, "host");
+}
+
+static void list_others(spar_case *c, const char *host) {
+    size_t used = 0;
+    for (int64_t b = 0; b < c->text.n && used + 1 < sizeof c->others; b++) {
+        const case_block *block = c->text.block + b;
+        if (is_of_host(block) && !case_is_for(block, host)) {
+            const int n = snprintf(c->others + used, sizeof c->others - used, "%s[%s %.60s] (line %d)",
+                                   used > 0 ? ", " : "", block->kind, block->name, block->number);
+            used += n > 0 ? (size_t)n : 0;
+        }
+    }
+}
+
+const char *spar_case_others(const spar_case *scene) {
+    return scene ? scene->others : "";
+}
+
 /* ---- the whole ---- */
 
 static int open_case(spar_case *c, const char *path, const char *host) {
@@ -33,6 +54,7 @@ static int open_case(spar_case *c, const char *path, const char *host) {
     for (int64_t b = 0; b < c->text.n; b++) {
         lines += (size_t)c->text.block[b].n;
     }
+    list_others(c, host);
     c->host = host ? malloc(strlen(host) + 1) : NULL;
     c->member = calloc(blocks, sizeof(spar_member *));
     c->joint = calloc(blocks, sizeof(spar_joint *));
@@ -306,6 +328,11 @@ static int check_host(const spar_case *c, const case_block *block) {
     if (case_is(block, "aero") && !c->blown) {
         return case_fail(&c->text, block->number, SPAR_ERR_ARGUMENT,
                          "this host has no blade elements; take [aero %s] out", block->name);
+    }
+    if (c->host && is_of_host(block) && !case_is_for(block, c->host) && case_distance(block->name, c->host) <= 2) {
+        return case_fail(&c->text, block->number, SPAR_ERR_ARGUMENT,
+                         "[%s %s] is for another host than '%s'; did you mean [%s %s]?", block->kind, block->name,
+                         c->host, block->kind, c->host);
     }
     const case_line *line =
         case_is(block, "session") && case_is_for(block, c->host) ? case_find(block, "restart") : NULL;

@@ -127,8 +127,12 @@ int spar_case_get_numbers(spar_case *scene, const char *key, int n, const double
      i: in, from 0
      word: out, belongs to the scene, NULL: not wanted; SPAR_ERR_ARGUMENT if there is no value i */
 int spar_case_get_word(spar_case *scene, const char *key, int i, int *n, const char **word);
-/* Refuses a key of [host] or [host HOST] that has not been asked for: it was misspelt. To be called when all were. */
+/* Refuses a key of [host] or [host HOST] that has not been asked for: it was misspelt; and a heading whose host is
+   HOST but for a letter or two. To be called when all keys were asked for. */
 int spar_case_check(const spar_case *scene);
+/* Headings that are for other hosts, with their lines, "" if there are none: for the adapter to tell once, so that a
+   user who put a key there learns why it does nothing. Belongs to the scene. */
+const char *spar_case_others(const spar_case *scene);
 /* The same for [host HOST] alone: for a program that reads files of other hosts too. */
 int spar_case_check_own(const spar_case *scene);
 

@@ -67,6 +67,8 @@ void case_unfold(int form, const double *from, double matrix[36]);
 
 /* The one of n names that is most like the word; "" of none. */
 const char *case_nearest(const char *word, int64_t n, const char *const *names);
+/* How many letters must be put in, taken out or changed to get from one word to the other. */
+int case_distance(const char *a, const char *b);
 /* From here to the end numbers have a point, whatever the host's locale, are rounded to the nearest, and one that is
    too large raises no signal. */
 typedef struct case_quiet {
@@ -109,6 +111,7 @@ enum { CASE_ASKS = 64, CASE_NAME = 32 };
 struct spar_case {
     spar_session *session;
     char *host; /* NULL: none */
+    char others[400];
     case_text text;
     int64_t members, joints;
     const char **member_name, **joint_name; /* parts of the text */

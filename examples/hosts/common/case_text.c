@@ -310,8 +310,8 @@ static int smaller(int a, int b) {
     return a < b ? a : b;
 }
 
-/* How many letters must be put in, taken out or changed to get from one word to the other (Levenshtein). */
-static int distance(const char *a, const char *b) {
+/* Levenshtein's */
+int case_distance(const char *a, const char *b) {
     enum { LONGEST = 64 };
     int row[LONGEST + 1], m = smaller((int)strlen(b), LONGEST);
     for (int j = 0; j <= m; j++) {
@@ -331,7 +331,7 @@ static int distance(const char *a, const char *b) {
 const char *case_nearest(const char *word, int64_t n, const char *const *names) {
     const char *best = "";
     for (int64_t i = 0, least = INT64_MAX; i < n; i++) {
-        int64_t d = distance(word, names[i]);
+        int64_t d = case_distance(word, names[i]);
         if (d < least) {
             least = d;
             best = names[i];

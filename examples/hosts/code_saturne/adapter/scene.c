@@ -82,6 +82,16 @@ const char *saturne_text(const char *key, const char *otherwise) {
     return text;
 }
 
+void saturne_check_keys(void) {
+    const char *others = spar_case_others(saturne_scene());
+    saturne_check_case(spar_case_check(saturne_scene()));
+    if (others[0] != '\0') {
+        char text[500];
+        snprintf(text, sizeof text, "for another host, not used here: %s", others);
+        saturne_tell(SPAR_LOG_INFO, text);
+    }
+}
+
 /* A group that the mesh does not have would leave its faces uncoupled, or loose: nobody means that. */
 static void refuse_selection(const char *what, const char *criterion, const char *missing) {
     const cs_mesh_t *mesh = cs_glob_mesh;

@@ -42,7 +42,7 @@ void CS_PROCF(astgeo, ASTGEO)(cs_int_t *nbfast, cs_int_t *lstfac, cs_int_t *idfa
     saturne_check_case(spar_case_get_numbers(saturne_scene(), "later", 2, never, host.later));
     saturne_report_begin();
     saturne_resume(host.reference);
-    saturne_check_case(spar_case_check(saturne_scene())); /* all keys have been asked for */
+    saturne_check_keys();
     saturne_clock_end();
 }
 

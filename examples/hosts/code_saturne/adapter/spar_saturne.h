@@ -35,6 +35,8 @@ spar_case *saturne_scene(void);
 /* A key of the case file; without `otherwise` (NULL) it has to be there. */
 double saturne_number(const char *key, const double *otherwise);
 const char *saturne_text(const char *key, const char *otherwise);
+/* When all keys have been asked for: one that was not was misspelt. */
+void saturne_check_keys(void);
 /* Frees session and scene. Collective. */
 void saturne_end(void);
 

@@ -74,7 +74,7 @@ void cs_user_extra_operations_initialize(cs_domain_t *domain) {
         nrel5mw_create_aero(&lines.data, &lines.rotor, first_rank() ? BLADES : 0, lines.sections, twist, &lines.aero));
     saturne_check(spar_aero_set_effects(lines.aero, SPAR_AERO_DRAG | SPAR_AERO_MOMENT));
     saturne_resume(NULL);
-    saturne_check_case(spar_case_check(saturne_scene()));
+    saturne_check_keys();
     lines.angle = lines.speed * cs_glob_time_step->t_prev;
     saturne_clock_end();
 }
