@@ -7,6 +7,8 @@
 # Whether an address is an array's, the comments say: "x[n][3]: out" is one, "t: out" a single number; what is said of a name
 # holds until something else is. A capacity has the constant that counts its entries: "report[capacity]: out, by SPAR_REPORT_*".
 # With -v null=1 each parameter has a fifth part: null, where its comment says what NULL means.
+# With -v docs=1 each call is followed by:
+#   doc  name  the comment before it, a backslash and an n between its lines
 #   awk -f interface.awk <header>
 
 function hear(said,   list, n, word, i, p, own, each) {
@@ -97,6 +99,7 @@ function call(prototype,   head, f, answer, n, i, part, line) {
     }
     print line
     if (collective) print "collective\t" f
+    if (docs) print "doc\t" f "\t" comment
 }
 
 BEGIN { LIST = "[a-z_][a-z0-9_]*([[][^]]*[]])*(, [a-z_][a-z0-9_]*([[][^]]*[]])*)*: " }
@@ -112,6 +115,10 @@ END {
             stop = index(text, "*/")
             hear(substr(text, 1, stop + 1))
             collective = substr(text, 1, stop + 1) ~ /Collective/
+            comment = substr(text, 4, stop - 5)
+            gsub(/\\/, "\\\\", comment)
+            gsub(/\n   /, "\\n", comment)
+            gsub(/\n/, "\\n", comment)
             text = substr(text, stop + 2)
             continue
         }

@@ -3,7 +3,7 @@
 #   fortran/spar_c.f90, spar_aero_c.f90       raw bindings of each library
 #   fortran/spar.f90, spar_aero.f90           its module: what takes thought is by hand in the file .f90.in; this adds the constants and the
 #                                             plain procedures
-#   python/spar/_interface.py                 the table of the Python package
+#   python/spar/_interface.py, __init__.pyi   table, docstrings and type stubs of the Python package
 #   tests/fortran/test_bindings.f90           each raw binding once
 #   tests/torture/calls.h, fuzz/calls_plain.* names of all calls, and callers of those that the fuzzer has none for by hand
 #   make-bindings.sh [<folder to write to, instead of the sources>]
@@ -80,12 +80,19 @@ module spar "$headers"
 module spar_aero "$aero_headers"
 {
     echo '"""The interface, as cmake/interface.awk reads it. Written by cmake/make-bindings.sh from the headers."""'
-    echo 'TABLE = """'
-    for name in $headers $aero_headers; do
-        awk -f "$root/cmake/interface.awk" "$root/include/spar/$name.h" | grep -v '^collective' | tr '\t' ' '
-    done
-    echo '"""'
+    for name in $headers $aero_headers; do awk -v null=1 -v docs=1 -f "$root/cmake/interface.awk" "$root/include/spar/$name.h"; done >"$made.table"
+    echo "VERSION = '$(sed -n 's/^project(spar VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")'"
+    echo 'CONSTANTS = {'
+    sed -n 's/^constants//p' "$made.table" | tr '\t' '\n' | sed -n "s/\(.*\)=\(.*\)/    '\1': \2,/p"
+    printf '}\nTABLE = """\n'
+    grep '^call' "$made.table" | tr '\t' ' '
+    printf '"""\nDOCS = {\n'
+    sed -n 's/"/\\"/g; s/^doc\t\([a-z0-9_]*\)\t\(.*\)/    "\1": "\2",/p' "$made.table"
+    echo '}'
 } >"$out/python/spar/_interface.py"
+if command -v python3 >/dev/null 2>&1; then # the only part that needs it
+    python3 -B "$root/cmake/python-stubs.py" "$root/python/spar" "$out/python/spar"
+fi
 
 # what the instruments of tests/ know of every call
 for name in $headers $aero_headers; do awk -v null=1 -f "$root/cmake/interface.awk" "$root/include/spar/$name.h"; done >"$made.table"

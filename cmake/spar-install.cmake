@@ -31,6 +31,13 @@ install(FILES ${spar_fortran_sources} ${spar_aero_fortran_sources} DESTINATION "
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/python/spar" DESTINATION "${CMAKE_INSTALL_DATADIR}/spar/python" FILES_MATCHING PATTERN "*.py*"
   PATTERN __pycache__ EXCLUDE)
 
+if(SKBUILD) # the wheel: the libraries beside the package, which pyproject.toml copies
+  install(TARGETS spar spar_aero LIBRARY DESTINATION . COMPONENT python NAMELINK_SKIP)
+  if(SPAR_GSL)
+    install(FILES "${PROJECT_SOURCE_DIR}/python/GSL.txt" DESTINATION "${SKBUILD_METADATA_DIR}/licenses" COMPONENT python)
+  endif()
+endif()
+
 configure_package_config_file(cmake/spar-config.cmake.in "${PROJECT_BINARY_DIR}/spar-config.cmake"
   INSTALL_DESTINATION "${spar_package_dir}" PATH_VARS CMAKE_INSTALL_DATADIR CMAKE_INSTALL_LIBDIR)
 configure_file(cmake/spar-config-version.cmake.in "${PROJECT_BINARY_DIR}/spar-config-version.cmake" @ONLY)

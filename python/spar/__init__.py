@@ -1,4 +1,4 @@
-"""spar from Python: every call of the C interface, with numpy arrays. Needs numpy and the shared library, nothing compiled.
+"""spar from Python: every call of the C interface, with numpy arrays.
 
     import spar
     with spar.Session() as s:
@@ -9,118 +9,185 @@
         surface.push_forces(force)
         done = s.step_check()
 
-The headers under include/spar say what each call does; here is what is different.
+help(spar.Fluid.push_forces) shows what the header says. This is what differs from C:
 - Names. A call is a method of its first argument, without spar_ and without the name of that: spar_fluid_push_forces is
-  fluid.push_forces, spar_beam_set_axis is member.set_axis, spar_beam_create session.beam_create. A line is a joint whose
-  own calls keep their name: joint.line_set_spring. Constants are spar.OK, ... without SPAR_.
+  fluid.push_forces, spar_beam_set_axis is member.set_axis, spar_beam_create session.beam_create. A link is a joint whose
+  own calls keep their name: joint.link_set_spring. A call without such an argument is a function: spar.version().
+  Constants are spar.OK, ... without SPAR_.
 - Arguments stand in the header's order. Left out are counts that an array given shows (n), capacities, contexts, and all
   results. What C takes as NULL is None, or left out at the end.
-- Arrays may be lists, of the header's shape or flat; a 36 may be 6 x 6, a 9 be 3 x 3. Numbers are converted where nothing
-  is lost but digits: complex ones are refused.
+- Arrays may be lists, of the header's shape or flat. A 36 may be 6 x 6, a 9 may be 3 x 3. Numbers are converted where
+  nothing is lost but digits: complex ones are refused.
 - Results come back: none, one, or a tuple in the header's order. An array that is given by its name is filled in place:
   fluid.pull_motion(1.0, x=x, v=v). One given as None is not wanted.
-- Failures raise spar.Error with the library's message, .status is its SPAR_ERR_*.
+- Arrays of numpy.float32 take the call of single precision, if there is one: fluid.push_forces(force) calls
+  spar_fluid_push_forces_f32. All arrays of the call must then be of numpy.float32.
+- After fluid.set_layout arrays keep the shape (n, 3). One whose strides are those of the layout is passed as it is, another
+  is copied, and results have these strides: set_layout(which, 1, n) takes arrays in Fortran's order without a copy.
+- Failures raise a subclass of spar.Error with the library's message: ArgumentError, StateError, NumericError, ... .status
+  is the SPAR_ERR_*.
 - A fluid's solver is a function of (session, t, dt, iteration), what is called before the steps of trials one of
   (session, t, dt), a log one of (level, text), a progress one of (done, expected), which answers 0 or None to go on. What
   they raise ends the step, or the trial's call, and is raised again.
 - A trial is made by session.trial_create(), and keeps its callbacks.
 - A session is closed by `with`, close(), or at the latest when nothing refers to it; members, joints, fluids and trials
-  keep it.
-  What belonged to it is closed with it: further calls raise spar.Error. Nothing of spar can be copied or pickled.
+  keep it. What belonged to it is closed with it: further calls raise spar.Error. Nothing of spar can be copied or pickled.
 - Several ranks: spar.Session(comm) with an mpi4py communicator or its Fortran integer.
-The library is sought as SPAR_LIBRARY says, else where the loader finds libspar.so.0.9; libspar_aero in the same folder.
+The library is the one that SPAR_LIBRARY names, else the one in the folder of the package (a wheel has it there), else the
+libspar.so.0.9 that the loader finds. libspar_aero is in the same folder.
 """
 import ctypes
+import inspect
 import os
-import re
+from math import prod
 
 import numpy
 
-from ._interface import TABLE
+from . import _table
+from ._interface import CONSTANTS, VERSION
 
 
 def _load(number):
-    """libspar and libspar_aero, which stands on it: of one folder."""
-    path = os.environ.get('SPAR_LIBRARY', f'libspar.so.{number}')
+    """libspar and libspar_aero, which stands on it: of one folder, and of the release that the table is of."""
+    path = os.environ.get('SPAR_LIBRARY') or os.path.join(os.path.dirname(__file__), f'libspar.so.{number}')
+    if 'SPAR_LIBRARY' not in os.environ and not os.path.exists(path):
+        path = os.path.basename(path)
     folder, name = os.path.split(path)
-    return [ctypes.CDLL(path), ctypes.CDLL(os.path.join(folder, name.replace('libspar', 'libspar_aero', 1)))]
+    try:
+        library = ctypes.CDLL(path)
+        aero = ctypes.CDLL(os.path.join(folder, name.replace('libspar', 'libspar_aero', 1)))
+    except OSError as fault:
+        raise ImportError(f'{fault}: name libspar.so by SPAR_LIBRARY, or install the package by pip') from None
+    library.spar_version.restype = ctypes.c_char_p
+    release = library.spar_version().decode()
+    if release.split('.')[:2] != VERSION.split('.')[:2]:
+        raise ImportError(f'{path} is release {release} and this package is {VERSION}: install both from one release')
+    return library, aero
 
 
 _library, _aero_library = _load('0.9')
 
 
 class Error(Exception):
-    """A call has failed; .status is its SPAR_ERR_*."""
+    """A call has failed; .status is its SPAR_ERR_*. Each status has a subclass."""
 
     def __init__(self, status, message):
         super().__init__(message)
         self.status = status
 
+    def __reduce__(self):
+        return type(self), (self.status, str(self))
+
+
+_errors = {_status: type(_name, (Error,), {'__doc__': f'A call has failed with status {_status}.', '__module__': __name__})
+           for _status, _name in _table.error_names().items()}
+globals().update((_one.__name__, _one) for _one in _errors.values())
+
+
+def _failed(status, message):
+    return _errors.get(status, Error)(status, message)
+
 
 # ---- the table ----
 
-_NUMBERS = {'int': (ctypes.c_int, numpy.intc), 'int64_t': (ctypes.c_int64, numpy.int64),
-            'double': (ctypes.c_double, numpy.float64), 'float': (ctypes.c_float, numpy.float32)}
+_NUMBERS = {'int': (ctypes.c_int, numpy.dtype(numpy.intc)), 'int64_t': (ctypes.c_int64, numpy.dtype(numpy.int64)),
+            'double': (ctypes.c_double, numpy.dtype(numpy.float64)), 'float': (ctypes.c_float, numpy.dtype(numpy.float32))}
 _CALLBACKS = {
     'fluid_solver': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int,
                                      ctypes.c_void_p),
     'before_step': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
     'progress': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
     'log': ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)}
-_IN_AND_OUT = {('spar_session_sum', 'x'), ('spar_step_adaptive', 'dt')}  # results that are read too
-_OF_FORCE_NODES = {'get_forces', 'pull_forces', 'push_forces', 'push_forces_at', 'pull_forces_f32',
-                   'push_forces_f32'}
+_LAID = ('push_forces', 'push_forces_at', 'pull_forces', 'pull_motion', 'pull_poses')  # arrays [n][3] by the fluid's layout
+_OF_FORCE_NODES = ('push_forces', 'push_forces_at', 'pull_forces', 'get_forces')
 _ENOUGH = 1000  # the capacity of lists that the library cuts off at their end
 
 
-class _Parameter:
-    def __init__(self, text):
-        self.name, self.type, self.how, shape = text.split('|')
-        self.dims = [int(d) if d.isdigit() else _constants.get(d, d) for d in re.findall(r'\[(\w*)\]', shape)]
-        self.array = self.type in _NUMBERS and bool(self.dims)
-        self.result = self.how == 'out'
-
-    def c_type(self):
-        if self.how == 'callback':
-            return _CALLBACKS[self.type]
-        if self.how == 'value' and self.type in _NUMBERS:
-            return _NUMBERS[self.type][0]
-        return ctypes.c_char_p if self.type == 'char' and self.how == 'in' else ctypes.c_void_p
+def _c_type(p):
+    if p.how == 'callback':
+        return _CALLBACKS[p.type]
+    if p.how == 'value' and p.type in _NUMBERS:
+        return _NUMBERS[p.type][0]
+    return ctypes.c_char_p if p.type == 'char' and p.how == 'in' else ctypes.c_void_p
 
 
 class _Call:
-    """One function of the library."""
+    """One function of the library, which can be called."""
 
-    def __init__(self, name, answer, parameters):
-        self.name, self.answer = name, answer
-        self.parameters = [_Parameter(p) for p in parameters]
-        self.function = getattr(_library if hasattr(_library, name) else _aero_library, name)
-        self.function.restype = {'int': ctypes.c_int, 'text': ctypes.c_char_p, 'none': None}[answer]
-        self.function.argtypes = [p.c_type() for p in self.parameters]
-        shown = {d for p in self.parameters if p.how == 'list' or (p.array and self._given(p)) for d in p.dims}
-        first = self.parameters[0] if self.parameters else None
-        self.owner = first.type if first and first.type in _CLASSES and first.how == 'value' else None
-        self.asked = [p for p in self.parameters[1 if self.owner else 0:]  # what the caller gives, in this order
-                      if self._given(p) and p.type != 'context' and not (p.type == 'int64_t' and p.name in shown)
-                      and not (p.how == 'value' and p.name in ('capacity', 'rows', 'columns'))
-                      and not (name == 'spar_aero_create' and p.name == 'blades')]
-        self.python_name = name[len('spar_'):]
-        for prefix in {'member': ('member_', 'beam_')}.get(self.owner, (f'{self.owner}_',)):
-            if self.python_name.startswith(prefix):
-                self.python_name = self.python_name[len(prefix):]
+    def __init__(self, said):
+        self.name, self.answer, self.parameters, self.owner = said.name, said.answer, said.parameters, said.owner
+        self.asked, self.python_name, self.public = said.asked, said.python_name, said.public
+        self.function = getattr(_library, self.name, None) or getattr(_aero_library, self.name, None)
+        if self.function is None:
+            raise ImportError(f'the library has no {self.name}: install the package and the library from one release')
+        self.function.restype = {'int': ctypes.c_int, 'text': ctypes.c_char_p, 'none': None}[self.answer]
+        self.function.argtypes = [_c_type(p) for p in self.parameters]
+        self.names = {p.name for p in self.parameters}
+        self.asked_names = [p.name for p in self.asked]
+        self.values = {p.name for p in self.parameters if p.how == 'value'}
+        self.shaped = [p for p in self.parameters if p.array or p.how == 'list']
+        self.single = None  # the call of the same name in single precision
+        plain = self.python_name.replace('_f32', '')
+        self.laid = self.owner == 'fluid' and plain in _LAID
+        self.of_force_nodes = plain in _OF_FORCE_NODES
+        self.steps = [(p, self._way(p)) for p in self.parameters]
 
-    def _given(self, p):
-        return not p.result or (self.name, p.name) in _IN_AND_OUT
+    def _way(self, p):
+        """How _Running makes C's argument of p."""
+        if p is self.parameters[0] and self.owner:
+            return _Running.own
+        if p.how == 'callback':
+            return _Running.callback
+        if p.type == 'context':
+            return _Running.nothing
+        if p.type in _CLASSES:
+            return _Running.handle
+        if p.type == 'char':
+            return _Running.text
+        if p.array:
+            return _Running.array
+        return _Running.number if p.result else _Running.value
 
     def __call__(self, owner, *values, **named):
-        if len(values) > len(self.asked):
-            raise TypeError(f'{self.python_name} takes {", ".join(p.name for p in self.asked) or "no arguments"}')
-        given = dict(zip((p.name for p in self.asked), values))
+        return self.run(owner, values, named)
+
+    def run(self, owner, values, named):
+        """The call with these arguments."""
+        if len(values) > len(self.asked_names):
+            raise TypeError(f'{self.python_name} takes {", ".join(self.asked_names) or "no arguments"}')
+        given = dict(zip(self.asked_names, values))
         for name, value in named.items():
-            if name in given or all(p.name != name for p in self.parameters):
+            if name in given or name not in self.names:
                 raise TypeError(f'{self.python_name} has no argument {name} left')
             given[name] = value
+        if self.single is not None and any(isinstance(value, numpy.ndarray) and value.dtype == numpy.float32
+                                           for value in given.values()):
+            return _Running(self.single, owner, given).run()
         return _Running(self, owner, given).run()
+
+    def signature(self, optional, filled):
+        """Its arguments, for help()."""
+        kind = inspect.Parameter
+        names = [kind('self', kind.POSITIONAL_ONLY)] if self.owner else []
+        names += [kind(p.name, kind.POSITIONAL_OR_KEYWORD, default=None if p.name in optional else kind.empty) for p in self.asked]
+        names += [kind(p.name, kind.KEYWORD_ONLY, default=...) for p in filled]
+        return inspect.Signature(names)
+
+
+def _function(call, said):
+    """The call as a function, whose first argument is its owner, if it has one."""
+    if call.owner:
+        def made(self, *values, **named):
+            return call.run(self, values, named)
+        owner = _table.CLASSES[call.owner] + '.'
+    else:
+        def made(*values, **named):
+            return call.run(None, values, named)
+        owner = ''
+    made.__name__, made.__qualname__, made.__module__ = call.python_name, owner + call.python_name, __name__
+    made.__doc__ = f'{said.doc()}\n\nIn C: {call.name}.'
+    made.__signature__ = call.signature(said.optional(), said.arrays_filled())
+    return made
 
 
 def _has_shape(shape, known):
@@ -132,42 +199,51 @@ def _has_shape(shape, known):
     return any(len(shape) == len(form) and all(b is None or a == b for a, b in zip(shape, form)) for form in forms)
 
 
+def _laid_out(n, kind, strides):
+    """Zeros of the shape (n, 3) with these strides, in bytes."""
+    size = (max(n, 1) - 1) * strides[0] + 2 * strides[1] + kind.itemsize
+    return numpy.ndarray((n, 3), kind, buffer=bytearray(size), strides=strides)
+
+
 class _Running:
     """A call under way: from Python's arguments to C's, and its results back."""
+    __slots__ = ('call', 'owner', 'given', 'sizes', 'results', 'raised', 'keep', 'callbacks', 'strides')
 
     def __init__(self, call, owner, given):
         self.call, self.owner, self.given = call, owner, given
         self.sizes, self.results, self.raised, self.keep, self.callbacks = {}, [], [], [], {}
+        if owner is not None:
+            self.open(owner)
+        self.strides = owner.strides(call, given) if call.laid else None  # numbers between nodes, components; None: packed
 
     def run(self):
-        for p in self.call.parameters:
-            if p.array and self.given.get(p.name) is not None:
-                self._array_given(p)
-            elif p.how == 'list':
-                self.sizes['blades' if self.call.name == 'spar_aero_create' else p.dims[0]] = len(self.given[p.name])
-        arguments = [self._argument(p) for p in self.call.parameters]
-        answer = self._called(arguments)
-        if self.call.answer == 'text':
+        """Calls C and answers its results."""
+        call = self.call
+        for p in call.shaped:
+            if p.how == 'list':
+                self.sizes['blades' if call.name == 'spar_aero_create' else p.dims[0]] = len(self.given[p.name])
+            elif self.given.get(p.name) is not None:
+                self.array_given(p)
+        arguments = [way(self, p) for p, way in call.steps]
+        answer = self.called(arguments)
+        if call.answer == 'text':
             return (answer or b'').decode()
-        if self.call.name == 'spar_has':
+        if call.name == 'spar_has':
             return bool(answer)
-        if self.call.answer == 'int' and answer != 0:
+        if call.answer == 'int' and answer != 0:
             if self.raised:
                 raise self.raised[0]
-            raise Error(answer, self._message())
+            raise _failed(answer, self.message())
         if isinstance(self.owner, Trial):
             self.owner.callbacks.update(self.callbacks)
-        results = [r() for r in self.results]
+        results = [r() if callable(r) else r for r in self.results]
         return results[0] if len(results) == 1 else tuple(results) or None
 
-    def _session(self):
-        """The session of the call's owner, else of what is given; None: there is none."""
-        things = [self.owner] + [value for value in self.given.values() if isinstance(value, _Thing)]
-        return next((thing.session for thing in things if thing is not None and thing.session is not None), None)
-
-    def _called(self, arguments):
+    def called(self, arguments):
         """Calls C. What callbacks of a trial raise meanwhile is this call's."""
         trials = [thing for thing in (self.owner, *self.given.values()) if isinstance(thing, Trial)]
+        if not trials:
+            return self.call.function(*arguments)
         before = [trial.raised for trial in trials]
         for trial in trials:
             trial.raised = self.raised
@@ -177,25 +253,43 @@ class _Running:
             for trial, raised in zip(trials, before):
                 trial.raised = raised
 
-    def _message(self):
-        session = self._session()
+    def message(self):
+        """The message of the session of the owner, else of what is given, else of none."""
+        things = [self.owner] + [value for value in self.given.values() if isinstance(value, _Thing)]
+        session = next((thing.session for thing in things if thing is not None and thing.session is not None), None)
         return _calls['spar_session_message'].function(session.handle if session is not None else None).decode()
 
-    def _array_given(self, p):
+    # ---- arrays ----
+
+    def array_given(self, p):
         """An array of the caller's, as C reads it; what it shows of the sizes."""
-        c_kind = _NUMBERS[p.type][1]
+        kind = _NUMBERS[p.type][1]
         value = self.given[p.name]
-        if p.result:  # filled in place
-            if not isinstance(value, numpy.ndarray) or value.dtype != c_kind or not value.flags.c_contiguous:
-                raise TypeError(f'{p.name}: a contiguous array of {numpy.dtype(c_kind)} is filled in place')
-        else:
+        strides = self.strides if self.strides is not None and p.dims[1:] == [3] else None
+        if p.how == 'out' and p not in self.call.asked:  # filled in place
+            if not isinstance(value, numpy.ndarray) or value.dtype != kind or not (strides or value.flags.c_contiguous):
+                raise TypeError(f'{p.name}: a contiguous array of {kind} is filled in place')
+            if not value.flags.writeable:
+                raise TypeError(f'{p.name}: an array that can be written is filled in place; this one cannot')
+        elif not (isinstance(value, numpy.ndarray) and value.dtype == kind):
             value = numpy.asarray(value)
-            if value.size and not numpy.can_cast(value.dtype, c_kind, 'same_kind'):
-                raise TypeError(f'{self.call.name}: {p.name} is of {value.dtype}; it must be of {numpy.dtype(c_kind)}')
-            value = self.given[p.name] = numpy.ascontiguousarray(value, dtype=c_kind)
-        known = [self._size(d) for d in p.dims]
+            if value.size and not numpy.can_cast(value.dtype, kind, 'same_kind'):
+                raise TypeError(f'{self.call.name}: {p.name} is of {value.dtype}; it must be of {kind}')
+            value = value.astype(kind)
+        known = [self.size(d) for d in p.dims]
+        self.check_shape(p, value, known)
+        if strides is not None:
+            value = self.laid(p, value, strides)
+        elif not value.flags.c_contiguous:
+            value = numpy.ascontiguousarray(value)
+        self.given[p.name] = value
+
+    def check_shape(self, p, value, known):
+        """Refuses an array of another shape; learns the sizes that nothing else says."""
+        if value.shape == tuple(known):
+            return
         unknown = [d for d, size in zip(p.dims, known) if size is None]
-        rest = int(numpy.prod([size for size in known if size is not None], dtype=numpy.int64))
+        rest = prod(size for size in known if size is not None)
         fits = _has_shape(value.shape, known)
         if fits and value.ndim == len(known):
             self.sizes.update((d, size) for d, size in zip(p.dims, value.shape) if d in unknown)
@@ -205,80 +299,97 @@ class _Running:
             shape = ''.join(f'[{d}]' for d in p.dims)
             raise ValueError(f'{self.call.name}: {p.name} has the shape {value.shape}; it must be {p.name}{shape}')
 
-    def _size(self, d):
+    def laid(self, p, value, strides):
+        """An array [n][3] in the layout of the fluid: itself, if it is, else a copy."""
+        if value.ndim != 2:
+            raise ValueError(f'{self.call.name}: {p.name} has the shape {value.shape}; after set_layout it must be {p.name}[n][3]')
+        strides = tuple(value.itemsize * number for number in strides)
+        if value.strides[1] == strides[1] and (value.strides[0] == strides[0] or len(value) < 2) or not value.size:
+            return value
+        if p.result:
+            raise TypeError(f'{p.name}: it is filled in place, so its strides must be {strides}; they are {value.strides}')
+        copy = _laid_out(len(value), value.dtype, strides)
+        copy[...] = value
+        return copy
+
+    def size(self, d):
+        """How large a dimension is; None: nothing says it yet."""
         if isinstance(d, int):
             return d
         if d in self.sizes:
             return self.sizes[d]
         if d in self.given:
             return int(self.given[d])
-        if any(p.name == d and p.how == 'value' for p in self.call.parameters):
-            return _ENOUGH if d == 'capacity' and not self._array_named(d) else None
-        return self.owner.size(d, self.call, self.given) if self.owner is not None else None
+        if d in self.call.values:
+            return _ENOUGH if d == 'capacity' and not self.array_named(d) else None
+        if self.owner is None:
+            return None
+        size = self.owner.size(d, self.call, self.given)
+        if size is not None:
+            self.sizes[d] = size
+        return size
 
-    def _array_named(self, d):
+    def array_named(self, d):
+        """Whether an array is given that has this dimension."""
         return any(p.array and d in p.dims and self.given.get(p.name) is not None for p in self.call.parameters)
 
-    def _argument(self, p):
-        if p is self.call.parameters[0] and self.call.owner:
-            return self._open(self.owner)
-        if p.how == 'callback':
-            return self._callback(p, self.given.get(p.name))
-        if p.type == 'context':
-            return None
-        if p.type in _CLASSES:
-            return self._handle(p)
-        if p.type == 'char':
-            return self._text(p)
-        if p.array:
-            return self._array(p)
-        if p.result:
-            return self._number(p)
+    def capacity(self, name):
+        """What the result has room for: by a constant of the table, by the caller's array, or enough."""
+        for p in self.call.parameters:
+            if p.array and p.result and p.how == 'out':
+                if name == 'columns':
+                    return self.size(p.dims[1])
+                size = self.size(p.dims[0])
+                if size is not None:
+                    return size
+        return self.sizes.get(name, _ENOUGH)
+
+    # ---- from a parameter to C's argument ----
+
+    def nothing(self, _p):
+        """A context."""
+
+    def open(self, thing):
+        """The handle of a thing, which is there; that of one which is not leads into memory that is another's."""
+        closed = thing.closed()
+        if closed:
+            raise _failed(CONSTANTS['SPAR_ERR_ARGUMENT'], f'{self.call.name}: {closed}')
+        return thing.handle
+
+    def own(self, _p):
+        """The thing whose method this is."""
+        return self.owner.handle
+
+    def value(self, p):
+        """A number, or a count that an array shows."""
         if p.name in self.given:
             return self.given[p.name]
-        size = self._size(p.name) if p.type == 'int64_t' or p.name == 'blades' else None
+        size = self.size(p.name) if p.type == 'int64_t' or p.name == 'blades' else None
         if p.name in ('capacity', 'rows', 'columns'):
-            size = self._capacity(p.name)
+            size = self.capacity(p.name)
         if size is None:
             if p.name == 'n':
                 return 0  # of no array
             raise TypeError(f'{self.call.python_name} lacks {p.name}')
         return size
 
-    def _open(self, thing):
-        """The handle of a thing, which is there; that of one which is not leads into memory that is another's."""
-        closed = thing.closed()
-        if closed:
-            raise Error(_constants['SPAR_ERR_ARGUMENT'], f'{self.call.name}: {closed}')
-        return thing.handle
-
-    def _capacity(self, name):
-        """What the result has room for: by a constant of the table, by the caller's array, or enough."""
-        for p in self.call.parameters:
-            if p.array and p.result and p.how == 'out':
-                if name == 'columns':
-                    return self._size(p.dims[1])
-                size = self._size(p.dims[0])
-                if size is not None:
-                    return size
-        return self.sizes.get(name, _ENOUGH)
-
-    def _handle(self, p):
+    def handle(self, p):
+        """Handles that are given, and a handle that the call makes."""
         if p.how == 'list':
-            handles = (ctypes.c_void_p * len(self.given[p.name]))(*[self._open(h) for h in self.given[p.name]])
+            handles = (ctypes.c_void_p * len(self.given[p.name]))(*[self.open(h) for h in self.given[p.name]])
             self.keep.append(handles)
             return ctypes.cast(handles, ctypes.c_void_p)
         if p.how == 'value':
             value = self.given.get(p.name)
-            return self._open(value) if value is not None else None
+            return self.open(value) if value is not None else None
         made = ctypes.c_void_p()
-        self.keep.append(made)
         of = list(self.given.get('sections', []))[:1]
         session = self.owner.session if self.owner is not None else of[0].session if of else None
         self.results.append(lambda: session if p.type == 'session' else _CLASSES[p.type](made.value, session))
-        return ctypes.addressof(made)
+        return ctypes.byref(made)
 
-    def _text(self, p):
+    def text(self, p):
+        """A text, or room for one."""
         if p.how == 'in':
             value = self.given.get(p.name)
             return os.fsencode(value) if value is not None else None
@@ -286,41 +397,47 @@ class _Running:
         self.results.append(lambda: text.value.decode())
         return ctypes.addressof(text)
 
-    def _array(self, p):
+    def array(self, p):
+        """An array that is given, and room for one that comes back."""
         value = self.given.get(p.name)
         if value is None and p.result and p.name not in self.given:
-            shape = [self._size(d) if d != 'capacity' else self._capacity(d) for d in p.dims]
+            shape = [self.size(d) if d != 'capacity' else self.capacity(d) for d in p.dims]
             if None in shape:
                 return None  # not wanted, for nobody knows how large it is
-            value = numpy.zeros(shape, _NUMBERS[p.type][1])
+            kind = _NUMBERS[p.type][1]
+            if self.strides is not None and p.dims[1:] == [3]:
+                value = _laid_out(shape[0], kind, tuple(kind.itemsize * number for number in self.strides))
+            else:
+                value = numpy.zeros(shape, kind)
         if value is None:
             return None
         self.keep.append(value)
         if p.result:
-            self.results.append(lambda: value)
+            self.results.append(value)
         return value.ctypes.data
 
-    def _number(self, p):
+    def number(self, p):
+        """Room for a number that comes back."""
         if p.name in self.given and self.given[p.name] is None:
             return None
         number = _NUMBERS[p.type][0](*([self.given[p.name]] if p.name in self.given else []))
-        self.keep.append(number)
         self.results.append(lambda: number.value)
-        return ctypes.addressof(number)
+        return ctypes.byref(number)
 
-    def _callback(self, p, function):
-        kind = _CALLBACKS[p.type]
+    def callback(self, p):
+        """What C calls in Python's place."""
+        kind, function = _CALLBACKS[p.type], self.given.get(p.name)
         if p.type == 'log' and function is not None:
             def called(_session, level, text, _context):
                 function(level, text.decode(errors='replace'))
             self.owner.log = kind(called)  # kept as long as the session
             return self.owner.log
-        made = kind() if function is None else kind(self._calling(p, function))
+        made = kind() if function is None else kind(self.calling(p, function))
         self.keep.append(made)
         self.callbacks[p.name] = made  # a trial keeps it until the next
         return made
 
-    def _calling(self, p, function):
+    def calling(self, p, function):
         """What C calls. What is raised there ends the call under way, which raises it again."""
         owner, raised = self.owner, self.raised
 
@@ -347,15 +464,6 @@ class _Thing:
         self.handle = handle
         if session is not None:
             self.session = session
-
-    def __getattr__(self, name):
-        call = _methods.get((self.kind, name))
-        if call is None:
-            raise AttributeError(f'there is no {self.kind} call {name}')
-        return lambda *values, **named: call(self, *values, **named)
-
-    def __dir__(self):
-        return [*super().__dir__(), *(name for kind, name in _methods if kind == self.kind)]
 
     def __reduce_ex__(self, _protocol):
         raise TypeError(f'a {self.kind} of spar cannot be copied or pickled: there would be two owners; save and load '
@@ -403,36 +511,53 @@ class Session(_Thing):
             comm = comm.py2f() if hasattr(comm, 'py2f') else int(comm)
             status = _calls['spar_session_create_fcomm'].function(comm, ctypes.addressof(made))
         if status != 0:
-            raise Error(status, _calls['spar_session_message'].function(None).decode())
+            raise _failed(status, _calls['spar_session_message'].function(None).decode())
         self.handle = made.value
 
 
+def _count(thing, name, *of):
+    """What a call answers whose result is one count, without what the other calls need."""
+    number = ctypes.c_int64()
+    status = _calls[name].function(thing.handle, *of, ctypes.byref(number))
+    if status != 0:
+        raise _failed(status, _calls['spar_session_message'].function(thing.session.handle).decode())
+    return number.value
+
+
 class Member(_Thing):
+    """A structure: a beam, a rigid body, a point, or one that the host solves. A session makes it."""
     kind = 'member'
 
-    def size(self, d, call, given):
-        if d in ('n', 'nodes'):
-            return self.get_count()
-        return None
+    def size(self, d, _call, _given):
+        return _count(self, 'spar_member_get_count') if d in ('n', 'nodes') else None
 
 
 class Joint(_Thing):
+    """A joint of two members, a spring or a link. A session makes it."""
     kind = 'joint'
 
 
 class Fluid(_Thing):
+    """A fluid's nodes on this rank. A member makes it."""
     kind = 'fluid'
 
     def size(self, d, call, given):
         if d == 'n':
-            force = call.python_name in _OF_FORCE_NODES
-            return self.get_count(given.get('which', 1 if force else 0))
+            return _count(self, 'spar_fluid_get_count', given.get('which', 1 if call.of_force_nodes else 0))
         if d == 'P':
             return self.get_member().get_elements()[1]
         return None
 
+    def strides(self, call, given):
+        """Numbers between nodes and between components in the layout; None: packed."""
+        node, component = ctypes.c_int64(3), ctypes.c_int64(1)
+        _calls['spar_fluid_get_layout'].function(self.handle, given.get('which', 1 if call.of_force_nodes else 0),
+                                                 ctypes.byref(node), ctypes.byref(component))
+        return None if (node.value, component.value) == (3, 1) else (node.value, component.value)
+
 
 class Trial(_Thing):
+    """Trial runs on a copy of a session. A session makes it."""
     kind, owned = 'trial', True
 
     def __init__(self, handle, session=None):
@@ -442,6 +567,7 @@ class Trial(_Thing):
 
 
 class Polar(_Thing):
+    """Coefficients of an airfoil over the angle of attack."""
     kind, owned = 'polar', True
 
     def __init__(self, alpha_rad, cl, cd, cm=None):
@@ -451,6 +577,7 @@ class Polar(_Thing):
 
 
 class Aero(_Thing):
+    """Blade elements: sections has one fluid of stations for each blade."""
     kind, owned = 'aero', True
 
     def __init__(self, sections):
@@ -473,42 +600,18 @@ class _Made(_Thing):
 
 
 _CLASSES = {'session': Session, 'member': Member, 'joint': Joint, 'fluid': Fluid, 'trial': Trial, 'polar': _Made, 'aero': _Made}
-_constants, _calls = {}, {}
-for _line in TABLE.split('\n'):
-    _words = _line.split()
-    if _line.startswith('constants'):
-        _constants.update((name, int(number)) for name, number in (word.split('=') for word in _words[1:]))
-for _line in TABLE.split('\n'):
-    _words = _line.split()
-    if _line.startswith('call'):
-        _calls[_words[1]] = _Call(_words[1], _words[2], _words[3:])
-_methods = {}
-for _one in _calls.values():
-    if _one.owner and _methods.setdefault((_one.owner, _one.python_name), _one) is not _one:
-        raise ImportError(f'{_one.name} and {_methods[_one.owner, _one.python_name].name} have one name')
-globals().update((name[len('SPAR_'):], number) for name, number in _constants.items())
-
-
-def status_text(status):
-    """Name and text of a status."""
-    return _calls['spar_status_text'](None, status)
-
-
-def version():
-    """Release, 'major.minor.patch'."""
-    return _calls['spar_version'](None)
-
-
-def has(feature):
-    """Whether this build has a feature: 'mpi', ..."""
-    return _calls['spar_has'](None, feature)
-
-
-def effect_name(row):
-    """Name of a row of the report of effects."""
-    return _calls['spar_effect_name'](None, row)
-
-
-def series_add(path, time, part, file):
-    """Adds a file to an index of files in time."""
-    _calls['spar_vtk_series_add'](None, path, time, part, file)
+globals().update((name[len('SPAR_'):], number) for name, number in CONSTANTS.items())
+_said = _table.read()
+_calls = {_name: _Call(_one) for _name, _one in _said.items()}
+for _name, _one in _calls.items():
+    _one.single = _calls.get(_name + '_f32')
+    if _one.public:
+        _owner = _CLASSES[_one.owner] if _one.owner else None
+        _owner = {'polar': Polar, 'aero': Aero}.get(_one.owner, _owner)
+        if hasattr(_owner, _one.python_name) if _owner else _one.python_name in globals():
+            raise ImportError(f'{_name}: there are two of the name {_one.python_name}')
+        if _owner:
+            setattr(_owner, _one.python_name, _function(_one, _said[_name]))
+        else:
+            globals()[_one.python_name] = _function(_one, _said[_name])
+__version__ = VERSION

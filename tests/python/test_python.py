@@ -1,17 +1,17 @@
-"""The package spar against closed forms, and what it promises of arguments, results and failures.
+"""The package spar that Python finds, against closed forms, and what it promises of arguments, results and failures.
     test_python.py <folder to write in>
 """
+import ast
 import copy
 import gc
+import inspect
 import os
 import pickle
 import sys
 import unittest
 
 import numpy
-
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), '..', '..', 'python'))
-import spar  # noqa: E402 pylint: disable=wrong-import-position
+import spar
 
 UNIT = [1, 0, 0, 0]
 WORK = sys.argv.pop() if len(sys.argv) > 1 else '.'
@@ -414,6 +414,71 @@ class Edges(unittest.TestCase):
             with self.assertRaises(ValueError):
                 fluid.pull_motion(1.0, x=numpy.zeros((3, 1)))
 
+    def test_layout(self):
+        """Arrays keep the shape (n, 3) in every layout, and mean the same: those of C's order were taken as they lay."""
+        with spar.Session() as s:
+            member = s.rigid_create('body', [0, 0, 0], UNIT, numpy.eye(6))
+            member.set_effects(spar.EFFECT_FLUID_HISTORY, 0)
+            member.commit()
+            places, force = numpy.arange(12.0).reshape(4, 3) + 1, numpy.arange(12.0).reshape(4, 3)
+            fluid = member.fluid_create('laid')
+            fluid.set_motion_nodes(places)
+            fluid.set_force_nodes(places)
+            fluid.map()
+            fluid.push_forces(force)
+            total = fluid.sum_loads([0, 0, 0])
+            for node, component in ((1, 4), (8, 1), (2, 9)):
+                for which in (spar.NODES_MOTION, spar.NODES_FORCE):
+                    fluid.set_layout(which, node, component)
+                for given in (force, numpy.asfortranarray(force), force.tolist(), numpy.repeat(force, 2, axis=0)[::2]):
+                    fluid.push_forces(0 * force)
+                    fluid.push_forces(given)
+                    numpy.testing.assert_allclose(fluid.sum_loads([0, 0, 0]), total, rtol=1e-14)
+                x, _ = fluid.pull_motion(1.0)
+                numpy.testing.assert_allclose(x, places, rtol=1e-14)
+                self.assertEqual(x.strides, (8 * node, 8 * component))
+                self.assertIs(fluid.pull_motion(1.0, x=x, v=None), x)
+                numpy.testing.assert_allclose(fluid.pull_forces(1.0), force, atol=1e-13)
+                q = fluid.pull_poses(spar.NODES_FORCE, 1.0)[1]
+                numpy.testing.assert_array_equal(q, [UNIT] * 4)
+                with self.assertRaisesRegex(TypeError, 'strides'):
+                    fluid.pull_motion(1.0, x=numpy.zeros((4, 3)))
+                with self.assertRaisesRegex(ValueError, 'after set_layout'):
+                    fluid.push_forces(force.ravel())
+            fluid.set_layout(spar.NODES_MOTION, 1, 4)
+            columns = numpy.zeros((4, 3), order='F')
+            self.assertIs(fluid.pull_motion(1.0, x=columns, v=None), columns)  # without a copy
+            numpy.testing.assert_allclose(columns, places, rtol=1e-14)
+
+    def test_single(self):
+        """float32 arrays take the calls of single precision; with float64 ones beside them they are refused or converted."""
+        with spar.Session() as s:
+            _, fluid = body(s)
+            fluid.push_forces(numpy.array([[0.1, 0, 0]], dtype=numpy.float32))
+            self.assertEqual(fluid.sum_loads([0, 0, 0])[0][0], float(numpy.float32(0.1)))
+            x = numpy.full((1, 3), 9, dtype=numpy.float32)
+            self.assertIs(fluid.pull_motion(1.0, x=x, v=None), x)
+            numpy.testing.assert_array_equal(x, numpy.zeros((1, 3)))
+            with self.assertRaises(TypeError):
+                fluid.pull_motion(1.0, x=x, v=numpy.zeros((1, 3)))
+            x.flags.writeable = False
+            with self.assertRaisesRegex(TypeError, 'can be written'):
+                fluid.pull_motion(1.0, x=x)
+
+    def test_errors(self):
+        """Each status has its class, which can be sent to another process."""
+        with spar.Session() as s:
+            with self.assertRaises(spar.ArgumentError) as caught:
+                s.set_integrator(2.0, 1)
+            again = pickle.loads(pickle.dumps(caught.exception))
+            self.assertEqual((type(again), again.status, str(again)), (spar.ArgumentError, 1, str(caught.exception)))
+            with self.assertRaises(spar.StateError):
+                s.step_solve()
+            with self.assertRaises(spar.FileError):
+                s.load(os.path.join(WORK, 'no such file'))
+        kinds = [kind for kind in vars(spar).values() if inspect.isclass(kind) and issubclass(kind, spar.Error)]
+        self.assertEqual(len(kinds), 1 + spar.ERR_LIMIT)
+
     def test_names(self):
         """A joint's spring and a line's are two calls."""
         with spar.Session() as s:
@@ -532,6 +597,51 @@ class Every(unittest.TestCase):
         every = {name for name in spar._calls if not name.endswith('_destroy')}  # pylint: disable=protected-access
         self.assertEqual(every - tried, set(self.MADE_OTHERWISE))
         self.assertGreaterEqual(len(answered), 160)  # of 196; the others want more of a scene, and say so
+
+
+class Described(unittest.TestCase):
+    """Every call has the header's words, a signature, and a stub of the same arguments."""
+
+    def functions(self):
+        """The public calls, with the class that each belongs to, or None."""
+        for call in spar._calls.values():  # pylint: disable=protected-access
+            if call.public:
+                owner = getattr(spar, call.owner.title()) if call.owner else None
+                yield call, owner, getattr(owner or spar, call.python_name)
+
+    def test_docstrings(self):
+        found = 0
+        for call, _, function in self.functions():
+            self.assertIn(call.name, function.__doc__)
+            self.assertGreater(len(function.__doc__), len(call.name) + 10, call.name)
+            self.assertNotIn('NULL', function.__doc__)
+            found += 1
+        self.assertGreater(found, 200)
+        self.assertIn('force[n][3]: in, N\n', spar.Fluid.push_forces.__doc__)
+        self.assertEqual(str(inspect.signature(spar.Fluid.push_forces)), '(self, /, force, moment=None)')
+        self.assertEqual(str(inspect.signature(spar.Fluid.pull_motion)), '(self, /, theta, *, x=Ellipsis, v=Ellipsis)')
+
+    def test_stubs(self):
+        path = os.path.join(os.path.dirname(spar.__file__), '__init__.pyi')
+        with open(path, encoding='utf-8') as file:
+            tree = ast.parse(file.read())
+        stubs, names = {}, set()
+        for one in tree.body:
+            if isinstance(one, ast.ClassDef):
+                names.add(one.name)
+            for part in one.body if isinstance(one, ast.ClassDef) else [one]:
+                if isinstance(part, ast.FunctionDef):
+                    owner = one.name if isinstance(one, ast.ClassDef) else None
+                    stubs.setdefault((owner, part.name), part.args)  # the first of an overload
+                elif isinstance(part, ast.AnnAssign):
+                    names.add(part.target.id)
+        for call, owner, _ in self.functions():
+            arguments = stubs[owner.__name__ if owner else None, call.python_name]
+            self.assertEqual([a.arg for a in arguments.args], ['self'] * bool(owner) + [p.name for p in call.asked], call.name)
+        for name, value in vars(spar).items():
+            if name.isupper() and not name.startswith('_') and isinstance(value, int) or \
+                    inspect.isclass(value) and value.__module__ == 'spar' and not name.startswith('_'):
+                self.assertIn(name, names)
 
 
 class Files(unittest.TestCase):
