@@ -1,4 +1,4 @@
-// What the turbine of spar must do in AMR-Wind's hands: amr_wind_checks order|checkpoints|refusals|coarse|direction|figures
+// What the turbine of spar must do in AMR-Wind's hands. Usage: amr_wind_checks NAME
 #include "flow.H"
 
 #include <cstring>
@@ -210,7 +210,11 @@ void check_refusals()
     fresh();
     set("Actuator.TurbineSparLine.spar_rtoll", "1e-6");
     refused("nobody reads Actuator.TurbineSparLine.spar_rtoll; the nearest key is spar_rtol");
+}
 
+// Of the wrong step, of another turbine, or not there.
+void check_restarts()
+{
     forget_files();
     fresh();
     set("time.checkpoint_interval", "2");
@@ -403,12 +407,13 @@ void check_figures()
 
 int main(int argc, char** argv)
 {
-    const std::map<std::string, void (*)()> checks{{"order", check_order},       {"checkpoints", check_checkpoints},
-                                                   {"refusals", check_refusals}, {"coarse", check_coarse},
-                                                   {"direction", check_direction}, {"figures", check_figures}};
+    const std::map<std::string, void (*)()> checks{
+        {"order", check_order},       {"checkpoints", check_checkpoints}, {"refusals", check_refusals},
+        {"restarts", check_restarts}, {"coarse", check_coarse},           {"direction", check_direction},
+        {"figures", check_figures}};
     const auto it = argc == 2 ? checks.find(argv[1]) : checks.end();
     if (it == checks.end()) {
-        std::printf("usage: amr_wind_checks order|checkpoints|refusals|coarse|direction|figures\n");
+        std::printf("usage: amr_wind_checks order|checkpoints|refusals|restarts|coarse|direction|figures\n");
         return 2;
     }
     try {
