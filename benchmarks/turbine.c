@@ -1,9 +1,9 @@
 /* What the rest of a turbine costs beside its three blades: a step of the whole machine (tower, nacelle, shaft, hub,
    bearings: 11 members and joints solved as one) against one of the same blades on driven roots, in the same air.
      turbine                      processor time of both, and their ratio
-     turbine roots|machine STEPS [KIND]
-                                  runs one of them so many steps, with exact, linear or modal blades: the difference of
-                                  two such runs under `valgrind --tool=callgrind` is the cost of a step */
+     turbine roots|machine STEPS
+                                  runs one of them so many steps: the difference of two such runs under
+                                  `valgrind --tool=callgrind` is the cost of a step */
 #include "turbine_control.h"
 #include "turbine_model.h"
 
@@ -70,8 +70,8 @@ static double now(void) {
 }
 
 /* A run of some steps: processor time and coupling iterations of a step. */
-static int run(int roots, int blades, int steps, double *seconds, double *iterations) {
-    const turbine_options how = {SPAR_DATA_DIR "/nrel5mw", 1, 10, 1, 8, 0, 0, 1, roots, 0, blades, 0, 8, 0};
+static int run(int roots, int steps, double *seconds, double *iterations) {
+    const turbine_options how = {SPAR_DATA_DIR "/nrel5mw", 1, 10, 1, 8, 0, 0, 1, roots, 0};
     turbine t = {.session = NULL};
     turbine_control c;
     spar_session *s = NULL;
@@ -102,15 +102,11 @@ static int run(int roots, int blades, int steps, double *seconds, double *iterat
 
 int main(int argc, char **argv) {
     double seconds[2], iterations[2];
-    if (argc == 3 || argc == 4) {
-        const char *kind = argc == 4 ? argv[3] : "exact";
-        int blades = strcmp(kind, "linear") == 0  ? SPAR_FIDELITY_LINEAR
-                     : strcmp(kind, "modal") == 0 ? SPAR_FIDELITY_MODAL
-                                                  : SPAR_FIDELITY_EXACT;
-        return run(strcmp(argv[1], "roots") == 0, blades, atoi(argv[2]), &seconds[0], &iterations[0]) != SPAR_OK;
+    if (argc == 3) {
+        return run(strcmp(argv[1], "roots") == 0, atoi(argv[2]), &seconds[0], &iterations[0]) != SPAR_OK;
     }
     for (int roots = 0; roots <= 1; roots++) {
-        if (run(roots, SPAR_FIDELITY_EXACT, 500, &seconds[roots], &iterations[roots]) != SPAR_OK) {
+        if (run(roots, 500, &seconds[roots], &iterations[roots]) != SPAR_OK) {
             return 1;
         }
         printf("%-24s %8.3f ms a step, %.2f coupling iterations\n", roots ? "blades on driven roots" : "whole turbine",

@@ -189,18 +189,12 @@ endif()
 # The Fortran host of the turbine gives the numbers of the C program to 1e-8, in a gust in which the blades pitch.
 if(TARGET examples_turbine_fortran)
   set(run --wind 12 --gust 4 --gust-start 0 --gust-length 2 --seconds 1 --dt 0.02 --nodes 6)
-  set(beams_turbine)
-  set(beams_turbine_modal --blades modal --tower linear)
-  foreach(name turbine turbine_modal)
-    add_test(NAME example_${name}_reference
-      COMMAND examples_turbine ${run} ${beams_${name}} --vtk-every 0 --no-plots --quiet
-      --out ${PROJECT_BINARY_DIR}/tests/${name}_reference)
-    add_test(NAME example_${name}_fortran
-      COMMAND examples_turbine_fortran ${run} ${beams_${name}}
-      --compare ${PROJECT_BINARY_DIR}/tests/${name}_reference/history.csv)
-    spar_set_test(example_${name}_reference fortran 120 ${spar_example_environment})
-    spar_set_test(example_${name}_fortran fortran 120 ${spar_example_environment})
-    set_tests_properties(example_${name}_reference PROPERTIES FIXTURES_SETUP ${name}_reference)
-    set_tests_properties(example_${name}_fortran PROPERTIES FIXTURES_REQUIRED ${name}_reference)
-  endforeach()
+  add_test(NAME example_turbine_reference
+    COMMAND examples_turbine ${run} --vtk-every 0 --no-plots --quiet --out ${PROJECT_BINARY_DIR}/tests/turbine_reference)
+  add_test(NAME example_turbine_fortran
+    COMMAND examples_turbine_fortran ${run} --compare ${PROJECT_BINARY_DIR}/tests/turbine_reference/history.csv)
+  spar_set_test(example_turbine_reference fortran 120 ${spar_example_environment})
+  spar_set_test(example_turbine_fortran fortran 120 ${spar_example_environment})
+  set_tests_properties(example_turbine_reference PROPERTIES FIXTURES_SETUP turbine_reference)
+  set_tests_properties(example_turbine_fortran PROPERTIES FIXTURES_REQUIRED turbine_reference)
 endif()

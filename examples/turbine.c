@@ -26,10 +26,9 @@ typedef struct options {
     double wind, shear, gust, gust_start, gust_length, seconds, dt, mean, vtk_every;
     double elements, nodes, rho_inf, tolerance;
     double rpm, pitch; /* where the run begins; not finite: the published steady state of the wind */
-    double blade_modes, tower_modes;
     double no_plots, quiet, help;
     double case_start;
-    const char *out, *data, *blades, *tower, *kind;
+    const char *out, *data, *kind;
     const char *controller, *controller_input; /* NULL: the published one */
 } options;
 
@@ -61,10 +60,6 @@ static const struct {
      "pitch at the start [published, for the wind; parked, idling 90]"},
     {"elements", "N", offsetof(options, elements), 0, 1000, "beam elements of a blade, 0: rigid blades [1]"},
     {"nodes", "N", offsetof(options, nodes), 2, 24, "nodes of an element [10]"},
-    {"blades", "NAME", offsetof(options, blades), 0, 0, "how blades are solved: exact, linear, modal [exact]"},
-    {"blade-modes", "N", offsetof(options, blade_modes), 1, 1000, "of a modal blade [8]"},
-    {"tower", "NAME", offsetof(options, tower), 0, 0, "how the tower is solved: exact, linear, modal [exact]"},
-    {"tower-modes", "N", offsetof(options, tower_modes), 1, 1000, "of a modal tower [6]"},
     {"rho-inf", "R", offsetof(options, rho_inf), 0, 1, "spectral radius of generalised-alpha [0.8]"},
     {"tolerance", "R", offsetof(options, tolerance), 0, 1,
      "change of the loads that ends the coupling's iteration [1e-6]"},
@@ -106,17 +101,6 @@ static int read_option(options *o, int i, const char *text) {
     return 0;
 }
 
-/* SPAR_FIDELITY_* of a name; -1 with a line on stderr. */
-static int fidelity_of(const char *option, const char *name) {
-    for (int kind = SPAR_FIDELITY_LINEAR; kind <= SPAR_FIDELITY_EXACT; kind++) {
-        if (strcmp(name, rotor_fidelity_name(kind)) == 0) {
-            return kind;
-        }
-    }
-    fprintf(stderr, "turbine: --%s %s: exact, linear or modal is wanted\n", option, name);
-    return -1;
-}
-
 /* What was not given is the case's. */
 static int fill_case(options *o) {
     double wind, gust, rpm, pitch;
@@ -150,12 +134,8 @@ static int read_options(options *o, int argc, char **argv) {
                    .tolerance = 1e-6,
                    .rpm = NAN,
                    .pitch = NAN,
-                   .blade_modes = 8,
-                   .tower_modes = 6,
                    .out = "turbine-out",
                    .data = SPAR_DATA_DIR "/nrel5mw",
-                   .blades = "exact",
-                   .tower = "exact",
                    .kind = "gust",
                    .case_start = 2};
     for (int k = 1; k < argc; k++) {
@@ -179,7 +159,7 @@ static int read_options(options *o, int argc, char **argv) {
         fprintf(stderr, "turbine: --controller and --controller-input go together, and with --case gust\n");
         return 1;
     }
-    return fidelity_of("blades", o->blades) < 0 || fidelity_of("tower", o->tower) < 0 || fill_case(o) != 0;
+    return fill_case(o) != 0;
 }
 
 /* ---- the scene ---- */
@@ -243,11 +223,7 @@ static int set_up(scene *s) {
                                  .tower_nodes = 8,
                                  .pitch = pitch,
                                  .rank = s->rank,
-                                 .ranks = s->ranks,
-                                 .blades = fidelity_of("blades", o->blades),
-                                 .tower = fidelity_of("tower", o->tower),
-                                 .blade_modes = (int)o->blade_modes,
-                                 .tower_modes = (int)o->tower_modes};
+                                 .ranks = s->ranks};
     TRY(ranks_create_session(s->ranks, &s->session));
     TRY(spar_session_set_gravity(s->session, (const double[]){0, 0, -standard_gravity}));
     TRY(spar_session_set_integrator(s->session, o->rho_inf, 1));

@@ -82,9 +82,6 @@ module machine
   implicit none
   private
   public :: build, let_go, blow, shaft_speed, set_pitch, set_torque, session, tower, tower_nodes, air
-  public :: blade_kind, tower_kind, blade_modes, tower_modes
-  integer(c_int) :: blade_kind = SPAR_FIDELITY_EXACT, tower_kind = SPAR_FIDELITY_EXACT ! and modes with the root held
-  integer :: blade_modes = 8, tower_modes = 6
   real(dp), parameter :: tower_height = 87.6_dp, overhang = 5.01910_dp, shaft_height = 1.96256_dp
   type(spar_session) :: session
   type(spar_member) :: tower, nacelle, generator, hub_body, blade(3)
@@ -139,7 +136,6 @@ contains
     call tower%set_placement([0.0_dp, 0.0_dp, 0.0_dp], [sqrt(0.5_dp), 0.0_dp, -sqrt(0.5_dp), 0.0_dp])
     call tower%set_sections(eta, stiff, dense)
     call tower%set_damping(spread(2 * 0.01_dp / (2 * pi * 0.32_dp), 1, 6))
-    if (tower_kind /= SPAR_FIDELITY_EXACT) call tower%set_fidelity(tower_kind, tower_modes)
     call tower%commit()
   end subroutine make_tower
 
@@ -204,8 +200,7 @@ contains
       call blade(b)%set_sections(structure_eta(1:n_structure), stiffness(:,:,1:n_structure), mass(:,:,1:n_structure))
       call blade(b)%set_damping(damping)
       call blade(b)%set_placement(x, quaternion_of(r))
-      call blade(b)%set_root(SPAR_ROOT_FREE) ! six motions among the modes of a modal one
-      if (blade_kind /= SPAR_FIDELITY_EXACT) call blade(b)%set_fidelity(blade_kind, 6 + blade_modes)
+      call blade(b)%set_root(SPAR_ROOT_FREE)
       call blade(b)%commit()
       call make_sections(b, x, r)
     end do
@@ -363,7 +358,6 @@ program turbine_fortran
   use, intrinsic :: iso_c_binding, only: c_int
   use controller
   use machine
-  use spar, only: SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL
   use tables
   use turbine
   implicit none
@@ -489,7 +483,7 @@ contains
       if (value == '') error stop 'turbine_fortran: ' // trim(name) // ' needs a value'
       x = 0
       status = 0
-      if (all(name /= ['--data   ', '--compare', '--blades ', '--tower  '])) read (value, *, iostat=status) x
+      if (all(name /= ['--data   ', '--compare'])) read (value, *, iostat=status) x
       if (status /= 0) error stop 'turbine_fortran: ' // trim(name) // ' ' // trim(value) // ': a number is wanted'
       select case (name)
       case ('--wind')
@@ -508,14 +502,6 @@ contains
         nodes = int(x)
       case ('--tolerance')
         tolerance = x
-      case ('--blades')
-        blade_kind = kind_of(name, value)
-      case ('--blade-modes')
-        blade_modes = int(x)
-      case ('--tower')
-        tower_kind = kind_of(name, value)
-      case ('--tower-modes')
-        tower_modes = int(x)
       case ('--data')
         data_folder = value
       case ('--compare')
@@ -527,21 +513,6 @@ contains
     if (.not. (seconds > 0 .and. dt > 0 .and. gust_length > 0)) error stop 'turbine_fortran: times are positive'
   end function options_read
 
-  integer(c_int) function kind_of(option, value) result(kind)
-    character(*), intent(in) :: option, value
-
-    kind = SPAR_FIDELITY_EXACT
-    select case (value)
-    case ('exact')
-    case ('linear')
-      kind = SPAR_FIDELITY_LINEAR
-    case ('modal')
-      kind = SPAR_FIDELITY_MODAL
-    case default
-      error stop 'turbine_fortran: ' // trim(option) // ' ' // trim(value) // ': exact, linear or modal is wanted'
-    end select
-  end function kind_of
-
   subroutine help()
     write (output_unit, '(a)') 'usage: turbine_fortran [options]', '', &
         'The NREL 5-MW turbine from a Fortran host.', '', &
@@ -552,10 +523,6 @@ contains
         '  --seconds S        time to simulate [60]', &
         '  --dt S             time step [0.02]', &
         '  --nodes N          nodes of a blade [10]', &
-        '  --blades NAME      how blades are solved: exact, linear, modal [exact]', &
-        '  --blade-modes N    of a modal blade [8]', &
-        '  --tower NAME       how the tower is solved [exact]', &
-        '  --tower-modes N    of a modal tower [6]', &
         '  --tolerance R      change of the loads that ends the iteration [1e-6]', &
         '  --data FOLDER      the tables of the turbine', &
         '  --compare FILE     compares with the history of such a run of the C program; fails beyond 1e-8'

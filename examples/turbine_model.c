@@ -35,14 +35,6 @@ static void rotate(const double q[4], const double v[3], double out[3]) {
     }
 }
 
-/* A modal beam whose root is free has the six motions of its root among its modes. */
-static int set_fidelity(spar_member *beam, int kind, int modes, int root_is_free) {
-    if (kind == 0 || kind == SPAR_FIDELITY_EXACT) {
-        return SPAR_OK;
-    }
-    return spar_member_set_fidelity(beam, kind, kind == SPAR_FIDELITY_MODAL ? modes + (root_is_free ? 6 : 0) : 0);
-}
-
 /* ---- tower ---- */
 
 void turbine_tower_tube(double height, double *diameter, double *wall) {
@@ -81,7 +73,6 @@ static int create_tower(turbine *t, const turbine_options *o) {
     TRY(spar_member_set_placement(t->tower, NULL, up));
     TRY(spar_beam_set_sections(t->tower, STATIONS, eta, K[0], M[0]));
     TRY(spar_beam_set_damping(t->tower, mu));
-    TRY(set_fidelity(t->tower, o->tower, o->tower_modes, 0));
     TRY(spar_member_commit(t->tower));
     return spar_member_get_count(t->tower, &t->tower_nodes);
 }
@@ -134,7 +125,6 @@ static int create_blades(turbine *t, const turbine_options *o) {
     for (int b = 0; b < TURBINE_BLADES; b++) {
         TRY(nrel5mw_create_blade(&t->data, &t->rotor, t->session, b, o->elements, o->nodes, &t->blade[b]));
         TRY(o->driven_roots ? SPAR_OK : spar_member_set_root(t->blade[b], SPAR_ROOT_FREE)); /* the bearing holds it */
-        TRY(o->elements > 0 ? set_fidelity(t->blade[b], o->blades, o->blade_modes, !o->driven_roots) : SPAR_OK);
         TRY(spar_member_commit(t->blade[b]));
         if (o->ranks < 2 || b % o->ranks == o->rank) {
             TRY(nrel5mw_create_sections(&t->data, &t->rotor, b, t->blade[b], &t->air[t->blown], t->twist));

@@ -26,8 +26,6 @@ typedef struct turbine_options {
     int rank, ranks;                 /* this one and their number (0: alone), which share the blades' air */
     int driven_roots;                /* 1: no tower, shaft and bearings: blades on roots driven by the host */
     int sections;                    /* aerodynamic, of a blade; 0: those of the tables */
-    int blades, tower;               /* SPAR_FIDELITY_* of those beams; 0: exact */
-    int blade_modes, tower_modes;    /* with their roots held, of modal ones */
 } turbine_options;
 
 typedef struct turbine {

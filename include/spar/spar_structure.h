@@ -68,7 +68,7 @@ SPAR_API int spar_beam_get_masses(const spar_member *beam, int64_t *n, int64_t c
      stiffness[n][3]: in, N/m^2, >= 0, along the section's axes in the reference configuration; linear between stations,
            zero outside; n = 1: constant along the whole beam
    SPAR_ERR_UNSUPPORTED at the commit: prescribed, rigid or external members, linear or modal ones with a driven
-   root; at the step: linear or modal ones whose root joints move. */
+   root. */
 SPAR_API int spar_beam_set_foundation(spar_member *beam, int64_t n, const double *eta, const double *stiffness);
 /* n: out, NULL: not wanted
    capacity: in, of the arrays
@@ -102,8 +102,7 @@ SPAR_API int spar_beam_get_damping(const spar_member *beam, double mu[6]);
    frequency omega has the damping ratio alpha / (2 omega). The force is an external one in the root's reaction. It
    has no effect on rigid or prescribed beams with fixed or driven roots, and without INERTIA.
      alpha: in, 1/s, >= 0, 0: none (default)
-   SPAR_ERR_UNSUPPORTED at the commit: a rigid beam with a free or pinned root; at the step: a linear or modal one whose
-   root joints move. */
+   SPAR_ERR_UNSUPPORTED at the commit: a rigid beam with a free or pinned root. */
 SPAR_API int spar_beam_set_mass_damping(spar_member *beam, double alpha);
 /* alpha: out, 1/s */
 SPAR_API int spar_beam_get_mass_damping(const spar_member *beam, double *alpha);
@@ -127,14 +126,12 @@ enum {
                gyroscopic and centrifugal terms and centrifugal stiffening. Second-order terms of the deformation are
                neglected, and stiffening by other loads. The factorisation stays while dt and the root's angular
                velocity do. Free or pinned root: linear about the reference configuration; a node that rotates by half
-               a turn is SPAR_ERR_NUMERIC. With joints the root may move freely; centrifugal stiffening is that along
-               the line.
+               a turn is SPAR_ERR_NUMERIC. No joints: there an exact beam costs about as much.
    modal       As linear, with the lowest `modes` modes with the root constrained; free and pinned roots count their 6
-               or 3 rigid modes. The initial deformation is projected onto the modes. With joints: rigid motions of the
-               root, six interface shapes for each other connected node (Craig and Bampton), and `modes` modes with all
-               connected nodes constrained.
+               or 3 rigid modes. The initial deformation is projected onto the modes.
    SPAR_ERR_ARGUMENT at the commit: too many modes for the nodes, or fewer than the rigid ones; SPAR_ERR_STATE:
-   linear or modal with a free or pinned root, without INERTIA; SPAR_ERR_NUMERIC: fewer modes have mass. */
+   linear or modal with a free or pinned root, without INERTIA; SPAR_ERR_UNSUPPORTED: linear or modal with a joint;
+   SPAR_ERR_NUMERIC: fewer modes have mass. */
 SPAR_API int spar_member_set_fidelity(spar_member *member, int kind, int64_t modes);
 /* kind: out, NULL: not wanted
    modes: out, of a modal member, else 0, NULL: not wanted */
@@ -290,9 +287,9 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
      y, z is fixed in b, the second in a;
    - three, a ball: the rotation vector, below half a turn.
    Connected members are solved together on one rank. Constraints hold in position and velocity at the end of each step.
-   Redundant constraints of loops are ignored, and named in the log. Joints connect members of any kind and fidelity;
-   prescribed ones move as prescribed, and spar_member_get_loads has the loads of joints on them. Joints are created
-   before the first step, on every rank with the same arguments; all calls are local. */
+   Redundant constraints of loops are ignored, and named in the log. Joints connect members of any kind,
+   except linear and modal beams. Prescribed ones move as prescribed, and spar_member_get_loads has the loads of joints
+   on them. Joints are created before the first step, on every rank with the same arguments; all calls are local. */
 
 /* Free motions of a joint, to be combined with |. */
 enum { SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, SPAR_FREE_RY = 16, SPAR_FREE_RZ = 32 };
@@ -304,7 +301,9 @@ enum { SPAR_FREE_X = 1, SPAR_FREE_Y = 2, SPAR_FREE_Z = 4, SPAR_FREE_RX = 8, SPAR
      node_b: in, from 0, ignored for the ground
      free_motions: in, SPAR_FREE_* combined: 0 a weld, RX a hinge, RX|RY a universal joint, RX|RY|RZ a ball, X a slider,
            X|RX a cylindrical joint, X|Y|RZ a planar joint, all six for springs alone
-     joint: out */
+     joint: out
+   SPAR_ERR_UNSUPPORTED: a member is committed as a linear or modal beam; likewise the other calls that create a
+   joint. If the joint comes first, spar_member_commit refuses. */
 SPAR_API int spar_joint_create(spar_session *session, const char *name, spar_member *a, int64_t node_a, spar_member *b,
                                int64_t node_b, int free_motions, spar_joint **joint);
 /* Position and axes of the joint in the reference configuration. Rigid arms lead from both nodes to it. Default: the

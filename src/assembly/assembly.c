@@ -25,7 +25,7 @@ void spari_assembly_name(const void *assembly, char *text, int size) {
 }
 
 int spari_assembly_solve(spari_assembly *a, double cv) {
-    return a->constraints == 0 ? spari_component_solve(a->component) : spari_system_solve(a, cv);
+    return a->constraints == 0 ? a->component->row->solve(a->component) : spari_system_solve(a, cv);
 }
 
 enum { NAME = 160 };
@@ -88,7 +88,7 @@ static double correct(spari_assembly *a, double longest) {
     }
     double cut = largest > longest ? longest / largest : 1;
     for (int i = 0; i < a->components; i++) {
-        a->component[i].row->correct(a->component + i, cut);
+        spari_component_correct(a->component + i, cut);
     }
     spari_constraints_correct_loads(a, cut);
     return largest;
@@ -116,7 +116,7 @@ static int correct_rates(spari_assembly *a, double cut, double *size) {
     for (int i = 0; i < a->components; i++) {
         const spari_scheme *c = &a->component[i].scheme;
         *size = fmax(*size, a->component[i].row->correction_size(a->component + i));
-        a->component[i].row->shift_rates(a->component + i, cut * c->rate, cut * c->cm, cut * c->cb);
+        spari_component_shift_rates(a->component + i, cut * c->rate, cut * c->cm, cut * c->cb);
     }
     spari_constraints_correct_loads(a, cut);
     return 0;
@@ -130,7 +130,7 @@ static double tolerance(const spari_assembly *a, double largest) {
     double size = 0, most = 0, worst = 0;
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
-        double way = p->row->way(p);
+        double way = spari_component_way(p);
         p->allowed = s->newton.strict ? 0 : spari_newton_tolerance(p->member, &p->scheme, way);
         size = fmax(size, way);
         most = fmax(most, p->allowed);
@@ -451,11 +451,6 @@ static int start_all(spari_assembly *a) {
         0) { /* later the accelerations that a trial begins with are not those of a steady motion */
         singular = singular || shift_for_alpha(a, 0, 0);
     }
-    for (int i = 0; i < a->components && !singular; i++) {
-        if (a->component[i].row->shift_start) {
-            a->component[i].row->shift_start(a->component + i);
-        }
-    }
     a->factored = 0;
     spari_assembly_name(a, name, sizeof name);
     SPARI_REQUIRE(a->session, !singular, SPAR_ERR_NUMERIC,
@@ -481,7 +476,7 @@ static void publish_component(spari_component *p, double *rates) {
     size_t size = (size_t)(6 * m->nodes) * sizeof *rates;
     m->row->publish(p->member);
     memcpy(rates, m->after.v, size);
-    p->row->keep_rates(p, 1);
+    spari_component_keep_rates(p, 1);
     m->row->publish(p->member);
     memcpy(m->after.v, rates, size);
 }
@@ -504,7 +499,7 @@ static int publish_all(spari_assembly *a, double dt) {
     }
     int moves = !a->component[0].scheme.still;
     for (int i = 0; i < a->components; i++) {
-        a->component[i].row->keep_rates(a->component + i, 0);
+        spari_component_keep_rates(a->component + i, 0);
     }
     int singular = moves && project(a, 1, dt);
     for (int i = 0; i < a->components; i++) {
@@ -527,12 +522,6 @@ static int makes_a_chain(const spari_assembly *a) {
     for (int i = 0; i < a->constraints; i++) {
         int holds = spari_constraint_count(a->constraint + i);
         joints += holds > 1 && holds < 6;
-        for (int side = 0; side < 2; side++) {
-            if (a->constraint[i].component[side] &&
-                a->constraint[i].component[side]->frame) { /* its velocities are shifted at its root */
-                return 0;
-            }
-        }
     }
     return joints >= CHAIN;
 }
@@ -673,8 +662,7 @@ static double rotation_rate_of_all(const void *self) {
     double most = 0;
     for (int i = 0; i < a->components; i++) {
         const spari_component *p = a->component + i;
-        int given = p->frame && !p->member->floats; /* the root does not rotate freely */
-        most = fmax(most, given ? 0 : spari_stage_rotation_rate(p->solver, p->member));
+        most = fmax(most, p->frame ? 0 : spari_stage_rotation_rate(p->solver, p->member));
     }
     return most;
 }
@@ -702,7 +690,7 @@ static int stage_of_all(void *self, const spari_scheme *c, const spari_part *par
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
         if (c->rule == SPARI_TRAPEZOIDAL && !(part->from > 0) && !part->again && a->constraints > 0) {
-            p->row->take_velocities(p);
+            spari_component_take_velocities(p);
         }
         SPARI_TRY(p->row->stage(p, part));
     }
@@ -741,7 +729,7 @@ int spari_assembly_advance(spari_assembly *a, double dt, int responses) {
     SPARI_TRY(begin_step(a, dt));
     a->rotates_far =
         !a->component[0].scheme.still && (makes_a_chain(a) || rotates_far(a, dt / a->session->integrator.substeps));
-    spari_pattern pattern = a->component[0].solver->steps.begin;
+    spari_pattern pattern = a->component[0].steps->begin;
     int status = spari_scheme_run(&how, a, &a->component[0].alpha, &a->component[0].member->state.cuts, &pattern,
                                   a->session, dt);
     if (status != SPAR_OK) {
@@ -749,7 +737,7 @@ int spari_assembly_advance(spari_assembly *a, double dt, int responses) {
         return status;
     }
     for (int i = 0; i < a->components; i++) {
-        a->component[i].solver->steps.solved = pattern;
+        a->component[i].steps->solved = pattern;
     }
     SPARI_TRY(publish_all(a, dt));
     if (a->component[0].scheme.rule == SPARI_BACKWARD && pattern.even == SPARI_EVEN - 1 &&
@@ -788,7 +776,7 @@ int spari_lone_response(spar_member *m, const double *load, double *motion) {
         return 1;
     }
     p.row->take_more(&p, load);
-    if (spari_component_solve(&p)) {
+    if (p.row->solve(&p)) {
         return 1;
     }
     p.row->show_more(&p, motion);

@@ -20,9 +20,6 @@ int spari_assemblies_make(spar_session *session, const char *call);
 /* Calls spari_assemblies_make if there are joints, and before the first step finds owners for members without joints
    (owners.h). */
 int spari_solvers_place(spar_session *session, const char *call);
-/* Renews the solutions of members that depend on their joints. Does nothing if they are up to date. Local. Returns a
-   status, with a message. */
-int spari_members_renew_joints(spar_session *session);
 /* Places the joints in the reference, as far as this is possible before the first step. Local. Returns a status,
    with a message. */
 int spari_joints_place(spar_session *session);

@@ -117,9 +117,10 @@ static int make_system(spari_assembly *a) {
         return SPAR_OK;
     }
     for (int i = 0; i < a->components; i++) {
-        const spari_component_row *row = a->component[i].row = a->component[i].member->row->component;
-        SPARI_TRY(row->make ? row->make(a->component + i) : SPAR_OK);
-        row->attach(a->component + i);
+        spari_component *p = a->component + i;
+        p->row = p->member->row->component;
+        SPARI_TRY(spari_component_make_ends(p));
+        p->row->attach(p);
     }
     SPARI_TRY(spari_system_find_tree(a));
     for (int i = 0; i < a->constraints; i++) {
@@ -166,8 +167,7 @@ static int check_members(const spar_joint *j) {
     return SPAR_OK;
 }
 
-/* The node of a beam that one rigid body carries: the joint holds that body, at an offset. Other components number
-   the nodes that joints hold in their own order. */
+/* The node of a beam that one rigid body carries: the joint holds that body, at an offset. */
 static void lead_to_components(spar_joint *j) {
     for (int side = 0; side < 2; side++) {
         const spar_member *m = j->member[side];
@@ -177,9 +177,6 @@ static void lead_to_components(spar_joint *j) {
             for (int k = 0; k < 3; k++) {
                 j->kinematics.arm[side][k] += m->xr[3 * j->node[side] + k] - m->xr[k];
             }
-        }
-        if (is_part(m) && m->row->end_of) {
-            j->unique[side] = m->row->end_of(m, j->unique[side]);
         }
     }
 }
@@ -201,20 +198,6 @@ static int gather_all(spar_session *s) {
     return SPAR_OK;
 }
 
-int spari_members_renew_joints(spar_session *s) {
-    if (s->joints_stale) {
-        spari_assemblies_free(s); /* they refer to solutions that are renewed below */
-    }
-    for (spar_member *m = s->members; m && s->joints_stale; m = m->next) {
-        if (m->committed && m->row->renew_joints) {
-            int status = m->row->renew_joints(m);
-            SPARI_REQUIRE(s, status != SPAR_ERR_MEMORY, status, "no memory to solve for '%s'", m->name);
-            SPARI_TRY(status);
-        }
-    }
-    return SPAR_OK;
-}
-
 /* Nothing is changed until all of them can be placed. */
 static int check_joints(const spar_session *s) {
     for (const spar_joint *j = s->joints; j; j = j->next) {
@@ -225,9 +208,12 @@ static int check_joints(const spar_session *s) {
 }
 
 int spari_joints_place(spar_session *s) {
-    SPARI_TRY(s->joints_stale ? check_joints(s) : SPAR_OK);
-    SPARI_TRY(spari_members_renew_joints(s));
-    for (spar_joint *j = s->joints; j && s->joints_stale; j = j->next) {
+    if (!s->joints_stale) {
+        return SPAR_OK;
+    }
+    SPARI_TRY(check_joints(s));
+    spari_assemblies_free(s); /* of the joints as they were */
+    for (spar_joint *j = s->joints; j; j = j->next) {
         spari_joint_place(j);
         lead_to_components(j);
     }

@@ -187,7 +187,7 @@ static int check_parts(const spari_assembly *a) {
 static int is_free_to_rotate(spari_assembly *a) {
     int64_t most = 1;
     for (int i = 0; i < a->components; i++) {
-        int64_t P = a->component[i].solver->body->per_element;
+        int64_t P = a->component[i].body->per_element;
         most = P > most ? P : most;
     }
     a->rotating.mass = spari_zalloc(36 * most * most, sizeof *a->rotating.mass);

@@ -282,7 +282,7 @@ static void begin_rest(rest *t, int onward) {
     keep_point(t, 0);
     if (t->path) {
         double noise;
-        t->on_path = isfinite(balance_at_rest(a, 0, &noise)) && noise <= 1e-9 * a->component[0].solver->body->stiffest;
+        t->on_path = isfinite(balance_at_rest(a, 0, &noise)) && noise <= 1e-9 * a->component[0].body->stiffest;
     }
 }
 
@@ -318,7 +318,7 @@ static void give_up_rest(spari_assembly *a) {
 /* The largest rotation between neighbouring nodes, rad; 0 of linear members. */
 static double largest_bend(const spari_component *p) {
     double largest = 0;
-    for (int i = 1; i < p->solver->n; i++) {
+    for (int i = 1; p->solver && i < p->solver->n; i++) {
         double rotation[4], psi[3];
         spari_quat_between(p->solver->to.q + 7 * i - 4, p->solver->to.q + 7 * i + 3, rotation);
         spari_quat_log(rotation, psi);
@@ -446,7 +446,9 @@ int spari_lone_static(spar_member *m, const double *(*fluid)(const spar_member *
         return spari_fail(m->session, SPAR_ERR_MEMORY, "member '%s': no memory for its equilibrium", m->name);
     }
     int status = find_equilibrium_of(&t, linear ? 1 : load_steps, !linear && onward);
-    spari_linear_unwatch(p.solver->linear);
+    if (t.path) {
+        spari_linear_unwatch(t.path);
+    }
     free(a.rotating.mass);
     SPARI_TRY(status);
     if (spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 || spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0) {

@@ -8,7 +8,7 @@
 
 static const double *rotation_of_side(const spari_constraint *l, int side) {
     const spari_component *p = l->component[side];
-    return p ? p->row->rotation(p, l->joint->unique[side]) : NULL;
+    return p ? spari_component_rotation(p, l->joint->unique[side]) : NULL;
 }
 
 /* out [3][3] of row stride `to` := R K Q^T, K of row stride `from` */
@@ -146,10 +146,10 @@ static void rotate_part(spari_component *p) {
     int m = 6 * c->ends;
     for (int e = 0; e < c->ends; e++) {
         double R[9];
-        matrix_of_rotation(p->row->rotation(p, p->end[e]), R);
+        matrix_of_rotation(spari_component_rotation(p, c->node[e]), R);
         for (int o = 0; o < c->ends; o++) {
             double Q[9];
-            matrix_of_rotation(p->row->rotation(p, p->end[o]), Q);
+            matrix_of_rotation(spari_component_rotation(p, c->node[o]), Q);
             for (int k = 0; k < 4; k++) {
                 int at = m * (6 * e + 3 * (k / 2)) + 6 * o + 3 * (k % 2);
                 rotate_block(R, Q, m, c->K + at, m, p->K + at);
@@ -648,7 +648,7 @@ static int solve_reduced(spari_assembly *a, double cv) {
     }
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
-        p->row->expand(p, a->x + p->at);
+        spari_component_expand(p, a->x + p->at);
     }
     return 0;
 }
@@ -661,12 +661,12 @@ void spari_constraints_add_forces(spari_assembly *a) {
         for (int side = 0; side < 2; side++) {
             spari_component *p = l->component[side];
             for (int k = 0; k < 6 && p; k++) {
-                p->force[6 * l->joint->unique[side] + k] -= f[6 * side + k];
+                p->solver->r[6 * l->joint->unique[side] + k] -= f[6 * side + k];
+            }
+            if (p) {
+                memset(p->solver->r, 0, (size_t)spari_member_constrained(p->member) * sizeof(double));
             }
         }
-    }
-    for (int i = 0; i < a->components; i++) {
-        memset(a->component[i].force, 0, (size_t)spari_member_constrained(a->component[i].member) * sizeof(double));
     }
 }
 
@@ -682,7 +682,7 @@ int spari_system_solve(spari_assembly *a, double cv) {
     /* first, because the system uses the rotations of the components */
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
-        if (p->row->reduce(p, a->x + p->at)) {
+        if (spari_component_reduce(p, a->x + p->at)) {
             return 1;
         }
     }
@@ -692,7 +692,7 @@ int spari_system_solve(spari_assembly *a, double cv) {
 int spari_system_close_gaps(spari_assembly *a, double cv) {
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
-        p->row->clear(p);
+        spari_component_clear(p);
         memset(a->x + p->at, 0, (size_t)(6 * p->condensed->ends) * sizeof *a->x);
     }
     return solve_reduced(a, cv);
@@ -706,7 +706,7 @@ int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acce
         return 1;
     }
     for (int i = 0; i < a->components; i++) {
-        a->component[i].row->shift_rates(a->component + i, v, acceleration, 0);
+        spari_component_shift_rates(a->component + i, v, acceleration, 0);
     }
     return 0;
 }

@@ -11,7 +11,7 @@ static int interface_of(const spari_assembly *a, const spari_constraint *l, int 
         return -1;
     }
     int e = 0;
-    while (p->end[e] != l->joint->unique[side]) {
+    while (p->condensed->node[e] != l->joint->unique[side]) {
         e++;
     }
     int node = p->at / 6 + e;
@@ -32,7 +32,7 @@ static int place_interfaces(spari_assembly *a) {
     for (int i = 0; i < a->components; i++) {
         const spari_component *p = a->component + i;
         for (int e = 0; e < p->condensed->ends; e++) {
-            int left = spari_member_constrained(p->member) - 6 * p->end[e];
+            int left = spari_member_constrained(p->member) - 6 * p->condensed->node[e];
             a->interface[p->at / 6 + e].fixed = left < 0 ? 0 : left > 6 ? 6 : left;
         }
     }

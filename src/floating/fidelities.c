@@ -6,11 +6,9 @@
 #include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
-#include "../member/joint.h"
 #include "../solve/reaction.h"
 #include "../time/component.h"
 #include "../time/fidelity.h"
-#include "floating_root.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -32,35 +30,35 @@ static int carve_states(spari_frame *f) {
 }
 
 static int allocate_matrices(spari_frame *f, const spar_member *m) {
-    int turns = (m->root == SPAR_ROOT_DRIVEN || m->floats) && (m->effects & SPAR_EFFECT_INERTIA), ok = 1;
+    int rotates = m->root == SPAR_ROOT_DRIVEN && (m->effects & SPAR_EFFECT_INERTIA), ok = 1;
     double **matrices[] = {&f->K, &f->M, &f->D, &f->A};
     const int wanted[] = {1, m->body->mass != NULL, m->body->D != NULL, m->added != NULL};
     for (int k = 0; k < 4; k++) {
         ok = ok && (!wanted[k] || (*matrices[k] = spari_zalloc(f->size, sizeof(double))));
     }
     for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
-        ok = ok && (!turns || ((f->N[k] = spari_zalloc(f->size, sizeof(double))) &&
-                               (f->f[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double)))));
-        ok = ok && (!turns || !m->floats || (f->S[k] = spari_zalloc(f->size, sizeof(double))));
+        ok = ok && (!rotates || ((f->N[k] = spari_zalloc(f->size, sizeof(double))) &&
+                                 (f->f[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double)))));
         ok = ok && (!f->M || (f->rigid[k] = spari_zalloc(6 * (int64_t)f->nodes, sizeof(double))));
     }
     ok = ok && (!m->body->pre || (f->pull = spari_zalloc(6 * (int64_t)f->nodes, sizeof *f->pull)));
     for (int k = 0; k < 3; k++) {
-        ok = ok && (!turns || (f->G[k] = spari_zalloc(f->size, sizeof(double))));
-        ok = ok && (!turns || (f->E[k] = spari_zalloc(f->size, sizeof(double))));
+        ok = ok && (!rotates || (f->G[k] = spari_zalloc(f->size, sizeof(double))));
+        ok = ok && (!rotates || (f->E[k] = spari_zalloc(f->size, sizeof(double))));
     }
     return ok && (f->linear = spari_linear_create(f->elements, f->block, f->overlap)) ? 0 : 1;
 }
 
 static int allocate_work(spari_frame *f, const spar_member *m) {
     int64_t wide = f->n > 6 * f->nodes ? f->n : 6 * (int64_t)f->nodes;
-    double **vectors[] = {&f->steps.load, &f->steps.load0, &f->steps.load1, &f->r, &f->dx, &f->increment, &f->stage_v};
+    double **vectors[] = {&f->steps.load, &f->steps.load0, &f->steps.load1, &f->r,       &f->dx,
+                          &f->increment,  &f->stage_v,     &f->loads,       &f->elastic, &f->positions};
     int ok = carve_states(f) == 0;
     for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++) {
         ok = ok && (*vectors[k] = spari_zalloc(wide, sizeof(double)));
     }
     ok = ok && (f->nodal = spari_zalloc(18 * (int64_t)f->nodes, sizeof(double)));
-    ok = ok && (f->turned = spari_zalloc(19 * (int64_t)f->nodes, sizeof(double)));
+    ok = ok && (f->global = spari_zalloc(19 * (int64_t)f->nodes, sizeof(double)));
     ok = ok && (f->element = spari_zalloc((int64_t)f->block * f->block, sizeof(double)));
     if (f->N[0] || f->D) { /* else the sums are K and 0 */
         ok = ok && (f->sumC = spari_zalloc(f->size, sizeof(double)));
@@ -78,16 +76,15 @@ static void frame_free(void *solution) {
     if (!f) {
         return;
     }
-    double *all[] = {f->basis,       f->A,           f->K,       f->M,       f->D,         f->sumK,
-                     f->sumC,        f->sumf,        f->begin.y, f->from.y,  f->to.y,      f->steps.load,
-                     f->steps.load0, f->steps.load1, f->r,       f->dx,      f->increment, f->stage_v,
-                     f->nodal,       f->turned,      f->element, f->dense_A, f->gram,      f->pull};
+    double *all[] = {f->basis,   f->A,       f->K,         f->M,       f->D,          f->sumK,        f->sumC,
+                     f->sumf,    f->begin.y, f->from.y,    f->to.y,    f->steps.load, f->steps.load0, f->steps.load1,
+                     f->r,       f->dx,      f->increment, f->stage_v, f->nodal,      f->global,      f->element,
+                     f->dense_A, f->gram,    f->pull,      f->loads,   f->elastic,    f->positions};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         free(all[k]);
     }
     for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
         free(f->N[k]);
-        free(f->S[k]);
         free(f->f[k]);
         free(f->rigid[k]);
     }
@@ -95,7 +92,6 @@ static void frame_free(void *solution) {
         free(f->G[k]);
         free(f->E[k]);
     }
-    spari_floating_root_free(f->floating_root);
     spari_linear_free(f->linear);
     spari_snapshot_free(&f->before);
     free(f);
@@ -118,8 +114,8 @@ static double *arms_of(const spar_member *m) {
 /* The matrices, of the nodes or of m->modes modes. */
 static int fill_frame(spari_frame *f, const spar_member *m) {
     double *arm = arms_of(m);
-    int more = (int)m->modes + spari_member_constrained(m) - 6, most = 6 * (f->nodes - 1 - f->floating_root->ends);
-    int cols = 6 + 6 * f->floating_root->ends + (more < most ? more : most);
+    int more = (int)m->modes + spari_member_constrained(m) - 6, most = 6 * (f->nodes - 1);
+    int cols = 6 + (more < most ? more : most);
     int status = arm && allocate_matrices(f, m) == 0 ? spari_frame_form(f, m->body, arm) : SPAR_ERR_MEMORY;
     if (status == SPAR_OK && f->A) {
         for (int e = 0; e < f->elements; e++) {
@@ -129,44 +125,28 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
     for (int e = 0; e < f->elements && status == SPAR_OK && m->load.foundation; e++) {
         spari_foundation_tangent(m, e, 1, f->K + (int64_t)f->block * f->block * e);
     }
-    if (status == SPAR_OK && f->floats) {
-        status = spari_floating_root_keep_pushes(f);
-    }
     if (status == SPAR_OK && m->modes > 0) {
         status = spari_frame_fill_basis(f, arm, cols);
         status = status == SPAR_OK && spari_frame_project(f, m, cols) ? SPAR_ERR_MEMORY : status;
     }
     free(arm);
-    status = status == SPAR_OK && allocate_work(f, m) ? SPAR_ERR_MEMORY : status;
-    return status == SPAR_OK ? spari_floating_root_finish(f, m) : status;
+    return status == SPAR_OK && allocate_work(f, m) ? SPAR_ERR_MEMORY : status;
 }
 
 static int frame_create(spar_member *m) {
-    m->floats = spari_member_has_joints(m) && !spari_member_root_is_prescribed(m);
-    SPARI_REQUIRE(m->session, m->floats || spari_member_root_is_prescribed(m) || (m->effects & SPAR_EFFECT_INERTIA),
-                  SPAR_ERR_STATE,
+    SPARI_REQUIRE(m->session, spari_member_root_is_prescribed(m) || (m->effects & SPAR_EFFECT_INERTIA), SPAR_ERR_STATE,
                   "member '%s' is linear without inertia and free to move as a rigid body: fix or drive its root, or "
                   "keep SPAR_EFFECT_INERTIA",
-                  m->name);
-    SPARI_REQUIRE(m->session, !m->floats || !m->load.foundation, SPAR_ERR_UNSUPPORTED,
-                  "member '%s' is linear in the frame of a root moved by joints, which moves relative to its "
-                  "foundation (spar_beam_set_foundation); use SPAR_FIDELITY_EXACT, or fix the root",
-                  m->name);
-    SPARI_REQUIRE(m->session, !m->floats || m->body->drag == 0, SPAR_ERR_UNSUPPORTED,
-                  "member '%s' is linear in the frame of a root moved by joints, but mass-proportional damping acts on "
-                  "absolute velocities; use SPAR_FIDELITY_EXACT, fix the root, or damp with spar_beam_set_damping",
                   m->name);
     spari_frame *f = m->solution = spari_zalloc(1, sizeof *f);
     if (!f) {
         return SPAR_ERR_MEMORY;
     }
-    f->floats = m->floats;
-    f->constrained = f->floats ? 6 : spari_member_constrained(m);
+    f->constrained = spari_member_constrained(m);
     f->nodes = m->body->unique;
     f->elements = m->mesh.elements, f->block = 6 * m->mesh.per_element, f->overlap = 6, f->n = 6 * f->nodes;
     f->size = (int64_t)f->elements * f->block * f->block;
-    int status = spari_floating_root_create(f, m);
-    status = status == SPAR_OK ? fill_frame(f, m) : status;
+    int status = fill_frame(f, m);
     f->factors = 0; /* factorisations of the set-up do not count */
     SPARI_REQUIRE(m->session, status == SPAR_OK || status == SPAR_ERR_MEMORY, status,
                   "member '%s': its stiffness is not positive definite, or it has fewer modes with mass than "
@@ -196,7 +176,7 @@ static int modal_check(const spar_member *m) {
 
 static int64_t frame_unknowns(const spar_member *m) {
     const spari_frame *f = m->solution;
-    return f->n - spari_member_constrained(m);
+    return f->n - f->constrained;
 }
 
 static void frame_effort(const spar_member *m, spari_effort *e) {
@@ -210,29 +190,6 @@ static void frame_effort(const spar_member *m, spari_effort *e) {
                         .band = spari_effort_band(f->n, f->block)};
 }
 
-/* Creates the frame again if joints were added or have changed. */
-static int frame_renew_joints(spar_member *m) {
-    const spari_frame *f = m->solution;
-    int had = f->floating_root->condensed->ends > 0;
-    if (!had && !spari_member_has_joints(m)) {
-        return SPAR_OK;
-    }
-    void *before = m->solution;
-    m->solution = NULL;
-    int floated = m->floats, status = frame_create(m);
-    if (status != SPAR_OK) {
-        frame_free(m->solution);
-        m->solution = before;
-        m->floats = floated;
-        return status;
-    }
-    frame_free(before);
-    if (spari_fidelity_is_here(m)) {
-        spari_frame_restart(m);
-    }
-    return SPAR_OK;
-}
-
 /* Operations that the two rows share. */
 #define SPARI_FRAMED                                                                                                   \
     .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .create = frame_create, .free = frame_free,                    \
@@ -242,7 +199,7 @@ static int frame_renew_joints(spar_member *m) {
     .unknowns = frame_unknowns, .problem = spari_frame_problem, .shape = spari_frame_shape,                            \
     .linearise = spari_frame_linearise, .state_size = spari_frame_state_size, .save = spari_frame_save,                \
     .is_state = spari_frame_is_state, .load = spari_frame_load, .component = &spari_component_floating,                \
-    .renew_joints = frame_renew_joints, .end_of = spari_floating_root_end_of, .publish = spari_frame_publish
+    .publish = spari_frame_publish
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
 const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .felt_here = 1, .massive = 1, .takes_modes = 1,

@@ -12,11 +12,8 @@
    rotation vectors, so N is symmetric. Neglected are terms of second order in x, and the geometric stiffness of weight,
    of fluid loads and of the root's acceleration.
 
-   If joints tie a member whose root is free or pinned (floating_root.h), the frame moves with the root. The motion of
-   the root is unknown too, and the resultant force and moment give six more equations. In all other cases the motion of
-   the frame is prescribed.
-
-   The time integration and the equilibrium are those of a component (time/component.h), alone or in an assembly.
+   No joint connects such a beam: with an unknown motion of the frame a step would save little or nothing against the
+   exact beam. The time integration and the equilibrium are those of a component without joints (time/component.h).
 
    The modal member has the same equations in modes of M and K. Its unknowns are the amplitudes of the six rigid motions
    about the root, some of which the root condition sets to zero, and the amplitudes of modes. These are the lowest
@@ -42,40 +39,42 @@ typedef struct spari_frame_state {
 } spari_frame_state;
 
 typedef struct spari_frame {
-    int nodes;                                 /* unique nodes */
-    int constrained;                           /* so many of the root's six unknowns, the first ones, are zero */
-    int floats;                                /* joints move the root; else the motion of the frame is prescribed */
-    struct spari_floating_root *floating_root; /* the root, and the nodes that joints tie */
-    int elements, block, overlap;              /* of the matrices */
-    int n;                                     /* unknowns, the root's six first */
-    int64_t size;                              /* doubles of one matrix: elements * block * block */
+    int nodes;                    /* unique nodes */
+    int constrained;              /* so many of the root's six unknowns, the first ones, are zero */
+    int elements, block, overlap; /* of the matrices */
+    int n;                        /* unknowns, the root's six first */
+    int64_t size;                 /* doubles of one matrix: elements * block * block */
     double *gram;      /* modal: [n][n] products of the basis' columns, factored, once spari_frame_felt was called */
     double *basis;     /* modal: [6 nodes][n]; NULL: the unknowns are those of the nodes */
     double *K, *M, *D; /* [elements][block][block]; M, D NULL: none */
     double *A;         /* the fluid's added mass, likewise */
     double *dense_A;   /* if it is learned: [block][block + n] of the nodes' blocks */
     double *N[SPARI_SPIN_PRODUCTS], *G[3],
-        *f[SPARI_SPIN_PRODUCTS];    /* NULL if the frame cannot rotate or there is no inertia */
-    double *S[SPARI_SPIN_PRODUCTS]; /* of the axial forces, if it is not in N */
-    double *E[3];                   /* of the root's angular acceleration, if there is N */
-    double *pull;                   /* forces of pretension at the reference, likewise; NULL: none */
-    double *rigid[6];               /* M times the rigid accelerations of the frame; NULL: none */
-    double turn[6];                 /* angular velocity and acceleration that the three sums below were formed for */
+        *f[SPARI_SPIN_PRODUCTS]; /* NULL if the frame cannot rotate or there is no inertia */
+    double *E[3];                /* of the root's angular acceleration, if there is N */
+    double *pull;                /* forces of pretension at the reference, likewise; NULL: none */
+    double *rigid[6];            /* M times the rigid accelerations of the frame; NULL: none */
+    double rates[6];             /* angular velocity and acceleration that the three sums below were formed for */
     int combined;
     double *sumK, *sumC, *sumf;
     spari_linear *linear;
     int factored;
-    double tangent_cm, tangent_cv, tangent_turn[6];
+    double tangent_cm, tangent_cv, tangent_rates[6];
+    spari_trace trace; /* of Newton; strict: its rate is not used */
     struct {
         int factored;
-        double cm, cv, turn[6];
+        double cm, cv, rates[6];
+        spari_trace trace;
     } begun;               /* the same at the beginning of the step, */
     spari_snapshot before; /* and the factors */
     spari_frame_state begin, from, to;
     spari_steps steps;
     double *r, *dx, *increment;       /* [max(n, 6 nodes)]; so are the loads of the steps */
     double *stage_v;                  /* [n] velocities at the end of a trapezoidal stage */
-    double *nodal, *turned, *element; /* [18 nodes], [19 nodes], one matrix of an element */
+    double *nodal, *global, *element; /* [18 nodes], [19 nodes], one matrix of an element */
+    double *positions;                /* [n] saved unknowns of an equilibrium */
+    double *loads, *elastic;          /* [6 nodes] loads and [n] internal forces of the latest iterate */
+    int resting;                      /* an equilibrium is sought, not a step */
     int64_t factors, solves;
 } spari_frame;
 
@@ -118,10 +117,10 @@ void spari_frame_add_times(const spari_frame *f, const double *X, const double *
 
 /* K + N + E, D + G and f of an angular velocity and acceleration in the frame's axes. They are formed only if these
    have changed. */
-void spari_frame_combine(spari_frame *f, const double turn[6]);
-/* Motion q, v, a of a node with the deformation x and its rates xd and xdd. */
-void spari_frame_node(const spar_member *m, const spari_pose *root, int node, const double x[6], const double xd[6],
-                      const double xdd[6], double q[7], double v[6], double a[6]);
+void spari_frame_combine(spari_frame *f, const double rates[6]);
+/* The motion q, v, a [unique] of the nodes of a state. */
+void spari_frame_to_nodes(spari_frame *f, const spar_member *m, const spari_frame_state *s, double *q, double *v,
+                          double *a);
 /* x [6 nodes] := deformation of the unknowns y. Returns x, or y if the unknowns are those of the nodes. */
 const double *spari_frame_nodal(const spari_frame *f, const double *y, double *x);
 /* out [n] := loads on the unknowns of the nodal loads x [6 nodes], in the frame's axes. */
@@ -129,14 +128,19 @@ void spari_frame_gather(const spari_frame *f, const double *x, double *out);
 /* Begins a stage of a substep. A driven root is at `root` at the end of the stage; other roots stay. */
 void spari_frame_stage(spari_frame *f, const spar_member *m, const spari_scheme *c, const spari_part *part,
                        const spari_pose *root);
-/* Sets the rates of the state from the published motion at t^n. */
-void spari_frame_take_velocities(spari_frame *f, const spar_member *m, spari_frame_state *state);
 double spari_frame_damped_power(spari_frame *f, const spari_frame_state *s);
 /* Columns of the basis: the six rigid motions about the root, of which the first `constrained` are zero, then the
-   shapes of interface nodes, then the lowest modes. The free columns are orthonormal in the norm of the mass, except
-   the shapes of interface nodes and, if there are such, the rigid motions. arm [nodes][3] from the root. */
+   lowest modes. The free columns are orthonormal in the norm of the mass. arm [nodes][3] from the root. */
 int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols);
 /* Projects the matrices and vectors of the nodes onto the basis. 1: no memory. */
 int spari_frame_project(spari_frame *f, const spar_member *m, int cols);
+
+/* Forces r [n] of the state s. still: without inertia. factor: of loads and gravity. Returns the scale to which their
+   rounding is relative. */
+double spari_frame_forces(spari_frame *f, const spar_member *m, const spari_frame_state *s, int still, double factor,
+                          double *r);
+/* Forms and factors the tangent for the latest forces. cm, cv: rates of the unknowns per change. Returns 0, or 1 if it
+   is singular. */
+int spari_frame_tangent(spari_frame *f, double cm, double cv);
 
 #endif

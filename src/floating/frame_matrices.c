@@ -1,11 +1,10 @@
 /* The matrices of a frame, from the tangents of the exact member at the reference. */
-#include "floating_root.h"
-
 #include "../algebra/cblas.h"
 #include "../base/session.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
+#include "frame.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -216,7 +215,7 @@ static int stretch_terms(spari_frame *f, const setup *w) {
         return SPAR_ERR_MEMORY;
     }
     for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
-        double beyond[3] = {0}, *to = f->S[k] ? f->S[k] : f->N[k], *S = w->S[0];
+        double beyond[3] = {0}, *to = f->N[k], *S = w->S[0];
         tense.pre_part = large;
         for (int e = tense.elements - 1; e >= 0; e--) {
             element_tension(w, &tense, k, e, beyond);
@@ -256,7 +255,7 @@ static int rotation_terms(spari_frame *f, const setup *w) {
         rigid_motion(f, w->arm, omega, w->v, w->a);
         spari_body_residual(w->body, w->q, w->v, w->a, 0, f->f[k], NULL);
         cblas_daxpy(f->pull ? 6 * f->nodes : 0, -1, f->pull, 1, f->f[k], 1);
-        if (k < 3 && f->E[k]) {
+        if (k < 3) {
             euler_matrices(f, w, omega, f->E[k]);
             add_half_moments(f, w, f->rigid[3 + k], f->E[k]);
         }

@@ -8,7 +8,6 @@
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/pose.h"
-#include "floating_root.h"
 
 #include <float.h>
 #include <math.h>
@@ -44,15 +43,15 @@ static void image_of(const spari_frame *f, int cols, int k, double *x, double *i
     spari_frame_add_times(f, f->M, x, 1, image);
 }
 
-/* Makes the columns [from, end) orthonormal in the norm of the mass, to each other and to those from `first` on before
+/* Makes the columns [from, end) orthonormal in the norm of the mass, to each other and to the free columns before
    them. A second pass removes rounding errors. work: [12 nodes]. 1: a column without mass. */
-static int orthonormalise(spari_frame *f, int cols, int first, int from, int end, double *work) {
+static int orthonormalise(spari_frame *f, int cols, int from, int end, double *work) {
     int n = 6 * f->nodes;
     double *x = work, *image = work + n;
     for (int k = from; k < end; k++) {
         for (int pass = 0; pass < 2; pass++) {
             image_of(f, cols, k, x, image);
-            for (int j = first; j < k; j++) {
+            for (int j = f->constrained; j < k; j++) {
                 cblas_daxpy(n, -cblas_ddot(n, f->basis + j, cols, image, 1), f->basis + j, cols, f->basis + k, cols);
             }
         }
@@ -66,35 +65,12 @@ static int orthonormalise(spari_frame *f, int cols, int first, int from, int end
     return 0;
 }
 
-static int is_joint_node(const spari_frame *f, int node) {
-    int found = 0;
-    for (int e = 0; e < f->floating_root->ends; e++) {
-        found = found || f->floating_root->node[e] == node;
-    }
-    return found;
-}
-
-/* Removes the rows and columns of interface nodes from A over the nodes beside the root. Returns how many remain. */
-static int leave_out_joint_nodes(const spari_frame *f, double *A) {
-    int n = 6 * f->nodes - 6, left = 0;
-    double *to = A;
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n && !is_joint_node(f, 1 + i / 6); j++) {
-            if (!is_joint_node(f, 1 + j / 6)) {
-                *to++ = A[(int64_t)n * i + j];
-            }
-        }
-        left += !is_joint_node(f, 1 + i / 6);
-    }
-    return left;
-}
-
-/* The lowest modes relative to the root, as columns from `first` on: K z = lambda (M - M R R^T M) z over the nodes
-   beside the root. R are the orthonormal rigid motions that the root leaves free; their inertia is not that of the
-   deformation. Interface nodes are constrained too. K is not singular here even for a free beam, because rigid motions
-   are separate columns. Solved for 1 / lambda, in which the low modes keep their digits. */
-static int elastic_columns(spari_frame *f, int cols, int first, double *work) {
-    int n = 6 * f->nodes - 6, left = n;
+/* The lowest modes relative to the root, as the columns after the rigid ones: K z = lambda (M - M R R^T M) z over the
+   nodes beside the root. R are the orthonormal rigid motions that the root leaves free; their inertia is not that of
+   the deformation. K is not singular here even for a free beam, because rigid motions are separate columns. Solved for
+   1 / lambda, in which the low modes keep their digits. */
+static int elastic_columns(spari_frame *f, int cols, double *work) {
+    int n = 6 * f->nodes - 6;
     int64_t size = (int64_t)n * n;
     double *K = spari_zalloc(3 * size + n, sizeof *K), *M = K + size, *z = M + size, *mu = z + size;
     int status = K ? SPAR_OK : SPAR_ERR_MEMORY;
@@ -106,69 +82,28 @@ static int elastic_columns(spari_frame *f, int cols, int first, double *work) {
             image_of(f, cols, k, x, image);
             cblas_dger(CblasRowMajor, n, n, -1, image + 6, 1, image + 6, 1, M, n);
         }
-        left = leave_out_joint_nodes(f, K);
-        (void)leave_out_joint_nodes(f, M);
-        status = spari_eigen(left, M, K, mu, z);
+        status = spari_eigen(n, M, K, mu, z);
     }
-    for (int k = first; k < cols && status == SPAR_OK; k++) {
-        const double *mode = z + (int64_t)left * (k - first);
-        status = mu[k - first] > DBL_EPSILON * mu[0] ? status : SPAR_ERR_NUMERIC;
-        for (int i = 6, at = 0; i < 6 * f->nodes; i++) {
-            f->basis[(int64_t)i * cols + k] = is_joint_node(f, i / 6) ? 0 : mode[at++];
-        }
+    for (int k = 6; k < cols && status == SPAR_OK; k++) {
+        status = mu[k - 6] > DBL_EPSILON * mu[0] ? status : SPAR_ERR_NUMERIC;
+        cblas_dcopy(n, z + (int64_t)n * (k - 6), 1, f->basis + (int64_t)6 * cols + k, cols);
     }
     free(K);
     return status;
 }
 
-/* The shapes of the interface nodes: one node moves by 1 in one direction, the root and the other interface nodes do
-   not move, and K x = 0 between. */
-static int joint_columns(spari_frame *f, int cols, double *work) {
-    int ends = f->floating_root->ends, n = 6 * f->nodes;
-    double *column = spari_zalloc((int64_t)6 * ends * n, sizeof *column);
-    if (!column) {
-        return SPAR_ERR_MEMORY;
-    }
-    spari_linear_zero(f->linear);
-    for (int e = 0; e < f->elements && ends > 0; e++) {
-        spari_linear_add(f->linear, e, f->K + (int64_t)f->block * f->block * e);
-    }
-    for (int k = 0; k < 6 * ends; k++) {
-        spari_linear_read(f->linear, 6 * f->floating_root->node[k / 6] + k % 6, work, column + (int64_t)n * k);
-    }
-    for (int i = 0; i < n && ends > 0; i++) {
-        if (i < 6 || is_joint_node(f, i / 6)) {
-            spari_linear_fix(f->linear, i);
-        }
-    }
-    int singular = ends > 0 && spari_linear_factor(f->linear);
-    for (int k = 0; k < 6 * ends && !singular; k++) {
-        double *x = column + (int64_t)n * k;
-        for (int i = 0; i < n; i++) {
-            x[i] = i < 6 || is_joint_node(f, i / 6) ? 0 : -x[i];
-        }
-        singular = spari_linear_solve(f->linear, x);
-        x[6 * f->floating_root->node[k / 6] + k % 6] = 1;
-        cblas_dcopy(n, x, 1, f->basis + 6 + k, cols);
-    }
-    free(column);
-    return singular ? SPAR_ERR_NUMERIC : SPAR_OK;
-}
-
 int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols) {
     double *work = spari_zalloc(12 * (int64_t)f->nodes, sizeof *work);
-    int first = 6 + 6 * f->floating_root->ends, alone = f->constrained < 6 ? f->constrained : first;
     f->basis = spari_zalloc((int64_t)6 * f->nodes * cols, sizeof *f->basis);
     int status = work && f->basis ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
         rigid_columns(f, arm, cols);
-        status = orthonormalise(f, cols, f->constrained, f->constrained, 6, work) ? SPAR_ERR_NUMERIC
-                                                                                  : joint_columns(f, cols, work);
+        status = orthonormalise(f, cols, f->constrained, 6, work) ? SPAR_ERR_NUMERIC : SPAR_OK;
     }
-    if (status == SPAR_OK && cols > first) {
-        status = elastic_columns(f, cols, first, work);
+    if (status == SPAR_OK && cols > 6) {
+        status = elastic_columns(f, cols, work);
     }
-    if (status == SPAR_OK && orthonormalise(f, cols, alone, first, cols, work)) {
+    if (status == SPAR_OK && orthonormalise(f, cols, 6, cols, work)) {
         status = SPAR_ERR_NUMERIC;
     }
     free(work);
@@ -208,10 +143,9 @@ static void no_strain(const spari_frame *f, double *X) {
 
 int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
     int bad = 0;
-    double **all[4 + 2 * SPARI_SPIN_PRODUCTS + 6] = {&f->K, &f->M, &f->D, &f->A};
+    double **all[4 + SPARI_SPIN_PRODUCTS + 6] = {&f->K, &f->M, &f->D, &f->A};
     for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
         all[4 + k] = &f->N[k];
-        all[10 + SPARI_SPIN_PRODUCTS + k] = &f->S[k];
     }
     for (int k = 0; k < 3; k++) {
         all[4 + SPARI_SPIN_PRODUCTS + k] = &f->G[k];
@@ -279,9 +213,6 @@ int spari_frame_problem(const spar_member *m, double *K, double *M) {
     for (int k = 0; k < SPARI_SPIN_PRODUCTS && f->N[0]; k++) {
         double c = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
         assemble_dense(f, f->N[k], c, constrained, K);
-        if (f->S[k]) {
-            assemble_dense(f, f->S[k], c, constrained, K);
-        }
     }
     return SPAR_OK;
 }
@@ -310,7 +241,7 @@ int spari_frame_linearise(const spar_member *m, const double w[3], spari_pencil 
             spari_pencil_entry x = {to->base + row, to->base + column, 0, 0, 0};
             for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
                 double c = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
-                x.k += c * (f->N[k][at + i] + (f->S[k] ? f->S[k][at + i] : 0));
+                x.k += c * f->N[k][at + i];
             }
             for (int k = 0; k < 3; k++) {
                 x.c += omega[k] * f->G[k][at + i];

@@ -11,8 +11,6 @@
 #include "../member/pose.h"
 #include "../solve/reaction.h"
 #include "../time/driven_root.h"
-#include "../time/steady_rotation.h"
-#include "floating_root.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,7 +40,7 @@ static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion 
     /* modal: the projection in the norm of the mass, Phi^T M x. The mass matrix of the nodes no longer exists; the
      * body gives its products as the forces of accelerations at the reference */
     double *in[2] = {x, xd};
-    double *out[2] = {y, rate}, *still = f->turned, *zero = still + 7 * (int64_t)f->nodes,
+    double *out[2] = {y, rate}, *still = f->global, *zero = still + 7 * (int64_t)f->nodes,
            *force = zero + 6 * (int64_t)f->nodes;
     spari_body loose = *m->body;
     loose.pre = NULL;
@@ -51,17 +49,16 @@ static void from_nodes(spari_frame *f, const spar_member *m, const spari_motion 
         still[7 * i + 3] = 1;
     }
     for (int k = 0; k < 2; k++) {
-        int first = spari_floating_root_split(f, in[k], out[k]);
         spari_body_residual(&loose, still, zero, in[k], 0, force, NULL);
-        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n - first, 1, f->basis + first, f->n, force,
-                               1, 0, out[k] + first, 1));
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, 6 * f->nodes, f->n - f->constrained, 1,
+                               f->basis + f->constrained, f->n, force, 1, 0, out[k] + f->constrained, 1));
         memset(out[k], 0, (size_t)f->constrained * sizeof *y);
     }
 }
 
 /* Rotations of the nodes follow their rotation vectors exactly, second derivatives to first order. */
-void spari_frame_node(const spar_member *m, const spari_pose *root, int node, const double x[6], const double xd[6],
-                      const double xdd[6], double q[7], double v[6], double a[6]) {
+static void to_node(const spar_member *m, const spari_pose *root, int node, const double x[6], const double xd[6],
+                    const double xdd[6], double q[7], double v[6], double a[6]) {
     double omega[3], alpha[3], arm[3], d[3], T[9], spin[3], twice[3], c1[3], c2[3], c3[3], p[4];
     spari_rotate_back(root->q + 3, root->v + 3, omega);
     spari_rotate_back(root->q + 3, root->a + 3, alpha);
@@ -110,14 +107,13 @@ const double *spari_frame_nodal(const spari_frame *f, const double *y, double *x
     return x;
 }
 
-/* The nodes' motion q, v, a [unique] of a state */
-static void to_nodes(spari_frame *f, const spar_member *m, const spari_frame_state *s, double *q, double *v,
-                     double *a) {
+void spari_frame_to_nodes(spari_frame *f, const spar_member *m, const spari_frame_state *s, double *q, double *v,
+                          double *a) {
     int64_t n6 = 6 * (int64_t)f->nodes;
     const double *x = spari_frame_nodal(f, s->y, f->nodal), *xd = spari_frame_nodal(f, s->v, f->nodal + n6),
                  *xdd = spari_frame_nodal(f, s->a, f->nodal + 2 * n6);
     for (int i = 0; i < f->nodes; i++) {
-        spari_frame_node(m, &s->root, i, x + 6 * i, xd + 6 * i, xdd + 6 * i, q + 7 * i, v + 6 * i, a + 6 * i);
+        to_node(m, &s->root, i, x + 6 * i, xd + 6 * i, xdd + 6 * i, q + 7 * i, v + 6 * i, a + 6 * i);
     }
 }
 
@@ -125,8 +121,8 @@ void spari_frame_publish(spar_member *m) {
     spari_frame *f = m->solution;
     const spari_frame_state *s = &f->to;
     int64_t n = f->nodes;
-    double *q = f->turned, *v = q + 7 * n, *a = v + 6 * n;
-    to_nodes(f, m, s, q, v, a);
+    double *q = f->global, *v = q + 7 * n, *a = v + 6 * n;
+    spari_frame_to_nodes(f, m, s, q, v, a);
     const double *x = f->basis ? f->nodal : s->y;
     m->state.overturned = 0;
     for (int i = 0; i < f->nodes; i++) {
@@ -138,21 +134,21 @@ void spari_frame_publish(spar_member *m) {
 /* ---- time ---- */
 
 /* Whether two rotation rates are the same except for rounding; that of accelerations is relative to omega squared. */
-static int is_turn(const double kept[6], const double turn[6]) {
-    const double speed = spari_norm(turn), rate = spari_norm(turn + 3) + speed * speed;
+static int is_same_rotation(const double before[6], const double rates[6]) {
+    const double speed = spari_norm(rates), rate = spari_norm(rates + 3) + speed * speed;
     double change[6];
     for (int k = 0; k < 6; k++) {
-        change[k] = turn[k] - kept[k];
+        change[k] = rates[k] - before[k];
     }
     return spari_norm(change) <= 1e-13 * speed && spari_norm(change + 3) <= 1e-13 * rate;
 }
 
-void spari_frame_combine(spari_frame *f, const double turn[6]) {
-    const double *omega = turn;
-    if (f->combined && is_turn(f->turn, turn)) {
+void spari_frame_combine(spari_frame *f, const double rates[6]) {
+    const double *omega = rates;
+    if (f->combined && is_same_rotation(f->rates, rates)) {
         return;
     }
-    memcpy(f->turn, turn, sizeof f->turn);
+    memcpy(f->rates, rates, sizeof f->rates);
     f->combined = 1;
     if (f->sumC) {
         for (int64_t i = 0; i < f->size; i++) {
@@ -176,8 +172,8 @@ void spari_frame_combine(spari_frame *f, const double turn[6]) {
         if (omega[k] != 0) {
             cblas_daxpy((int)f->size, omega[k], f->G[k], 1, f->sumC, 1);
         }
-        if (turn[3 + k] != 0) {
-            cblas_daxpy((int)f->size, turn[3 + k], f->E[k], 1, f->sumK, 1);
+        if (rates[3 + k] != 0) {
+            cblas_daxpy((int)f->size, rates[3 + k], f->E[k], 1, f->sumK, 1);
         }
     }
 }
@@ -200,15 +196,15 @@ static void rotate_loads(const spari_frame *f, const double q[4], double *x, dou
 
 /* If the root jumps (hosts that give no accelerations, an impulsive start), the nodes keep position and velocity.
    Relative to the root the jump is subtracted; modal unknowns take its projection in the norm of the mass. */
-static void take_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
-                      const spari_frame_state *to) {
+static void subtract_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
+                          const spari_frame_state *to) {
     double jump[2][6], *rows[2] = {from->v, from->y};
     spari_drive_jump(&from->root, &to->root, h, jump[0], jump[1]);
     for (int s = 0; s < 2; s++) {
         const double *J = jump[s];
         double *x = rows[s];
-        if (f->basis) {
-            spari_floating_root_take_rigid(f, m, J, x);
+        for (int k = 6; k < f->n && f->basis; k++) {
+            x[k] -= cblas_ddot(6, f->M + (int64_t)f->n * k, 1, J, 1);
         }
         for (int i = 1; i < f->nodes && !f->basis; i++) {
             double arm[3], turn[3];
@@ -233,12 +229,8 @@ void spari_frame_stage(spari_frame *f, const spar_member *m, const spari_scheme 
     }
     f->to.root = m->root == SPAR_ROOT_DRIVEN ? *root : f->begin.root;
     if (c->rule != SPARI_BACKWARD && m->root == SPAR_ROOT_DRIVEN && !c->still) { /* once in a substep */
-        take_jump(f, m, c->span, &f->from, &f->to);
+        subtract_jump(f, m, c->span, &f->from, &f->to);
     }
-}
-
-void spari_frame_take_velocities(spari_frame *f, const spar_member *m, spari_frame_state *state) {
-    from_nodes(f, m, &m->now, f->increment, state->v);
 }
 
 double spari_frame_damped_power(spari_frame *f, const spari_frame_state *s) {
@@ -252,13 +244,14 @@ double spari_frame_damped_power(spari_frame *f, const spari_frame_state *s) {
 }
 
 void spari_frame_poison(spari_frame *f) {
-    double *const work[] = {f->r, f->dx, f->increment, f->steps.load, f->nodal};
+    double *const work[] = {f->r, f->dx, f->increment, f->steps.load, f->nodal, f->elastic};
     for (size_t k = 0; k < sizeof work / sizeof *work; k++) {
         spari_poison(work[k], f->n);
     }
     spari_poison(f->stage_v, f->n);
+    spari_poison(f->loads, 6 * (int64_t)f->nodes);
     spari_poison(f->nodal, 18 * (int64_t)f->nodes);
-    spari_poison(f->turned, 19 * (int64_t)f->nodes);
+    spari_poison(f->global, 19 * (int64_t)f->nodes);
     spari_poison(f->element, (int64_t)f->block * f->block);
     spari_poison(f->to.y, 4 * (int64_t)f->n);
 }
@@ -304,9 +297,9 @@ int spari_frame_felt(spar_member *m, double *load) {
     spari_cholesky_solve(n, f->gram, f->dx);
     SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, n, 1, f->basis, n, f->dx, 1, 0, f->nodal, 1));
     for (int64_t i = 0; i < 6 * f->nodes; i += 3) {
-        spari_rotate(root + 3, f->nodal + i, f->turned + i);
+        spari_rotate(root + 3, f->nodal + i, f->global + i);
     }
-    spari_member_from_unique(m, 6, f->turned, load);
+    spari_member_from_unique(m, 6, f->global, load);
     for (int64_t e = 1; e < m->mesh.elements; e++) { /* each of its two nodes takes half */
         double *left = load + 6 * (e * m->mesh.per_element - 1);
         for (int k = 0; k < 12; k++) {
@@ -316,18 +309,11 @@ int spari_frame_felt(spar_member *m, double *load) {
     return SPAR_OK;
 }
 
-/* Factors, the orientation of the root that they belong to, and the condensed matrix of the interface nodes. */
-static int64_t factors_size(const spari_frame *f) {
-    return spari_linear_state_size(f->linear) + 4 + spari_condensed_state_size(f->floating_root->condensed);
-}
-
+/* Saves the factors before they are overwritten. */
 void spari_frame_keep_factors(spari_frame *f) {
-    int64_t factors = spari_linear_state_size(f->linear);
-    double *to = f->begun.factored ? spari_snapshot_take(&f->before, factors_size(f)) : NULL;
+    double *to = f->begun.factored ? spari_snapshot_take(&f->before, spari_linear_state_size(f->linear)) : NULL;
     if (to) {
         spari_linear_save(f->linear, to);
-        memcpy(to + factors, f->floating_root->root->tangent_q, 4 * sizeof *to);
-        spari_condensed_save(f->floating_root->condensed, to + factors + 4);
     }
 }
 
@@ -335,26 +321,22 @@ void spari_frame_begin(spar_member *m) {
     spari_frame *f = m->solution;
     f->begun.factored = f->factored;
     f->begun.cm = f->tangent_cm, f->begun.cv = f->tangent_cv;
-    memcpy(f->begun.turn, f->tangent_turn, sizeof f->tangent_turn);
+    f->begun.trace = f->trace;
+    memcpy(f->begun.rates, f->tangent_rates, sizeof f->tangent_rates);
     spari_snapshot_open(&f->before, 1);
-    spari_solver_begin(f->floating_root->root);
 }
 
 void spari_frame_reject(spar_member *m) {
     spari_frame *f = m->solution;
-    spari_condensed *d = f->floating_root->condensed;
     if (!f->before.open) {
         return;
     }
     f->factored = f->begun.factored && f->before.saved >= 0;
     f->tangent_cm = f->begun.cm, f->tangent_cv = f->begun.cv;
-    memcpy(f->tangent_turn, f->begun.turn, sizeof f->tangent_turn);
-    spari_solver_reject(f->floating_root->root);
+    f->trace = f->begun.trace;
+    memcpy(f->tangent_rates, f->begun.rates, sizeof f->tangent_rates);
     if (f->before.saved > 0) {
-        const double *from = f->before.data, *ends = from + spari_linear_state_size(f->linear);
-        spari_linear_load(f->linear, from);
-        memcpy(f->floating_root->root->tangent_q, ends, 4 * sizeof *ends);
-        spari_condensed_load(d, d->fixed, ends + 4);
+        spari_linear_load(f->linear, f->before.data);
     }
 }
 
@@ -363,18 +345,13 @@ void spari_frame_accept(spar_member *m) {
     spari_snapshot_close(&f->before);
     const spari_frame_state begin = f->to;
     f->to = f->begin, f->begin = begin;
-    spari_solver_accept(f->floating_root->root);
+    f->steps.begin = f->steps.solved;
 }
 
 void spari_frame_restart(spar_member *m) {
     spari_frame *f = m->solution;
-    spari_solver *root = f->floating_root->root;
-    memcpy(root->begin.q, m->now.q, 7 * sizeof(double));
-    memcpy(root->begin.v, m->now.v, 6 * sizeof(double));
-    memcpy(root->begin.a, m->now.a, 6 * sizeof(double));
-    spari_solver_restart(root);
     f->begin.root = spari_member_pose(m, &m->now);
-    if (m->root == SPAR_ROOT_DRIVEN || m->floats) {
+    if (m->root == SPAR_ROOT_DRIVEN) {
         memcpy(f->begin.root.a, m->now.a, sizeof f->begin.root.a);
     }
     memset(f->begin.y, 0, (size_t)(4 * f->n) * sizeof(double));
@@ -382,66 +359,68 @@ void spari_frame_restart(spar_member *m) {
     memcpy(f->to.y, f->begin.y, (size_t)(4 * f->n) * sizeof(double));
     f->to.root = f->begin.root;
     f->steps.started = 0;
+    f->steps.begin = (spari_pattern){0, SPARI_EVEN};
 }
 
-enum { STATE_HEAD = 27, STATE_ROTATION = 6, STATE_BEGUN = 18, STATE_ROOT = sizeof(spari_pose) / sizeof(double) };
+enum {
+    STATE_HEAD = 12,
+    STATE_ROTATION = STATE_HEAD,
+    STATE_BEGUN = STATE_ROTATION + 12,
+    STATE_ENDS = STATE_BEGUN + 11,
+    STATE_ROOT = sizeof(spari_pose) / sizeof(double)
+};
 
 /* Size of the head and of the states at both ends of the step. */
 static int64_t ends_size(const spari_frame *f) {
-    return STATE_HEAD + 2 * (STATE_ROOT + 4 * (int64_t)f->n);
+    return STATE_ENDS + 2 * (STATE_ROOT + 4 * (int64_t)f->n);
 }
 
-/* After these come the data of the beginning of the step, the root, and the factors if there are any. */
+/* After these come the data of the beginning of the step, and the factors if there are any. */
 int64_t spari_frame_state_size(const spar_member *m) {
     const spari_frame *f = m->solution;
-    return ends_size(f) + spari_snapshot_size(&f->before) + spari_solver_state_size(f->floating_root->root) +
-           (f->factored ? spari_linear_state_size(f->linear) : 0);
+    return ends_size(f) + spari_snapshot_size(&f->before) + (f->factored ? spari_linear_state_size(f->linear) : 0);
 }
 
 void spari_frame_save(const spar_member *m, double *state) {
     const spari_frame *f = m->solution;
-    const double head[STATE_ROTATION] = {f->n,          f->factored,      f->tangent_cm,
-                                         f->tangent_cv, f->steps.started, f->combined},
-                 begun[3] = {f->begun.factored, f->begun.cm, f->begun.cv};
+    const double head[STATE_HEAD] =
+        {f->n,          f->factored,   f->tangent_cm,    f->tangent_cv,       f->steps.started,  f->combined,
+         f->trace.rate, f->trace.left, f->steps.begin.h, f->steps.begin.even, f->steps.solved.h, f->steps.solved.even},
+                 begun[] = {f->begun.factored, f->begun.cm, f->begun.cv, f->begun.trace.rate, f->begun.trace.left};
     const spari_frame_state *const ends[2] = {&f->begin, &f->to};
-    const spari_solver *root = f->floating_root->root;
     memcpy(state, head, sizeof head);
-    memcpy(state + STATE_ROTATION, f->turn, sizeof f->turn);
-    memcpy(state + STATE_ROTATION + 6, f->tangent_turn, sizeof f->tangent_turn);
+    memcpy(state + STATE_ROTATION, f->rates, sizeof f->rates);
+    memcpy(state + STATE_ROTATION + 6, f->tangent_rates, sizeof f->tangent_rates);
     memcpy(state + STATE_BEGUN, begun, sizeof begun);
-    memcpy(state + STATE_BEGUN + 3, f->begun.turn, sizeof f->begun.turn);
-    double *at = state + STATE_HEAD;
+    memcpy(state + STATE_BEGUN + 5, f->begun.rates, sizeof f->begun.rates);
+    double *at = state + STATE_ENDS;
     for (int k = 0; k < 2; k++, at += STATE_ROOT + 4 * (int64_t)f->n) {
         memcpy(at, &ends[k]->root, sizeof ends[k]->root);
         memcpy(at + STATE_ROOT, ends[k]->y, (size_t)(4 * f->n) * sizeof *state);
     }
     spari_snapshot_save(&f->before, at);
-    at += spari_snapshot_size(&f->before);
-    spari_solver_save(root, at);
     if (f->factored) {
-        spari_linear_save(f->linear, at + spari_solver_state_size(root));
+        spari_linear_save(f->linear, at + spari_snapshot_size(&f->before));
     }
 }
 
 int spari_frame_is_state(const spar_member *m, const double *state, int64_t count) {
     const spari_frame *f = m->solution;
-    const spari_solver *root = f->floating_root->root;
-    const int64_t at = ends_size(f), expected = factors_size(f), own = spari_solver_state_size(root);
-    if (count < at + SPARI_SNAPSHOT_HEAD || state[0] != f->n) {
+    const int64_t at = ends_size(f), expected = spari_linear_state_size(f->linear);
+    if (count < at + SPARI_SNAPSHOT_HEAD || state[0] != f->n || !spari_trace_is(state + 6) ||
+        !spari_pattern_is(state[8], state[9]) || !spari_pattern_is(state[10], state[11]) ||
+        !spari_trace_is(state + STATE_BEGUN + 3)) {
         return 0;
     }
-    int64_t factors = state[1] != 0 ? spari_linear_state_size(f->linear) : 0,
-            before = SPARI_SNAPSHOT_HEAD + (state[at + 1] > 0 ? expected : 0);
-    return spari_snapshot_is(state + at, before, expected) && count == at + before + own + factors &&
+    int64_t factors = state[1] != 0 ? expected : 0, before = SPARI_SNAPSHOT_HEAD + (state[at + 1] > 0 ? expected : 0);
+    return spari_snapshot_is(state + at, before, expected) && count == at + before + factors &&
            (before == SPARI_SNAPSHOT_HEAD || spari_linear_is_state(f->linear, state + at + SPARI_SNAPSHOT_HEAD)) &&
-           spari_solver_is_state(root, state + at + before, own) &&
-           (factors == 0 || spari_linear_is_state(f->linear, state + at + before + own));
+           (factors == 0 || spari_linear_is_state(f->linear, state + at + before));
 }
 
 /* Forms the sums for the saved rotation rates again, with the same bits. */
 void spari_frame_load(spar_member *m, const double *state) {
     spari_frame *f = m->solution;
-    spari_solver *root = f->floating_root->root;
     spari_frame_state *const ends[2] = {&f->begin, &f->to};
     f->factored = state[1] != 0;
     f->tangent_cm = state[2], f->tangent_cv = state[3];
@@ -450,20 +429,22 @@ void spari_frame_load(spar_member *m, const double *state) {
     if (state[5] != 0) {
         spari_frame_combine(f, state + STATE_ROTATION);
     }
-    memcpy(f->tangent_turn, state + STATE_ROTATION + 6, sizeof f->tangent_turn);
-    f->begun.factored = state[STATE_BEGUN] != 0;
-    f->begun.cm = state[STATE_BEGUN + 1], f->begun.cv = state[STATE_BEGUN + 2];
-    memcpy(f->begun.turn, state + STATE_BEGUN + 3, sizeof f->begun.turn);
-    const double *at = state + STATE_HEAD;
+    f->trace = (spari_trace){state[6], state[7]};
+    f->steps.begin = (spari_pattern){state[8], (int)state[9]};
+    f->steps.solved = (spari_pattern){state[10], (int)state[11]};
+    memcpy(f->tangent_rates, state + STATE_ROTATION + 6, sizeof f->tangent_rates);
+    const double *begun = state + STATE_BEGUN, *at = state + STATE_ENDS;
+    f->begun.factored = begun[0] != 0;
+    f->begun.cm = begun[1], f->begun.cv = begun[2];
+    f->begun.trace = (spari_trace){begun[3], begun[4]};
+    memcpy(f->begun.rates, begun + 5, sizeof f->begun.rates);
     for (int k = 0; k < 2; k++, at += STATE_ROOT + 4 * (int64_t)f->n) {
         memcpy(&ends[k]->root, at, sizeof ends[k]->root);
         memcpy(ends[k]->y, at + STATE_ROOT, (size_t)(4 * f->n) * sizeof *state);
     }
     spari_snapshot_load(&f->before, at, f->factored);
-    at += SPARI_SNAPSHOT_HEAD + (int64_t)at[2];
-    spari_solver_load(root, at);
     if (f->factored) {
-        spari_linear_load(f->linear, at + spari_solver_state_size(root));
+        spari_linear_load(f->linear, at + SPARI_SNAPSHOT_HEAD + (int64_t)at[2]);
     }
 }
 
@@ -484,7 +465,7 @@ int spari_frame_energy(const spar_member *m, double energy[4]) {
     from_nodes(f, m, &m->after, y, rate);
     energy[1] = half_form(f, f->K, y) + (f->pull ? cblas_ddot(f->n, f->pull, 1, y, 1) : 0);
     energy[1] -= m->load.foundation ? spari_foundation_energy(m, m->after.q) : 0;
-    if (m->root != SPAR_ROOT_DRIVEN && !m->floats) { /* the frame is fixed: the equations conserve these */
+    if (m->root != SPAR_ROOT_DRIVEN) { /* the frame is fixed: the equations conserve these */
         energy[0] = f->M && (m->effects & SPAR_EFFECT_INERTIA) ? half_form(f, f->M, rate) : 0;
         energy[2] = 0;
         for (int k = 0; k < 3 && f->M; k++) {

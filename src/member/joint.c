@@ -28,12 +28,13 @@ static int check_node(const spar_session *s, const char *call, const char *name,
     return SPAR_OK;
 }
 
-/* A linear member without a prescribed root gets a floating frame as soon as a joint connects it, not when its
-   solver is created. So getters do not depend on which call created the solver. */
-static void let_float(spar_member *m) {
-    if (m && m->committed && m->seen == SPARI_SEEN_LINEAR && !spari_member_root_is_prescribed(m)) {
-        m->floats = 1;
-    }
+/* A member that is not committed yet can still become exact; its commit checks it. */
+static int check_fidelity(const spar_session *s, const char *call, const char *name, const spar_member *m) {
+    SPARI_REQUIRE(s, !m->committed || m->seen != SPARI_SEEN_LINEAR, SPAR_ERR_UNSUPPORTED,
+                  "%s: '%s': '%s' is a linear or modal beam, which no joint can connect; commit it with "
+                  "SPAR_FIDELITY_EXACT (spar_member_set_fidelity), which costs about as much with joints",
+                  call, name, m->name);
+    return SPAR_OK;
 }
 
 static int joint_create(spar_session *s, const char *call, const char *name, spar_member *a, int64_t node_a,
@@ -45,8 +46,10 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
                   "%s: '%s': the clock has started; create joints before the first step", call, name);
     SPARI_REQUIRE(s, a, SPAR_ERR_ARGUMENT, "%s: '%s': member a is NULL; only b can be the ground", call, name);
     SPARI_TRY(check_node(s, call, name, "a", a, node_a));
+    SPARI_TRY(check_fidelity(s, call, name, a));
     if (b) {
         SPARI_TRY(check_node(s, call, name, "b", b, node_b));
+        SPARI_TRY(check_fidelity(s, call, name, b));
         SPARI_REQUIRE(
             s, a != b || spari_member_unique(a, node_a) != spari_member_unique(b, node_b), SPAR_ERR_ARGUMENT,
             "%s: '%s' connects node %lld of '%s' to itself; give two different nodes, or b = NULL for the ground", call,
@@ -72,8 +75,6 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
     *end = j;
     *out = j;
     s->joints_stale = 1;
-    let_float(a);
-    let_float(b);
     return SPAR_OK;
 }
 
@@ -364,13 +365,12 @@ int spari_member_unique(const spar_member *m, int64_t node) {
     return (int)(m->mesh.elements == 1 ? node : node - node / m->mesh.per_element);
 }
 
-int spari_member_has_joints(const spar_member *m) {
-    for (const spar_joint *j = m->session->joints; j; j = j->next) {
-        if (j->member[0] == m || j->member[1] == m) {
-            return 1;
-        }
+const spar_joint *spari_joint_of(const spar_member *m) {
+    const spar_joint *j = m->session->joints;
+    while (j && j->member[0] != m && j->member[1] != m) {
+        j = j->next;
     }
-    return 0;
+    return j;
 }
 
 static int64_t place_in_session(const spar_member *member) {

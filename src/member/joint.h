@@ -51,8 +51,8 @@ struct spar_joint {
 
 /* Unique node of a node in the host's numbering. */
 int spari_member_unique(const spar_member *member, int64_t node);
-/* Whether a joint connects the member. */
-int spari_member_has_joints(const spar_member *member);
+/* A joint that connects the member: the first one. NULL: none does. */
+const spar_joint *spari_joint_of(const spar_member *member);
 /* The description as one number: all that is said of it before the first step. */
 uint64_t spari_joint_hash(const spar_joint *joint);
 /* Hash of what may change at any time: springs, load, drive. And that of all joints, which the ranks compare before

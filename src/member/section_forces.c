@@ -34,12 +34,8 @@ int spari_beyond_is_known(const spar_member *m) {
            m->body->per_element == m->mesh.per_element;
 }
 
-static int is_standing(const spar_member *m) {
-    return m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN && !m->floats;
-}
-
 int spari_beyond_is_undeformed(const spar_member *m) {
-    return is_standing(m) && !m->body->pre;
+    return spari_member_is_linear_at_rest(m) && !m->body->pre;
 }
 
 void spari_beyond_free(spari_beyond *b) {
@@ -79,11 +75,11 @@ static void fill_motion(const spar_member *m, inertial *w) {
     }
     spari_member_to_unique(m, 6, m->after.a, w->a);
     spari_member_to_unique(m, 6, m->after.v, w->v);
-    if (!is_standing(m)) {
+    if (!spari_member_is_linear_at_rest(m)) {
         spari_member_to_unique(m, 7, m->after.q, w->q);
     }
     if (body->drag > 0 && !w->still) { /* the inertia of an acceleration: drag times its velocity */
-        if (is_standing(m)) {
+        if (spari_member_is_linear_at_rest(m)) {
             memcpy(w->workspace, w->v, (size_t)(6 * n) * sizeof *w->workspace);
         } else {
             spari_body_see(body, w->q, w->v, w->workspace);
@@ -92,7 +88,7 @@ static void fill_motion(const spar_member *m, inertial *w) {
             w->a[i] += body->drag * w->workspace[i];
         }
     }
-    if (is_standing(m)) {
+    if (spari_member_is_linear_at_rest(m)) {
         memset(w->v, 0, (size_t)(6 * n) * sizeof *w->v);
     }
 }
@@ -178,7 +174,7 @@ static int add_inertia(spari_beyond *b) {
 static void gather_loads_at(spari_beyond *b) {
     const spar_member *m = b->member;
     const double *follower = spari_applied_follower(m);
-    const int turns = !is_standing(m);
+    const int turns = !spari_member_is_linear_at_rest(m);
     if (spari_carries_loads(m)) {
         spari_applied_nodal(m, m->after.q, b->spread);
     }

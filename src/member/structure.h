@@ -131,7 +131,6 @@ struct spar_member {
     int64_t modes;                    /* of a modal member */
     const struct spari_fidelity *row; /* table row of its fidelity (time/fidelity.h); after commit */
     spari_view seen;                  /* after commit */
-    int floats;                       /* linear with a root that is not prescribed but connected by joints */
 
     spari_mesh mesh; /* elements and nodes of its line */
     int64_t nodes;
@@ -227,9 +226,13 @@ double spari_member_length(const spar_member *member);
 static inline int spari_member_root_is_prescribed(const spar_member *member) {
     return member->root == SPAR_ROOT_FIXED || member->root == SPAR_ROOT_DRIVEN;
 }
-/* Whether the member is linear about its reference: linear or modal, with a root that nothing carries. */
+/* Whether the member is linear, in axes at rest: linear or modal, and its root is not driven. */
+static inline int spari_member_is_linear_at_rest(const spar_member *member) {
+    return member->seen == SPARI_SEEN_LINEAR && member->root != SPAR_ROOT_DRIVEN;
+}
+/* Whether the member is linear about its reference: linear or modal, and its root is free or pinned. */
 static inline int spari_member_is_linear_in_place(const spar_member *member) {
-    return member->seen == SPARI_SEEN_LINEAR && !spari_member_root_is_prescribed(member) && !member->floats;
+    return member->seen == SPARI_SEEN_LINEAR && !spari_member_root_is_prescribed(member);
 }
 /* How many of the root's six unknowns its root condition holds: the first. */
 static inline int spari_member_constrained(const spar_member *member) {

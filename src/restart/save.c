@@ -292,8 +292,10 @@ int spar_session_save(const spar_session *session, const char *path) {
     int status = spari_saved_check_call(s, __func__, path);
     status = status == SPAR_OK ? spari_session_pushes(s, __func__) : status;
     SPARI_TRY(spari_enter_agreed(s, __func__, NULL, 0, status));
-    status = spari_members_renew_joints(s);
-    status = status == SPAR_OK ? put_own(&own, s, __func__) : status;
+    if (s->joints_stale) { /* the assemblies are those of the joints as they were */
+        spari_assemblies_free(s);
+    }
+    status = put_own(&own, s, __func__);
     status = agree_to_save(s, status == SPAR_OK && own.failed ? spari_saved_no_memory(s) : status);
     status = status == SPAR_OK ? write_file(s, &own, path) : status;
     spari_image_free(&own);

@@ -131,7 +131,7 @@ int spari_member_check_rotations(const spar_member *m) {
     SPARI_REQUIRE(m->session, m->seen != SPARI_SEEN_LINEAR || !m->state.overturned, SPAR_ERR_NUMERIC,
                   "member '%s' is linear and rotates by pi relative to %s, the limit of rotation vectors; use "
                   "SPAR_FIDELITY_EXACT, or drive its root",
-                  m->name, spari_member_root_is_prescribed(m) || m->floats ? "its root" : "its reference");
+                  m->name, spari_member_root_is_prescribed(m) ? "its root" : "its reference");
     return SPAR_OK;
 }
 
@@ -409,7 +409,6 @@ static int build_body(spar_member *m) {
 int spari_member_build(spar_member *m) {
     m->row = spari_fidelity_of(m);
     m->seen = m->row->seen;
-    m->floats = 0;
     SPARI_TRY(make_node_arrays(m));
     if (m->kind == SPARI_BEAM) {
         SPARI_TRY(spari_beam_place_nodes(m));

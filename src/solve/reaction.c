@@ -70,7 +70,7 @@ void spari_reaction_of_whole(const spar_member *m, double *workspace, double loa
            *extra = sum + 6 * m->nodes;
     memset(load, 0, 6 * sizeof *load);
     memset(workspace, 0, (size_t)spari_reaction_of_whole_size(m) * sizeof *workspace);
-    int standing = m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN && !m->floats;
+    int standing = spari_member_is_linear_at_rest(m);
     int undeformed = standing && !(m->body && m->body->pre);
     if (m->body) {
         for (int64_t i = 0; i < n; i++) {

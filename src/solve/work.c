@@ -29,11 +29,6 @@ void spari_work_free(spari_work *work) {
     }
 }
 
-/* Whether moments work on the change of the rotation vector: in members that are linear in axes at rest. */
-static int rotates_linearly(const spar_member *m) {
-    return m->seen == SPARI_SEEN_LINEAR && m->root != SPAR_ROOT_DRIVEN && !m->floats;
-}
-
 /* Displacement and rotation vector of node i over the step; linearly: the change of its rotation vector. */
 static void increment(const spar_member *m, int64_t i, int linearly, double d[6]) {
     const double *from = m->now.q + 7 * i, *to = m->after.q + 7 * i;
@@ -82,7 +77,7 @@ void spari_work_step(spar_member *m) {
             kept[c] = 0.5 * (dead[6 * i + c] + m->load.dead[6 * i + c] + w->load[6 * i + c]);
             w->fluid[6 * i + c] = now;
         }
-        increment(m, i, rotates_linearly(m), d);
+        increment(m, i, spari_member_is_linear_at_rest(m), d);
         w->sum[SPAR_WORK_LOADS] += dot6(kept, d);
         w->sum[SPAR_WORK_FLUID] += dot6(fluid, d);
     }
@@ -92,7 +87,7 @@ void spari_work_step(spar_member *m) {
             memcpy(w->reaction, reaction, sizeof reaction);
             w->reaction_lacks = 0;
         }
-        increment(m, 0, rotates_linearly(m), d);
+        increment(m, 0, spari_member_is_linear_at_rest(m), d);
         w->sum[SPAR_WORK_ROOT] += 0.5 * (dot6(w->reaction, d) + dot6(reaction, d));
         memcpy(w->reaction, reaction, sizeof reaction);
     }
@@ -165,7 +160,6 @@ void spari_work_of_joint(spar_joint *j) {
     for (int side = 0; side < 2; side++) {
         const spar_member *m = j->member[side];
         if (m && m->work) {
-            /* on a linear beam a joint's moment does its work on the turn: (J5) in docs/theory.md */
             increment(m, j->seat[side], 0, d);
             m->work->sum[SPAR_WORK_JOINTS] += 0.5 * (dot6(f[0] + 6 * side, d) + dot6(f[1] + 6 * side, d));
         }

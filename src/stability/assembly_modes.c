@@ -330,8 +330,8 @@ int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz
     SPARI_REQUIRE(s, n >= 0, SPAR_ERR_ARGUMENT, "%s: '%s': %lld modes", __func__, member->name, (long long)n);
     SPARI_REQUIRE(s, frequency_hz || n == 0, SPAR_ERR_ARGUMENT, "%s: '%s': frequency_hz is NULL", __func__,
                   member->name);
-    int status = spari_member_has_joints(member) ? modes_of_assembly(member, n, frequency_hz, shapes)
-                 : n == 0                        ? SPAR_OK
-                                                 : spari_modes_of_member(member, n, frequency_hz, shapes);
+    int status = spari_joint_of(member) ? modes_of_assembly(member, n, frequency_hz, shapes)
+                 : n == 0               ? SPAR_OK
+                                        : spari_modes_of_member(member, n, frequency_hz, shapes);
     return spari_named(s, __func__, status);
 }

@@ -10,17 +10,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Motion of a joint's node by the unknowns of its part: the nonzero columns. */
+/* Motion of a joint's node by the unknowns of its part, which are those of the node or of a rigid body: the nonzero
+   columns. */
 typedef struct motion_side {
     const spari_motion_part *part; /* NULL: prescribed motion */
-    int count, *column;            /* numbers among all unknowns */
-    double (*S)[6];
+    int count, column[6];          /* numbers among all unknowns */
+    double S[6][6];
 } motion_side;
 
-/* Columns of one side, and room for the part's unknowns. */
 static void find_columns(const spari_small_motions *w, const spar_joint *j, int side, motion_side *of) {
     const spar_member *m = of->part->member;
-    int constrained = spari_member_constrained(m), own = m->row->component == &spari_component_body && !m->row->whole;
+    int constrained = spari_member_constrained(m), own = !m->row->whole;
     double *unit = w->workspace, *work = unit + of->part->size, *nodes = work + 6 * (int64_t)m->body->unique;
     int first = own ? 6 * j->unique[side] - constrained : 0, end = own ? first + 6 : of->part->size;
     memset(unit, 0, (size_t)of->part->size * sizeof *unit);
@@ -220,11 +220,9 @@ static void put_joint(spari_small_motions *w, const motion_side side[2], const m
     for (int n = 0; n < 2; n++) {
         for (int c = 0; c < side[n].count; c++) {
             double *left = w->pencil.left + side[n].column[c], row[6] = {0};
-            int told =
-                side[n].part->member->seen != SPARI_SEEN_LINEAR; /* linear members do not report their own forces */
             for (int i = 0; i < 6; i++) {
                 w->pencil.scale = fmax(w->pencil.scale, fabs(of->f[6 * n + i]));
-                *left -= told ? side[n].S[c][i] * of->f[6 * n + i] : 0;
+                *left -= side[n].S[c][i] * of->f[6 * n + i];
                 for (int k = 0; k < 6; k++) {
                     row[k] += side[n].S[c][i] * of->B[k][6 * n + i];
                 }
@@ -248,29 +246,17 @@ int spari_small_motions_add_joint(spari_small_motions *w, const spar_joint *j, i
         return SPAR_OK;
     }
     motion_joint *of = spari_zalloc(1, sizeof *of);
-    int status = of ? SPAR_OK : SPAR_ERR_MEMORY;
-    for (int n = 0; n < 2 && status == SPAR_OK; n++) {
-        int size = side[n].part ? side[n].part->size : 0;
-        side[n].column = spari_zalloc(size, sizeof *side[n].column);
-        side[n].S = spari_zalloc(size + 1, sizeof *side[n].S); /* one is tried past the last */
-        status = side[n].column && side[n].S ? SPAR_OK : SPAR_ERR_MEMORY;
-        if (size > 0 && status == SPAR_OK) {
+    SPARI_REQUIRE(w->session, of, SPAR_ERR_MEMORY, "joint '%s': no memory for eigenvalues", j->name);
+    for (int n = 0; n < 2; n++) {
+        if (side[n].part) {
             find_columns(w, j, n, side + n);
         }
     }
+    linearise_joint(w, j, side, of);
+    int status = w->loose ? SPAR_OK : check_around(w, j, side, of);
     if (status == SPAR_OK) {
-        linearise_joint(w, j, side, of);
-        status = w->loose ? SPAR_OK : check_around(w, j, side, of);
-        if (status == SPAR_OK) {
-            put_joint(w, side, of, holds);
-        }
-    } else {
-        status = spari_fail(w->session, status, "joint '%s': no memory for eigenvalues", j->name);
+        put_joint(w, side, of, holds);
     }
     free(of);
-    for (int n = 0; n < 2; n++) {
-        free(side[n].column);
-        free(side[n].S);
-    }
     return status;
 }

@@ -14,15 +14,6 @@ spari_component spari_component_of(spar_member *m) {
     return p;
 }
 
-int spari_component_solve(spari_component *p) {
-    double none[6] = {0};
-    if (p->row->reduce(p, none)) {
-        return 1;
-    }
-    p->row->expand(p, none);
-    return 0;
-}
-
 typedef struct component_stage {
     spari_component *p;
     int formed; /* there is a tangent */
@@ -46,13 +37,13 @@ static const char *iterate_component(void *self, double longest, spari_iterate *
     if (!isfinite(scale) || !isfinite(noise)) {
         return "met values that are not finite";
     }
-    if ((!t->formed && p->row->tangent(p)) || p->row->solve(p)) {
+    if ((!t->formed && p->row->tangent(p)) || p->row->correct_newton(p)) {
         return "found a singular tangent";
     }
     t->formed = 1;
     it->correction = p->row->advance(p, longest, &way);
     it->tolerance = spari_newton_tolerance(p->member, &p->scheme, way);
-    it->small = it->correction < 1e-11 || noise <= 64 * DBL_EPSILON * p->solver->body->stiffest;
+    it->small = it->correction < 1e-11 || noise <= 64 * DBL_EPSILON * p->body->stiffest;
     it->rounded = noise <= 16 * DBL_EPSILON * scale;
     return NULL;
 }
@@ -73,7 +64,7 @@ const char *spari_component_newton(spari_component *p, int *iterations) {
     const spar_session *session = p->member->session;
     component_stage stage = {.p = p};
     const char *wrong = spari_newton_solve(&how, &stage, p->row->serves(p), session->newton.max,
-                                           spari_newton_stop_begin(session, &p->solver->trace), iterations);
+                                           spari_newton_stop_begin(session, p->trace), iterations);
     if (wrong) {
         p->row->end_solution(p, 0, 0);
     }

@@ -1,7 +1,7 @@
-/* A component: a member of an assembly, as the assembly uses it. A component has ends, its interface nodes, which
-   joints tie (a member without joints has none), with their motion and the residual forces on them. A table of
-   operations solves the rest of the member. One table serves members whose unknowns are the motions of their nodes
-   (component_body.c), another one members that are linear in the frame of their root (component_floating.c). */
+/* A component: a member of an assembly, as the assembly uses it. One table of operations serves members whose unknowns
+   are the motions of their nodes (component_body.c), another one beams that are linear in the frame of their root
+   (component_floating.c). Joints tie only the former. These have ends, interface nodes whose motion and residual forces
+   the constraints use; the rest of the member is condensed to them. */
 #ifndef SPARI_COMPONENT_H
 #define SPARI_COMPONENT_H
 
@@ -13,9 +13,7 @@ struct spari_component;
 
 /* Operations on a component. */
 typedef struct spari_component_row {
-    /* make: allocates the ends; the member and its solver exist already; returns 0 or SPAR_ERR_MEMORY. NULL: nothing is
-       to be allocated. attach: finds the solver and the ends. */
-    int (*make)(struct spari_component *p);
+    /* Finds the solver of the member, which exists already. */
     void (*attach)(struct spari_component *p);
 
     /* Takes the loads and coefficients of a step with substeps h. Returns whether the accelerations at t^0 are
@@ -26,16 +24,12 @@ typedef struct spari_component_row {
     void (*begin)(struct spari_component *p);
     void (*enter)(struct spari_component *p);
     int (*stage)(struct spari_component *p, const spari_part *part);
-    /* The step begins with the published velocities. */
-    void (*take_velocities)(struct spari_component *p);
     void (*end)(struct spari_component *p);
-    /* Saves the rates at the end, or restores them (back). */
-    void (*keep_rates)(struct spari_component *p, int back);
 
     /* Computes starting values. Returns 0 if this kind does not exist here. */
     int (*predict)(struct spari_component *p, spari_guess stays);
-    /* Computes the residual (forces less loads) of the latest iterate. The residual at the ends goes to p->force, to
-       which constraints add. Returns the size that rounding errors are relative to. */
+    /* Computes the residual (forces less loads) of the latest iterate. Returns the size that rounding errors are
+       relative to. */
     double (*balance)(struct spari_component *p);
     /* The largest residual force; not finite if one of them is not. */
     double (*noise)(const struct spari_component *p);
@@ -43,27 +37,16 @@ typedef struct spari_component_row {
     int (*tangent)(struct spari_component *p);
     /* Whether the reused tangent can serve this step. */
     int (*serves)(const struct spari_component *p);
-    /* Computes the condensed residual at the ends, x [6 ends], global axes. Returns 0 or 1. */
-    int (*reduce)(struct spari_component *p, double *x);
-    /* Computes the corrections of all unknowns from those of the ends. */
-    void (*expand)(struct spari_component *p, double *x);
-    /* correction_size: the size of the corrections. correct: subtracts the part `cut` of them. */
+    /* The size of the corrections. */
     double (*correction_size)(const struct spari_component *p);
-    void (*correct)(struct spari_component *p, double cut);
-    /* The size of the motion in the step. */
-    double (*way)(const struct spari_component *p);
-    /* An iteration of a component without ends. solve: the corrections from the latest residual, after `noise`; returns
-       0 or 1. advance: subtracts them, shortened to `longest`; returns their size before, and the size of the motion in
-       the step; 0: the solution is exact. end_solution: Newton has converged in so many iterations, with a tangent
-       formed in this attempt if `fresh`; 0: it has failed. */
+    /* Of a component without ends. solve: the corrections from the latest residual; returns 0 or 1. correct_newton: the
+       same in an iteration of Newton, after `noise`. advance: subtracts them, shortened to `longest`; returns their
+       size before, and the size of the motion in the step; 0: the solution is exact. end_solution: Newton has converged
+       in so many iterations, with a tangent formed in this attempt if `fresh`; 0: it has failed. */
     int (*solve)(struct spari_component *p);
+    int (*correct_newton)(struct spari_component *p);
     double (*advance)(struct spari_component *p, double longest, double *way);
     void (*end_solution)(struct spari_component *p, int iterations, int fresh);
-    /* Sets the result of reduce for zero residual forces: none at the ends. */
-    void (*clear)(struct spari_component *p);
-    /* Subtracts the corrections, times v, a and b, from the velocities, accelerations and algorithmic accelerations
-       at the end. */
-    void (*shift_rates)(struct spari_component *p, double v, double a, double b);
 
     /* After the step. tangent_after: forms the tangent at its end if none is there; returns 0 or 1. take_more: the
        residual becomes a small additional load [nodes][6] on the nodes. show_more: the corrections as a motion
@@ -80,8 +63,6 @@ typedef struct spari_component_row {
     void (*unbalance)(struct spari_component *p);
     void (*correct_start)(struct spari_component *p);
     void (*end_start)(struct spari_component *p);
-    /* Called after velocities were shifted. NULL: does nothing. */
-    void (*shift_start)(struct spari_component *p);
 
     /* Equilibrium under dead and `fluid` loads [nodes][6]. rest: begins from the last shape (onward), else from t^n.
        balance_rest, tangent_rest: residual and tangent at the load factor f. shift: subtracts the part `cut` of the
@@ -96,9 +77,6 @@ typedef struct spari_component_row {
     void (*keep_positions)(struct spari_component *p, int back);
     void (*discard_rest)(struct spari_component *p);
     void (*end_rest)(struct spari_component *p);
-
-    /* The rotation of an end since its tangent was formed. NULL: none. */
-    const double *(*rotation)(const struct spari_component *p, int node);
 } spari_component_row;
 
 extern const spari_component_row spari_component_body, spari_component_floating;
@@ -107,14 +85,15 @@ extern const spari_component_row spari_component_body, spari_component_floating;
 typedef struct spari_component {
     spar_member *member;
     const spari_component_row *row;
-    spari_solver *solver; /* of its body, or of the root of its frame; NULL: another rank solves it */
-    struct spari_frame *frame;
+    spari_solver *solver;      /* NULL: it is linear, or another rank solves it */
+    struct spari_frame *frame; /* if it is linear */
+    const spari_body *body;
+    spari_steps *steps;
+    spari_trace *trace;         /* of Newton, without ends */
     spari_condensed *condensed; /* condensed to its ends */
     double *K;                  /* the condensed tangent [6 ends][6 ends], global axes, as the system was formed */
-    const int *end;             /* indices of its ends among the nodes that constraints use */
-    double *force;              /* [those nodes][6] residual forces, global axes */
     int at;                     /* index of its first unknown in the system */
-    const spari_state *state;   /* motion of those nodes */
+    const spari_state *state;   /* motion of the nodes */
     spari_scheme alpha, scheme; /* of a substep, and of the stage under way */
     spari_stage stage;
     const spari_rotating_frame *rotating; /* equilibrium in a rotating frame; NULL: in one at rest */
@@ -143,15 +122,33 @@ void spari_body_load(spar_member *member, const double *state);
 
 /* A member that no joint ties, as a component. */
 spari_component spari_component_of(spar_member *member);
-/* Its corrections from the latest residual, with the latest tangent: of accelerations at t^0, of a response, or of an
-   equilibrium. Returns 0 or 1. */
-int spari_component_solve(spari_component *p);
 /* Its motion at the end of a stage. Returns NULL, or the reason of a failure. */
 const char *spari_component_newton(spari_component *p, int *iterations);
 
-/* The nodes of a member's unknowns that joints tie, in increasing order. node: capacity of two per joint. Returns how
-   many there are. */
-int spari_component_joint_nodes(const spar_member *member, int *node);
-int spari_component_joint_count(const spar_member *member);
+/* ---- components with ends ---- */
+
+/* Allocates the ends, before `attach`. Returns 0 or SPAR_ERR_MEMORY. */
+int spari_component_make_ends(const spari_component *p);
+/* The step begins with the published velocities. */
+void spari_component_take_velocities(const spari_component *p);
+/* Saves the rates at the end, or restores them (back). */
+void spari_component_keep_rates(spari_component *p, int back);
+/* Computes the condensed residual at the ends, x [6 ends], global axes. Returns 0 or 1. */
+int spari_component_reduce(spari_component *p, double *x);
+/* Sets the result of reduce for zero residual forces: none at the ends. */
+void spari_component_clear(spari_component *p);
+/* Computes the corrections of all unknowns from those of the ends. */
+void spari_component_expand(spari_component *p, const double *x);
+/* Subtracts the part `cut` of the corrections. */
+void spari_component_correct(spari_component *p, double cut);
+/* The size of the motion in the step. */
+double spari_component_way(const spari_component *p);
+/* Subtracts the corrections, times v, a and b, from the velocities, accelerations and algorithmic accelerations at the
+   end. */
+void spari_component_shift_rates(spari_component *p, double v, double a, double b);
+/* The rotation of a node since the tangent was formed. */
+static inline const double *spari_component_rotation(const spari_component *p, int node) {
+    return p->solver->rotation + 4 * node;
+}
 
 #endif

@@ -15,11 +15,13 @@
 
 /* ---- interface nodes ---- */
 
-int spari_component_joint_nodes(const spar_member *m, int *node) {
+/* The nodes of a member's unknowns that joints tie, in increasing order. node: capacity of two per joint. Returns how
+   many there are. */
+static int find_joint_nodes(const spar_member *m, int *node) {
     int n = 0;
     for (const spar_joint *j = m->session->joints; j; j = j->next) {
         for (int side = 0; side < 2; side++) {
-            if (j->member[side] != m || j->node[side] >= m->nodes) { /* of a trial: not yet tied to its final node */
+            if (j->member[side] != m) {
                 continue;
             }
             int at = 0, joint_node = m->row->whole ? 0 : spari_member_unique(m, j->node[side]);
@@ -37,32 +39,21 @@ int spari_component_joint_nodes(const spar_member *m, int *node) {
     return n;
 }
 
-int spari_component_joint_count(const spar_member *m) {
-    int count = 0;
-    for (const spar_joint *j = m->session->joints; j; j = j->next) {
-        count += (j->member[0] == m) + (j->member[1] == m);
-    }
-    return count;
-}
-
 static void attach_nodes(spari_component *p) {
     spari_solver *s = p->solver = p->member->row->solver(p->member);
     p->condensed = s->condensed;
-    p->end = s->condensed ? s->condensed->node : NULL;
-    p->force = s->r;
+    p->body = s->body;
+    p->steps = &s->steps;
+    p->trace = &s->trace;
 }
 
-static int make_nodes(spari_component *p) {
+int spari_component_make_ends(const spari_component *p) {
     spari_solver *s = p->member->row->solver(p->member);
-    int *node = spari_zalloc(spari_component_joint_count(p->member) + 1, sizeof *node);
+    int *node = spari_zalloc(2 * p->member->session->joint_count + 1, sizeof *node);
     spari_condensed_free(s->condensed);
-    s->condensed = node ? spari_condensed_create(spari_component_joint_nodes(p->member, node), node, 6 * s->n) : NULL;
+    s->condensed = node ? spari_condensed_create(find_joint_nodes(p->member, node), node, 6 * s->n) : NULL;
     free(node);
     return s->condensed ? SPAR_OK : SPAR_ERR_MEMORY;
-}
-
-static const double *rotation_of_node(const spari_component *p, int node) {
-    return p->solver->rotation + 4 * node;
 }
 
 /* ---- a step ---- */
@@ -88,7 +79,7 @@ static int stage_of_nodes(spari_component *p, const spari_part *part) {
     return SPAR_OK;
 }
 
-static void take_velocities_of_nodes(spari_component *p) {
+void spari_component_take_velocities(const spari_component *p) {
     const spar_member *m = p->member;
     if (m->row->whole) {
         memcpy(p->solver->from.v, m->now.v, 6 * sizeof(double));
@@ -101,7 +92,7 @@ static void end_nodes(spari_component *p) {
     spari_stage_end(p->solver, p->member, &p->scheme, &p->stage);
 }
 
-static void keep_rates_of_nodes(spari_component *p, int back) {
+void spari_component_keep_rates(spari_component *p, int back) {
     spari_solver *s = p->solver;
     double *v = p->stage.ends.to.v;
     memcpy(back ? v : s->best, back ? s->best : v, (size_t)(6 * s->n) * sizeof *v);
@@ -212,45 +203,47 @@ static int nodes_serve(const spari_component *p) {
            spari_alpha_close(p->scheme.cv, s->tangent_cv);
 }
 
-static int reduce_nodes(spari_component *p, double *x) {
+int spari_component_reduce(spari_component *p, double *x) {
+    const spari_condensed *c = p->condensed;
     spari_solver *s = p->solver;
     (void)rotate_back(p);
-    if (!p->condensed) {
-        return spari_linear_solve(s->linear, s->dx);
-    }
-    if (spari_condensed_reduce(p->condensed, s->linear, s->dx)) {
+    if (spari_condensed_reduce(c, s->linear, s->dx)) {
         return 1;
     }
-    for (int e = 0; e < p->condensed->ends; e++) {
-        const double *rotation = rotation_of_node(p, p->condensed->node[e]), *own = s->dx + 6 * p->condensed->node[e];
-        for (int k = 0; k < 6; k += 3) {
-            spari_rotate(rotation, own + k, x + 6 * e + k);
-        }
+    for (int k = 0; k < 6 * c->ends; k += 3) {
+        int node = c->node[k / 6];
+        spari_rotate(spari_component_rotation(p, node), s->dx + 6 * node + k % 6, x + k);
     }
     return 0;
 }
 
-static void expand_nodes(spari_component *p, double *x) {
+void spari_component_clear(spari_component *p) {
     spari_solver *s = p->solver;
-    for (int e = 0; p->condensed && e < p->condensed->ends; e++) {
-        const double *rotation = rotation_of_node(p, p->condensed->node[e]);
-        double *own = s->dx + 6 * p->condensed->node[e];
-        for (int k = 0; k < 6; k += 3) {
-            spari_rotate_back(rotation, x + 6 * e + k, own + k);
-        }
-    }
-    if (p->condensed) {
-        spari_condensed_expand(p->condensed, s->dx);
-    }
+    (void)rotate_back(p); /* for the rotations */
+    memset(s->dx, 0, (size_t)(6 * s->n) * sizeof *s->dx);
+}
+
+static void rotate_forth(spari_component *p) {
     node_rotation t = rotation_since_tangent(p);
-    spari_solver_spread(s, rotate_span_forth, &t);
+    spari_solver_spread(p->solver, rotate_span_forth, &t);
+}
+
+void spari_component_expand(spari_component *p, const double *x) {
+    const spari_condensed *c = p->condensed;
+    spari_solver *s = p->solver;
+    for (int k = 0; k < 6 * c->ends; k += 3) {
+        int node = c->node[k / 6];
+        spari_rotate_back(spari_component_rotation(p, node), x + k, s->dx + 6 * node + k % 6);
+    }
+    spari_condensed_expand(c, s->dx);
+    rotate_forth(p);
 }
 
 static double correction_of_nodes(const spari_component *p) {
     return spari_alpha_size(p->solver, p->solver->dx);
 }
 
-static void correct_nodes(spari_component *p, double cut) {
+void spari_component_correct(spari_component *p, double cut) {
     spari_solver *s = p->solver;
     for (int k = 0; k < 6 * s->n && cut < 1; k++) {
         s->dx[k] *= cut;
@@ -262,6 +255,13 @@ static void correct_nodes(spari_component *p, double cut) {
 /* ---- an iteration of a member without joints ---- */
 
 static int solve_nodes(spari_component *p) {
+    (void)rotate_back(p);
+    int singular = spari_linear_solve(p->solver->linear, p->solver->dx);
+    rotate_forth(p);
+    return singular;
+}
+
+static int correct_nodes(spari_component *p) {
     const spari_solver *s = p->solver;
     if (spari_linear_solve(s->linear, s->dx)) {
         return 1;
@@ -317,17 +317,11 @@ static int tangent_after_step(spari_component *p) {
     return p->solver->factored ? 0 : form_tangent(p, &p->solver->to);
 }
 
-static double way_of_nodes(const spari_component *p) {
+double spari_component_way(const spari_component *p) {
     return spari_alpha_size(p->solver, p->solver->increment) + p->stage.ends.carried;
 }
 
-static void clear_nodes(spari_component *p) {
-    spari_solver *s = p->solver;
-    (void)rotate_back(p); /* for the rotations */
-    memset(s->dx, 0, (size_t)(6 * s->n) * sizeof *s->dx);
-}
-
-static void shift_rates_of_nodes(spari_component *p, double v, double a, double b) {
+void spari_component_shift_rates(spari_component *p, double v, double a, double b) {
     spari_solver *s = p->solver;
     for (int k = 0; k < 6 * s->n; k += 3) {
         if (p->stage.ends.root) {
@@ -504,31 +498,23 @@ static void end_rest_of_nodes(spari_component *p) {
 }
 
 const spari_component_row spari_component_body = {
-    .make = make_nodes,
     .attach = attach_nodes,
     .take = begin_loads_of_nodes,
     .begin = begin_nodes,
     .enter = enter_nodes,
     .stage = stage_of_nodes,
-    .take_velocities = take_velocities_of_nodes,
     .end = end_nodes,
-    .keep_rates = keep_rates_of_nodes,
     .predict = predict_nodes,
     .balance = balance_nodes,
     .noise = rotate_back,
     .tangent = tangent_of_nodes,
     .serves = nodes_serve,
-    .reduce = reduce_nodes,
-    .expand = expand_nodes,
     .correction_size = correction_of_nodes,
-    .correct = correct_nodes,
-    .way = way_of_nodes,
     .solve = solve_nodes,
+    .correct_newton = correct_nodes,
     .advance = advance_nodes,
     .end_solution = end_solution_of_nodes,
     .tangent_after = tangent_after_step,
-    .clear = clear_nodes,
-    .shift_rates = shift_rates_of_nodes,
     .take_more = take_more_of_nodes,
     .show_more = show_more_of_nodes,
     .look_back = look_back_at_nodes,
@@ -544,7 +530,6 @@ const spari_component_row spari_component_body = {
     .keep_positions = keep_positions_of_nodes,
     .discard_rest = discard_rest_of_nodes,
     .end_rest = end_rest_of_nodes,
-    .rotation = rotation_of_node,
 };
 
 /* ---- operations of the table of fidelities ---- */

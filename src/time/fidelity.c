@@ -3,6 +3,7 @@
 
 #include "../member/beam.h"
 #include "../member/check_arguments.h"
+#include "../member/joint.h"
 
 #define SPARI_FIDELITY_ENTRY(number, name) [SPAR_FIDELITY_##number] = &spari_fidelity_##name,
 static const spari_fidelity *const table[] = {SPARI_FIDELITIES(SPARI_FIDELITY_ENTRY)};
@@ -44,6 +45,11 @@ int spari_fidelity_check(const spar_member *m) {
                   "member '%s' is linear in the frame of a driven root, which moves relative to its foundation "
                   "(spar_beam_set_foundation); use SPAR_FIDELITY_EXACT, or fix the root",
                   m->name);
+    const spar_joint *joint = row->seen == SPARI_SEEN_LINEAR ? spari_joint_of(m) : NULL;
+    SPARI_REQUIRE(m->session, !joint, SPAR_ERR_UNSUPPORTED,
+                  "member '%s' is a linear or modal beam, which joint '%s' cannot connect; use SPAR_FIDELITY_EXACT "
+                  "(spar_member_set_fidelity), which costs about as much with joints",
+                  m->name, joint->name);
     return row->check ? row->check(m) : SPAR_OK;
 }
 

@@ -77,14 +77,10 @@ typedef struct spari_fidelity {
     int (*linearise)(const spar_member *m, const double w[3], struct spari_pencil *to);
 
     /* For members that are solved (assembly.h). component: the operations (component.h); NULL: the motion is given, and
-       joints do not move       it. publish: writes the motion found into m->after. For members whose unknowns are
-       motions of nodes, on the owner: solver; take_loads: passes the loads of a step to it; take_rest: passes dead and
-       `fluid` loads for an equilibrium. */
+       joints do not move it. publish: writes the motion found into m->after. For members whose unknowns are motions of
+       nodes, on the owner: solver; take_loads: passes the loads of a step to it; take_rest: passes dead and `fluid`
+       loads for an equilibrium. */
     const struct spari_component_row *component;
-    /* every rank: renew_joints: joints have changed; renews m->solution if it depends on them (NULL: it does not).
-       end_of: the component's number of a node of the unknowns (NULL: the same). */
-    int (*renew_joints)(spar_member *m);
-    int (*end_of)(const spar_member *m, int node);
     struct spari_solver *(*solver)(const spar_member *m);
     void (*take_loads)(spar_member *m);
     void (*take_rest)(spar_member *m, const double *fluid);

@@ -314,8 +314,13 @@ void spari_stage_drive(const spar_member *m, const spari_scheme *c, const spari_
     }
 }
 
-int spari_stage_root(spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part,
-                     spari_stage *g) {
+int spari_stage_begin(spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part,
+                      spari_stage *g) {
+    spari_scheme_mix_loads(m, &s->steps, 6 * s->n, part->end);
+    if (s->offset_loads) {
+        spari_offset_loads_at(s->offset_loads, part->end);
+        memcpy(s->offset_loads->gravity, m->body->gravity, sizeof m->body->gravity);
+    }
     change_scheme(s, m, c, part);
     if (c->rule == SPARI_TRAPEZOIDAL) {
         g->rigid = mean_motion(s, m);
@@ -340,30 +345,6 @@ int spari_stage_root(spari_solver *s, const spar_member *m, const spari_scheme *
         memcpy(g->ends.from.b, g->ends.to.a, size);
     }
     return SPAR_OK;
-}
-
-int spari_stage_begin(spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part,
-                      spari_stage *g) {
-    spari_scheme_mix_loads(m, &s->steps, 6 * s->n, part->end);
-    if (s->offset_loads) {
-        spari_offset_loads_at(s->offset_loads, part->end);
-        memcpy(s->offset_loads->gravity, m->body->gravity, sizeof m->body->gravity);
-    }
-    return spari_stage_root(s, m, c, part, g);
-}
-
-/* The algorithmic acceleration of a member with a driven root is relative to the root, all others are in global
-   axes. */
-void spari_stage_restart(const spari_solver *s, const spar_member *m, const spari_scheme *c, spari_stage *g) {
-    const spari_ends *e = &g->ends;
-    int driven = m->root == SPAR_ROOT_DRIVEN && e->root;
-    if (c->rule != SPARI_BACKWARD) {
-        return;
-    }
-    spari_scheme_restart(c, 6 * s->n, driven ? e->from.a : s->from.a, driven ? e->to.a : e->seen.a, e->seen.b);
-    if (e->root) { /* the function that shows the motion reads it there */
-        memcpy(e->to.b, e->seen.b, (size_t)(6 * s->n) * sizeof *e->to.b);
-    }
 }
 
 /* rad, or relative to the length: for a smaller motion a substep has one solution only. */
@@ -424,8 +405,17 @@ int spari_stage_is_near(const spari_solver *s, const spar_member *m, double h) {
     return m->root == SPAR_ROOT_DRIVEN || m->added || s->offset_loads || !(moved_by(s, h) > near);
 }
 
+/* The algorithmic acceleration of a member with a driven root is relative to the root, all others are in global
+   axes. */
 void spari_stage_end(const spari_solver *s, spar_member *m, const spari_scheme *c, spari_stage *g) {
-    spari_stage_restart(s, m, c, g);
+    const spari_ends *e = &g->ends;
+    int driven = m->root == SPAR_ROOT_DRIVEN && e->root;
+    if (c->rule == SPARI_BACKWARD) {
+        spari_scheme_restart(c, 6 * s->n, driven ? e->from.a : s->from.a, driven ? e->to.a : e->seen.a, e->seen.b);
+    }
+    if (c->rule == SPARI_BACKWARD && e->root) { /* the function that shows the motion reads it there */
+        memcpy(e->to.b, e->seen.b, (size_t)(6 * s->n) * sizeof *e->to.b);
+    }
     g->before = g->root;
     spari_scheme_dissipate(m, c, &g->power, s->power);
 }

@@ -40,12 +40,6 @@ void spari_stage_drive(const spar_member *member, const spari_scheme *scheme, co
                        spari_stage *stage);
 /* How far a root moves the member: rotation, and displacement relative to its length. */
 double spari_carried(const spari_pose *from, const spari_pose *to, double length);
-/* The root and the ends only. */
-int spari_stage_root(spari_solver *solver, const spar_member *member, const spari_scheme *scheme,
-                     const spari_part *part, spari_stage *stage);
-/* Sets the state from which generalised-alpha would continue after the substep. */
-void spari_stage_restart(const spari_solver *solver, const spar_member *member, const spari_scheme *scheme,
-                         spari_stage *stage);
 /* Whether the substep moved the member too little for a second solution to exist, or the work of its loads is not
    known. */
 int spari_stage_is_near(const spari_solver *solver, const spar_member *member, double h);

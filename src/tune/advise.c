@@ -198,25 +198,34 @@ static double bend_of_group(const spari_advisor *d, int g, const spari_record *b
     return most;
 }
 
-/* Whether the member can have this fidelity. Fidelities that need a prescribed root exclude free members, whose
-   first six modes are rigid. Members that bend are not rigid. */
+static int has_joints(const spari_advisor *d, int g) {
+    int found = 0, k = 0;
+    for (const spar_member *m = d->session->members; m; m = m->next, k++) {
+        found = found || (d->group[k] == g && spari_joint_of(m));
+    }
+    return found;
+}
+
+/* Whether the members can have this fidelity. Fidelities that need a prescribed root exclude free members, whose
+   first six modes are rigid. Joints exclude linear and modal beams. Members that bend are not rigid. */
 static int is_possible(const spari_advisor *d, int g, int fidelity, int64_t modes, const spari_record *base) {
     enum { RIGID_MODES = 6 };
     int given = spari_member_root_is_prescribed(spari_plan_member(d, g));
     if (!given && (spari_fidelity_row(fidelity)->prescribed_root || (modes > 0 && modes < RIGID_MODES))) {
         return 0;
     }
-    return fidelity >= SPAR_FIDELITY_LINEAR || !(d->search->goals & SPAR_GOAL_MOTION) ||
-           bend_of_group(d, g, base) <= spari_rule.fidelity * d->tolerance;
+    if (fidelity >= SPAR_FIDELITY_LINEAR) {
+        return !has_joints(d, g);
+    }
+    return !(d->search->goals & SPAR_GOAL_MOTION) || bend_of_group(d, g, base) <= spari_rule.fidelity * d->tolerance;
 }
 
 /* Lower bound of the cost of a run with the group at this fidelity; cost: the present one. */
 static double least_cost(const spari_advisor *d, const spari_plan *p, int g, int k, const shaping *w, double cost) {
     double solved = 0;
     const spar_member *m = spari_plan_member(d, g);
-    int solves = spari_member_has_joints(m) ? 2 : 1; /* connected members are iterated at any fidelity */
     if (fidelities[k].fidelity >= SPAR_FIDELITY_LINEAR) {
-        solved = w->count[g] * solves * (double)w->base.solutions *
+        solved = w->count[g] * (double)w->base.solutions *
                  spari_cost_frame(m, p->group[g].elements, p->group[g].nodes, (int)fidelities[k].modes);
     }
     return fmax(0, cost - fmax(0, w->work[g] - solved));

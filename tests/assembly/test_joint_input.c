@@ -329,6 +329,61 @@ static void test_no_step(void **state) {
     spar_session_destroy(&y.s);
 }
 
+/* A linear or modal beam that was committed takes no joint, spring or link: refused where they are created. */
+static void test_reduced_beam(void **state) {
+    (void)state;
+    static const int kinds[2] = {SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    const double from[3] = {1, 0, 0}, to[3] = {1, 0, 2}, load[6] = {0, 0, 1e-3, 0, 0, 0};
+    double K[36], spring[36] = {[14] = 1}, q[2][7];
+    scene_diagonal(K, 1, 1, 1, 1, 1, 1);
+    for (int k = 0; k < 2; k++) {
+        for (int refused = 0; refused < 2; refused++) {
+            yard y = open_yard();
+            spar_member *b = scene_beam(y.s, "reduced", 2, 3, 1, K, K);
+            spar_joint *j = NULL;
+            OK(y.s, spar_member_set_fidelity(b, kinds[k], 6));
+            OK(y.s, spar_member_commit(b));
+            if (refused) {
+                REFUSED(y.s, SPAR_ERR_UNSUPPORTED, "spar_joint_create: 'j': 'reduced' is a linear or modal beam",
+                        spar_joint_create(y.s, "j", b, 5, NULL, 0, 0, &j));
+                REFUSED(y.s, SPAR_ERR_UNSUPPORTED, "commit it with SPAR_FIDELITY_EXACT",
+                        spar_joint_create(y.s, "j", y.body[1], 0, b, 0, SPAR_FREE_RY, &j));
+                REFUSED(y.s, SPAR_ERR_UNSUPPORTED, "spar_spring_create",
+                        spar_spring_create(y.s, "j", b, 5, SPAR_FREE_Z, spring, NULL, NULL, &j));
+                REFUSED(y.s, SPAR_ERR_UNSUPPORTED, "spar_link_create",
+                        spar_link_create(y.s, "j", b, 5, from, y.body[1], 0, to, &j));
+            }
+            OK(y.s, spar_member_set_load(b, 5, SPAR_LOAD_DEAD, load));
+            scene_run(y.s, 0.1, 10);
+            scene_tip(b, q[refused]);
+            spar_session_destroy(&y.s);
+        }
+        assert_true(q[0][2] > 1e-5);
+        assert_memory_equal(q[0], q[1], sizeof q[0]);
+    }
+}
+
+/* The joint comes first: refused at the commit, and the beam can still become exact. */
+static void test_reduced_beam_at_commit(void **state) {
+    (void)state;
+    static const int kinds[2] = {SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL};
+    double K[36];
+    scene_diagonal(K, 1, 1, 1, 1, 1, 1);
+    for (int k = 0; k < 2; k++) {
+        yard y = open_yard();
+        spar_member *b = scene_beam(y.s, "reduced", 2, 3, 1, K, K);
+        spar_joint *j = NULL;
+        OK(y.s, spar_member_set_fidelity(b, kinds[k], 6));
+        OK(y.s, spar_joint_create(y.s, "weld", b, 5, NULL, 0, 0, &j));
+        REFUSED(y.s, SPAR_ERR_UNSUPPORTED,
+                "'reduced' is a linear or modal beam, which joint 'weld' cannot connect; use SPAR_FIDELITY_EXACT",
+                spar_member_commit(b));
+        OK(y.s, spar_member_set_fidelity(b, SPAR_FIDELITY_EXACT, 0));
+        OK(y.s, spar_member_commit(b));
+        still_sound(&y);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_create),
@@ -342,6 +397,8 @@ int main(void) {
         cmocka_unit_test(test_start_beyond_numbers),
         cmocka_unit_test(test_no_step),
         cmocka_unit_test(test_asked_before),
+        cmocka_unit_test(test_reduced_beam),
+        cmocka_unit_test(test_reduced_beam_at_commit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -100,16 +100,15 @@ static void places(spar_member *b, int n, double angle, double *x) {
     }
 }
 
-/* A bent, coupled blade off the axis: alone with a root that turns, and three of them welded to a hub, are the same
-   shape; and so are the forces at the root. Exact, rigid, and linear (where terms of second order in the deformation,
-   which tied ones keep in part, are small: slowly). */
+/* A bent, coupled blade off the axis: alone with a root that rotates, and three of them welded to a hub, have the same
+   shape and the same forces at the root. Exact and rigid. */
 static void test_ring(void **state) {
     (void)state;
     enum { N = 11 };
     const double radius = 0.8, third = 2 * acos(-1) / 3;
-    const int kinds[3] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_RIGID};
-    for (int kind = 0; kind < 3; kind++) {
-        const double x[3] = {radius, 0, 0}, W[3] = {0, 0, kind == 1 ? 0.3 : 6};
+    const int kinds[2] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_RIGID};
+    for (int kind = 0; kind < 2; kind++) {
+        const double x[3] = {radius, 0, 0}, W[3] = {0, 0, 6};
         double alone[3 * N], ring[3 * N], reaction[6], load[6], size = 0;
         spar_session *s = scene_session();
         spar_member *b = crooked(s, "alone", N);
@@ -141,12 +140,12 @@ static void test_ring(void **state) {
         for (int i = 0; i < 3; i++) {
             places(blade[i], N, i * third, ring);
             for (int k = 0; k < 3 * N; k++) {
-                NEAR(ring[k], alone[k], kind == 1 ? 2e-8 : 1e-10);
+                NEAR(ring[k], alone[k], 1e-10);
             }
         }
         OK(s, spar_joint_get_load(weld[0], load)); /* in the section axes of the root, x along the tangent there */
-        NEAR(spari_norm(load), spari_norm(reaction), (kind == 1 ? 1e-6 : 1e-8) * size);
-        NEAR(spari_norm(load + 3), spari_norm(reaction + 3), (kind == 1 ? 1e-6 : 1e-8) * size);
+        NEAR(spari_norm(load), spari_norm(reaction), 1e-8 * size);
+        NEAR(spari_norm(load + 3), spari_norm(reaction + 3), 1e-8 * size);
         spar_session_destroy(&s);
     }
 }
@@ -288,7 +287,7 @@ static void step_hub(spar_session *s, spar_member *hub, double W, double dt, int
 
 /* Steps from there stay there: with half the dt the wander of the tips, seen from the hub, is a quarter. And steps that
    damp, from straight blades, come to the same shape. */
-static void steps_stay(int fidelity, int modes) {
+static void steps_stay(int fidelity) {
     enum { N = 9 };
     const double W[3] = {0, 0, 4};
     double wander[2] = {0}, x[2][3 * N];
@@ -298,7 +297,7 @@ static void steps_stay(int fidelity, int modes) {
         spar_session *s = scene_session();
         spar_member *hub = driven_hub(s, W), *b = crooked(s, "blade", N);
         welded(s, b, "weld", hub, 0.5, 0, NULL);
-        OK(s, spar_member_set_fidelity(b, fidelity, modes));
+        OK(s, spar_member_set_fidelity(b, fidelity, 0));
         OK(s, spar_beam_set_damping(b, (const double[6]){0.02, 0.02, 0.02, 0.02, 0.02, 0.02}));
         OK(s, spar_member_set_initial_velocity(b, NULL, NULL, W));
         OK(s, spar_member_commit(b));
@@ -329,56 +328,49 @@ static void steps_stay(int fidelity, int modes) {
 
 static void test_steps_stay(void **state) {
     (void)state;
-    steps_stay(SPAR_FIDELITY_EXACT, 0);
-    steps_stay(SPAR_FIDELITY_LINEAR, 0);
-    steps_stay(SPAR_FIDELITY_MODAL, 12);
-    steps_stay(SPAR_FIDELITY_RIGID, 0);
+    steps_stay(SPAR_FIDELITY_EXACT);
+    steps_stay(SPAR_FIDELITY_RIGID);
 }
 
 /* ---- eigenvalues about it ---- */
 
 /* Three uniform blades on a hub that a hinge against the ground drives: flap out of the plane (Wright et al. 1982, as
-   in test_eigenvalues.c), three times each, at a speed that no step has run up to. Exact and linear. */
+   in test_eigenvalues.c), three times each, at a speed that no step has run up to. */
 static void test_rotor(void **state) {
     (void)state;
     enum { N = 9 };
     const double flap[2] = {7.3603730193, 26.809081678}, third = 2 * acos(-1) / 3, c[3] = {0}, J[3] = {1, 1, 1};
-    for (int kind = 0; kind < 2; kind++) {
-        const double rate[6] = {0, 0, 0, 0, 0, 6}, angle[6] = {0};
-        double K[36], M[36], body[36], value[3][2], frame[3];
-        spar_session *s = scene_session();
-        spar_member *hub = NULL, *b[3];
-        spar_joint *shaft = NULL;
-        scene_diagonal(K, 1e8, 1e8, 1e8, 1e3, 1, 1);
-        scene_diagonal(M, 1, 1, 1, 2e-8, 1e-8, 1e-8);
-        scene_mass(body, 1, c, J);
-        OK(s, spar_rigid_create(s, "hub", at_origin, upright, body, &hub));
-        OK(s, spar_member_set_root(hub, SPAR_ROOT_FREE));
-        OK(s, spar_member_commit(hub));
-        OK(s, spar_joint_create(s, "shaft", hub, 0, NULL, 0, SPAR_FREE_RZ, &shaft));
-        OK(s, spar_joint_set_driven(shaft, SPAR_FREE_RZ));
-        OK(s, spar_joint_drive(shaft, angle, rate, NULL));
-        for (int i = 0; i < 3; i++) {
-            static const char *const name[3] = {"a", "b", "c"}, *const tie[3] = {"weld a", "weld b", "weld c"};
-            b[i] = scene_beam(s, name[i], 1, N, 1, K, M);
-            if (kind) {
-                OK(s, spar_member_set_fidelity(b[i], SPAR_FIDELITY_LINEAR, 0));
-            }
-            welded(s, b[i], tie[i], hub, 0, i * third, NULL);
-            OK(s, spar_member_commit(b[i]));
-        }
-        OK(s, spar_session_solve_static(s, 1, NULL, NULL, NULL));
-        for (int k = 0; k < 2; k++) {
-            const double shift[2] = {0, flap[k]};
-            OK(s, spar_member_solve_eigenvalues(b[1], 3, shift, &value[0][0], NULL, frame));
-            for (int i = 0; i < 3; i++) {
-                NEAR(value[i][1], flap[k], 2e-5 * flap[k]);
-                NEAR(value[i][0], 0, 1e-6);
-            }
-            NEAR(frame[2], 6, 1e-9);
-        }
-        spar_session_destroy(&s);
+    const double rate[6] = {0, 0, 0, 0, 0, 6}, angle[6] = {0};
+    double K[36], M[36], body[36], value[3][2], frame[3];
+    spar_session *s = scene_session();
+    spar_member *hub = NULL, *b[3];
+    spar_joint *shaft = NULL;
+    scene_diagonal(K, 1e8, 1e8, 1e8, 1e3, 1, 1);
+    scene_diagonal(M, 1, 1, 1, 2e-8, 1e-8, 1e-8);
+    scene_mass(body, 1, c, J);
+    OK(s, spar_rigid_create(s, "hub", at_origin, upright, body, &hub));
+    OK(s, spar_member_set_root(hub, SPAR_ROOT_FREE));
+    OK(s, spar_member_commit(hub));
+    OK(s, spar_joint_create(s, "shaft", hub, 0, NULL, 0, SPAR_FREE_RZ, &shaft));
+    OK(s, spar_joint_set_driven(shaft, SPAR_FREE_RZ));
+    OK(s, spar_joint_drive(shaft, angle, rate, NULL));
+    for (int i = 0; i < 3; i++) {
+        static const char *const name[3] = {"a", "b", "c"}, *const tie[3] = {"weld a", "weld b", "weld c"};
+        b[i] = scene_beam(s, name[i], 1, N, 1, K, M);
+        welded(s, b[i], tie[i], hub, 0, i * third, NULL);
+        OK(s, spar_member_commit(b[i]));
     }
+    OK(s, spar_session_solve_static(s, 1, NULL, NULL, NULL));
+    for (int k = 0; k < 2; k++) {
+        const double shift[2] = {0, flap[k]};
+        OK(s, spar_member_solve_eigenvalues(b[1], 3, shift, &value[0][0], NULL, frame));
+        for (int i = 0; i < 3; i++) {
+            NEAR(value[i][1], flap[k], 2e-5 * flap[k]);
+            NEAR(value[i][0], 0, 1e-6);
+        }
+        NEAR(frame[2], 6, 1e-9);
+    }
+    spar_session_destroy(&s);
 }
 
 /* ---- what is not steady ---- */

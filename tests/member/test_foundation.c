@@ -257,15 +257,6 @@ static void test_refusals(void **state) {
     OK(s, spar_member_commit(b));
     REFUSED(s, SPAR_ERR_STATE, "commit", spar_beam_set_foundation(b, 0, NULL, NULL));
     spar_session_destroy(&s);
-    s = scene_session(); /* a root that is left to a joint, of a linear beam */
-    b = pile(s, 1, 4, SPAR_ROOT_FREE);
-    spar_joint *j = NULL;
-    bed(s, b, 0, 1, 1);
-    OK(s, spar_member_set_fidelity(b, SPAR_FIDELITY_LINEAR, 0));
-    OK(s, spar_member_commit(b));
-    OK(s, spar_joint_create(s, "root", b, 0, NULL, 0, SPAR_FREE_RZ, &j));
-    REFUSED(s, SPAR_ERR_UNSUPPORTED, "moved by joints", spar_step_begin(s, 0.1));
-    spar_session_destroy(&s);
 }
 
 int main(void) {

@@ -337,14 +337,6 @@ static void test_bad_input(void **state) {
     OK(s, spar_member_commit(b));
     REFUSED(s, SPAR_ERR_STATE, "committed", spar_beam_set_mass_damping(b, 1));
     spar_session_destroy(&s);
-    s = scene_session(); /* a root that is left to a joint, of a linear beam */
-    b = beam(s, 1, 0, alpha, NULL);
-    spar_joint *j = NULL;
-    OK(s, spar_member_set_root(b, SPAR_ROOT_FREE));
-    OK(s, spar_member_commit(b));
-    OK(s, spar_joint_create(s, "root", b, 0, NULL, 0, SPAR_FREE_RZ, &j));
-    REFUSED(s, SPAR_ERR_UNSUPPORTED, "absolute velocities", spar_step_begin(s, 0.1));
-    spar_session_destroy(&s);
 }
 
 int main(void) {

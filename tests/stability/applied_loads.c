@@ -9,7 +9,7 @@
 enum { NODES = 5, END = NODES - 1 };
 
 /* What bears the load, and how the load is given. */
-typedef enum what { BODY, EXACT, LINEAR, MODAL, RIGID, TIED } what;
+typedef enum what { BODY, EXACT, LINEAR, MODAL, RIGID } what;
 typedef enum load { DEAD, FOLLOWER, LINE_DEAD, LINE_FOLLOWER, MOTOR, GRAVITY } load;
 
 typedef struct scene {
@@ -31,8 +31,7 @@ static void beam_create(scene *p, what of) {
     static const int fidelity[] = {[EXACT] = SPAR_FIDELITY_EXACT,
                                    [LINEAR] = SPAR_FIDELITY_LINEAR,
                                    [MODAL] = SPAR_FIDELITY_MODAL,
-                                   [RIGID] = SPAR_FIDELITY_RIGID,
-                                   [TIED] = SPAR_FIDELITY_LINEAR};
+                                   [RIGID] = SPAR_FIDELITY_RIGID};
     static const double mu[6] = {0.01, 0.01, 0.01, 0.01, 0.01, 0.01};
     double K[36], M[36];
     spar_session *s = p->session;
@@ -41,11 +40,11 @@ static void beam_create(scene *p, what of) {
     p->member = scene_beam(s, "beam", 1, NODES, 1, K, M);
     OK(s, spar_beam_set_damping(p->member, mu)); /* of what the steps do not resolve */
     OK(s, spar_member_set_fidelity(p->member, fidelity[of], of == MODAL ? 3 : 0));
-    if (of == RIGID || of == TIED) {
+    if (of == RIGID) {
         OK(s, spar_member_set_root(p->member, SPAR_ROOT_FREE));
     }
     OK(s, spar_member_commit(p->member));
-    if (of == RIGID || of == TIED) {
+    if (of == RIGID) {
         static const double x[3] = {0};
         p->hinge = scene_joint_at(s, "hinge", p->member, 0, NULL, 0, SPAR_FREE_RZ, x);
         scene_diagonal(K, 0, 0, 0, 0, 0, 8);
@@ -132,10 +131,7 @@ static const struct {
              {MODAL, GRAVITY, "modal beam, gravity"},
              {RIGID, DEAD, "rigid beam on a hinge, dead"},
              {RIGID, MOTOR, "rigid beam on a hinge, motor"},
-             {RIGID, GRAVITY, "rigid beam on a hinge, gravity"},
-             {TIED, LINE_DEAD, "linear beam on a hinge, line"},
-             {TIED, MOTOR, "linear beam on a hinge, motor"},
-             {TIED, GRAVITY, "linear beam on a hinge, gravity"}};
+             {RIGID, GRAVITY, "rigid beam on a hinge, gravity"}};
 enum { CASES = sizeof cases / sizeof *cases };
 
 static void order_two_with_substeps(void **state) {

@@ -144,7 +144,7 @@ typedef struct halves {
     spar_joint *foot, *weld;
 } halves;
 
-static halves tie_halves(double rho, int fidelity, int elements, int foot) {
+static halves tie_halves(double rho, int elements, int foot) {
     const double eta[2] = {0, 1}, line[2][6] = {{0, 0, 0, 5, 0, 0}, {5, 0, 0, 10, 0, 0}};
     double K[36], M[36];
     halves h = {.s = scene_session()};
@@ -155,7 +155,6 @@ static halves tie_halves(double rho, int fidelity, int elements, int foot) {
         OK(h.s, spar_beam_create(h.s, i ? "outer" : "inner", elements, 6, b));
         OK(h.s, spar_beam_set_axis(*b, 2, eta, line[i], NULL));
         OK(h.s, spar_beam_set_sections(*b, 1, eta, K, M));
-        OK(h.s, spar_member_set_fidelity(*b, fidelity, 8));
         OK(h.s, spar_member_set_root(*b, SPAR_ROOT_FREE));
         OK(h.s, spar_member_commit(*b));
     }
@@ -176,9 +175,9 @@ static double energy_of_halves(const halves *h) {
 }
 
 /* As grow(). */
-static double grow_tied(double rho, int fidelity, int elements, double factor, double last) {
+static double grow_tied(double rho, int elements, double factor, double last) {
     const double load[6] = {0, 0.5, 1, 0.2, 0, 0}, none[6] = {0};
-    halves h = tie_halves(rho, fidelity, elements, 1);
+    halves h = tie_halves(rho, elements, 1);
     OK(h.s, spar_member_set_load(h.half[1], 6 * elements - 1, SPAR_LOAD_DEAD, load));
     OK(h.s, spar_member_solve_static(h.half[0], 1));
     OK(h.s, spar_member_set_load(h.half[1], 6 * elements - 1, SPAR_LOAD_DEAD, none));
@@ -196,21 +195,13 @@ static double grow_tied(double rho, int fidelity, int elements, double factor, d
     return most;
 }
 
-/* Exact halves in steps of up to 1e3 s, of any factor. Linear and modal ones ride on each other, with turns that the
-   step must not leave unresolved by far: up to 10 s, forty periods. */
+/* Halves in steps of up to 1e3 s, of any factor. */
 static void test_tied(void **state) {
     (void)state;
     static const double rho[] = {0, 0.5, 0.9, 1}, factor[] = {1.1, 2, 10, 1000, 1e6};
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 5; k++) {
-            NEAR(fmax(1, grow_tied(rho[i], SPAR_FIDELITY_EXACT, 1 + k % 2, factor[k], 1e3)), 1, 2e-3);
-        }
-    }
-    for (int fidelity = SPAR_FIDELITY_LINEAR; fidelity <= SPAR_FIDELITY_MODAL; fidelity++) {
-        for (int i = 0; i < 3; i++) {
-            for (int k = 0; k < 4; k++) {
-                NEAR(fmax(1, grow_tied(rho[i], fidelity, 1 + k % 2, factor[k], 10)), 1, 2e-3);
-            }
+            NEAR(fmax(1, grow_tied(rho[i], 1 + k % 2, factor[k], 1e3)), 1, 2e-3);
         }
     }
 }
@@ -220,7 +211,7 @@ static void test_tied(void **state) {
 static void test_tied_loads(void **state) {
     (void)state;
     const double g = 0.05, weight = 8.538e-2 * g * 10;
-    halves h = tie_halves(0.5, SPAR_FIDELITY_EXACT, 1, 1);
+    halves h = tie_halves(0.5, 1, 1);
     double load[6];
     OK(h.s, spar_session_set_gravity(h.s, (double[]){0, 0, -g}));
     scene_run(h.s, 1e-3, 20);
@@ -239,7 +230,7 @@ static void test_tied_spin(void **state) {
     (void)state;
     const double omega[3] = {0, 0, 1}, middle[3] = {5, 0, 0};
     double q[7 * 6], load[6];
-    halves h = tie_halves(0.5, SPAR_FIDELITY_EXACT, 1, 0);
+    halves h = tie_halves(0.5, 1, 0);
     for (int i = 0; i < 2; i++) {
         OK(h.s, spar_member_set_initial_velocity(h.half[i], middle, NULL, omega));
     }

@@ -38,8 +38,7 @@ static int solve_air(spar_session *s, double t, double dt, int iteration, void *
 }
 
 static steady run(int elements, double wind, double rpm, double degrees) {
-    const turbine_options how = {
-        SPAR_DATA_DIR "/nrel5mw", elements, 6, 1, 6, degrees * pi / 180, 0, 1, 0, 0, 0, 0, 0, 0};
+    const turbine_options how = {SPAR_DATA_DIR "/nrel5mw", elements, 6, 1, 6, degrees * pi / 180, 0, 1, 0, 0};
     const double dt = 0.04;
     stand st = {.wind = wind};
     turbine_control c;
@@ -117,7 +116,7 @@ static void test_frequencies(void **state) {
                     {"2nd flap, yaw", 8, 1.9337, 1.6507},           {"2nd flap, pitch", 9, 1.9223, 1.8558},
                     {"2nd flap, collective", 10, 2.0205, 1.9601},   {"2nd tower, fore and aft", 12, 2.9003, 2.8590},
                     {"2nd tower, side to side", 13, 2.9361, 2.9408}};
-    const turbine_options how = {SPAR_DATA_DIR "/nrel5mw", 1, 10, 1, 8, 0, 0, 1, 0, 0, 0, 0, 0, 0};
+    const turbine_options how = {SPAR_DATA_DIR "/nrel5mw", 1, 10, 1, 8, 0, 0, 1, 0, 0};
     const double brake[36] = {[21] = 1e12};
     turbine t;
     double f[14];

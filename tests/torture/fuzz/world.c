@@ -43,21 +43,7 @@ static void add_seen(uint64_t *h, int status, int64_t n) {
     }
 }
 
-/* Whether its shapes may be made anew at any call: those of a linear or modal member that joints tie, up to the first
-   step. Energies are those of the shapes. */
-static int shapes_are_open(const world *w, const live_member *m) {
-    int fidelity = SPAR_FIDELITY_EXACT, tied = 0;
-    double t;
-    int64_t step = 0;
-    for (int i = 0; i < JOINTS; i++) {
-        tied = tied || (w->joint[i].j && w->joint[i].session == m->session);
-    }
-    (void)spar_session_get_time(w->session[m->session].s, &t, &step, NULL);
-    return tied && step == 0 && m->kind == KIND_BEAM && spar_member_get_fidelity(m->m, &fidelity, NULL) == SPAR_OK &&
-           (fidelity == SPAR_FIDELITY_LINEAR || fidelity == SPAR_FIDELITY_MODAL);
-}
-
-static void see_member(const world *w, const live_member *m, uint64_t *h) {
+static void see_member(const live_member *m, uint64_t *h) {
     int64_t n = nodes_of(m);
     add(h, &n, sizeof n);
     if (!m->committed || n > 64) {
@@ -67,7 +53,7 @@ static void see_member(const world *w, const live_member *m, uint64_t *h) {
     add_seen(h, spar_member_get_motion(m->m, seen, seen + 7 * n, seen + 13 * n), 19 * n);
     add_seen(h, spar_member_get_loads(m->m, seen), 6 * n);
     add_seen(h, spar_member_get_reaction(m->m, seen), 6);
-    add_seen(h, spar_member_get_energy(m->m, 4, seen), shapes_are_open(w, m) ? 0 : 4);
+    add_seen(h, spar_member_get_energy(m->m, 4, seen), 4);
     if (m->kind == KIND_BEAM) {
         const double eta[2] = {0.3, 1};
         add_seen(h, spar_beam_evaluate(m->m, 2, eta, seen, NULL, seen + 12, seen + 18), 26);
@@ -124,7 +110,7 @@ void fuzz_digest(world *w, int session, uint64_t digest[3]) {
     add(digest, &step, sizeof step);
     for (int i = 0; i < MEMBERS; i++) {
         if (w->member[i].m && w->member[i].session == session) {
-            see_member(w, w->member + i, digest);
+            see_member(w->member + i, digest);
         }
     }
     for (int i = 0; i < JOINTS; i++) {
