@@ -77,11 +77,13 @@ add_test(NAME example_spar_run COMMAND sh "${PROJECT_SOURCE_DIR}/tests/examples/
   "${PROJECT_SOURCE_DIR}/examples/spar-run/cases" "${PROJECT_BINARY_DIR}/tests/spar_run")
 spar_set_test(example_spar_run unit 60 ${spar_example_environment})
 
-# A controller's library: the published one behind Bladed's interface, and one without that interface.
+# Libraries opened at run time: the published controller behind Bladed's interface, lines behind MoorDyn's, and one
+# without either.
 if(UNIX AND NOT CMAKE_C_FLAGS MATCHES "sanitize")
   add_library(spar_test_discon MODULE "${PROJECT_SOURCE_DIR}/tests/examples/discon.c" "${PROJECT_SOURCE_DIR}/examples/turbine_control.c")
   add_library(spar_test_other MODULE "${PROJECT_SOURCE_DIR}/examples/turbine_control.c")
-  foreach(library IN ITEMS spar_test_discon spar_test_other)
+  add_library(spar_test_moordyn MODULE "${PROJECT_SOURCE_DIR}/tests/examples/moordyn.c")
+  foreach(library IN ITEMS spar_test_discon spar_test_moordyn spar_test_other)
     target_include_directories(${library} PRIVATE "${PROJECT_SOURCE_DIR}/examples")
     target_link_libraries(${library} PRIVATE spar_flags m)
     set_target_properties(${library} PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
@@ -89,6 +91,9 @@ if(UNIX AND NOT CMAKE_C_FLAGS MATCHES "sanitize")
   add_test(NAME example_turbine_controller COMMAND sh "${PROJECT_SOURCE_DIR}/tests/examples/controller" $<TARGET_FILE:examples_turbine>
     $<TARGET_FILE:spar_test_discon> $<TARGET_FILE:spar_test_other> "${PROJECT_BINARY_DIR}/tests/controller")
   spar_set_test(example_turbine_controller unit 120 ${spar_example_environment})
+  add_test(NAME example_floating_moordyn COMMAND sh "${PROJECT_SOURCE_DIR}/tests/examples/moorings" $<TARGET_FILE:examples_floating>
+    $<TARGET_FILE:spar_test_moordyn> $<TARGET_FILE:spar_test_other> "${PROJECT_BINARY_DIR}/tests/moorings")
+  spar_set_test(example_floating_moordyn stability 120 ${spar_example_environment})
 endif()
 
 # A host whose dt follows a CFL condition finds what even steps find.

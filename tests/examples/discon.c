@@ -1,5 +1,6 @@
 /* A controller library of the Bladed interface for tests/examples/controller: the published controller behind the
-   function DISCON. Its input file has one word: follow, or how to go wrong after half a second (fail, nan, individual). */
+   function DISCON. Its input file has one word: follow, or how to go wrong after half a second (fail, nan, individual).
+ */
 #include "turbine_control.h"
 
 #include <math.h>

@@ -35,7 +35,7 @@ if(library)
     message(STATUS "AeroDyn: ${library} is older than OpenFAST 4.2: examples/hosts/aerodyn is built with its stand-in alone")
   endif()
 else()
-  message(STATUS "AeroDyn: no aerodyn_inflow_c_binding found (SPAR_AERODYN_LIBRARY): examples/hosts/aerodyn is built with its stand-in alone")
+  message(VERBOSE "AeroDyn: no aerodyn_inflow_c_binding found (SPAR_AERODYN_LIBRARY): examples/hosts/aerodyn is built with its stand-in alone")
 endif()
 
 if(SPAR_BUILD_TESTS)

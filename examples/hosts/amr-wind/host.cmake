@@ -1,6 +1,6 @@
 # The turbine of spar for AMR-Wind, compiled against stand-ins of AMR-Wind's headers and driven by a stand-in of its loop.
 if(NOT CMAKE_CXX_COMPILER_LOADED)
-  message(STATUS "AMR-Wind: no C++ compiler, examples/hosts/amr-wind is not built")
+  message(VERBOSE "AMR-Wind: no C++ compiler, examples/hosts/amr-wind is not built")
   return()
 endif()
 

@@ -1,7 +1,7 @@
 # SparFSI for Nalu-Wind: the script `apply` patches a stand-in of Nalu-Wind's tree, which is compiled with stand-ins of STK and
 # yaml-cpp and driven by a stand-in of the flow.
 if(NOT CMAKE_CXX_COMPILER_LOADED OR NOT SPAR_MPI)
-  message(STATUS "Nalu-Wind: no C++ compiler or no MPI, examples/hosts/nalu-wind is not built")
+  message(VERBOSE "Nalu-Wind: no C++ compiler or no MPI, examples/hosts/nalu-wind is not built")
   return()
 endif()
 
