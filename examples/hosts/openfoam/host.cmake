@@ -47,6 +47,11 @@ foam_test(_one "${out}_cases/one.case" --refine 0.5 --steps 4 --scheme explicit 
 foam_test(_members "${out}_cases/members.case" --refine 0.5 --steps 4 --scheme explicit --correctors 1 --set halves=1
   --against "${out}_one" --columns 7)
 
+# In a mesh of empty patches a pressure of 10 kPa on all sides neither twists the flag out of the plane nor ends the run.
+file(READ "${SPAR_HOST_DIR}/../cases/flag.case" text)
+file(WRITE "${out}_cases/flag_pressure.case" "${text}\n[host openfoam]\npressure 10000\n")
+foam_test(_plane "${out}_cases/flag_pressure.case" --refine 0.4 --steps 64)
+
 set_tests_properties(host_openfoam_restart PROPERTIES DEPENDS "host_openfoam_whole;host_openfoam_half")
 set_tests_properties(host_openfoam_refused PROPERTIES DEPENDS host_openfoam_restart)
 set_tests_properties(host_openfoam_patches PROPERTIES DEPENDS host_openfoam_whole)

@@ -11,6 +11,8 @@ FNR == 1 { next }
     for (i = 1; i <= 4; i++) x[i, lines] = $column[i] * (i < 3 ? 1000 : 1)
     if (cell == "" || $13 < cell) cell = $13
     if (first == "") first = $13
+    z = $4 < 0 ? -$4 : $4; if (z > out) out = z
+    sum += x[1, lines]
 }
 function off(value, should) { return sprintf("%+.1f %%", 100 * (value / should - 1)) }
 # The last whole cycle (cycles.awk, whose result is cycles.txt) beside a reference: means, amplitudes, frequency
@@ -29,9 +31,16 @@ function cycle(means, amplitudes, hertz,   i, line, mean, amplitude, word, value
 END {
     if (lines < 1) exit 1
     printf "  %-42s %.4e, %.4e mm at t = %g s\n", "the tip", x[1, lines], x[2, lines], t[lines]
-    if (solver == "code_saturne") printf "  %-42s %.0f %% of the least at the start\n", "least cell of the run", 100 * cell / first
+    printf "  %-42s %.0f %% of the least at the start\n", "least cell of the run", 100 * cell / first
     if (solver == "code_saturne") printf "  %-42s %.0f degrees\n", "sharpest corner of the mesh in the run", 57.29578 * atan2(summary["least_corner"], sqrt(1 - summary["least_corner"] ^ 2))
     if (cell <= 0) bad = 1
+    printf "  %-42s %.1e m at most\n", "the tip out of the plane", out
+    if (solver == "openfoam" && out > 1e-7) bad = 1
+    # under a pressure p on all sides the tip swings about -p L / E' = -1e4 0.35 / 6.67e6 m; the starting flow adds up to a tenth
+    if (name == "flag_pressure") {
+        printf "  %-42s %.3f mm, should be -0.525 (at most 15 %% off)\n", "mean of the tip along", sum / lines
+        if (sum / lines < -0.525 * 1.15 || sum / lines > -0.525 * 0.85) bad = 1
+    }
     if (name == "flag_fsi1" && t[lines] >= 7.9) {
         split("0.0227 0.8209 14.295 0.7638", should, " ")
         for (i = 1; i <= 4; i++)

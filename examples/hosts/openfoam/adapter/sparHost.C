@@ -9,6 +9,7 @@
 #include <spar/spar_mpi.h>
 #include <ctime>
 #include <map>
+#include <sstream>
 
 namespace
 {
@@ -118,7 +119,7 @@ void Foam::sparHost::check(int status) const
 {
     if (status != SPAR_OK)
     {
-        refuse(string(spar_status_text(status)) + ": " + spar_session_message(session_));
+        refuse(string(spar_status_text(status)) + ": " + spar_session_message(session_) + flowNow());
     }
 }
 
@@ -128,6 +129,24 @@ void Foam::sparHost::checkCase(int status) const
     {
         refuse(string(spar_status_text(status)) + ": " + spar_case_message());
     }
+}
+
+Foam::string Foam::sparHost::flowNow() const
+{
+    if (!motion_)
+    {
+        return "";
+    }
+    std::ostringstream text;
+    text << ". The flow: forces of " << force_ << " N on the structure; velocities up to " << speed_
+        << " m/s in the last accepted step; least cell of the mesh " << leastVolume_ << " m^3, "
+        << 100*leastVolume_/firstVolume_ << " % of the least at the start";
+    if (leastVolume_ < 0.1*firstVolume_)
+    {
+        text << ": the mesh's motion has squeezed cells, which breaks the flow, and the flow the structure;"
+            << " another diffusivity in dynamicMeshDict spreads the motion wider";
+    }
+    return text.str();
 }
 
 Foam::sparHost::sparHost
@@ -144,6 +163,7 @@ Foam::sparHost::sparHost
     session_(nullptr),
     scene_(nullptr),
     directions_(Zero),
+    planar_(false),
     begun_(resumes ? begun : sparFoam::startTime(mesh.time())),
     open_(false),
     timeIndex_(-1),
@@ -154,12 +174,20 @@ Foam::sparHost::sparHost
     steps_(0),
     iterations_(0),
     most_(0),
+    force_(0),
+    firstVolume_(gMin(mesh.V().field())),
+    leastVolume_(firstVolume_),
+    speed_(0),
+    pressure_(0),
+    leftPlane_(false),
+    volumes_(nullptr),
     spar_(0)
 {
     const stopwatch watch(spar_);
     for (direction d = 0; d < vector::nComponents; d++)
     {
         directions_[d] = mesh.geometricD()[d] > 0;
+        planar_ = planar_ || directions_[d] == 0;
     }
     // a serial run has not initialised MPI
     check(Pstream::parRun() ? spar_session_create_mpi(MPI_COMM_WORLD, &session_) : spar_session_create(&session_));
@@ -185,6 +213,10 @@ Foam::sparHost::sparHost
 Foam::sparHost::~sparHost()
 {
     report();
+    if (volumes_)
+    {
+        fclose(volumes_);
+    }
     spar_case_free(&scene_);
     spar_session_destroy(&session_);
 }
@@ -196,19 +228,23 @@ void Foam::sparHost::addSurface(const wetted& patch, const pointField& points)
     {
         refuse("the patch " + patch.patch + " has no faces; nothing would move " + patch.member);
     }
-    surface wet{boundary.index(), patch.density, nullptr, pointField(points, boundary.meshPoints()), pointField(), vectorField(), 0};
+    surface wet{};
+    wet.id = boundary.index();
+    wet.density = patch.density;
+    wet.reference = pointField(points, boundary.meshPoints());
     wet.position = wet.reference;
     wet.displacement.setSize(wet.reference.size(), Zero);
-    vectorField centres(boundary.size());
+    wet.centreAtStart.setSize(boundary.size());
     forAll(boundary, i)
     {
-        centres[i] = boundary[i].centre(points);
+        wet.centreAtStart[i] = boundary[i].centre(points);
     }
+    wet.centre = wet.centreAtStart;
     spar_member* member = nullptr;
     checkCase(spar_case_member(scene_, patch.member.c_str(), &member));
     check(spar_fluid_create(member, patch.patch.c_str(), &wet.fluid));
     check(spar_fluid_set_motion_nodes(wet.fluid, wet.reference.size(), triples(wet.reference)));
-    check(spar_fluid_set_force_nodes(wet.fluid, centres.size(), triples(centres)));
+    check(spar_fluid_set_force_nodes(wet.fluid, wet.centre.size(), triples(wet.centre)));
     check(spar_fluid_map(wet.fluid));
     check(spar_fluid_set_option(wet.fluid, "velocity", "own")); // OpenFOAM takes wall velocities from the moving mesh
     fluids_.push_back(wet.fluid);
@@ -227,6 +263,13 @@ Foam::vectorField Foam::sparHost::forces(const surface& wet) const
     const scalarField& p = mesh_.lookupObject<volScalarField>("p").boundaryField()[wet.id]; // over density
     const tmp<volSymmTensorField> stress(sparFoam::stress(mesh_));
     return wet.density*cmptMultiply(area*p + (area & stress().boundaryField()[wet.id]), directions_);
+}
+
+Foam::vectorField Foam::sparHost::moments(surface& wet, const vectorField& force)
+{
+    check(spar_fluid_pull_poses(wet.fluid, SPAR_NODES_FORCE, 1, triples(wet.centre), nullptr, nullptr, nullptr, nullptr, nullptr));
+    const vectorField out(cmptMultiply(wet.centreAtStart - wet.centre, vector::one - directions_));
+    return out ^ force;
 }
 
 void Foam::sparHost::begin()
@@ -252,14 +295,35 @@ void Foam::sparHost::solve()
     solves_++;
 }
 
+//- Forces that no flow of the accepted velocities and pressures has are those of a flow that has broken down
+void Foam::sparHost::checkForce(scalar area) const
+{
+    const scalar largest = area*surfaces_[0].density*
+        (sqr(speed_) + mesh_.bounds().mag()*speed_/mesh_.time().deltaTValue() + pressure_);
+    if (steps_ >= 2 && !(force_ <= 1000*largest))
+    {
+        std::ostringstream text;
+        text << "the flow has broken down, not the structure: where the velocities and pressures of the last step give "
+            << "forces up to some " << largest << " N" << flowNow();
+        refuse(text.str());
+    }
+}
+
 void Foam::sparHost::push()
 {
-    for (const surface& wet : surfaces_)
+    scalar sum[2] = {0, 0};
+    leastVolume_ = gMin(mesh_.V().field());
+    for (surface& wet : surfaces_)
     {
         const vectorField force(forces(wet));
+        sum[0] += gSum(mag(force)());
+        sum[1] += gSum(mesh_.magSf().boundaryField()[wet.id]);
         const stopwatch watch(spar_);
-        check(spar_fluid_push_forces(wet.fluid, triples(force), nullptr));
+        const vectorField moment(planar_ ? moments(wet, force) : vectorField());
+        check(spar_fluid_push_forces(wet.fluid, triples(force), triples(moment)));
     }
+    force_ = sum[0];
+    checkForce(sum[1]);
     const stopwatch watch(spar_);
     int done;
     check(spar_step_check(session_, &done)); // when to stop is OpenFOAM's affair: residualControl
@@ -294,6 +358,64 @@ const Foam::vectorField& Foam::sparHost::displacement(const word& patch)
     return surfaces_[0].displacement;
 }
 
+//- Whether the mesh moves in each corrector is not known beforehand: a step shows it
+void Foam::sparHost::checkCorrectors() const
+{
+    const dictionary control(sparFoam::solution(mesh_).subOrEmptyDict("PIMPLE"));
+    if
+    (
+        solves_ == 1 && steps_ == 0 && control.lookupOrDefault<label>("nOuterCorrectors", 1) > 1
+     && !control.lookupOrDefault<Switch>("moveMeshOuterCorrectors", false)
+    )
+    {
+        refuse("the mesh moves once a step, so that the structure is not iterated; set moveMeshOuterCorrectors yes in PIMPLE of"
+            " system/fvSolution, or nOuterCorrectors 1 if the coupling is to be explicit");
+    }
+}
+
+void Foam::sparHost::checkPlane()
+{
+    scalar out = 0;
+    for (const surface& wet : surfaces_)
+    {
+        out = max(out, gMax(mag(cmptMultiply(wet.position - wet.reference, vector::one - directions_))()));
+    }
+    if (!leftPlane_ && out > 1e-3*cmptMax(cmptMultiply(mesh_.bounds().span(), vector::one - directions_)))
+    {
+        leftPlane_ = true;
+        Info<< "spar, warning: the structure leaves the plane of the mesh, by " << out << " m at t = " << mesh_.time().value()
+            << " s; the flow sees its motion in the plane alone; hold it in the plane" << endl;
+    }
+}
+
+//- Of the step that has been accepted
+void Foam::sparHost::watchFlow()
+{
+    speed_ = max(mag(mesh_.lookupObject<volVectorField>("U"))).value();
+    pressure_ = max(mag(mesh_.lookupObject<volScalarField>("p"))).value();
+    if (leastVolume_ <= 0)
+    {
+        refuse("the mesh has folded: a cell has no volume" + flowNow());
+    }
+    const string file(name_ + "_volumes.txt");
+    double t;
+    check(spar_session_get_time(session_, &t, nullptr, nullptr));
+    if (Pstream::master() && !volumes_)
+    {
+        if (steps_ == 0 && t < 1.5*mesh_.time().deltaTValue())
+        {
+            rm(file);
+        }
+        checkCase(spar_case_cut_history(file.c_str(), t - 0.5*mesh_.time().deltaTValue()));
+        volumes_ = fopen(file.c_str(), "a");
+    }
+    if (volumes_)
+    {
+        fprintf(volumes_, "%.17g %.6e\n", t, double(leastVolume_));
+        fflush(volumes_);
+    }
+}
+
 void Foam::sparHost::finish()
 {
     if (!open_)
@@ -301,6 +423,7 @@ void Foam::sparHost::finish()
         return;
     }
     push();
+    checkCorrectors();
     const stopwatch watch(spar_);
     int iterations;
     check(spar_step_accept(session_));
@@ -316,6 +439,11 @@ void Foam::sparHost::finish()
             errors_[i] = max(errors_[i], audit[SPAR_AUDIT_FORCE_ERROR + i]);
         }
     }
+    if (planar_)
+    {
+        checkPlane();
+    }
+    watchFlow();
     steps_++;
     iterations_ += iterations;
     most_ = max(most_, label(iterations));
