@@ -1,0 +1,30 @@
+# The participant of preCICE against a stand-in of preCICE and a fluid. With preCICE itself: `spar-precice`, where it is found.
+if(NOT SPAR_MPI)
+  message(STATUS "preCICE: no MPI, examples/hosts/precice is not built")
+  return()
+endif()
+
+function(spar_precice_program target)
+  add_executable(${target} ${ARGN} "${SPAR_HOST_DIR}/adapter/participant.c")
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/examples/hosts")
+  target_compile_definitions(${target} PRIVATE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
+  target_link_libraries(${target} PRIVATE spar_flags spar_host_parts spar_aero spar m MPI::MPI_C)
+endfunction()
+
+spar_precice_program(precice_stand_in "${SPAR_HOST_DIR}/stand_in/check.c" "${SPAR_HOST_DIR}/stand_in/fluid.c")
+find_package(precice 3 CONFIG QUIET)
+if(precice_FOUND)
+  spar_precice_program(spar-precice "${SPAR_HOST_DIR}/adapter/main.c")
+  target_link_libraries(spar-precice PRIVATE precice::precice)
+endif()
+
+if(SPAR_BUILD_TESTS)
+  foreach(ranks IN ITEMS 1 2 3)
+    set(folder "${PROJECT_BINARY_DIR}/tests/precice_np${ranks}")
+    file(MAKE_DIRECTORY "${folder}")
+    add_test(NAME host_precice_np${ranks}
+      COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} $<TARGET_FILE:precice_stand_in> WORKING_DIRECTORY "${folder}")
+    spar_set_test(host_precice_np${ranks} hosts 120 ${spar_example_environment})
+    set_tests_properties(host_precice_np${ranks} PROPERTIES PROCESSORS ${ranks})
+  endforeach()
+endif()
