@@ -245,6 +245,14 @@ void saturne_bodies_create(const double *reference) {
     BFT_FREE(marks);
 }
 
+void saturne_bodies_follow(int *follows) {
+    for (int b = 0; b < bodies.n; b++) {
+        for (cs_lnum_t i = 0; i < bodies.body[b].n_vertices; i++) {
+            follows[bodies.body[b].vertices[i]] = 1;
+        }
+    }
+}
+
 /* ---- every iteration ---- */
 
 void saturne_bodies_pull(cs_real_3_t *displacement) {

@@ -23,10 +23,10 @@ int saturne_resumed(void) {
     return cs_glob_time_step->nt_prev > 0;
 }
 
-/* code_saturne 6.0 reads the displacements of the vertices, and not those of the step before, on which its own mesh
-   equation builds: the mesh would fall back to the reference. */
+/* code_saturne (6.0 to 8.0) reads the displacements of the vertices, and not those of the step before, on which its own
+   mesh equation builds: the mesh would fall back to the reference. */
 static void restore_displacements(const double *reference) {
-    const cs_field_t *f = cs_field_by_name("disale");
+    const cs_field_t *f = cs_field_by_name(SATURNE_DISPLACEMENT);
     for (cs_lnum_t i = 0; i < 3 * cs_glob_mesh->n_vertices; i++) {
         f->val_pre[i] = cs_glob_mesh->vtx_coord[i] - reference[i];
     }

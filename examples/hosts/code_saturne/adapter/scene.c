@@ -143,8 +143,9 @@ static void set_precision(cs_field_t *field, double precision) {
 void saturne_steps(cs_domain_t *domain) {
     const double usual = 1e-8, precision = saturne_number("precision", &usual);
     cs_get_glob_time_step_options()->idtvar = 0;
-    domain->time_step->dt_ref = saturne_number("dt", NULL);
-    domain->time_step->nt_max = (int)saturne_number("steps", NULL);
+    cs_get_glob_time_step()->dt_ref = saturne_number("dt", NULL);
+    cs_get_glob_time_step()->nt_max = (int)saturne_number("steps", NULL);
+    (void)domain;
     set_precision(CS_F_(vel), precision);
     set_precision(CS_F_(p), precision);
     if (cs_glob_ale != CS_ALE_NONE) {
@@ -175,6 +176,8 @@ void saturne_clock_read(double seconds[2]) {
     cs_parall_sum(2, CS_DOUBLE, seconds);
 }
 
+#if SATURNE_VERSION < 80
 /* Without an XML file the library's own version of this one stops the run. */
 void CS_PROCF(cs_f_user_boundary_conditions, CS_F_USER_BOUNDARY_CONDITIONS)(void) {
 }
+#endif

@@ -1,10 +1,10 @@
 /* spar behind code_saturne's coupling with an external structure: the functions by which it would talk to code_aster
    are defined here in place of the library's. Their order in a run, and in spar:
 
-       astgeo                       once: the wetted faces                fluid, map
-       astpdt                       every step                            spar_step_begin
-       astcin                       every sub-iteration: displacements    spar_step_solve, spar_fluid_pull_motion
-       astfor                       every sub-iteration: forces           spar_fluid_push_forces, spar_step_check
+       couple        once: the wetted faces                fluids, maps, the saved state
+       begin_step    every step                            spar_step_begin
+       move          every sub-iteration: displacements    spar_step_solve, spar_fluid_pull_motion
+       take_forces   every sub-iteration                   spar_fluid_push_forces, spar_step_check
        cs_ast_coupling_get_ext_cvg  after it: has the structure converged
        cs_ast_coupling_send_cvg     after it: go on?                      spar_step_accept
  */
@@ -32,9 +32,17 @@ void cs_ast_coupling_initialize(int nalimx, cs_real_t epalim) {
     (void)nalimx, (void)epalim;
 }
 
-void CS_PROCF(astgeo, ASTGEO)(cs_int_t *nbfast, cs_int_t *lstfac, cs_int_t *idfast, cs_int_t *idnast,
-                              cs_real_t *almax) {
-    (void)nbfast, (void)lstfac, (void)idfast, (void)idnast, (void)almax;
+/* A run to a limit cycle may start with a long step: the next one is `later`'s from its time on. */
+static void choose_step(void) {
+    if (host.later[1] > 0 && cs_glob_time_step->t_cur >= host.later[0] - 0.5 * host.later[1]) {
+        cs_get_glob_time_step()->dt_ref = host.later[1];
+        for (cs_lnum_t cell = 0; cell < cs_glob_mesh->n_cells_with_ghosts; cell++) {
+            CS_F_(dt)->val[cell] = host.later[1];
+        }
+    }
+}
+
+static void couple(void) {
     const double never[2] = {0, 0};
     saturne_clock_begin();
     saturne_check_case(spar_case_make_aero(saturne_scene(), CS_MAX(cs_glob_rank_id, 0)));
@@ -43,13 +51,13 @@ void CS_PROCF(astgeo, ASTGEO)(cs_int_t *nbfast, cs_int_t *lstfac, cs_int_t *idfa
     saturne_report_begin();
     saturne_resume(host.reference);
     saturne_check_keys();
+    choose_step();
     saturne_clock_end();
 }
 
 /* ---- every step ---- */
 
-void CS_PROCF(astpdt, ASTPDT)(cs_real_t *dttab, cs_int_t *nbpdt) {
-    (void)nbpdt;
+static void begin_step(const cs_real_t *dttab) {
     double dt = cs_glob_mesh->n_cells > 0 ? dttab[0] : cs_glob_time_step->dt_ref;
     saturne_clock_begin();
     saturne_check(spar_step_begin(saturne_session(), dt));
@@ -70,20 +78,18 @@ static void check_step(int status) {
 }
 
 /* Displacements since the start of the first run. They are asked for once before the first step too. */
-void CS_PROCF(astcin, ASTCIN)(cs_int_t *ntcast, cs_real_3_t *disale) {
-    (void)ntcast;
+static void move(cs_real_3_t *displacement) {
     if (!host.stepping) {
         return;
     }
     saturne_clock_begin();
     check_step(spar_step_solve(saturne_session()));
     saturne_check_case(spar_case_blow(saturne_scene()));
-    saturne_bodies_pull(disale);
+    saturne_bodies_pull(displacement);
     saturne_clock_end();
 }
 
-void CS_PROCF(astfor, ASTFOR)(cs_int_t *ntcast, cs_int_t *nbfast, cs_real_t *forast) {
-    (void)ntcast, (void)nbfast, (void)forast;
+static void take_forces(void) {
     if (!host.stepping) {
         return;
     }
@@ -110,15 +116,72 @@ void cs_ast_coupling_send_cvg(int icved) {
     saturne_report_step();
 }
 
-/* A run to a limit cycle may start with a long step: code_saturne takes the next one from here. */
 void cs_user_extra_operations(cs_domain_t *domain) {
-    if (host.later[1] > 0 && cs_glob_time_step->t_cur >= host.later[0] - 0.5 * host.later[1]) {
-        domain->time_step->dt_ref = host.later[1];
-        for (cs_lnum_t cell = 0; cell < cs_glob_mesh->n_cells_with_ghosts; cell++) {
-            CS_F_(dt)->val[cell] = host.later[1];
-        }
-    }
+    (void)domain;
+    choose_step();
 }
+
+/* ---- the names of these in code_saturne ---- */
+
+#if SATURNE_VERSION < 80
+
+void CS_PROCF(astgeo, ASTGEO)(cs_lnum_t *nbfast, cs_lnum_t *lstfac, cs_lnum_t *idfast, cs_lnum_t *idnast,
+                              cs_real_t *almax) {
+    (void)nbfast, (void)lstfac, (void)idfast, (void)idnast, (void)almax;
+    couple();
+}
+
+#if SATURNE_VERSION < 70 /* these have a counter more */
+#define COUNTER(name) cs_lnum_t *name,
+#define LAST_COUNTER(name) , cs_lnum_t *name
+#define UNUSED(name) (void)name
+#else
+#define COUNTER(name)
+#define LAST_COUNTER(name)
+#define UNUSED(name) (void)0
+#endif
+
+void CS_PROCF(astpdt, ASTPDT)(cs_real_t *dttab LAST_COUNTER(nbpdt)) {
+    UNUSED(nbpdt);
+    begin_step(dttab);
+}
+
+void CS_PROCF(astcin, ASTCIN)(COUNTER(ntcast) cs_real_3_t *disale) {
+    UNUSED(ntcast);
+    move(disale);
+}
+
+void CS_PROCF(astfor, ASTFOR)(COUNTER(ntcast) cs_lnum_t *nbfast, cs_real_t *forast) {
+    UNUSED(ntcast);
+    (void)nbfast, (void)forast;
+    take_forces();
+}
+
+#else
+
+void cs_ast_coupling_geometry(cs_lnum_t n_faces, const cs_lnum_t *face_ids, cs_real_t almax) {
+    (void)n_faces, (void)face_ids, (void)almax;
+    couple();
+}
+
+void cs_ast_coupling_exchange_time_step(cs_real_t c_dt[]) {
+    begin_step(c_dt);
+}
+
+void cs_ast_coupling_compute_displacement(cs_real_t disp[][3]) {
+    move(disp);
+}
+
+/* No face is marked as an external structure's (ale.c): nothing is written there. */
+cs_real_3_t *cs_ast_coupling_get_fluid_forces_pointer(void) {
+    return NULL;
+}
+
+void cs_ast_coupling_exchange_fields(void) {
+    take_forces();
+}
+
+#endif
 
 /* ---- at the end ---- */
 

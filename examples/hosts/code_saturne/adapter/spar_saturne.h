@@ -22,6 +22,7 @@
 #include "case.h"
 #include "cs_defs.h"
 #include "cs_domain.h"
+#include "versions.h"
 #include <stdio.h>
 
 #ifdef __cplusplus
@@ -65,6 +66,8 @@ typedef struct saturne_body {
 /* First the members and their faces, types[face] = mark for these; then the fluids. */
 void saturne_bodies_select(int mark, int *types);
 void saturne_bodies_create(const double *reference);
+/* follows[vertex] = 1 where the members give the displacement; before saturne_bodies_create nowhere. */
+void saturne_bodies_follow(int *follows);
 int saturne_body_count(void);
 const saturne_body *saturne_body_at(int i);
 /* displacement: out, [n_vertices][3], since the start; of vertices that follow no member it stays. */
@@ -114,12 +117,14 @@ void saturne_mesh_begin(void);
 void saturne_mesh_step(double out);
 double saturne_mesh_end(void);
 
+#if SATURNE_VERSION < 80
 /* code_saturne's Fortran user routines that are written in C here. */
 void CS_PROCF(usalcl, USALCL)(const int *itrale, const int *nvar, const int *nscal, int *icodcl, int *itypfb,
                               int *ialtyb, int *impale, const cs_real_t *dt, cs_real_t *rcodcl, const cs_real_t *xyzno0,
                               cs_real_t *disale);
 void CS_PROCF(usaste, USASTE)(int *idfstr);
 void CS_PROCF(cs_f_user_boundary_conditions, CS_F_USER_BOUNDARY_CONDITIONS)(void);
+#endif
 
 #ifdef __cplusplus
 }

@@ -35,7 +35,11 @@ void saturne_wall_forces(cs_lnum_t n, const cs_lnum_t *faces, double *force) {
     cs_real_33_t *grad_u;
     BFT_MALLOC(grad_p, cells, cs_real_3_t);
     BFT_MALLOC(grad_u, cells, cs_real_33_t);
+#if SATURNE_VERSION < 80
     cs_field_gradient_potential(CS_F_(p), false, 1, true, 0, NULL, grad_p);
+#else
+    cs_field_gradient_potential(CS_F_(p), false, 1, 0, NULL, grad_p);
+#endif
     cs_field_gradient_vector(CS_F_(vel), false, 1, grad_u);
     for (cs_lnum_t i = 0; i < n; i++) {
         face_force(faces[i], (const cs_real_3_t *)grad_p, (const cs_real_33_t *)grad_u, force + 3 * i);

@@ -28,7 +28,8 @@ void cs_user_finalize_setup(cs_domain_t *domain) {
 void cs_user_initialization(cs_domain_t *domain) {
     cs_real_3_t *u = (cs_real_3_t *)CS_F_(vel)->val;
     cs_field_t *stiffness = cs_field_by_name("mesh_viscosity");
-    if (domain->time_step->nt_prev > 0) {
+    (void)domain;
+    if (cs_glob_time_step->nt_prev > 0) {
         return;
     }
     for (cs_lnum_t cell = 0; cell < cs_glob_mesh->n_cells; cell++) {
@@ -40,18 +41,17 @@ void cs_user_initialization(cs_domain_t *domain) {
     }
 }
 
-void cs_user_boundary_conditions(int nvar, int bc_type[], int icodcl[], cs_real_t rcodcl[]) {
-    const int iu = cs_field_get_key_int(CS_F_(vel), cs_field_key_id("variable_id")) - 1;
+void cs_user_boundary_conditions(SATURNE_CONDITIONS(bc_type)) {
     const cs_lnum_t faces = cs_glob_mesh->n_b_faces;
-    (void)nvar, (void)icodcl;
+    SATURNE_UNUSED_CONDITIONS;
     saturne_mark("cylinder flow", "1", CS_INLET, bc_type);
     saturne_mark("cylinder flow", "2", CS_OUTLET, bc_type);
     saturne_mark("cylinder flow", "3 or 5", CS_SYMMETRY, bc_type);
     saturne_mark("cylinder flow", "4", CS_SMOOTHWALL, bc_type);
     for (cs_lnum_t face = 0; face < faces; face++) {
         if (bc_type[face] == CS_INLET) {
-            rcodcl[iu * faces + face] = speed;
-            rcodcl[(iu + 1) * faces + face] = rcodcl[(iu + 2) * faces + face] = 0;
+            SATURNE_VELOCITY_AT(face, 0) = speed;
+            SATURNE_VELOCITY_AT(face, 1) = SATURNE_VELOCITY_AT(face, 2) = 0;
         }
     }
 }

@@ -33,10 +33,9 @@ static double inflow(double y, double t) {
     return ramp * 6 * mean * y * (height - y) / (height * height);
 }
 
-void cs_user_boundary_conditions(int nvar, int bc_type[], int icodcl[], cs_real_t rcodcl[]) {
-    const int iu = cs_field_get_key_int(CS_F_(vel), cs_field_key_id("variable_id")) - 1;
+void cs_user_boundary_conditions(SATURNE_CONDITIONS(bc_type)) {
     const cs_lnum_t faces = cs_glob_mesh->n_b_faces;
-    (void)nvar, (void)icodcl;
+    SATURNE_UNUSED_CONDITIONS;
     saturne_mark("flag flow", "1", CS_INLET, bc_type);
     saturne_mark("flag flow", "2", CS_OUTLET, bc_type);
     saturne_mark("flag flow", "5", CS_SYMMETRY, bc_type);
@@ -44,9 +43,9 @@ void cs_user_boundary_conditions(int nvar, int bc_type[], int icodcl[], cs_real_
     for (cs_lnum_t face = 0; face < faces; face++) {
         if (bc_type[face] == CS_INLET) {
             const double y = cs_glob_mesh_quantities->b_face_cog[3 * face + 1];
-            rcodcl[iu * faces + face] = inflow(y, cs_glob_time_step->t_cur);
-            rcodcl[(iu + 1) * faces + face] = shake(y, cs_glob_time_step->t_cur);
-            rcodcl[(iu + 2) * faces + face] = 0;
+            SATURNE_VELOCITY_AT(face, 0) = inflow(y, cs_glob_time_step->t_cur);
+            SATURNE_VELOCITY_AT(face, 1) = shake(y, cs_glob_time_step->t_cur);
+            SATURNE_VELOCITY_AT(face, 2) = 0;
         }
     }
 }

@@ -12,11 +12,10 @@ void cs_user_parameters(cs_domain_t *domain) {
     fluid->ro0 = 1, fluid->viscl0 = 0.01, fluid->p0 = 0;
 }
 
-void cs_user_boundary_conditions(int nvar, int bc_type[], int icodcl[], cs_real_t rcodcl[]) {
-    const int iu = cs_field_get_key_int(CS_F_(vel), cs_field_key_id("variable_id")) - 1;
+void cs_user_boundary_conditions(SATURNE_CONDITIONS(bc_type)) {
     const cs_lnum_t faces = cs_glob_mesh->n_b_faces;
     const double t = cs_glob_time_step->t_cur, ramp = t < 0.5 ? 0.5 * (1 - cos(acos(-1.) * t / 0.5)) : 1;
-    (void)nvar, (void)icodcl;
+    SATURNE_UNUSED_CONDITIONS;
     saturne_mark("flaps flow", "1", CS_INLET, bc_type);
     saturne_mark("flaps flow", "2", CS_OUTLET, bc_type);
     saturne_mark("flaps flow", "5", CS_SYMMETRY, bc_type);
@@ -24,8 +23,8 @@ void cs_user_boundary_conditions(int nvar, int bc_type[], int icodcl[], cs_real_
     for (cs_lnum_t face = 0; face < faces; face++) {
         if (bc_type[face] == CS_INLET) {
             const double y = cs_glob_mesh_quantities->b_face_cog[3 * face + 1];
-            rcodcl[iu * faces + face] = 1.5 * ramp * y * (2 - y);
-            rcodcl[(iu + 1) * faces + face] = rcodcl[(iu + 2) * faces + face] = 0;
+            SATURNE_VELOCITY_AT(face, 0) = 1.5 * ramp * y * (2 - y);
+            SATURNE_VELOCITY_AT(face, 1) = SATURNE_VELOCITY_AT(face, 2) = 0;
         }
     }
 }

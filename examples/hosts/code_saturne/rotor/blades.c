@@ -190,19 +190,19 @@ static void record(const cs_real_3_t *source, double dt, const double tip[3]) {
 void cs_user_source_terms(cs_domain_t *domain, int f_id, cs_real_t *st_exp, cs_real_t *st_imp) {
     cs_real_3_t *source = (cs_real_3_t *)st_exp;
     double q[7 * ELEMENTS * NODES];
-    (void)st_imp;
+    (void)st_imp, (void)domain;
     if (f_id != CS_F_(vel)->id) {
         return;
     }
-    const int now = domain->time_step->nt_cur, first = now != lines.step;
+    const int now = cs_glob_time_step->nt_cur, first = now != lines.step;
     if (first) {
         lines.step = now;
-        advance(domain->time_step->dt_ref);
+        advance(cs_glob_time_step->dt_ref);
     }
     line_spread(lines.width, lines.n, lines.x, lines.weight, lines.force, source);
     if (first) {
         saturne_check(spar_member_get_motion(lines.blade[0], q, NULL, NULL));
-        record((const cs_real_3_t *)source, domain->time_step->dt_ref, q + 7 * (ELEMENTS * NODES - 1));
+        record((const cs_real_3_t *)source, cs_glob_time_step->dt_ref, q + 7 * (ELEMENTS * NODES - 1));
         saturne_check(spar_step_accept(saturne_session()));
     }
 }
