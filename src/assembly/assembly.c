@@ -32,8 +32,17 @@ enum { NAME = 160 };
 
 /* ---- one substep ---- */
 
+/* Newton's method (newton.h) for a substep of all components. */
+typedef struct newton_step {
+    spari_assembly *a;
+    double s, dt;
+    int took; /* of the tangents that it began with */
+} newton_step;
+
 /* Whether any component has starting values of this kind; the others keep their velocities then. */
-static int predict(spari_assembly *a, spari_guess stays) {
+static int predict(void *self, spari_guess stays) {
+    const newton_step *t = self;
+    spari_assembly *a = t->a;
     int any = 0;
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
@@ -145,11 +154,11 @@ static double tolerance(const spari_assembly *a, double largest) {
 }
 
 static int tangent_serves(const spari_assembly *a) {
-    int kept = a->factored;
+    int serves = a->constraints == 0 || a->factored; /* a member without joints keeps its tangent itself */
     for (int i = 0; i < a->components; i++) {
-        kept = kept && a->component[i].row->serves(a->component + i);
+        serves = serves && a->component[i].row->serves(a->component + i);
     }
-    return kept;
+    return serves;
 }
 
 /* If all components have moved by less than near_factored (rad; lengths relative to the member), the factored system
@@ -168,22 +177,10 @@ static int tangents_after(int iterations, int took) {
     return iterations <= patience ? took : 0;
 }
 
-/* Newton's method (newton.h) for a substep of all components. */
-typedef struct together_step {
-    spari_assembly *a;
-    double s, dt;
-    int took; /* of the tangents that it began with */
-} together_step;
-
-static int guess_together(void *self, spari_guess stays) {
-    const together_step *t = self;
-    return predict(t->a, stays);
-}
-
-static int begin_together(void *self, int kept) {
-    together_step *t = self;
+static int begin_attempt(void *self, int reused) {
+    newton_step *t = self;
     t->took = t->a->factored;
-    t->a->factored = kept && tangent_serves(t->a);
+    t->a->factored = reused && tangent_serves(t->a);
     t->a->standing = 0; /* the beginning of a solution must not depend on earlier solutions */
     return t->a->factored;
 }
@@ -198,9 +195,30 @@ static double rounding_of(const spari_constraint *l) {
     return 8 * DBL_EPSILON * size;
 }
 
-static const char *iterate_together(void *self, double longest, spari_iterate *it) {
-    const together_step *t = self;
+/* An iteration of a member without joints. */
+static const char *iterate_alone(spari_assembly *a, double longest, spari_iterate *it) {
+    spari_component *p = a->component;
+    double scale = p->row->balance(p), noise = p->row->noise(p), way;
+    if (!isfinite(scale) || !isfinite(noise)) {
+        return "met values that are not finite";
+    }
+    if ((!a->factored && p->row->tangent(p)) || p->row->correct_newton(p)) {
+        return "found a singular tangent";
+    }
+    a->factored = 1;
+    it->correction = p->row->advance(p, longest, &way);
+    it->tolerance = spari_newton_tolerance(p->member, &p->scheme, way);
+    it->small = it->correction < 1e-11 || noise <= 64 * DBL_EPSILON * p->body->stiffest;
+    it->rounded = noise <= 16 * DBL_EPSILON * scale;
+    return NULL;
+}
+
+static const char *iterate_newton(void *self, double longest, spari_iterate *it) {
+    const newton_step *t = self;
     spari_assembly *a = t->a;
+    if (a->constraints == 0) {
+        return iterate_alone(a, longest, it);
+    }
     double noise, scale = balance(a, t->s, t->dt, &noise);
     if (!isfinite(scale)) {
         return "met values that are not finite";
@@ -234,14 +252,19 @@ static const char *iterate_together(void *self, double longest, spari_iterate *i
     return NULL;
 }
 
-static void renew_together(void *self) {
-    const together_step *t = self;
+static void renew_tangents(void *self) {
+    const newton_step *t = self;
     t->a->factored = 0;
 }
 
-static void end_together(void *self, int iterations, int fresh) {
-    const together_step *t = self;
-    t->a->factored = tangents_after(iterations, fresh ? 0 : t->took);
+static void end_solution(void *self, int iterations, int fresh) {
+    const newton_step *t = self;
+    spari_component *p = t->a->component;
+    if (t->a->constraints == 0) {
+        p->row->end_solution(p, iterations, fresh);
+    } else {
+        t->a->factored = tangents_after(iterations, fresh ? 0 : t->took);
+    }
 }
 
 /* Projects velocities onto the constraints, in the metric of the tangent. */
@@ -276,11 +299,23 @@ static int project(spari_assembly *a, double s, double dt) {
 /* Returns NULL, or the reason why the last attempt failed. A far correction may lead to another way of closing a
    loop. */
 static const char *attempts_of(spari_assembly *a, double s, double dt, int *iterations) {
-    static const spari_newton how = {SPARI_LONGEST,    LEAST_RATE,     guess_together, begin_together,
-                                     iterate_together, renew_together, end_together};
-    together_step step = {a, s, dt, 0};
-    return spari_newton_solve(&how, &step, tangent_serves(a), a->session->newton.max,
-                              spari_newton_stop_begin(a->session, &a->trace), iterations);
+    static const spari_newton tied = {SPARI_LONGEST,  LEAST_RATE,     predict,     begin_attempt,
+                                      iterate_newton, renew_tangents, end_solution},
+                              alone = {INFINITY,       1e-6,           predict,     begin_attempt,
+                                       iterate_newton, renew_tangents, end_solution};
+    newton_step step = {a, s, dt, 0};
+    const int serves = tangent_serves(a), most = a->session->newton.max;
+    if (a->constraints > 0) {
+        return spari_newton_solve(&tied, &step, serves, most, spari_newton_stop_begin(a->session, &a->trace),
+                                  iterations);
+    }
+    spari_component *p = a->component;
+    const char *wrong =
+        spari_newton_solve(&alone, &step, serves, most, spari_newton_stop_begin(a->session, p->trace), iterations);
+    if (wrong) {
+        p->row->end_solution(p, 0, 0);
+    }
+    return wrong;
 }
 
 /* Where the last solution has led to. */
@@ -292,11 +327,11 @@ static int guess_onward(void *self, spari_guess stays) {
 /* Moves driven joints that jump in so many parts, from the last position, each part from the solution of the part
    before. */
 static const char *walk_drives_in(spari_assembly *a, double s, double dt, int parts, int *iterations) {
-    static const spari_newton how = {SPARI_LONGEST,    LEAST_RATE,     guess_onward, begin_together,
-                                     iterate_together, renew_together, end_together};
-    together_step step = {a, s, dt, 0};
+    static const spari_newton how = {SPARI_LONGEST,  LEAST_RATE,     guess_onward, begin_attempt,
+                                     iterate_newton, renew_tangents, end_solution};
+    newton_step step = {a, s, dt, 0};
     const char *wrong = NULL;
-    (void)predict(a, SPARI_KEEP_POSITION);
+    (void)predict(&step, SPARI_KEEP_POSITION);
     for (int part = 1; part <= parts && !wrong; part++) {
         for (int i = 0; i < a->constraints; i++) {
             spari_constraint *l = a->constraint + i;
@@ -331,10 +366,10 @@ static const char *walk_drives(spari_assembly *a, double s, double dt, const cha
 
 /* The states at the end of a substep. */
 static int newton_all(spari_assembly *a, double s, double dt) {
-    int iterations = 0, alone = a->constraints == 0;
+    int iterations = 0;
     char name[NAME];
-    const char *wrong = alone ? spari_component_newton(a->component, &iterations) : attempts_of(a, s, dt, &iterations);
-    if (wrong && !alone && !a->violent && !a->component[0].scheme.still) {
+    const char *wrong = attempts_of(a, s, dt, &iterations);
+    if (wrong && a->constraints > 0 && !a->violent && !a->component[0].scheme.still) {
         a->violent = 1;
         wrong = attempts_of(a, s, dt, &iterations);
     }

@@ -122,8 +122,6 @@ void spari_body_load(spar_member *member, const double *state);
 
 /* A member that no joint ties, as a component. */
 spari_component spari_component_of(spar_member *member);
-/* Its motion at the end of a stage. Returns NULL, or the reason of a failure. */
-const char *spari_component_newton(spari_component *p, int *iterations);
 
 /* ---- components with ends ---- */
 

@@ -13,6 +13,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+spari_component spari_component_of(spar_member *m) {
+    spari_component p = {.member = m, .row = m->row->component};
+    p.row->attach(&p);
+    return p;
+}
+
 /* ---- interface nodes ---- */
 
 /* The nodes of a member's unknowns that joints tie, in increasing order. node: capacity of two per joint. Returns how

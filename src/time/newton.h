@@ -1,4 +1,4 @@
-/* Newton's method for a substep of one member (component.c) or of an assembly (assembly.c). An attempt that fails
+/* Newton's method for a substep (assembly/assembly.c). An attempt that fails
    is followed by a more careful one from other starting values. The loops stand in a header so that the compiler
    inlines the operations. */
 #ifndef SPARI_NEWTON_H
