@@ -60,7 +60,7 @@ static int predict(void *self, spari_guess stays) {
 
 /* Residuals of all components and gaps of all constraints at the latest iterate. Returns the size that rounding
    errors are relative to, or NaN. */
-static double balance(spari_assembly *a, double s, double dt, double *noise) {
+static double balance(spari_assembly *a, double s, double dt, double *residual_size) {
     double scale = 0;
     for (int i = 0; i < a->components; i++) {
         scale += a->component[i].row->balance(a->component + i);
@@ -69,10 +69,10 @@ static double balance(spari_assembly *a, double s, double dt, double *noise) {
         spari_constraint_find(a->constraint + i, s, dt, 1);
     }
     spari_constraints_add_forces(a);
-    *noise = 0;
+    *residual_size = 0;
     for (int i = 0; i < a->components; i++) {
-        double left = a->component[i].row->noise(a->component + i);
-        *noise = fmax(*noise, left);
+        double left = a->component[i].row->residual_size(a->component + i);
+        *residual_size = fmax(*residual_size, left);
         scale += 0 * left;
     }
     return scale;
@@ -139,9 +139,9 @@ static double tolerance(const spari_assembly *a, double largest) {
     double size = 0, most = 0, worst = 0;
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
-        double way = spari_component_way(p);
-        p->allowed = s->newton.strict ? 0 : spari_newton_tolerance(p->member, &p->scheme, way);
-        size = fmax(size, way);
+        double motion = spari_component_motion(p);
+        p->allowed = s->newton.strict ? 0 : spari_newton_tolerance(p->member, &p->scheme, motion);
+        size = fmax(size, motion);
         most = fmax(most, p->allowed);
     }
     for (int i = 0; i < a->components && !s->newton.strict; i++) {
@@ -198,18 +198,18 @@ static double rounding_of(const spari_constraint *l) {
 /* An iteration of a member without joints. */
 static const char *iterate_alone(spari_assembly *a, double longest, spari_iterate *it) {
     spari_component *p = a->component;
-    double scale = p->row->balance(p), noise = p->row->noise(p), way;
-    if (!isfinite(scale) || !isfinite(noise)) {
+    double scale = p->row->balance(p), residual_size = p->row->residual_size(p), motion;
+    if (!isfinite(scale) || !isfinite(residual_size)) {
         return "met values that are not finite";
     }
     if ((!a->factored && p->row->tangent(p)) || p->row->correct_newton(p)) {
         return "found a singular tangent";
     }
     a->factored = 1;
-    it->correction = p->row->advance(p, longest, &way);
-    it->tolerance = spari_newton_tolerance(p->member, &p->scheme, way);
-    it->small = it->correction < 1e-11 || noise <= 64 * DBL_EPSILON * p->body->stiffest;
-    it->rounded = noise <= 16 * DBL_EPSILON * scale;
+    it->correction = p->row->advance(p, longest, &motion);
+    it->tolerance = spari_newton_tolerance(p->member, &p->scheme, motion);
+    it->small = it->correction < 1e-11 || residual_size <= 64 * DBL_EPSILON * p->body->stiffest;
+    it->rounded = residual_size <= 16 * DBL_EPSILON * scale;
     return NULL;
 }
 
@@ -219,7 +219,7 @@ static const char *iterate_newton(void *self, double longest, spari_iterate *it)
     if (a->constraints == 0) {
         return iterate_alone(a, longest, it);
     }
-    double noise, scale = balance(a, t->s, t->dt, &noise);
+    double residual_size, scale = balance(a, t->s, t->dt, &residual_size);
     if (!isfinite(scale)) {
         return "met values that are not finite";
     }
@@ -240,7 +240,7 @@ static const char *iterate_newton(void *self, double longest, spari_iterate *it)
     }
     it->correction = correct(a, longest);
     double cut = it->correction > longest ? longest / it->correction : 1;
-    if (a->violent && correct_rates(a, cut, &it->correction)) {
+    if (a->constrains_rates && correct_rates(a, cut, &it->correction)) {
         return "found a singular tangent";
     }
     a->moved += it->correction;
@@ -248,7 +248,7 @@ static const char *iterate_newton(void *self, double longest, spari_iterate *it)
     a->standing = a->standing && a->moved < near_factored && a->component[0].scheme.rule == SPARI_ALPHA;
     it->tolerance = tolerance(a, it->correction);
     it->small = it->correction < 1e-11;
-    it->rounded = noise <= 16 * DBL_EPSILON * scale && it->small;
+    it->rounded = residual_size <= 16 * DBL_EPSILON * scale && it->small;
     return NULL;
 }
 
@@ -369,8 +369,8 @@ static int newton_all(spari_assembly *a, double s, double dt) {
     int iterations = 0;
     char name[NAME];
     const char *wrong = attempts_of(a, s, dt, &iterations);
-    if (wrong && a->constraints > 0 && !a->violent && !a->component[0].scheme.still) {
-        a->violent = 1;
+    if (wrong && a->constraints > 0 && !a->constrains_rates && !a->component[0].scheme.still) {
+        a->constrains_rates = 1;
         wrong = attempts_of(a, s, dt, &iterations);
     }
     wrong = wrong ? walk_drives(a, s, dt, wrong, &iterations) : NULL;
@@ -717,7 +717,7 @@ static void set_scheme(spari_assembly *a, const spari_scheme *c) {
 static int stage_of_all(void *self, const spari_scheme *c, const spari_part *part) {
     spari_assembly *a = self;
     set_scheme(a, c);
-    a->violent = a->rotates_far || c->rule != SPARI_ALPHA;
+    a->constrains_rates = a->rotates_far || c->rule != SPARI_ALPHA;
     if (c->rule == SPARI_TRAPEZOIDAL) { /* positions depend on the tangent here, so it must
                                            not depend on earlier solutions */
         a->factored = 0;
@@ -806,15 +806,15 @@ int spari_lone_advance(spar_member *m, double dt) {
 
 int spari_lone_response(spar_member *m, const double *load, double *motion) {
     spari_component p = spari_component_of(m);
-    p.row->look_back(&p);
+    p.row->restore_end(&p);
     if (p.row->tangent_after(&p)) {
         return 1;
     }
-    p.row->take_more(&p, load);
+    p.row->apply_load(&p, load);
     if (p.row->solve(&p)) {
         return 1;
     }
-    p.row->show_more(&p, motion);
+    p.row->get_response(&p, motion);
     return 0;
 }
 
@@ -842,7 +842,7 @@ static int has_loads(const spari_assembly *a, double *stacked) {
 /* One response of these tangents, stacked. */
 static int respond_once(spari_assembly *a, double *stacked) {
     for (int i = 0; i < a->components; i++) {
-        a->component[i].row->take_more(a->component + i, stacked_of(a->component[i].member, stacked));
+        a->component[i].row->apply_load(a->component + i, stacked_of(a->component[i].member, stacked));
     }
     for (int i = 0; i < a->constraints; i++) {
         memset(a->constraint[i].gap, 0, sizeof a->constraint[i].gap);
@@ -851,22 +851,22 @@ static int respond_once(spari_assembly *a, double *stacked) {
         return 1;
     }
     for (int i = 0; i < a->components; i++) {
-        a->component[i].row->show_more(a->component + i, stacked_of(a->component[i].member, stacked));
+        a->component[i].row->get_response(a->component + i, stacked_of(a->component[i].member, stacked));
     }
     return 0;
 }
 
 /* Restores the components and constraints at the end of the step that was read from a file. The motions of joints
    stay: their rates are the published ones. */
-static void look_back(spari_assembly *a) {
+static void restore_end(spari_assembly *a) {
     for (int i = 0; i < a->components; i++) {
-        a->component[i].row->look_back(a->component + i);
+        a->component[i].row->restore_end(a->component + i);
     }
     for (int i = 0; i < a->constraints; i++) {
         spar_joint *j = a->constraint[i].joint;
-        const spari_relative kept = j->after;
+        const spari_relative before = j->after;
         spari_constraint_find(a->constraint + i, 1, a->session->clock.dt, 1);
-        j->after = kept;
+        j->after = before;
     }
     a->solved = 1;
 }
@@ -879,7 +879,7 @@ int spari_assembly_response(spari_assembly *a, int64_t count, int64_t apart, dou
         return 1;
     }
     if (!a->solved) {
-        look_back(a);
+        restore_end(a);
     }
     int singular = 0;
     a->standing = 0; /* the system was formed at slightly different positions */

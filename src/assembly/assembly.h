@@ -4,7 +4,7 @@
 
    Constraints hold at position level, with their loads as multipliers in generalised-alpha (Arnold & Bruls,
    Multibody System Dynamics 18 (2007)). At the end of a step the velocities are projected onto the constraints; in
-   violent motion the equations of the step contain this condition (Arnold, Bruls & Cardona, Numerische Mathematik
+   fast rotation the equations of the step contain this condition (Arnold, Bruls & Cardona, Numerische Mathematik
    129 (2015)). The system is scaled so that its condition number does not depend on dt (Bottasso, Dopico &
    Trainelli, Multibody System Dynamics 19 (2008)). */
 #ifndef SPARI_ASSEMBLY_H

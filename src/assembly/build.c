@@ -18,14 +18,6 @@ static int is_part(const spar_member *m) {
 
 /* ---- one assembly ---- */
 
-static void assembly_free(spari_assembly *a) {
-    spari_system_free(a);
-    spari_snapshot_free(&a->before);
-    free(a->component);
-    free(a->constraint);
-    free(a);
-}
-
 static void take_member(spari_assembly *a, spar_member *m) {
     a->component[a->components++] = (spari_component){.member = m, .owner_before = m->owner};
     m->assembly = a;
@@ -306,7 +298,11 @@ void spari_assemblies_drop(spari_assembly *all) {
     while (all) {
         spari_assembly *a = all;
         all = a->next;
-        assembly_free(a);
+        spari_system_free(a);
+        spari_snapshot_free(&a->before);
+        free(a->component);
+        free(a->constraint);
+        free(a);
     }
 }
 

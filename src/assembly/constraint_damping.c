@@ -37,6 +37,6 @@ int spari_system_damp_constraints(spari_assembly *a, double s, double dt) {
         return 0;
     }
     find_ringing(a, s, dt);
-    /* violent: velocities are on the constraints */
-    return spari_system_shift_rates(a, c->cv, a->violent ? 0 : 0.25 * (1 - r) * (1 - r) * c->h, 1 - r * r);
+    /* velocities are on the constraints already */
+    return spari_system_shift_rates(a, c->cv, a->constrains_rates ? 0 : 0.25 * (1 - r) * (1 - r) * c->h, 1 - r * r);
 }

@@ -28,7 +28,7 @@ double spari_member_expected(const spar_member *m) {
     if (m->row->whole) {
         return NEWTON * RIGID;
     }
-    if (m->seen == SPARI_SEEN_LINEAR) {
+    if (m->frame == SPARI_FRAME_LINEAR) {
         double entries = m->row->takes_modes ? 6 * nodes * (double)m->modes : 6 * nodes * band;
         return nodes * FRAME_NODE + entries * FRAME_ENTRY;
     }

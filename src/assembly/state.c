@@ -72,10 +72,10 @@ void spari_assembly_reject(spari_assembly *a) {
 
 /* ---- save and load ---- */
 
-enum { KEPT_HEAD = 7 };
+enum { HEAD = 7 };
 
 /* Of a factored system: the condensed members, and joint_tangent of the constraints. */
-static int64_t kept_size(const spari_assembly *a) {
+static int64_t factors_size(const spari_assembly *a) {
     int64_t n = (int64_t)SPARI_JOINT_TANGENT * a->constraints;
     for (int i = 0; i < a->components; i++) {
         n += spari_condensed_state_size(a->component[i].condensed);
@@ -84,8 +84,8 @@ static int64_t kept_size(const spari_assembly *a) {
 }
 
 int64_t spari_assembly_state_size(const spari_assembly *a) {
-    int64_t kept = a->factored ? kept_size(a) : 0;
-    return !a->here || a->components == 0 ? 0 : KEPT_HEAD + kept + spari_snapshot_size(&a->before);
+    int64_t factors = a->factored ? factors_size(a) : 0;
+    return !a->here || a->components == 0 ? 0 : HEAD + factors + spari_snapshot_size(&a->before);
 }
 
 void spari_assembly_save(const spari_assembly *a, double *state) {
@@ -96,7 +96,7 @@ void spari_assembly_save(const spari_assembly *a, double *state) {
     state[4] = a->factored_begun;
     state[5] = a->trace_begun.rate;
     state[6] = a->trace_begun.left;
-    state += KEPT_HEAD;
+    state += HEAD;
     for (int i = 0; i < a->components && a->factored; i++) {
         spari_condensed_save(a->component[i].condensed, state);
         state += spari_condensed_state_size(a->component[i].condensed);
@@ -112,11 +112,11 @@ static int is_iterations(double x) {
 }
 
 int spari_assembly_is_state(const spari_assembly *a, const double *state, int64_t count) {
-    if (count < KEPT_HEAD || state[1] != a->components || !is_iterations(state[0]) || !spari_trace_is(state + 2) ||
+    if (count < HEAD || state[1] != a->components || !is_iterations(state[0]) || !spari_trace_is(state + 2) ||
         !is_iterations(state[4]) || !spari_trace_is(state + 5)) {
         return 0;
     }
-    int64_t own = KEPT_HEAD + (state[0] == 0 ? 0 : kept_size(a));
+    int64_t own = HEAD + (state[0] == 0 ? 0 : factors_size(a));
     return count >= own && spari_snapshot_is(state + own, count - own, (int64_t)SPARI_JOINT_TANGENT * a->constraints);
 }
 
@@ -126,7 +126,7 @@ void spari_assembly_load(spari_assembly *a, const double *state) {
     a->factored_begun = state ? (int)state[4] : 0;
     a->trace_begun = (spari_trace){state ? state[5] : 0, state ? state[6] : 0};
     a->solved = 0;
-    state = state ? state + KEPT_HEAD : NULL;
+    state = state ? state + HEAD : NULL;
     for (int i = 0; i < a->components && a->factored; i++) {
         spari_condensed *c = a->component[i].condensed;
         spari_condensed_load(c, spari_member_constrained(a->component[i].member), state);

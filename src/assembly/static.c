@@ -38,20 +38,20 @@ static const double loose = 1e-13;
 typedef enum outcome { FOUND, FAILED, LOOSE, UNSTABLE, LONG } outcome;
 
 /* An equilibrium to be found. */
-typedef struct rest {
+typedef struct equilibrium {
     spari_assembly *a;
     const double *(*fluid)(const spar_member *);
     int potential;      /* the loads have one, so the stability of an equilibrium is known */
     spari_linear *path; /* the tangent of a member without joints, if its path is watched */
     int on_path;        /* the last point is on the path */
     char motion[240];   /* that is not constrained or unstable */
-} rest;
+} equilibrium;
 
 /* Residual at the load factor f, and gaps with driven motions at the same part of their way. */
-static double balance_at_rest(spari_assembly *a, double f, double *noise) {
+static double balance_static(spari_assembly *a, double f, double *residual_size) {
     double scale = 0;
     for (int i = 0; i < a->components; i++) {
-        scale = fmax(scale, a->component[i].row->balance_rest(a->component + i, f));
+        scale = fmax(scale, a->component[i].row->balance_static(a->component + i, f));
     }
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
@@ -64,19 +64,19 @@ static double balance_at_rest(spari_assembly *a, double f, double *noise) {
         }
     }
     spari_constraints_add_forces(a);
-    *noise = 0;
+    *residual_size = 0;
     for (int i = 0; i < a->components; i++) {
-        double left = a->component[i].row->noise(a->component + i);
-        *noise = fmax(*noise, left);
+        double left = a->component[i].row->residual_size(a->component + i);
+        *residual_size = fmax(*residual_size, left);
         scale += 0 * left;
     }
     return scale;
 }
 
 /* Solves for the corrections of all components. Returns 0, or 1 if a motion is not constrained. */
-static int solve_at_rest(spari_assembly *a, double f) {
+static int solve_static(spari_assembly *a, double f) {
     for (int i = 0; i < a->components; i++) {
-        if (a->component[i].row->tangent_rest(a->component + i, f)) {
+        if (a->component[i].row->tangent_static(a->component + i, f)) {
             return 1;
         }
     }
@@ -85,7 +85,7 @@ static int solve_at_rest(spari_assembly *a, double f) {
 }
 
 /* Subtracts the corrections, shortened. Returns their size before. */
-static double correct_at_rest(spari_assembly *a, double longest, double *cut) {
+static double correct_static(spari_assembly *a, double longest, double *cut) {
     double largest = 0;
     for (int i = 0; i < a->components; i++) {
         largest = fmax(largest, a->component[i].row->correction_size(a->component + i));
@@ -128,21 +128,21 @@ static int has_potential_loads(const spari_assembly *a, const double *(*fluid)(c
 }
 
 /* Solves for the corrections with the smallest shift that makes the system that of a minimum: 0, or one of a
-   sequence that grows by a factor of 4. *kept: the last shift that was not 0. Returns the fault of the system
+   sequence that grows by a factor of 4. *last_shift: the last shift that was not 0. Returns the fault of the system
    without a shift. */
-static outcome solve_downhill(spari_assembly *a, double f, double *kept) {
+static outcome solve_downhill(spari_assembly *a, double f, double *last_shift) {
     enum { SHIFTS = 30 };
     outcome why = FOUND;
     a->shift = 0;
-    if (solve_at_rest(a, f) || spari_system_weakest_pivot(a) < loose) {
+    if (solve_static(a, f) || spari_system_weakest_pivot(a) < loose) {
         why = LOOSE;
     } else if (spari_system_count_negative(a) > 0) {
         why = UNSTABLE;
     }
-    double shift = 0.25 * *kept;
+    double shift = 0.25 * *last_shift;
     for (int i = 0, wrong = why != FOUND; i < SHIFTS && wrong; i++, shift *= 4) {
         a->standing = 0;
-        a->shift = *kept = shift;
+        a->shift = *last_shift = shift;
         wrong = spari_system_solve(a, 0) || spari_system_weakest_pivot(a) < loose || spari_system_count_negative(a) > 0;
         if (wrong && i == SHIFTS - 1) {
             return FAILED;
@@ -156,21 +156,21 @@ static outcome solve_downhill(spari_assembly *a, double f, double *kept) {
 static outcome find_downhill(spari_assembly *a, double f) {
     enum { DOWNHILL = 400 };
     const double longest = 0.3;
-    double last = 0, kept = 0;
+    double last = 0, last_shift = 0;
     outcome why = FOUND;
     for (int it = 0; it < DOWNHILL && why != FAILED; it++) {
-        double noise, cut, scale = balance_at_rest(a, f, &noise);
+        double residual_size, cut, scale = balance_static(a, f, &residual_size);
         if (!isfinite(scale)) {
             return FAILED;
         }
         if (it == 0) {
-            kept = 16 * (noise > 0 ? noise : 1) / spari_member_length(a->component[0].member);
+            last_shift = 16 * (residual_size > 0 ? residual_size : 1) / spari_member_length(a->component[0].member);
         }
-        why = solve_downhill(a, f, &kept);
+        why = solve_downhill(a, f, &last_shift);
         if (why == FAILED) {
             break;
         }
-        double largest = correct_at_rest(a, longest, &cut);
+        double largest = correct_static(a, longest, &cut);
         int small = cut == 1 && it >= 3 && (largest < 1e-9 || (largest < 1e-7 && last > 0 && largest > 0.5 * last));
         if (small) {
             return why;
@@ -183,42 +183,43 @@ static outcome find_downhill(spari_assembly *a, double f) {
 /* ---- a load step ---- */
 
 /* Whether the equilibrium is stable: no maximum or saddle, apart from motions without stiffness. */
-static outcome judge(const rest *t, double f) {
+static outcome judge(const equilibrium *t, double f) {
     spari_assembly *a = t->a;
     if (t->path) {
-        return a->component[0].row->definite_rest(a->component, f) == 0 ? UNSTABLE : FOUND;
+        return a->component[0].row->definite_static(a->component, f) == 0 ? UNSTABLE : FOUND;
     }
     if (!t->potential || a->constraints == 0) {
         return FOUND;
     }
     spari_blocks_watch(a->system, 1);
-    int singular = solve_at_rest(a, f);
+    int singular = solve_static(a, f);
     spari_blocks_watch(a->system, 0);
     int unstable = !singular && spari_system_weakest_pivot(a) >= loose && spari_system_count_negative(a) > 0;
     return unstable ? UNSTABLE : FOUND;
 }
 
 /* By Newton from the present state. */
-static outcome find_nearby(const rest *t, double f) {
+static outcome find_nearby(const equilibrium *t, double f) {
     const double longest = 0.8; /* a correction rotates no node by more (rad), and moves it by no more of the length */
     spari_assembly *a = t->a;
     double last = 0;
     a->shift = 0;
     for (int it = 0; it < ITERATIONS; it++) {
-        double noise, cut, scale = balance_at_rest(a, f, &noise);
+        double residual_size, cut, scale = balance_static(a, f, &residual_size);
         if (!isfinite(scale)) {
             return FAILED;
         }
-        int singular = solve_at_rest(a, f);
+        int singular = solve_static(a, f);
         if (a->constraints > 0 && (singular || spari_system_weakest_pivot(a) < loose)) {
             return LOOSE;
         }
         if (singular || (t->path && t->on_path && spari_linear_sign(t->path) < 0)) {
             return singular ? FAILED : UNSTABLE;
         }
-        double size = correct_at_rest(a, longest, &cut);
+        double size = correct_static(a, longest, &cut);
         /* quadratic: a correction of 1e-8 leaves 1e-16; or the balance is as good as rounding lets it be */
-        int found = size < 1e-9 || noise <= 16 * DBL_EPSILON * scale || (size < 1e-7 && last > 0 && size > 0.5 * last);
+        int found =
+            size < 1e-9 || residual_size <= 16 * DBL_EPSILON * scale || (size < 1e-7 && last > 0 && size > 0.5 * last);
         if (found && cut == 1 && may_end(a, it, scale, size)) {
             return judge(t, f);
         }
@@ -228,7 +229,7 @@ static outcome find_nearby(const rest *t, double f) {
 }
 
 /* The states and multipliers of the last point found. */
-static void keep_point(rest *t, int back) {
+static void keep_point(equilibrium *t, int back) {
     spari_assembly *a = t->a;
     t->on_path = 1;
     for (int i = 0; i < a->components; i++) {
@@ -242,7 +243,7 @@ static void keep_point(rest *t, int back) {
 
 /* Solves a load step by Newton; in an assembly, downhill if Newton finds no stable equilibrium. first: no point has
    been found yet. */
-static outcome find_point(rest *t, double f, int first) {
+static outcome find_point(equilibrium *t, double f, int first) {
     spari_assembly *a = t->a;
     outcome found = find_nearby(t, f), why = found;
     if (a->constraints == 0) {
@@ -269,11 +270,11 @@ static outcome find_point(rest *t, double f, int first) {
 
 /* Begins from the last shapes (onward), else from t^n. The path begins there if the state is in equilibrium without
    loads. */
-static void begin_rest(rest *t, int onward) {
+static void begin_equilibrium(equilibrium *t, int onward) {
     spari_assembly *a = t->a;
     for (int i = 0; i < a->components; i++) {
         a->component[i].rotating = a->rotates ? &a->rotating : NULL;
-        a->component[i].row->rest(a->component + i, t->fluid(a->component[i].member), onward);
+        a->component[i].row->begin_static(a->component + i, t->fluid(a->component[i].member), onward);
     }
     for (int i = 0; i < a->constraints && !onward; i++) {
         a->constraint[i].joint->after = a->constraint[i].joint->now;
@@ -281,13 +282,14 @@ static void begin_rest(rest *t, int onward) {
     t->motion[0] = 0;
     keep_point(t, 0);
     if (t->path) {
-        double noise;
-        t->on_path = isfinite(balance_at_rest(a, 0, &noise)) && noise <= 1e-9 * a->component[0].body->stiffest;
+        double residual_size;
+        t->on_path =
+            isfinite(balance_static(a, 0, &residual_size)) && residual_size <= 1e-9 * a->component[0].body->stiffest;
     }
 }
 
 /* Keeps the last point. Returns the part of the load that was reached. */
-static double follow_loads(rest *t, int load_steps, outcome *why) {
+static double follow_loads(equilibrium *t, int load_steps, outcome *why) {
     double done = 0, step = 1.0 / load_steps;
     int halvings = 0, left = load_steps + SPARI_STATIC_MORE;
     while (done < 1 && halvings <= HALVINGS) {
@@ -308,9 +310,9 @@ static double follow_loads(rest *t, int load_steps, outcome *why) {
     return done;
 }
 
-static void give_up_rest(spari_assembly *a) {
+static void give_up_equilibrium(spari_assembly *a) {
     for (int i = 0; i < a->components; i++) {
-        a->component[i].row->discard_rest(a->component + i);
+        a->component[i].row->discard_static(a->component + i);
     }
     spari_assembly_discard(a);
 }
@@ -332,7 +334,7 @@ static double largest_bend(const spari_component *p) {
    for this message: 10 nodes of an element fail at 1.7 rad. */
 static const double most_bend = 2.2, suspect_bend = 1;
 
-static void say_why_alone(const rest *t, outcome why, char *text, size_t size) {
+static void say_why_alone(const equilibrium *t, outcome why, char *text, size_t size) {
     double bend = largest_bend(t->a->component);
     (void)snprintf(text, size, ": a limit point, or a member free to move as a rigid body; apply smaller loads");
     if (why == UNSTABLE) {
@@ -348,7 +350,7 @@ static void say_why_alone(const rest *t, outcome why, char *text, size_t size) {
 }
 
 /* No equilibrium was found: restores everything. */
-static int refuse_rest(const rest *t, double done, outcome why) {
+static int refuse_equilibrium(const equilibrium *t, double done, outcome why) {
     const char *motion = t->motion[0] ? t->motion : "some motion";
     char text[500] = "; use more load_steps", name[160];
     if (t->a->constraints == 0 && why != LONG) {
@@ -361,33 +363,33 @@ static int refuse_rest(const rest *t, double done, outcome why) {
                        "constrain that motion by a joint or a spring",
                        motion);
     }
-    give_up_rest(t->a);
+    give_up_equilibrium(t->a);
     spari_assembly_name(t->a, name, sizeof name);
     return spari_fail(t->a->session, SPAR_ERR_NUMERIC,
                       "%s: no %sequilibrium found beyond %.6g of the loads%s; the state is unchanged", name,
                       why == UNSTABLE ? "stable " : "", done, text);
 }
 
-static int find_equilibrium_of(rest *t, int load_steps, int onward) {
+static int find_equilibrium_of(equilibrium *t, int load_steps, int onward) {
     spari_assembly *a = t->a;
     outcome why = FAILED;
     double done = 0;
     t->potential = !a->rotates && has_potential_loads(a, t->fluid);
     if (onward) {
-        begin_rest(t, 1);
+        begin_equilibrium(t, 1);
         done = follow_loads(t, 1, &why);
     }
     if (done < 1) {
-        begin_rest(t, 0);
+        begin_equilibrium(t, 0);
         done = follow_loads(t, load_steps, &why);
     }
     a->factored = 0;
     spari_snapshot_close(&a->before);
     if (done < 1) {
-        return refuse_rest(t, done, why);
+        return refuse_equilibrium(t, done, why);
     }
     for (int i = 0; i < a->components; i++) {
-        a->component[i].row->end_rest(a->component + i);
+        a->component[i].row->end_static(a->component + i);
     }
     for (int i = 0; i < a->constraints && !a->rotates; i++) {
         memset(a->constraint[i].joint->after.rate, 0, sizeof a->constraint[i].joint->after.rate);
@@ -404,11 +406,12 @@ int spari_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_m
         return SPAR_OK;
     }
     int status = spari_rotation_check_begin(a);
-    status = status == SPAR_OK ? find_equilibrium_of(&(rest){.a = a, .fluid = fluid}, load_steps, onward) : status;
+    status =
+        status == SPAR_OK ? find_equilibrium_of(&(equilibrium){.a = a, .fluid = fluid}, load_steps, onward) : status;
     if (status == SPAR_OK && a->rotates) {
         status = spari_rotation_check_joints(a);
         if (status != SPAR_OK) {
-            give_up_rest(a);
+            give_up_equilibrium(a);
         }
     }
     spari_rotation_check_end(a);
@@ -433,7 +436,7 @@ int spari_lone_static(spar_member *m, const double *(*fluid)(const spar_member *
     const int64_t P = m->mesh.per_element;
     spari_component p = spari_component_of(m);
     spari_assembly a = spari_assembly_of_one(&p);
-    rest t = {.a = &a, .fluid = fluid};
+    equilibrium t = {.a = &a, .fluid = fluid};
     int linear = p.frame != NULL;
     SPARI_REQUIRE(m->session, !linear || spari_member_constrained(m) == 6, SPAR_ERR_STATE,
                   "member '%s': a linear member cannot have a root that is free to rotate; fix or drive its root",
@@ -452,7 +455,7 @@ int spari_lone_static(spar_member *m, const double *(*fluid)(const spar_member *
     free(a.rotating.mass);
     SPARI_TRY(status);
     if (spari_first_nonfinite(m->after.q, 7 * m->nodes) >= 0 || spari_first_nonfinite(m->after.a, 6 * m->nodes) >= 0) {
-        p.row->discard_rest(&p);
+        p.row->discard_static(&p);
         return spari_fail(m->session, SPAR_ERR_NUMERIC,
                           "member '%s': its equilibrium is not finite; check its loads and the motion of its root",
                           m->name);

@@ -46,14 +46,14 @@ struct spari_assembly {
     int factored_begun; /* these two at the beginning of the step, and the constraints' joint_tangent */
     spari_trace trace_begun;
     spari_snapshot before;
-    int factored;     /* 0: there are no tangents; else how many iterations the solution needed that formed them */
-    int violent;      /* the step's equations constrain velocities too */
-    int rotates_far;  /* joints rotate far in a substep */
-    int standing;     /* the system below is factored, for the present tangents and this cv, */
-    double cv, moved; /* and the motion of the components since; only within a solution */
-    double scale;     /* its largest stiffness */
-    double penalty;   /* of constraints that close loops, by their scale */
-    double shift;     /* additional stiffness of every motion of a cluster, N/m; at rest */
+    int factored;         /* 0: there are no tangents; else how many iterations the solution needed that formed them */
+    int constrains_rates; /* the step's equations constrain velocities too */
+    int rotates_far;      /* joints rotate far in a substep */
+    int standing;         /* the system below is factored, for the present tangents and this cv, */
+    double cv, moved;     /* and the motion of the components since; only within a solution */
+    double scale;         /* its largest stiffness */
+    double penalty;       /* of constraints that close loops, by their scale */
+    double shift;         /* additional stiffness of every motion of a cluster, N/m; at rest */
     spari_blocks *system;
     double *x, *y; /* [interfaces][6] */
     double *b;     /* of the system */

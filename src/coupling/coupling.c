@@ -487,11 +487,11 @@ int spari_coupling_next(spar_session *s) {
     const spari_norm_loads w = weighed(c);
     /* Done first: otherwise a column of loads that move almost nothing would contain arbitrary amounts of loads that
        move nothing. */
-    int felt = c->weighed && spari_coupling_scheme_of(s->coupling.scheme)->columns;
+    int effective = c->weighed && spari_coupling_scheme_of(s->coupling.scheme)->columns;
     stack(s);
-    SPARI_TRY(felt ? spari_motion_norm_felt(s, &w, c->settled, c->x) : SPAR_OK);
+    SPARI_TRY(effective ? spari_motion_norm_effective_load(s, &w, c->settled, c->x) : SPAR_OK);
     SPARI_TRY(spari_accelerator_next(c->accelerator, c->x, c->g, c->weighed ? &images : NULL, c->x));
-    SPARI_TRY(felt ? spari_motion_norm_felt(s, &w, c->settled, c->x) : SPAR_OK);
+    SPARI_TRY(effective ? spari_motion_norm_effective_load(s, &w, c->settled, c->x) : SPAR_OK);
     unstack(s);
     report_added_mass(c);
     c->report[SPAR_REPORT_COLUMNS] = spari_accelerator_columns(c->accelerator);

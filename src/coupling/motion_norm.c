@@ -162,29 +162,29 @@ int spari_motion_norm_images(spar_session *s, const spari_norm_loads *c, int64_t
 }
 
 /* The part of the loads x - g that member m responds to, into off, stacked. */
-static int felt_of(const spari_norm_loads *c, spar_member *m, double unit, const double *x, const double *g,
-                   double *off) {
+static int effective_part(const spari_norm_loads *c, spar_member *m, double unit, const double *x, const double *g,
+                          double *off) {
     int64_t n = 6 * m->nodes;
     for (int64_t i = 0; i < n; i++) {
         c->workspace[i] = (x[i] - g[i]) / (i % 6 < 3 ? 1 : unit);
     }
-    int status = m->row->felt && !m->assembly ? m->row->felt(m, c->workspace) : SPAR_OK;
+    int status = m->row->effective_load && !m->assembly ? m->row->effective_load(m, c->workspace) : SPAR_OK;
     for (int64_t i = 0; i < n; i++) {
         off[i] = c->workspace[i] * (i % 6 < 3 ? 1 : unit);
     }
     return status;
 }
 
-int spari_motion_norm_felt(spar_session *s, const spari_norm_loads *c, double *off, double *x) {
+int spari_motion_norm_effective_load(spar_session *s, const spari_norm_loads *c, double *off, double *x) {
     int rank = spari_comm_rank(s->ranks.comm), asked = 0, status = SPAR_OK, k = 0;
     int64_t at = 0;
     memset(off, 0, (size_t)(c->n + 1) * sizeof *off);
     for (const spar_member *m = s->members; m; m = m->next) {
-        asked = asked || (m->row->felt_here && !m->assembly);
+        asked = asked || (m->row->effective_here && !m->assembly);
     }
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next, k++) {
         if ((!asked || m->owner == rank) && status == SPAR_OK) {
-            status = felt_of(c, m, c->unit[k], x + at, c->g + at, off + at);
+            status = effective_part(c, m, c->unit[k], x + at, c->g + at, off + at);
         }
     }
     if (status != SPAR_OK) {

@@ -30,9 +30,9 @@ int spari_motion_norm_images(spar_session *session, const spari_norm_loads *w, i
                              double *image);
 
 /* Removes from x [n], stacked as w->g, the part of x - g that moves nothing: this part becomes that of the returned
-   loads. Returns a status. All ranks; a message is sent only if an owner must be asked (spari_fidelity's felt_here).
-   room [n + 1]. */
-int spari_motion_norm_felt(spar_session *session, const spari_norm_loads *w, double *workspace, double *x);
+   loads. Returns a status. All ranks; a message is sent only if an owner must be asked (spari_fidelity's
+   effective_here). room [n + 1]. */
+int spari_motion_norm_effective_load(spar_session *session, const spari_norm_loads *w, double *workspace, double *x);
 
 /* Explicit coupling: displacement of the farthest node, m, if the pushed loads replaced the predicted ones, as
    another iteration would do. 0 for members that the library does not solve; infinite if the matrix is singular. n:

@@ -56,7 +56,7 @@ static int stage_of_frame(spari_component *p, const spari_part *part) {
     const spar_member *m = p->member;
     spari_scheme_mix_loads(m, &p->frame->steps, 6 * p->frame->nodes, part->end);
     spari_stage_drive(m, &p->scheme, part, &p->stage);
-    p->stage.ends.carried = spari_carried(&p->stage.before, &p->stage.root, p->body->length);
+    p->stage.ends.root_motion = spari_root_motion(&p->stage.before, &p->stage.root, p->body->length);
     spari_frame_stage(p->frame, m, &p->scheme, part, &p->stage.root);
     return SPAR_OK;
 }
@@ -99,7 +99,7 @@ static double balance_frame(spari_component *p) {
     return spari_frame_forces(f, p->member, &f->to, p->scheme.still, 1, f->r);
 }
 
-static double noise_of_frame(const spari_component *p) {
+static double residual_of_frame(const spari_component *p) {
     const spari_frame *f = p->frame;
     double most = 0, poison = 0;
     for (int i = f->constrained; i < f->n; i++) {
@@ -149,11 +149,11 @@ static void correct_frame(spari_component *p, double cut) {
                          deformation_rates(f, &f->to));
 }
 
-static double advance_frame(spari_component *p, double longest, double *way) {
+static double advance_frame(spari_component *p, double longest, double *motion) {
     const spari_frame *f = p->frame;
     const spar_member *m = p->member;
     const int is_linear = !m->load.applied && (!m->added || p->scheme.still); /* no force depends on the motion */
-    *way = 0;
+    *motion = 0;
     if (is_linear && f->tangent_cm == p->scheme.cm && f->tangent_cv == p->scheme.cv &&
         memcmp(f->tangent_rates, f->rates, sizeof f->rates) == 0) {
         correct_frame(p, 1); /* one correction with their own tangent solves the equations */
@@ -165,9 +165,9 @@ static double advance_frame(spari_component *p, double longest, double *way) {
         for (int k = 0; k < f->n; k++) {
             f->increment[k] = f->to.y[k] - f->from.y[k];
         }
-        p->moved_in_step = fmax(p->stage.ends.carried, size_of_deformation(p, f->increment));
+        p->moved_in_step = fmax(p->stage.ends.root_motion, size_of_deformation(p, f->increment));
     }
-    *way = p->moved_in_step;
+    *motion = p->moved_in_step;
     return size;
 }
 
@@ -186,7 +186,7 @@ static int tangent_of_frame_after(spari_component *p) {
     return tangent_of_frame(p);
 }
 
-static void take_more_of_frame(spari_component *p, const double *load) {
+static void apply_load_to_frame(spari_component *p, const double *load) {
     spari_frame *f = p->frame;
     spari_member_gather(p->member, load, f->global);
     for (int i = 0; i < 6 * f->nodes; i += 3) {
@@ -196,7 +196,7 @@ static void take_more_of_frame(spari_component *p, const double *load) {
     memset(f->r, 0, (size_t)f->constrained * sizeof *f->r);
 }
 
-static void show_more_of_frame(spari_component *p, double *motion) {
+static void response_of_frame(spari_component *p, double *motion) {
     spari_frame *f = p->frame;
     memset(f->dx, 0, (size_t)f->constrained * sizeof *f->dx);
     const double *change = spari_frame_nodal(f, f->dx, f->nodal);
@@ -206,7 +206,7 @@ static void show_more_of_frame(spari_component *p, double *motion) {
     spari_member_from_unique(p->member, 6, f->global, motion);
 }
 
-static void look_back_at_frame(spari_component *p) {
+static void restore_frame(spari_component *p) {
     p->scheme = spari_scheme_last(p->member, p->frame->D != NULL, &p->frame->steps.solved);
 }
 
@@ -243,7 +243,7 @@ static void end_start_of_frame(spari_component *p) {
 
 /* ---- equilibrium ---- */
 
-static void rest_frame(spari_component *p, const double *fluid, int onward) {
+static void begin_static_of_frame(spari_component *p, const double *fluid, int onward) {
     spari_frame *f = p->frame;
     const double zero[6] = {0};
     f->resting = 1;
@@ -267,14 +267,14 @@ static void rotate_root(spari_component *p, double factor) {
     }
 }
 
-static double balance_frame_at_rest(spari_component *p, double factor) {
+static double balance_frame_static(spari_component *p, double factor) {
     spari_frame *f = p->frame;
     int rotating = p->rotating && f->M && (p->member->effects & SPAR_EFFECT_INERTIA);
     rotate_root(p, factor);
     return spari_frame_forces(f, p->member, &f->to, !rotating, factor, f->r);
 }
 
-static int tangent_of_frame_at_rest(spari_component *p, double factor) {
+static int tangent_of_frame_static(spari_component *p, double factor) {
     (void)factor; /* the factor of the latest forces applies */
     return spari_frame_tangent(p->frame, 0, 0);
 }
@@ -288,16 +288,16 @@ static void shift_frame(spari_component *p, double cut) {
 
 static void keep_positions_of_frame(spari_component *p, int back) {
     spari_frame *f = p->frame;
-    double *kept = f->positions, *y = f->to.y;
-    memcpy(back ? y : kept, back ? kept : y, (size_t)f->n * sizeof *y);
+    double *saved = f->positions, *y = f->to.y;
+    memcpy(back ? y : saved, back ? saved : y, (size_t)f->n * sizeof *y);
 }
 
-static void discard_rest_of_frame(spari_component *p) {
+static void discard_static_of_frame(spari_component *p) {
     begin_at_start_of_step(p->frame);
     p->frame->factored = p->frame->resting = 0;
 }
 
-static void end_rest_of_frame(spari_component *p) {
+static void end_static_of_frame(spari_component *p) {
     keep_positions_of_frame(p, 1);
     rotate_root(p, 1);
     p->frame->factored = p->frame->resting = 0;
@@ -313,7 +313,7 @@ const spari_component_row spari_component_floating = {
     .end = end_floating_component,
     .predict = predict_frame,
     .balance = balance_frame,
-    .noise = noise_of_frame,
+    .residual_size = residual_of_frame,
     .tangent = tangent_of_frame,
     .serves = frame_serves,
     .solve = solve_frame,
@@ -322,18 +322,18 @@ const spari_component_row spari_component_floating = {
     .end_solution = end_solution_of_frame,
     .correction_size = correction_of_frame,
     .tangent_after = tangent_of_frame_after,
-    .take_more = take_more_of_frame,
-    .show_more = show_more_of_frame,
-    .look_back = look_back_at_frame,
+    .apply_load = apply_load_to_frame,
+    .get_response = response_of_frame,
+    .restore_end = restore_frame,
     .start = start_of_frame,
     .unbalance = unbalance_frame,
     .correct_start = correct_start_of_frame,
     .end_start = end_start_of_frame,
-    .rest = rest_frame,
-    .balance_rest = balance_frame_at_rest,
-    .tangent_rest = tangent_of_frame_at_rest,
+    .begin_static = begin_static_of_frame,
+    .balance_static = balance_frame_static,
+    .tangent_static = tangent_of_frame_static,
     .shift = shift_frame,
     .keep_positions = keep_positions_of_frame,
-    .discard_rest = discard_rest_of_frame,
-    .end_rest = end_rest_of_frame,
+    .discard_static = discard_static_of_frame,
+    .end_static = end_static_of_frame,
 };

@@ -192,8 +192,8 @@ static void frame_effort(const spar_member *m, spari_effort *e) {
 
 /* Operations that the two rows share. */
 #define SPARI_FRAMED                                                                                                   \
-    .moves = 1, .solved = 1, .seen = SPARI_SEEN_LINEAR, .create = frame_create, .free = frame_free,                    \
-    .remass = spari_frame_remass, .restart = spari_frame_restart, .felt = spari_frame_felt,                            \
+    .moves = 1, .solved = 1, .frame = SPARI_FRAME_LINEAR, .create = frame_create, .free = frame_free,                  \
+    .remass = spari_frame_remass, .restart = spari_frame_restart, .effective_load = spari_frame_effective_load,        \
     .accept = spari_frame_accept, .begin = spari_frame_begin, .reject = spari_frame_reject, .effort = frame_effort,    \
     .reaction_size = spari_reaction_of_whole_size, .reaction = spari_reaction_of_whole, .energy = spari_frame_energy,  \
     .unknowns = frame_unknowns, .problem = spari_frame_problem, .shape = spari_frame_shape,                            \
@@ -202,5 +202,5 @@ static void frame_effort(const spar_member *m, spari_effort *e) {
     .publish = spari_frame_publish
 
 const spari_fidelity spari_fidelity_linear = {SPARI_FRAMED, .lower = SPAR_FIDELITY_MODAL};
-const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .felt_here = 1, .massive = 1, .takes_modes = 1,
+const spari_fidelity spari_fidelity_modal = {SPARI_FRAMED, .effective_here = 1, .massive = 1, .takes_modes = 1,
                                              .check = modal_check};

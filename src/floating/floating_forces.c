@@ -89,22 +89,17 @@ double spari_frame_forces(spari_frame *f, const spar_member *m, const spari_fram
     return scale;
 }
 
-/* The tangent of element e, from the sums that exist. At t^0 the added mass does not count. */
-static void form_element(spari_frame *f, int e, double cm, double cv) {
-    const int64_t mm = (int64_t)f->block * f->block, at = mm * e;
-    const double *K = (f->sumK ? f->sumK : f->K) + at, *C = f->sumC ? f->sumC + at : NULL, *M = f->M ? f->M + at : NULL,
-                 *A = f->A && f->steps.started ? f->A + at : NULL;
-    for (int64_t i = 0; i < mm; i++) {
-        f->element[i] = K[i] + (C ? cv * C[i] : 0) + (M ? cm * M[i] : 0) + (A ? cm * A[i] : 0);
-    }
-}
-
 int spari_frame_tangent(spari_frame *f, double cm, double cv) {
+    const int64_t mm = (int64_t)f->block * f->block;
+    const double *K = f->sumK ? f->sumK : f->K, *C = f->sumC, *M = f->M,
+                 *A = f->steps.started ? f->A : NULL; /* at t^0 the added mass does not count */
     spari_frame_keep_factors(f);
     f->factored = 0;
     spari_linear_zero(f->linear);
     for (int e = 0; e < f->elements; e++) {
-        form_element(f, e, cm, cv);
+        for (int64_t i = 0, at = mm * e; i < mm; i++, at++) {
+            f->element[i] = K[at] + (C ? cv * C[at] : 0) + (M ? cm * M[at] : 0) + (A ? cm * A[at] : 0);
+        }
         spari_linear_add(f->linear, e, f->element);
     }
     for (int i = 0; i < f->constrained; i++) {

@@ -44,7 +44,8 @@ typedef struct spari_frame {
     int elements, block, overlap; /* of the matrices */
     int n;                        /* unknowns, the root's six first */
     int64_t size;                 /* doubles of one matrix: elements * block * block */
-    double *gram;      /* modal: [n][n] products of the basis' columns, factored, once spari_frame_felt was called */
+    double
+        *gram; /* modal: [n][n] products of the basis' columns, factored, once spari_frame_effective_load was called */
     double *basis;     /* modal: [6 nodes][n]; NULL: the unknowns are those of the nodes */
     double *K, *M, *D; /* [elements][block][block]; M, D NULL: none */
     double *A;         /* the fluid's added mass, likewise */
@@ -85,7 +86,7 @@ void spari_frame_restart(spar_member *member);
 void spari_frame_begin(spar_member *member);
 void spari_frame_accept(spar_member *member);
 void spari_frame_reject(spar_member *member);
-int spari_frame_felt(spar_member *member, double *load);
+int spari_frame_effective_load(spar_member *member, double *load);
 void spari_frame_publish(spar_member *member);
 /* Strain energy x^T K x / 2 of the frame's equations. If the frame is fixed, also their kinetic energy and potential.
  */

@@ -186,14 +186,6 @@ void spari_frame_gather(const spari_frame *f, const double *x, double *out) {
     }
 }
 
-/* Nodal loads [unique][6] in global axes, as loads on the unknowns. Destroys x. */
-static void rotate_loads(const spari_frame *f, const double q[4], double *x, double *out) {
-    for (int i = 0; i < 6 * f->nodes; i += 3) {
-        spari_rotate_back(q, x + i, x + i);
-    }
-    spari_frame_gather(f, x, out);
-}
-
 /* If the root jumps (hosts that give no accelerations, an impulsive start), the nodes keep position and velocity.
    Relative to the root the jump is subtracted; modal unknowns take its projection in the norm of the mass. */
 static void subtract_jump(const spari_frame *f, const spar_member *m, double h, spari_frame_state *from,
@@ -279,7 +271,7 @@ static int factor_gram(spari_frame *f) {
 }
 
 /* phi (phi^T phi)^-1 phi^T load, with phi the basis: the smallest load with the same modal loads. */
-int spari_frame_felt(spar_member *m, double *load) {
+int spari_frame_effective_load(spar_member *m, double *load) {
     spari_frame *f = m->solution;
     const double *root = f->to.root.q;
     int n = f->n;
@@ -292,7 +284,10 @@ int spari_frame_felt(spar_member *m, double *load) {
         return SPAR_OK;
     }
     spari_member_gather(m, load, f->nodal);
-    rotate_loads(f, root + 3, f->nodal, f->dx);
+    for (int i = 0; i < 6 * f->nodes; i += 3) {
+        spari_rotate_back(root + 3, f->nodal + i, f->nodal + i);
+    }
+    spari_frame_gather(f, f->nodal, f->dx);
     memset(f->dx, 0, (size_t)f->constrained * sizeof *f->dx);
     spari_cholesky_solve(n, f->gram, f->dx);
     SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, n, 1, f->basis, n, f->dx, 1, 0, f->nodal, 1));

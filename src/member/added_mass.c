@@ -276,7 +276,7 @@ void spari_added_rotation(const spar_member *m, int64_t e, const double *phi, do
     if (spari_member_is_linear_in_place(m)) {
         return;
     }
-    if (d->per_element == 1 || m->seen == SPARI_SEEN_LINEAR) {
+    if (d->per_element == 1 || m->frame == SPARI_FRAME_LINEAR) {
         memcpy(rotation, q, 4 * sizeof *rotation);
         return;
     }

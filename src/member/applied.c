@@ -230,7 +230,7 @@ void spari_foundation_tangent(const spar_member *m, int e, double factor, double
 
 /* Whether springs are separate forces: a linear member has them in its matrix. */
 static int springs_apart(const spar_member *m) {
-    return m->load.foundation && m->seen != SPARI_SEEN_LINEAR;
+    return m->load.foundation && m->frame != SPARI_FRAME_LINEAR;
 }
 
 /* out [P][6] += factor * loads `follower` of element e, rotated with its nodes */

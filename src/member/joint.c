@@ -30,7 +30,7 @@ static int check_node(const spar_session *s, const char *call, const char *name,
 
 /* A member that is not committed yet can still become exact; its commit checks it. */
 static int check_fidelity(const spar_session *s, const char *call, const char *name, const spar_member *m) {
-    SPARI_REQUIRE(s, !m->committed || m->seen != SPARI_SEEN_LINEAR, SPAR_ERR_UNSUPPORTED,
+    SPARI_REQUIRE(s, !m->committed || m->frame != SPARI_FRAME_LINEAR, SPAR_ERR_UNSUPPORTED,
                   "%s: '%s': '%s' is a linear or modal beam, which no joint can connect; commit it with "
                   "SPAR_FIDELITY_EXACT (spar_member_set_fidelity), which costs about as much with joints",
                   call, name, m->name);

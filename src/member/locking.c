@@ -70,7 +70,7 @@ static int is_bent(const spar_member *m) {
 void spari_beam_tell_locking(const spar_member *m) {
     static const double rounding = 1e15; /* beyond this, bending is below the rounding error of the other stiffnesses */
     double whole = 0;
-    int element = 0, exact = m->seen != SPARI_SEEN_LINEAR;
+    int element = 0, exact = m->frame != SPARI_FRAME_LINEAR;
     const double ratio = largest_ratio(m, &whole, &element), most = bearable(m->mesh.per_element, exact || is_bent(m));
     if (ratio > most) {
         spari_warn(m->session,

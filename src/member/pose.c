@@ -7,10 +7,10 @@
 
 spari_pose spari_member_pose(const spar_member *m, const spari_motion *nodes) {
     spari_pose pose = {.q[3] = 1};
-    if (m->seen != SPARI_SEEN_FIXED && spari_member_root_is_prescribed(m)) {
+    if (m->frame != SPARI_FRAME_INERTIAL && spari_member_root_is_prescribed(m)) {
         memcpy(pose.q, nodes->q, sizeof pose.q);
     }
-    if (m->seen != SPARI_SEEN_FIXED && m->root == SPAR_ROOT_DRIVEN) {
+    if (m->frame != SPARI_FRAME_INERTIAL && m->root == SPAR_ROOT_DRIVEN) {
         memcpy(pose.v, nodes->v, sizeof pose.v);
     }
     return pose;

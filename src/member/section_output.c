@@ -157,7 +157,7 @@ static void section_output(const spar_member *m, const spari_station *s, double 
     section_field f;
     double e[6], ed[6], local[6], rate[6], q0[4];
     section_at(m, s, &f);
-    if (m->seen == SPARI_SEEN_LINEAR) {
+    if (m->frame == SPARI_FRAME_LINEAR) {
         linear_strains(m, s, e, ed);
     } else {
         strains(s, &f, e, ed);

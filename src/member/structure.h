@@ -35,11 +35,11 @@ typedef struct spari_learned spari_learned;       /* src/member/added_mass_fit.h
 typedef struct spari_body spari_body;             /* member/body.h: discretised member, on every rank */
 
 /* Frame of reference of a member's deformation. */
-typedef enum spari_view {
-    SPARI_SEEN_FIXED,      /* inertial frame */
-    SPARI_SEEN_PRESCRIBED, /* frame of a prescribed root */
-    SPARI_SEEN_LINEAR      /* floating frame, small deformation: linear */
-} spari_view;
+typedef enum spari_frame_kind {
+    SPARI_FRAME_INERTIAL,   /* inertial frame */
+    SPARI_FRAME_PRESCRIBED, /* frame of a prescribed root */
+    SPARI_FRAME_LINEAR      /* floating frame, small deformation: linear */
+} spari_frame_kind;
 
 /* Binary tree of the halvings of a step's substeps: bits of substeps that were halved. They stay halved until the
    step ends, so that all coupling iterations see the same map, except for halvings caused by loads far from
@@ -130,7 +130,7 @@ struct spar_member {
     int fidelity;                     /* SPAR_FIDELITY_* */
     int64_t modes;                    /* of a modal member */
     const struct spari_fidelity *row; /* table row of its fidelity (time/fidelity.h); after commit */
-    spari_view seen;                  /* after commit */
+    spari_frame_kind frame;           /* after commit */
 
     spari_mesh mesh; /* elements and nodes of its line */
     int64_t nodes;
@@ -228,11 +228,11 @@ static inline int spari_member_root_is_prescribed(const spar_member *member) {
 }
 /* Whether the member is linear, in axes at rest: linear or modal, and its root is not driven. */
 static inline int spari_member_is_linear_at_rest(const spar_member *member) {
-    return member->seen == SPARI_SEEN_LINEAR && member->root != SPAR_ROOT_DRIVEN;
+    return member->frame == SPARI_FRAME_LINEAR && member->root != SPAR_ROOT_DRIVEN;
 }
 /* Whether the member is linear about its reference: linear or modal, and its root is free or pinned. */
 static inline int spari_member_is_linear_in_place(const spar_member *member) {
-    return member->seen == SPARI_SEEN_LINEAR && !spari_member_root_is_prescribed(member);
+    return member->frame == SPARI_FRAME_LINEAR && !spari_member_root_is_prescribed(member);
 }
 /* How many of the root's six unknowns its root condition holds: the first. */
 static inline int spari_member_constrained(const spar_member *member) {

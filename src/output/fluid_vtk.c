@@ -53,7 +53,7 @@ static int fill_set(const spar_fluid *fluid, int which, int64_t first, const ske
 }
 
 /* Nearest points get the data of their nodes, except position and set. */
-static void copy_to_feet(const sketch *s) {
+static void copy_to_nearest_points(const sketch *s) {
     for (int f = 0; f < FIELDS; f++) {
         size_t size = (size_t)s->n * (size_t)field_of[f].components * sizeof(double);
         memcpy(at(s, field_of[f].column, field_of[f].components, s->n), at(s, field_of[f].column, 1, 0), size);
@@ -117,7 +117,7 @@ static int draw(const spar_fluid *fluid, const sketch *s, spar_session *session,
     if (!(s->kind[0] & SPAR_KIND_SHARED)) {
         SPARI_TRY(retell(session, fill_set(fluid, SPAR_NODES_FORCE, s->count[0], s), call));
     }
-    copy_to_feet(s);
+    copy_to_nearest_points(s);
     return write_nodes(s, session, path, call);
 }
 

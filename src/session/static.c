@@ -28,7 +28,7 @@ static int check_held(const spar_member *m, const char *call) {
                   call, m->name);
     int loose =
         !spari_joint_of(m) && (m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C));
-    SPARI_REQUIRE(s, !loose || !spari_fidelity_has_rest(m), SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, !loose || !spari_fidelity_has_equilibrium(m), SPAR_ERR_STATE,
                   "%s: '%s' is free to move as a rigid body; fix, pin or drive its root", call, m->name);
     return SPAR_OK;
 }
@@ -41,7 +41,7 @@ static int check_member_static(const spar_member *m, const char *call, int load_
                   "%s: '%s': a step is in progress; accept or reject it first", call, m->name);
     SPARI_REQUIRE(s, load_steps >= 1 && load_steps <= SPARI_STATIC_MOST, SPAR_ERR_ARGUMENT,
                   "%s: '%s': %d load steps; give 1 to %d", call, m->name, load_steps, SPARI_STATIC_MOST);
-    SPARI_REQUIRE(s, spari_fidelity_has_rest(m), SPAR_ERR_UNSUPPORTED,
+    SPARI_REQUIRE(s, spari_fidelity_has_equilibrium(m), SPAR_ERR_UNSUPPORTED,
                   "%s: spar does not solve '%s', which is a point or an external member", call, m->name);
     SPARI_TRY(check_held(m, call));
     return s->clock.started ? SPAR_OK : spari_session_pushes(s, call);
@@ -75,11 +75,11 @@ static int solve_member_static(spar_member *m, const double *(*fluid)(const spar
     if (m->assembly) {
         return solve_assembly_static(m->assembly, fluid, load_steps, onward, m->session);
     }
-    if (!spari_fidelity_has_rest(m) || !spari_fidelity_is_here(m)) {
+    if (!spari_fidelity_has_equilibrium(m) || !spari_fidelity_is_here(m)) {
         return SPAR_OK;
     }
-    if (m->row->rest) {
-        m->row->rest(m);
+    if (m->row->equilibrium) {
+        m->row->equilibrium(m);
     } else {
         SPARI_TRY(spari_lone_static(m, fluid, load_steps, onward));
     }
@@ -162,7 +162,7 @@ static void commit_member(spar_member *m, const double *fluid) {
     memcpy(m->session->gravity_before, m->session->gravity, sizeof m->session->gravity_before);
 }
 
-static int find_rest(spar_member *m, int load_steps) {
+static int find_member_equilibrium(spar_member *m, int load_steps) {
     spar_session *s = m->session;
     if (!s->clock.started) {
         SPARI_TRY(spari_session_exchange_loads(s, NULL));
@@ -214,7 +214,7 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
                 copy_loads(m, m->load.pushed, m->load.before);
             }
         }
-        status = find_rest(member, load_steps);
+        status = find_member_equilibrium(member, load_steps);
         end_member_static(member, status, saved_state);
     }
     free(saved_state);

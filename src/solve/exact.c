@@ -55,20 +55,20 @@ static void exact_publish(spar_member *m) {
     spari_member_publish(m, s->to.q, s->to.v, s->to.a, &m->after);
 }
 
-static void exact_take_more(spar_member *m, const double *load, double *r) {
+static void exact_apply_load(spar_member *m, const double *load, double *r) {
     spari_member_gather(m, load, r);
 }
 
-static void exact_show_more(spar_member *m, const double *x, double *motion) {
+static void exact_get_response(spar_member *m, const double *x, double *motion) {
     spari_member_from_unique(m, 6, x, motion);
 }
 
-static int exact_felt(spar_member *m, double *load) {
+static int exact_effective_load(spar_member *m, double *load) {
     spari_member_even_loads(m, load);
     return SPAR_OK;
 }
 
-static void exact_take_rest(spar_member *m, const double *fluid) {
+static void exact_take_static(spar_member *m, const double *fluid) {
     spari_solver *s = m->solution;
     spari_member_gather(m, m->load.dead, s->steps.load);
     spari_member_gather(m, fluid, s->r);
@@ -169,12 +169,12 @@ const spari_fidelity spari_fidelity_exact = {
     .moves = 1,
     .solved = 1,
     .lower = SPAR_FIDELITY_MODAL,
-    .seen = SPARI_SEEN_FIXED,
+    .frame = SPARI_FRAME_INERTIAL,
     .create = exact_create,
     .free = exact_free,
     .renew = exact_renew,
     .restart = exact_restart,
-    .felt = exact_felt,
+    .effective_load = exact_effective_load,
     .reaction_size = spari_reaction_at_root_size,
     .reaction = spari_reaction_at_root,
     .energy = spari_energy_of_body,
@@ -185,8 +185,8 @@ const spari_fidelity spari_fidelity_exact = {
     SPARI_BODY_ROW,
     .solver = exact_solver,
     .take_loads = exact_take_loads,
-    .take_rest = exact_take_rest,
-    .take_more = exact_take_more,
-    .show_more = exact_show_more,
+    .take_static = exact_take_static,
+    .apply_load = exact_apply_load,
+    .get_response = exact_get_response,
     .publish = exact_publish,
 };

@@ -15,6 +15,6 @@ static int host_advance(spar_member *m, double dt) {
 }
 
 const spari_fidelity spari_fidelity_given = {
-    .seen = SPARI_SEEN_FIXED,
+    .frame = SPARI_FRAME_INERTIAL,
     .advance = host_advance,
 };

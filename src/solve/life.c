@@ -128,7 +128,7 @@ void spari_member_solved(spar_member *m, const double *fluid) {
 }
 
 int spari_member_check_rotations(const spar_member *m) {
-    SPARI_REQUIRE(m->session, m->seen != SPARI_SEEN_LINEAR || !m->state.overturned, SPAR_ERR_NUMERIC,
+    SPARI_REQUIRE(m->session, m->frame != SPARI_FRAME_LINEAR || !m->state.overturned, SPAR_ERR_NUMERIC,
                   "member '%s' is linear and rotates by pi relative to %s, the limit of rotation vectors; use "
                   "SPAR_FIDELITY_EXACT, or drive its root",
                   m->name, spari_member_root_is_prescribed(m) ? "its root" : "its reference");
@@ -408,7 +408,7 @@ static int build_body(spar_member *m) {
 
 int spari_member_build(spar_member *m) {
     m->row = spari_fidelity_of(m);
-    m->seen = m->row->seen;
+    m->frame = m->row->frame;
     SPARI_TRY(make_node_arrays(m));
     if (m->kind == SPARI_BEAM) {
         SPARI_TRY(spari_beam_place_nodes(m));

@@ -23,10 +23,10 @@ static int prescribed_advance(spar_member *m, double dt) {
 const spari_fidelity spari_fidelity_prescribed = {
     .moves = 1,
     .prescribed_root = 1,
-    .seen = SPARI_SEEN_PRESCRIBED,
+    .frame = SPARI_FRAME_PRESCRIBED,
     .check = prescribed_check,
     .advance = prescribed_advance,
-    .rest = spari_rigid_nodes_rest,
+    .equilibrium = spari_rigid_nodes_equilibrium,
     .reaction_size = spari_reaction_of_whole_size,
     .reaction = spari_reaction_of_whole,
 };

@@ -175,7 +175,7 @@ static void arm_after(const spar_member *m, int64_t node, double arm[3]) {
 }
 
 /* Adds a load to force and moment on the root, with the rotated offsets. */
-static void rigid_take_more(spar_member *m, const double *load, double *sum) {
+static void rigid_apply_load(spar_member *m, const double *load, double *sum) {
     double moments[9] = {0};
     memset(sum, 0, 6 * sizeof *sum);
     sum_on_root(m, load, sum, moments);
@@ -189,14 +189,14 @@ static void rigid_take_more(spar_member *m, const double *load, double *sum) {
     }
 }
 
-static void rigid_show_more(spar_member *m, const double *root, double *motion) {
+static void rigid_get_response(spar_member *m, const double *root, double *motion) {
     spari_rigid_nodes_displace(m, root, motion);
 }
 
 /* The same force and moment on the root, without its reaction, from equal forces and equal moments on all nodes. */
-static int rigid_felt(spar_member *m, double *load) {
+static int rigid_effective_load(spar_member *m, double *load) {
     double sum[6], middle[3] = {0}, moment[3];
-    rigid_take_more(m, load, sum);
+    rigid_apply_load(m, load, sum);
     memset(sum, 0, (size_t)spari_member_constrained(m) * sizeof *sum);
     for (int64_t i = 0; i < m->nodes; i++) {
         double arm[3];
@@ -228,7 +228,7 @@ static void rigid_take_loads(spar_member *m) {
     loads_on_root(m, m->load.used, 0, m->after.q, b->solver->steps.load1, b->offset_loads.end);
 }
 
-static void rigid_take_rest(spar_member *m, const double *fluid) {
+static void rigid_take_static(spar_member *m, const double *fluid) {
     spari_rigid_beam *b = m->solution;
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
     loads_on_root(m, fluid, 0, m->now.q, b->solver->steps.load, b->offset_loads.end);
@@ -323,16 +323,16 @@ const spari_fidelity spari_fidelity_rigid = {
     .moves = 1,
     .solved = 1,
     .whole = 1,
-    .seen = SPARI_SEEN_PRESCRIBED,
+    .frame = SPARI_FRAME_PRESCRIBED,
     .check = rigid_check,
     .effects = rigid_effects,
     .create = rigid_create,
     .free = rigid_free,
     .restart = rigid_restart,
     .repeat = rigid_repeat,
-    .felt = rigid_felt,
-    .felt_here = 1,
-    .rest = spari_rigid_nodes_rest,
+    .effective_load = rigid_effective_load,
+    .effective_here = 1,
+    .equilibrium = spari_rigid_nodes_equilibrium,
     .reaction_size = spari_reaction_of_whole_size,
     .reaction = spari_reaction_of_whole,
     .energy = rigid_energy,
@@ -343,8 +343,8 @@ const spari_fidelity spari_fidelity_rigid = {
     SPARI_BODY_ROW,
     .solver = rigid_solver,
     .take_loads = rigid_take_loads,
-    .take_rest = rigid_take_rest,
-    .take_more = rigid_take_more,
-    .show_more = rigid_show_more,
+    .take_static = rigid_take_static,
+    .apply_load = rigid_apply_load,
+    .get_response = rigid_get_response,
     .publish = rigid_publish,
 };

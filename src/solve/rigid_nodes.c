@@ -41,7 +41,7 @@ void spari_rigid_nodes_displace(const spar_member *m, const double root[6], doub
     }
 }
 
-void spari_rigid_nodes_rest(spar_member *m) {
+void spari_rigid_nodes_equilibrium(spar_member *m) {
     const double none[6] = {0};
     spari_pose root = spari_pose_of(m->now.q, none, none);
     if (m->root == SPAR_ROOT_DRIVEN && (spari_norm(m->now.v + 3) > 0 || spari_norm(m->now.a) > 0)) {

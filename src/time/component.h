@@ -32,7 +32,7 @@ typedef struct spari_component_row {
        relative to. */
     double (*balance)(struct spari_component *p);
     /* The largest residual force; not finite if one of them is not. */
-    double (*noise)(const struct spari_component *p);
+    double (*residual_size)(const struct spari_component *p);
     /* Forms and factors the tangent at that iterate and condenses it to the ends. Returns 0 or 1 (singular). */
     int (*tangent)(struct spari_component *p);
     /* Whether the reused tangent can serve this step. */
@@ -40,22 +40,22 @@ typedef struct spari_component_row {
     /* The size of the corrections. */
     double (*correction_size)(const struct spari_component *p);
     /* Of a component without ends. solve: the corrections from the latest residual; returns 0 or 1. correct_newton: the
-       same in an iteration of Newton, after `noise`. advance: subtracts them, shortened to `longest`; returns their
-       size before, and the size of the motion in the step; 0: the solution is exact. end_solution: Newton has converged
-       in so many iterations, with a tangent formed in this attempt if `fresh`; 0: it has failed. */
+       same in an iteration of Newton, after `residual_size`. advance: subtracts them, shortened to `longest`; returns
+       their size before, and the size of the motion in the step; 0: the solution is exact. end_solution: Newton has
+       converged in so many iterations, with a tangent formed in this attempt if `fresh`; 0: it has failed. */
     int (*solve)(struct spari_component *p);
     int (*correct_newton)(struct spari_component *p);
-    double (*advance)(struct spari_component *p, double longest, double *way);
+    double (*advance)(struct spari_component *p, double longest, double *motion);
     void (*end_solution)(struct spari_component *p, int iterations, int fresh);
 
-    /* After the step. tangent_after: forms the tangent at its end if none is there; returns 0 or 1. take_more: the
-       residual becomes a small additional load [nodes][6] on the nodes. show_more: the corrections as a motion
+    /* After the step. tangent_after: forms the tangent at its end if none is there; returns 0 or 1. apply_load: the
+       residual becomes a small additional load [nodes][6] on the nodes. get_response: the corrections as a motion
        [nodes][6] of the nodes, displacements and small rotations, global axes. */
     int (*tangent_after)(struct spari_component *p);
-    void (*take_more)(struct spari_component *p, const double *load);
-    void (*show_more)(struct spari_component *p, double *motion);
+    void (*apply_load)(struct spari_component *p, const double *load);
+    void (*get_response)(struct spari_component *p, double *motion);
     /* Restores the end of a step that was read from a file. */
-    void (*look_back)(struct spari_component *p);
+    void (*restore_end)(struct spari_component *p);
 
     /* At t^0. start: factors the mass; returns 0 or 1 (singular). unbalance: the residual of the accelerations.
        correct_start: subtracts the corrections from the accelerations. end_start: the accelerations are found. */
@@ -64,19 +64,19 @@ typedef struct spari_component_row {
     void (*correct_start)(struct spari_component *p);
     void (*end_start)(struct spari_component *p);
 
-    /* Equilibrium under dead and `fluid` loads [nodes][6]. rest: begins from the last shape (onward), else from t^n.
-       balance_rest, tangent_rest: residual and tangent at the load factor f. shift: subtracts the part `cut` of the
-       corrections. keep_positions: saves the positions, or restores them (back). discard_rest: discards the
-       equilibrium. end_rest: accepts it. */
-    void (*rest)(struct spari_component *p, const double *fluid, int onward);
-    double (*balance_rest)(struct spari_component *p, double f);
-    int (*tangent_rest)(struct spari_component *p, double f);
+    /* Equilibrium under dead and `fluid` loads [nodes][6]. begin_static: begins from the last shape (onward), else from
+       t^n. balance_static, tangent_static: residual and tangent at the load factor f. shift: subtracts the part `cut`
+       of the corrections. keep_positions: saves the positions, or restores them (back). discard_static: discards the
+       equilibrium. end_static: accepts it. */
+    void (*begin_static)(struct spari_component *p, const double *fluid, int onward);
+    double (*balance_static)(struct spari_component *p, double f);
+    int (*tangent_static)(struct spari_component *p, double f);
     /* Whether the tangent of the equilibrium is positive definite: as spari_linear_definite. NULL: not known. */
-    int (*definite_rest)(struct spari_component *p, double f);
+    int (*definite_static)(struct spari_component *p, double f);
     void (*shift)(struct spari_component *p, double cut);
     void (*keep_positions)(struct spari_component *p, int back);
-    void (*discard_rest)(struct spari_component *p);
-    void (*end_rest)(struct spari_component *p);
+    void (*discard_static)(struct spari_component *p);
+    void (*end_static)(struct spari_component *p);
 } spari_component_row;
 
 extern const spari_component_row spari_component_body, spari_component_floating;
@@ -140,7 +140,7 @@ void spari_component_expand(spari_component *p, const double *x);
 /* Subtracts the part `cut` of the corrections. */
 void spari_component_correct(spari_component *p, double cut);
 /* The size of the motion in the step. */
-double spari_component_way(const spari_component *p);
+double spari_component_motion(const spari_component *p);
 /* Subtracts the corrections, times v, a and b, from the velocities, accelerations and algorithmic accelerations at the
    end. */
 void spari_component_shift_rates(spari_component *p, double v, double a, double b);

@@ -81,7 +81,7 @@ static void enter_nodes(spari_component *p) {
 
 static int stage_of_nodes(spari_component *p, const spari_part *part) {
     SPARI_TRY(spari_stage_begin(p->solver, p->member, &p->scheme, part, &p->stage));
-    p->state = &p->stage.ends.seen;
+    p->state = &p->stage.ends.absolute;
     return SPAR_OK;
 }
 
@@ -129,7 +129,7 @@ static void subtract_loads(void *context, int64_t from, int64_t to) {
 static double balance_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     const spari_body *body = s->body;
-    const spari_state *at = &p->stage.ends.seen;
+    const spari_state *at = &p->stage.ends.absolute;
     const int still = p->scheme.still;
     spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, s->increment);
     double scale =
@@ -169,7 +169,7 @@ static node_rotation rotation_since_tangent(const spari_component *p) {
     return (node_rotation){s,
                            {.lanes = s->body->lanes,
                             .dx = s->dx,
-                            .kept = s->tangent_q,
+                            .tangent_q = s->tangent_q,
                             .q = p->state->q,
                             .r = s->r,
                             .rotation = s->rotation}};
@@ -195,7 +195,7 @@ static int form_tangent(const spari_component *p, const spari_state *at) {
 static int tangent_of_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     spari_alpha_operators(s, &p->scheme, &p->stage.ends, s->increment);
-    if (form_tangent(p, &p->stage.ends.seen)) {
+    if (form_tangent(p, &p->stage.ends.absolute)) {
         return 1;
     }
     (void)rotate_back(p); /* the axes of the tangent are new */
@@ -276,12 +276,12 @@ static int correct_nodes(spari_component *p) {
     return 0;
 }
 
-static double advance_nodes(spari_component *p, double longest, double *way) {
+static double advance_nodes(spari_component *p, double longest, double *motion) {
     spari_solver *s = p->solver;
     const spari_corrected size =
         spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, s->rotation, longest, s->increment, s->dx);
     s->newton++;
-    *way = size.way + p->stage.ends.carried;
+    *motion = size.motion + p->stage.ends.root_motion;
     return size.by;
 }
 
@@ -323,8 +323,8 @@ static int tangent_after_step(spari_component *p) {
     return p->solver->factored ? 0 : form_tangent(p, &p->solver->to);
 }
 
-double spari_component_way(const spari_component *p) {
-    return spari_alpha_size(p->solver, p->solver->increment) + p->stage.ends.carried;
+double spari_component_motion(const spari_component *p) {
+    return spari_alpha_size(p->solver, p->solver->increment) + p->stage.ends.root_motion;
 }
 
 void spari_component_shift_rates(spari_component *p, double v, double a, double b) {
@@ -340,20 +340,20 @@ void spari_component_shift_rates(spari_component *p, double v, double a, double 
 
 /* ---- response to loads ---- */
 
-static void take_more_of_nodes(spari_component *p, const double *load) {
-    p->member->row->take_more(p->member, load, p->solver->r);
+static void apply_load_to_nodes(spari_component *p, const double *load) {
+    p->member->row->apply_load(p->member, load, p->solver->r);
     memset(p->solver->r, 0, (size_t)spari_member_constrained(p->member) * sizeof(double));
 }
 
-static void show_more_of_nodes(spari_component *p, double *motion) {
-    p->member->row->show_more(p->member, p->solver->dx, motion);
+static void response_of_nodes(spari_component *p, double *motion) {
+    p->member->row->get_response(p->member, p->solver->dx, motion);
 }
 
-static void look_back_at_nodes(spari_component *p) {
+static void restore_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     p->scheme = spari_scheme_last(p->member, s->body->D != NULL, &s->steps.solved);
     p->stage.ends = (spari_ends){s->from, s->to, s->to, NULL, 0};
-    p->state = &p->stage.ends.seen;
+    p->state = &p->stage.ends.absolute;
 }
 
 /* ---- consistent initial accelerations ---- */
@@ -404,9 +404,9 @@ static void end_start_of_nodes(spari_component *p) {
 
 /* ---- equilibrium ---- */
 
-static void rest_nodes(spari_component *p, const double *fluid, int onward) {
+static void begin_static_of_nodes(spari_component *p, const double *fluid, int onward) {
     spari_solver *s = p->solver;
-    p->member->row->take_rest(p->member, fluid);
+    p->member->row->take_static(p->member, fluid);
     if (!onward) {
         memcpy(s->to.q, s->begin.q, (size_t)(7 * s->n) * sizeof *s->to.q);
     }
@@ -427,7 +427,7 @@ static int rotates_with_mass(const spari_component *p) {
     return p->rotating && p->solver->body->mass && (p->member->effects & SPAR_EFFECT_INERTIA);
 }
 
-static double balance_nodes_at_rest(spari_component *p, double f) {
+static double balance_nodes_static(spari_component *p, double f) {
     spari_solver *s = p->solver;
     const spari_body body = spari_body_in_part(s->body, f);
     rotate_nodes(p, f);
@@ -448,7 +448,7 @@ static double balance_nodes_at_rest(spari_component *p, double f) {
     return scale;
 }
 
-static spari_tangent_at tangent_at_rest(const spari_component *p, double f, spari_steady_rotation *rotation) {
+static spari_tangent_at tangent_static(const spari_component *p, double f, spari_steady_rotation *rotation) {
     const spari_solver *s = p->solver;
     spari_tangent_at t = {.q = s->to.q, .factor = f};
     if (rotates_with_mass(p)) {
@@ -459,20 +459,20 @@ static spari_tangent_at tangent_at_rest(const spari_component *p, double f, spar
     return t;
 }
 
-static int tangent_of_nodes_at_rest(spari_component *p, double f) {
+static int tangent_of_nodes_static(spari_component *p, double f) {
     const spari_body body = spari_body_in_part(p->solver->body, f), *whole = p->solver->body;
     spari_steady_rotation rotation;
-    const spari_tangent_at t = tangent_at_rest(p, f, &rotation);
+    const spari_tangent_at t = tangent_static(p, f, &rotation);
     p->solver->body = &body;
     int singular = spari_solver_factor(p->solver, p->member, &t);
     p->solver->body = whole;
     return singular;
 }
 
-static int definite_at_rest(spari_component *p, double f) {
+static int definite_static(spari_component *p, double f) {
     const spari_body body = spari_body_in_part(p->solver->body, f), *whole = p->solver->body;
     spari_steady_rotation rotation;
-    const spari_tangent_at t = tangent_at_rest(p, f, &rotation);
+    const spari_tangent_at t = tangent_static(p, f, &rotation);
     p->solver->body = &body;
     spari_solver_form(p->solver, p->member, &t);
     p->solver->body = whole;
@@ -488,14 +488,14 @@ static void keep_positions_of_nodes(spari_component *p, int back) {
     memcpy(back ? s->to.q : s->best, back ? s->best : s->to.q, (size_t)(7 * s->n) * sizeof(double));
 }
 
-static void discard_rest_of_nodes(spari_component *p) {
+static void discard_static_of_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     spari_snapshot_close(&s->before);
     memcpy(s->to.q, s->begin.q, (size_t)(25 * s->n) * sizeof(double));
     s->factored = 0;
 }
 
-static void end_rest_of_nodes(spari_component *p) {
+static void end_static_of_nodes(spari_component *p) {
     keep_positions_of_nodes(p, 1);
     rotate_nodes(p, 1);
     p->solver->factored = 0;
@@ -512,7 +512,7 @@ const spari_component_row spari_component_body = {
     .end = end_nodes,
     .predict = predict_nodes,
     .balance = balance_nodes,
-    .noise = rotate_back,
+    .residual_size = rotate_back,
     .tangent = tangent_of_nodes,
     .serves = nodes_serve,
     .correction_size = correction_of_nodes,
@@ -521,21 +521,21 @@ const spari_component_row spari_component_body = {
     .advance = advance_nodes,
     .end_solution = end_solution_of_nodes,
     .tangent_after = tangent_after_step,
-    .take_more = take_more_of_nodes,
-    .show_more = show_more_of_nodes,
-    .look_back = look_back_at_nodes,
+    .apply_load = apply_load_to_nodes,
+    .get_response = response_of_nodes,
+    .restore_end = restore_nodes,
     .start = start_nodes,
     .unbalance = unbalance_nodes,
     .correct_start = correct_start_of_nodes,
     .end_start = end_start_of_nodes,
-    .rest = rest_nodes,
-    .balance_rest = balance_nodes_at_rest,
-    .tangent_rest = tangent_of_nodes_at_rest,
-    .definite_rest = definite_at_rest,
+    .begin_static = begin_static_of_nodes,
+    .balance_static = balance_nodes_static,
+    .tangent_static = tangent_of_nodes_static,
+    .definite_static = definite_static,
     .shift = shift_nodes,
     .keep_positions = keep_positions_of_nodes,
-    .discard_rest = discard_rest_of_nodes,
-    .end_rest = end_rest_of_nodes,
+    .discard_static = discard_static_of_nodes,
+    .end_static = end_static_of_nodes,
 };
 
 /* ---- operations of the table of fidelities ---- */

@@ -39,13 +39,13 @@ int spari_fidelity_check(const spar_member *m) {
                   "modal; choose one of these (spar_member_set_fidelity)",
                   m->name);
     SPARI_REQUIRE(m->session,
-                  !m->beam || m->beam->spring_count == 0 || row->seen != SPARI_SEEN_LINEAR ||
+                  !m->beam || m->beam->spring_count == 0 || row->frame != SPARI_FRAME_LINEAR ||
                       m->root != SPAR_ROOT_DRIVEN,
                   SPAR_ERR_UNSUPPORTED,
                   "member '%s' is linear in the frame of a driven root, which moves relative to its foundation "
                   "(spar_beam_set_foundation); use SPAR_FIDELITY_EXACT, or fix the root",
                   m->name);
-    const spar_joint *joint = row->seen == SPARI_SEEN_LINEAR ? spari_joint_of(m) : NULL;
+    const spar_joint *joint = row->frame == SPARI_FRAME_LINEAR ? spari_joint_of(m) : NULL;
     SPARI_REQUIRE(m->session, !joint, SPAR_ERR_UNSUPPORTED,
                   "member '%s' is a linear or modal beam, which joint '%s' cannot connect; use SPAR_FIDELITY_EXACT "
                   "(spar_member_set_fidelity), which costs about as much with joints",

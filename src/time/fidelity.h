@@ -21,7 +21,7 @@ typedef struct spari_fidelity {
     int prescribed_root; /* it needs a root that is fixed or driven */
     int lower;           /* the next simpler SPAR_FIDELITY_*, which advice tries; 0: none */
     int whole;           /* one rigid body at the root carries all nodes */
-    spari_view seen;
+    spari_frame_kind frame;
 
     /* every rank, before anything is built: refuses a description that it cannot serve */
     int (*check)(const spar_member *m);
@@ -44,10 +44,10 @@ typedef struct spari_fidelity {
     int (*repeat)(spar_member *m, double dt, int (*advance)(spar_member *m, double dt));
     /* replaces load [nodes][6] by the part of it that moves the member: without the part that the root takes, that
        cancels between the ends of two elements, or that a rigid body or modes do not represent. Returns 0 or
-       SPAR_ERR_MEMORY. NULL: all loads move the member. felt_here: only the rank that finds the motion can call it;
-       else every rank can, without a motion */
-    int (*felt)(spar_member *m, double *load);
-    int felt_here;
+       SPAR_ERR_MEMORY. NULL: all loads move the member. effective_here: only the rank that finds the motion can call
+       it; else every rank can, without a motion */
+    int (*effective_load)(spar_member *m, double *load);
+    int effective_here;
     /* a step begins; is accepted: t^{n+1} becomes t^n; is rejected: data that are reused from step to step are
        restored */
     void (*begin)(spar_member *m);
@@ -56,7 +56,7 @@ typedef struct spari_fidelity {
     /* the effort since the member was made; NULL: negligible */
     void (*effort)(const spar_member *m, spari_effort *effort);
     /* finds its equilibrium, if this is the same under all loads */
-    void (*rest)(spar_member *m);
+    void (*equilibrium)(spar_member *m);
 
     /* every rank: the reaction of the root in m->after (NULL: none), with a workspace of so many doubles, which
        suffices for follower and line loads that a host may give later */
@@ -78,16 +78,16 @@ typedef struct spari_fidelity {
 
     /* For members that are solved (assembly.h). component: the operations (component.h); NULL: the motion is given, and
        joints do not move it. publish: writes the motion found into m->after. For members whose unknowns are motions of
-       nodes, on the owner: solver; take_loads: passes the loads of a step to it; take_rest: passes dead and `fluid`
+       nodes, on the owner: solver; take_loads: passes the loads of a step to it; take_static: passes dead and `fluid`
        loads for an equilibrium. */
     const struct spari_component_row *component;
     struct spari_solver *(*solver)(const spar_member *m);
     void (*take_loads)(spar_member *m);
-    void (*take_rest)(spar_member *m, const double *fluid);
-    /* after a step, for `response`: take_more: a small additional load [nodes][6] as forces r on the unknowns.
-       show_more: the motion x of the unknowns as a motion [nodes][6]. */
-    void (*take_more)(spar_member *m, const double *load, double *r);
-    void (*show_more)(spar_member *m, const double *x, double *motion);
+    void (*take_static)(spar_member *m, const double *fluid);
+    /* after a step, for `response`: apply_load: a small additional load [nodes][6] as forces r on the unknowns.
+       get_response: the motion x of the unknowns as a motion [nodes][6]. */
+    void (*apply_load)(spar_member *m, const double *load, double *r);
+    void (*get_response)(spar_member *m, const double *x, double *motion);
     void (*publish)(spar_member *m);
 
     /* The state on which the next steps depend, to the last bit, apart from the member itself, as doubles. is_state:
@@ -122,8 +122,8 @@ static inline int spari_fidelity_is_here(const spar_member *member) {
     return !member->row->solved || member->owner == spari_comm_rank(member->session->ranks.comm);
 }
 /* Whether spar finds its static equilibrium. */
-static inline int spari_fidelity_has_rest(const spar_member *member) {
-    return member->row->component || member->row->rest;
+static inline int spari_fidelity_has_equilibrium(const spar_member *member) {
+    return member->row->component || member->row->equilibrium;
 }
 /* Number of doubles in the state of a committed member on this rank; 0: none. */
 static inline int64_t spari_fidelity_state_size(const spar_member *member) {

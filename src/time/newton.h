@@ -1,6 +1,5 @@
-/* Newton's method for a substep (assembly/assembly.c). An attempt that fails
-   is followed by a more careful one from other starting values. The loops stand in a header so that the compiler
-   inlines the operations. */
+/* Newton's method for a substep (assembly/assembly.c). An attempt that fails is followed by a more careful one from
+   other starting values. The loops stand in a header so that the compiler inlines the operations. */
 #ifndef SPARI_NEWTON_H
 #define SPARI_NEWTON_H
 
@@ -21,8 +20,9 @@ typedef struct spari_newton {
     double least;    /* lower limit of a contraction rate that the next solution uses */
     /* Computes starting values. Returns 0 if this kind does not exist here. */
     int (*predict)(void *self, spari_guess stays);
-    /* Begins an attempt, with the reused tangent if `kept` and if it may serve. Returns whether there is a tangent. */
-    int (*begin)(void *self, int kept);
+    /* Begins an attempt, with the earlier tangent if `reused` and if it may serve. Returns whether there is a tangent.
+     */
+    int (*begin)(void *self, int reused);
     /* Corrects once, by `longest` at most. Returns NULL, or the reason of a failure. */
     const char *(*iterate)(void *self, double longest, spari_iterate *it);
     /* The next iteration forms a tangent. */
@@ -33,7 +33,7 @@ typedef struct spari_newton {
 
 /* An attempt: with the reused tangent; with a new one; with a new one in every iteration and short corrections. */
 typedef struct spari_attempt {
-    int kept, full;
+    int reused, full;
     spari_guess stays;
 } spari_attempt;
 
@@ -45,7 +45,7 @@ typedef struct spari_attempt {
 /* If a solution ends before it shows a contraction rate, the earlier rate is multiplied by this factor. */
 #define SPARI_AGEING 1.5
 
-static inline double spari_newton_kept(const spari_newton *how, double rate) {
+static inline double spari_newton_next_rate(const spari_newton *how, double rate) {
     return rate <= 0 ? 0 : rate < how->least ? how->least : rate < SPARI_SLOW ? rate : SPARI_SLOW;
 }
 
@@ -54,7 +54,7 @@ static inline double spari_newton_kept(const spari_newton *how, double rate) {
 static inline const char *spari_newton_attempt(const spari_newton *how, void *self, spari_attempt try, int most,
                                                spari_trace *trace, int *iterations) {
     double last = 0, longest = try.full ? SPARI_LONGEST : INFINITY, known = try.full ? 0 : trace->rate, worst = 0;
-    int fresh = !how->begin(self, try.kept);
+    int fresh = !how->begin(self, try.reused);
     for (int it = 1; it <= most; it++, ++*iterations) {
         spari_iterate n;
         const char *wrong = how->iterate(self, longest, &n);
@@ -67,7 +67,8 @@ static inline const char *spari_newton_attempt(const spari_newton *how, void *se
         worst = theta > worst ? theta : worst;
         if (left <= n.tolerance || n.rounded || (theta > 0.5 && n.small)) {
             trace->left = left;
-            trace->rate = n.rounded ? trace->rate : spari_newton_kept(how, last > 0 ? worst : SPARI_AGEING * known);
+            trace->rate =
+                n.rounded ? trace->rate : spari_newton_next_rate(how, last > 0 ? worst : SPARI_AGEING * known);
             how->end(self, it, fresh);
             return NULL;
         }
@@ -84,9 +85,9 @@ static inline const char *spari_newton_attempt(const spari_newton *how, void *se
     return "does not converge";
 }
 
-/* kept: there is a tangent that may serve. trace: of the last solution; its rate serves the first iteration. Returns
+/* reused: there is a tangent that may serve. trace: of the last solution; its rate serves the first iteration. Returns
    NULL, or the reason why the last attempt failed. */
-static inline const char *spari_newton_solve(const spari_newton *how, void *self, int kept, int most,
+static inline const char *spari_newton_solve(const spari_newton *how, void *self, int reused, int most,
                                              spari_trace *trace, int *iterations) {
     static const spari_attempt attempts[] = {{1, 0, SPARI_KEEP_ACCELERATION},
                                              {0, 0, SPARI_KEEP_ACCELERATION},
@@ -94,7 +95,7 @@ static inline const char *spari_newton_solve(const spari_newton *how, void *self
                                              {0, 1, SPARI_KEEP_VELOCITY},
                                              {0, 1, SPARI_KEEP_POSITION}};
     const char *wrong = NULL;
-    for (size_t k = kept ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
+    for (size_t k = reused ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
         if (!how->predict(self, attempts[k].stays)) {
             continue;
         }

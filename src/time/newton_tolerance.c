@@ -31,11 +31,11 @@ void spari_newton_stop_accept(spar_member *m) {
 /* The Newton error acts as a force, and forces change velocities lastingly. For a motion at omega, the position
    error (E1) has to be compared with the velocity error over omega. omega h is the ratio of the change of the
    acceleration over the step to the acceleration. */
-double spari_newton_tolerance(const spar_member *m, const spari_scheme *c, double way) {
+double spari_newton_tolerance(const spar_member *m, const spari_scheme *c, double motion) {
     const spar_session *s = m->session;
-    double strict = s->newton.atol + s->newton.rtol * way, change = c->h * m->accuracy.jerk;
+    double strict = s->newton.atol + s->newton.rtol * motion, change = c->h * m->accuracy.jerk;
     if (c->rule != SPARI_ALPHA) {
-        return spari_newton_tolerance_stage(s, c, way);
+        return spari_newton_tolerance_stage(s, c, motion);
     }
     if (s->newton.strict || c->still || !(change > 0)) {
         return strict;
@@ -44,5 +44,5 @@ double spari_newton_tolerance(const spar_member *m, const spari_scheme *c, doubl
     double left = spari_step_error(c, change) * fmin(change / m->accuracy.acceleration, 1);
     left *= spari_member_root_is_prescribed(m) ? part : part_if_free;
     left = fmin(left, s->newton.share * m->accuracy.acceleration / c->cm);
-    return fmax(strict, fmin(left, most * way));
+    return fmax(strict, fmin(left, most * motion));
 }

@@ -14,7 +14,7 @@ typedef struct spari_node_work {
     const double *stage;          /* [n][6] velocities at the end of a trapezoidal stage, for the next one */
     double *x, *dx;               /* [n][6] increments and their correction */
     double cut;                   /* how much of the correction is applied */
-    const double *q, *kept;       /* [n][7] now; [n][4] rotations when the tangent was formed */
+    const double *q, *tangent_q;  /* [n][7] now; [n][4] rotations when the tangent was formed */
     double *rotation;             /* [n][4] rotation since; NULL: the correction is not in the axes of the tangent */
     const double *r;              /* [n][6] forces */
     const double *R;              /* [9] orientation of a driven root; NULL: there is none */
@@ -25,9 +25,9 @@ typedef struct spari_root_view {
     int lanes;
     const spar_member *member;
     const spari_pose *root;
-    const double *R;               /* [9] its orientation */
-    const double *omega, *alpha;   /* its angular velocity and acceleration in its own axes */
-    const spari_state *own, *seen; /* relative to the root, and absolute */
+    const double *R;                   /* [9] its orientation */
+    const double *omega, *alpha;       /* its angular velocity and acceleration in its own axes */
+    const spari_state *own, *absolute; /* relative to the root, and absolute */
 } spari_root_view;
 
 /* The jump of a root, in its axes (driven_root.h). The nodes do not follow it. */
@@ -66,9 +66,9 @@ spari_node_size spari_nodes_positions(const spari_node_work *t, int64_t from, in
 void spari_nodes_advance(const spari_node_work *t, int64_t from, int64_t to, spari_node_size *by, spari_node_size *way);
 /* The size of x. */
 spari_node_size spari_nodes_size(const spari_node_work *t, int64_t from, int64_t to);
-/* seen := the absolute motion of own. */
+/* absolute := the motion of own. */
 void spari_nodes_show(const spari_root_view *t, int64_t from, int64_t to);
-/* own := seen relative to the root; b stays. */
+/* own := absolute, relative to the root; b stays. */
 void spari_nodes_look(const spari_root_view *t, int64_t from, int64_t to);
 /* Subtracts the jump of the root from the positions and rates of own. */
 void spari_nodes_lose(const spari_root_jump *t, int64_t from, int64_t to);

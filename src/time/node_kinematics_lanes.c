@@ -129,11 +129,11 @@ HERE void NAME(tangent_inverse)(const L *psi, L *y) {
 
 HERE void NAME(forces_back_block)(const int whole, const int64_t *at, const spari_node_work *t, int64_t i, L *most,
                                   L *poison) {
-    L q[4], kept[4], rotation[4], r[6];
+    L q[4], before[4], rotation[4], r[6];
     NAME(pick_rows)(whole, at, 7, 4, t->q + 7 * i + 3, q);
-    NAME(pick_rows)(whole, at, 4, 4, t->kept + 4 * i, kept);
+    NAME(pick_rows)(whole, at, 4, 4, t->tangent_q + 4 * i, before);
     NAME(pick_rows)(whole, at, 6, 6, t->r + 6 * i, r);
-    const L back[4] = {kept[0], -kept[1], -kept[2], -kept[3]};
+    const L back[4] = {before[0], -before[1], -before[2], -before[3]};
     NAME(quat_mul)(q, back, rotation);
     NAME(drop_rows)(whole, at, 4, 4, t->rotation + 4 * i, rotation);
     for (int k = 0; k < 6; k++) {
@@ -478,16 +478,16 @@ HERE void NAME(show_block)(const int whole, const int64_t *at, const spari_root_
     for (int k = 3; k < 7; k++) {
         out[k] = out[k] * over;
     }
-    NAME(drop_rows)(whole, at, 7, 7, t->seen->q + 7 * i, out);
-    NAME(drop_rows)(whole, at, 6, 6, t->seen->v + 6 * i, v);
-    NAME(drop_rows)(whole, at, 6, 6, t->seen->a + 6 * i, a);
+    NAME(drop_rows)(whole, at, 7, 7, t->absolute->q + 7 * i, out);
+    NAME(drop_rows)(whole, at, 6, 6, t->absolute->v + 6 * i, v);
+    NAME(drop_rows)(whole, at, 6, 6, t->absolute->a + 6 * i, a);
 }
 
 TARGET static void NAME(show)(const spari_root_view *t, int64_t from, int64_t to) {
 #define WORK(whole) NAME(show_block)(whole, at, t, i);
     EACH_BLOCK(from, to, WORK)
 #undef WORK
-    memcpy(t->seen->b + 6 * from, t->own->b + 6 * from, (size_t)(6 * (to - from)) * sizeof *t->own->b);
+    memcpy(t->absolute->b + 6 * from, t->own->b + 6 * from, (size_t)(6 * (to - from)) * sizeof *t->own->b);
 }
 
 /* ---- motion relative to a root ---- */
@@ -513,9 +513,9 @@ HERE void NAME(look_block)(const int whole, const int64_t *at, const spari_root_
     const spari_pose *root = t->root;
     L q[7], v[6], a[6], d[3], r[3], rotation[4], out[7], spin[3], grow[3];
     NAME(arms_of)(whole, at, t->member, i, r);
-    NAME(pick_rows)(whole, at, 7, 7, t->seen->q + 7 * i, q);
-    NAME(pick_rows)(whole, at, 6, 6, t->seen->v + 6 * i, v);
-    NAME(pick_rows)(whole, at, 6, 6, t->seen->a + 6 * i, a);
+    NAME(pick_rows)(whole, at, 7, 7, t->absolute->q + 7 * i, q);
+    NAME(pick_rows)(whole, at, 6, 6, t->absolute->v + 6 * i, v);
+    NAME(pick_rows)(whole, at, 6, 6, t->absolute->a + 6 * i, a);
     NAME(splat3)(t->omega, spin);
     NAME(splat3)(t->alpha, grow);
     for (int k = 0; k < 4; k++) {
@@ -548,7 +548,7 @@ TARGET static void NAME(look)(const spari_root_view *t, int64_t from, int64_t to
 #define WORK(whole) NAME(look_block)(whole, at, t, i);
     EACH_BLOCK(from, to, WORK)
 #undef WORK
-    memcpy(t->own->b + 6 * from, t->seen->b + 6 * from, (size_t)(6 * (to - from)) * sizeof *t->own->b);
+    memcpy(t->own->b + 6 * from, t->absolute->b + 6 * from, (size_t)(6 * (to - from)) * sizeof *t->own->b);
 }
 
 HERE void NAME(lose_block)(const int whole, const int64_t *at, const spari_root_jump *t, int64_t i) {

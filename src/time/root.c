@@ -31,7 +31,7 @@ void spari_root_show(const spari_solver *solver, const spar_member *m, spari_end
     if (!e->root) {
         return;
     }
-    spari_root_view t = {solver->body->lanes, m, e->root, R, omega, alpha, &e->to, &e->seen};
+    spari_root_view t = {solver->body->lanes, m, e->root, R, omega, alpha, &e->to, &e->absolute};
     spari_quat_matrix(e->root->q + 3, R);
     spari_matrix_times_back(R, e->root->v + 3, omega);
     spari_matrix_times_back(R, e->root->a + 3, alpha);
@@ -56,7 +56,7 @@ static void lose_jump(const spari_solver *solver, const spar_member *m, double h
     spari_solver_spread(solver, lose_of_nodes, &t);
 }
 
-double spari_carried(const spari_pose *from, const spari_pose *to, double length) {
+double spari_root_motion(const spari_pose *from, const spari_pose *to, double length) {
     double rotation[4], psi[3], way[3];
     spari_quat_between(from->q + 3, to->q + 3, rotation);
     spari_quat_log(rotation, psi);
@@ -73,7 +73,7 @@ static spari_ends ends_of_root(const spari_solver *s, const spar_member *m, cons
     if (m->root == SPAR_ROOT_DRIVEN && s->own[0].q && !c->still) {
         const spari_pose before = spari_pose_of(from->q, from->v, from->a);
         e.from = s->own[0], e.to = s->own[1], e.root = root;
-        e.carried = spari_carried(&before, root, s->body->length);
+        e.root_motion = spari_root_motion(&before, root, s->body->length);
         spari_root_look_from(s, m, &before, from, &e.from);
         lose_jump(s, m, c->span, &before, root, &e.from);
     }
@@ -166,7 +166,7 @@ static spari_ends ends_from_rigid(const spari_solver *s, const spar_member *m, c
     g->along = move_along(&g->rigid, c->span);
     spari_ends e = {s->own[0], s->own[1], s->to, &g->along, 0};
     spari_root_look_from(s, m, &g->rigid, &s->from, &e.from);
-    e.carried = c->span * (spari_norm(g->rigid.v) / s->body->length + spari_norm(g->rigid.v + 3));
+    e.root_motion = c->span * (spari_norm(g->rigid.v) / s->body->length + spari_norm(g->rigid.v + 3));
     return e;
 }
 
@@ -411,10 +411,11 @@ void spari_stage_end(const spari_solver *s, spar_member *m, const spari_scheme *
     const spari_ends *e = &g->ends;
     int driven = m->root == SPAR_ROOT_DRIVEN && e->root;
     if (c->rule == SPARI_BACKWARD) {
-        spari_scheme_restart(c, 6 * s->n, driven ? e->from.a : s->from.a, driven ? e->to.a : e->seen.a, e->seen.b);
+        spari_scheme_restart(c, 6 * s->n, driven ? e->from.a : s->from.a, driven ? e->to.a : e->absolute.a,
+                             e->absolute.b);
     }
     if (c->rule == SPARI_BACKWARD && e->root) { /* the function that shows the motion reads it there */
-        memcpy(e->to.b, e->seen.b, (size_t)(6 * s->n) * sizeof *e->to.b);
+        memcpy(e->to.b, e->absolute.b, (size_t)(6 * s->n) * sizeof *e->to.b);
     }
     g->before = g->root;
     spari_scheme_dissipate(m, c, &g->power, s->power);

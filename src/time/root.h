@@ -6,12 +6,12 @@
 #include "body_solver.h"
 #include "scheme.h"
 
-/* The ends of a substep in the variables of the scheme: relative to a driven root, else absolute. `seen` is the end
+/* The ends of a substep in the variables of the scheme: relative to a driven root, else absolute. `absolute` is the end
    as the body takes it. */
 typedef struct spari_ends {
-    spari_state from, to, seen;
+    spari_state from, to, absolute;
     const spari_pose *root; /* reference of the motion at the end: a driven root, or a rigid motion; NULL: none */
-    double carried; /* how far the reference moves the member: rotation, and displacement relative to its length */
+    double root_motion; /* how far the reference moves the member: rotation, and displacement relative to its length */
 } spari_ends;
 
 /* A stage of a substep of a member whose unknowns are the motions of nodes. */
@@ -39,7 +39,7 @@ int spari_stage_begin(spari_solver *solver, const spar_member *member, const spa
 void spari_stage_drive(const spar_member *member, const spari_scheme *scheme, const spari_part *part,
                        spari_stage *stage);
 /* How far a root moves the member: rotation, and displacement relative to its length. */
-double spari_carried(const spari_pose *from, const spari_pose *to, double length);
+double spari_root_motion(const spari_pose *from, const spari_pose *to, double length);
 /* Whether the substep moved the member too little for a second solution to exist, or the work of its loads is not
    known. */
 int spari_stage_is_near(const spari_solver *solver, const spar_member *member, double h);

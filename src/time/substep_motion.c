@@ -27,7 +27,7 @@ static spari_node_work alpha_work_on(const spari_solver *s, const spari_scheme *
                              .x = x,
                              .dx = s->dx,
                              .stage = s->stage_v,
-                             .kept = s->tangent_q,
+                             .tangent_q = s->tangent_q,
                              .cut = 1};
 }
 
@@ -203,9 +203,9 @@ static void correct_span(void *context, int64_t from, int64_t to) {
 /* Both at once if nothing is cut. */
 static void advance_span(void *context, int64_t from, int64_t to) {
     const alpha_nodes *t = context;
-    spari_node_size by, way;
-    spari_nodes_advance(&t->work, from, to, &by, &way);
-    put_size(t, from, way);
+    spari_node_size by, motion;
+    spari_nodes_advance(&t->work, from, to, &by, &motion);
+    put_size(t, from, motion);
     t->s->most_by[from / SPARI_SPAN] = size_of_span(t, by);
 }
 
@@ -259,8 +259,8 @@ double spari_alpha_size(const spari_solver *s, double *x) {
 }
 
 /* A tangent of a slightly other dt contracts as fast (hosts' steps differ in their last bits, or by per mille). */
-int spari_alpha_close(double x, double kept) {
-    return fabs(x - kept) <= 0.01 * fabs(kept);
+int spari_alpha_close(double x, double before) {
+    return fabs(x - before) <= 0.01 * fabs(before);
 }
 
 void spari_static_shift(int n, double cut, const double *dx, double *q) {

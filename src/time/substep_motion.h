@@ -18,7 +18,7 @@ void spari_alpha_operators(const spari_solver *s, const spari_scheme *c, const s
 /* Sizes of a correction and of the resulting increments: translations relative to the member's length, rotations in
    radians. */
 typedef struct spari_corrected {
-    double by, way;
+    double by, motion;
 } spari_corrected;
 /* x -= the correction dx, in global axes, shortened to `longest`, rotations through the inverse tangent operator.
    rotation: first rotates the correction to the present axes; NULL: does not. */
@@ -33,6 +33,6 @@ double spari_alpha_size(const spari_solver *s, double *x);
 /* Statics: q [n][7] less the correction dx [n][6], shortened by `cut`. */
 void spari_static_shift(int n, double cut, const double *dx, double *q);
 /* Whether a coefficient x is close enough to that of the reused tangent. */
-int spari_alpha_close(double x, double kept);
+int spari_alpha_close(double x, double before);
 
 #endif
