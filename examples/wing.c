@@ -96,15 +96,19 @@ static void solve_flow(const mesh *m) {
 /* One beam of 8 nodes; x along the span, y along the chord. */
 static spar_member *create_wing(spar_session *s) {
     const double eta[2] = {0, 1}, axis[6] = {0, 0, 0, span, 0, 0}, damping[6] = {2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3};
-    const double stiffness[6] = {1e9, 2e8, 2e8, torsion, 9.77e6, 1e9}, m = 35.71, aft = 0.1 * chord;
-    const double inertia[6] = {m, m, m, 8.64, 0.1, 8.54};
-    double K[36] = {0}, M[36] = {0};
-    for (int i = 0; i < 6; i++) {
-        K[7 * i] = stiffness[i];
-        M[7 * i] = inertia[i];
-    }
-    M[5] = M[30] = -m * aft; /* the centre of mass lies behind the line */
-    M[15] = M[20] = m * aft;
+    const double m = 35.71, aft = 0.1 * chord; /* the mass centre lies behind the line */
+    const double section[SPAR_SECTION_COUNT] = {[SPAR_SECTION_EA] = 1e9,
+                                                [SPAR_SECTION_GA_Y] = 2e8,
+                                                [SPAR_SECTION_GA_Z] = 2e8,
+                                                [SPAR_SECTION_GJ] = torsion,
+                                                [SPAR_SECTION_EI_Y] = 9.77e6,
+                                                [SPAR_SECTION_EI_Z] = 1e9,
+                                                [SPAR_SECTION_MASS] = m,
+                                                [SPAR_SECTION_MASS_Y] = aft,
+                                                [SPAR_SECTION_INERTIA_Y] = 0.1,
+                                                [SPAR_SECTION_INERTIA_Z] = 8.54 - m * aft * aft};
+    double K[36], M[36];
+    check(NULL, spar_section_build(SPAR_SECTION_COUNT, section, K, M));
     spar_member *wing = NULL;
     check(s, spar_beam_create(s, "wing", 1, 8, &wing));
     check(s, spar_beam_set_axis(wing, 2, eta, axis, NULL));

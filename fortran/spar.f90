@@ -14,7 +14,7 @@
 ! member%set_axis. The calls of the step belong to the session: session%step_begin, ..., session%step. spar_point_create,
 ! spar_rigid_create and spar_beam_create are member%create_point, %create_rigid and %create_beam, spar_link_create and
 ! spar_link_set_spring joint%create_link and %set_link_spring, spar_spring_create joint%create_spring; a joint to the ground is
-! created without b. spar_status_text, spar_version, spar_has, spar_effect_name and spar_vtk_series_add
+! created without b. spar_status_text, spar_version, spar_has, spar_effect_name, spar_vtk_series_add and spar_section_*
 ! keep their names. A session has one variable, which owns it: spar_member_get_session and spar_trial_get_session are left to hosts
 ! that use spar_c.
 !
@@ -48,7 +48,10 @@ module spar
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_float, c_funloc, c_funptr, &
       c_int, c_int64_t, c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
   use spar_calls, c_status_text => spar_status_text, c_version => spar_version, c_has => spar_has, &
-      c_effect_name => spar_effect_name, c_series_add => spar_vtk_series_add
+      c_effect_name => spar_effect_name, c_series_add => spar_vtk_series_add, &
+      c_section_from_shape => spar_section_from_shape, c_section_build => spar_section_build, &
+      c_section_describe => spar_section_describe, c_section_report => spar_section_report, &
+      c_section_transform => spar_section_transform
   use spar_support
   implicit none
   private
@@ -56,6 +59,7 @@ module spar
   public :: spar_session, spar_member, spar_joint, spar_fluid, spar_trial
   public :: spar_fluid_solver, spar_before_step, spar_log, spar_progress
   public :: spar_status_text, spar_version, spar_has, spar_effect_name, spar_vtk_series_add
+  public :: spar_section_from_shape, spar_section_build, spar_section_describe, spar_section_report, spar_section_transform
 
   ! constants of the headers {
   integer, parameter, public :: SPAR_OK = 0, SPAR_ERR_ARGUMENT = 1, SPAR_ERR_STATE = 2, SPAR_ERR_MEMORY = 3, &
@@ -67,6 +71,16 @@ module spar
   integer, parameter, public :: SPAR_ROOT_FREE = 0, SPAR_ROOT_FIXED = 1, SPAR_ROOT_PINNED = 2, SPAR_ROOT_DRIVEN = 3
   integer, parameter, public :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
   integer, parameter, public :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
+  integer, parameter, public :: SPAR_SECTION_EA = 0, SPAR_SECTION_GA_Y = 1, SPAR_SECTION_GA_Z = 2, &
+      SPAR_SECTION_GJ = 3, SPAR_SECTION_EI_Y = 4, SPAR_SECTION_EI_Z = 5, SPAR_SECTION_ANGLE = 6, &
+      SPAR_SECTION_SHEAR_ANGLE = 7, SPAR_SECTION_TENSION_Y = 8, SPAR_SECTION_TENSION_Z = 9, &
+      SPAR_SECTION_SHEAR_Y = 10, SPAR_SECTION_SHEAR_Z = 11, SPAR_SECTION_MASS = 12, SPAR_SECTION_MASS_Y = 13, &
+      SPAR_SECTION_MASS_Z = 14, SPAR_SECTION_INERTIA_Y = 15, SPAR_SECTION_INERTIA_Z = 16, &
+      SPAR_SECTION_INERTIA_ANGLE = 17, SPAR_SECTION_COUNT = 18
+  integer, parameter, public :: SPAR_SHAPE_CIRCLE = 0, SPAR_SHAPE_TUBE = 1, SPAR_SHAPE_RECTANGLE = 2, SPAR_SHAPE_BOX = 3
+  integer, parameter, public :: SPAR_FINDING_ASYMMETRIC = 1, SPAR_FINDING_INDEFINITE = 2, SPAR_FINDING_MASS = 4, &
+      SPAR_FINDING_BEND_TWIST = 8, SPAR_FINDING_STRETCH_TWIST = 16, SPAR_FINDING_STRETCH_SHEAR = 32, &
+      SPAR_FINDING_BEND_SHEAR = 64, SPAR_FINDING_POLAR = 128, SPAR_FINDING_ORDER = 256, SPAR_FINDING_UNITS = 512
   integer, parameter, public :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2
   integer, parameter, public :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
       SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4
@@ -438,6 +452,26 @@ module spar
   interface spar_vtk_series_add
     procedure :: series_add
   end interface spar_vtk_series_add
+
+  interface spar_section_from_shape
+    procedure :: section_from_shape
+  end interface spar_section_from_shape
+
+  interface spar_section_build
+    procedure :: section_build
+  end interface spar_section_build
+
+  interface spar_section_describe
+    procedure :: section_describe
+  end interface spar_section_describe
+
+  interface spar_section_report
+    procedure :: section_report
+  end interface spar_section_report
+
+  interface spar_section_transform
+    procedure :: section_transform
+  end interface spar_section_transform
 
 contains
 
@@ -3724,6 +3758,77 @@ contains
 
     call finish(c_series_add(c_text(path), time, to_c(part), c_text(file)), c_null_ptr, stat, errmsg)
   end subroutine series_add
+
+  ! ---- sections; properties are found under SPAR_SECTION_* in arrays declared from 0 ----
+
+  subroutine section_from_shape(shape, dimension, young, poisson, density, property, stat, errmsg)
+    integer, intent(in) :: shape
+    real(c_double), contiguous, intent(in) :: dimension(:)
+    real(c_double), intent(in) :: young, poisson, density
+    real(c_double), contiguous, intent(inout) :: property(0:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(c_section_from_shape(to_c(shape), size(dimension, kind=c_int64_t), dimension, young, poisson, density, &
+        size(property, kind=c_int64_t), property), c_null_ptr, stat, errmsg)
+  end subroutine section_from_shape
+
+  subroutine section_build(property, stiffness, mass, stat, errmsg)
+    real(c_double), contiguous, intent(in) :: property(0:)
+    real(c_double), intent(inout), optional :: stiffness(6,6), mass(6,6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(c_section_build(size(property, kind=c_int64_t), property, stiffness, mass), c_null_ptr, stat, errmsg)
+  end subroutine section_build
+
+  subroutine section_describe(stiffness, mass, property, findings, stat, errmsg)
+    real(c_double), intent(in) :: stiffness(6,6)
+    real(c_double), intent(in), optional :: mass(6,6)
+    real(c_double), contiguous, intent(inout), optional :: property(0:)
+    integer, intent(inout), optional :: findings
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_findings
+    integer(c_int64_t) :: capacity
+
+    capacity = 0
+    if (present(property)) capacity = size(property, kind=c_int64_t)
+    status = c_section_describe(stiffness, mass, capacity, property, c_findings)
+    call hand(status, c_findings, findings)
+    call finish(status, c_null_ptr, stat, errmsg)
+  end subroutine section_describe
+
+  subroutine section_report(stiffness, mass, text, stat, errmsg)
+    real(c_double), intent(in) :: stiffness(6,6)
+    real(c_double), intent(in), optional :: mass(6,6)
+    character(:), allocatable, intent(inout) :: text
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer, parameter :: room = 1000
+    character(kind=c_char) :: letters(room)
+    integer(c_int) :: status
+    integer :: i
+
+    status = c_section_report(stiffness, mass, int(room, c_int64_t), letters)
+    if (status == SPAR_OK) then
+      text = ''
+      do i = 1, room
+        if (letters(i) == c_null_char) exit
+        text = text // letters(i)
+      end do
+    end if
+    call finish(status, c_null_ptr, stat, errmsg)
+  end subroutine section_report
+
+  subroutine section_transform(matrix, y, z, angle, out, stat, errmsg)
+    real(c_double), intent(in) :: matrix(6,6), y, z, angle
+    real(c_double), intent(inout) :: out(6,6)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(c_section_transform(matrix, y, z, angle, out), c_null_ptr, stat, errmsg)
+  end subroutine section_transform
 
   ! ---- shapes ----
 

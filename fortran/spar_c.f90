@@ -372,6 +372,51 @@ module spar_calls
     end function spar_session_load
 
     ! spar_structure.h
+    function spar_section_from_shape(shape, n, dimension, young, poisson, density, capacity, property) bind(c) &
+        result(status)
+      import :: c_double, c_int, c_int64_t
+      integer(c_int), value :: shape
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: dimension(*)
+      real(c_double), value :: young, poisson, density
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: property(*)
+      integer(c_int) :: status
+    end function spar_section_from_shape
+
+    function spar_section_build(n, property, stiffness, mass) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in), optional :: property(*)
+      real(c_double), intent(inout), optional :: stiffness(36), mass(36)
+      integer(c_int) :: status
+    end function spar_section_build
+
+    function spar_section_describe(stiffness, mass, capacity, property, findings) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t
+      real(c_double), intent(in), optional :: stiffness(36), mass(36)
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: property(*)
+      integer(c_int), intent(inout), optional :: findings
+      integer(c_int) :: status
+    end function spar_section_describe
+
+    function spar_section_report(stiffness, mass, capacity, text) bind(c) result(status)
+      import :: c_char, c_double, c_int, c_int64_t
+      real(c_double), intent(in), optional :: stiffness(36), mass(36)
+      integer(c_int64_t), value :: capacity
+      character(kind=c_char), intent(inout), optional :: text(*)
+      integer(c_int) :: status
+    end function spar_section_report
+
+    function spar_section_transform(matrix, y, z, angle, out) bind(c) result(status)
+      import :: c_double, c_int
+      real(c_double), intent(in), optional :: matrix(36)
+      real(c_double), value :: y, z, angle
+      real(c_double), intent(inout), optional :: out(36)
+      integer(c_int) :: status
+    end function spar_section_transform
+
     function spar_beam_get_elements(beam, elements, nodes_per_element) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: beam
@@ -1601,6 +1646,16 @@ module spar_c
   integer(c_int), parameter :: SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1
   integer(c_int), parameter :: SPAR_NODES_MOTION = 0, SPAR_NODES_FORCE = 1
   ! spar_structure.h
+  integer(c_int), parameter :: SPAR_SECTION_EA = 0, SPAR_SECTION_GA_Y = 1, SPAR_SECTION_GA_Z = 2, &
+      SPAR_SECTION_GJ = 3, SPAR_SECTION_EI_Y = 4, SPAR_SECTION_EI_Z = 5, SPAR_SECTION_ANGLE = 6, &
+      SPAR_SECTION_SHEAR_ANGLE = 7, SPAR_SECTION_TENSION_Y = 8, SPAR_SECTION_TENSION_Z = 9, &
+      SPAR_SECTION_SHEAR_Y = 10, SPAR_SECTION_SHEAR_Z = 11, SPAR_SECTION_MASS = 12, SPAR_SECTION_MASS_Y = 13, &
+      SPAR_SECTION_MASS_Z = 14, SPAR_SECTION_INERTIA_Y = 15, SPAR_SECTION_INERTIA_Z = 16, &
+      SPAR_SECTION_INERTIA_ANGLE = 17, SPAR_SECTION_COUNT = 18
+  integer(c_int), parameter :: SPAR_SHAPE_CIRCLE = 0, SPAR_SHAPE_TUBE = 1, SPAR_SHAPE_RECTANGLE = 2, SPAR_SHAPE_BOX = 3
+  integer(c_int), parameter :: SPAR_FINDING_ASYMMETRIC = 1, SPAR_FINDING_INDEFINITE = 2, SPAR_FINDING_MASS = 4, &
+      SPAR_FINDING_BEND_TWIST = 8, SPAR_FINDING_STRETCH_TWIST = 16, SPAR_FINDING_STRETCH_SHEAR = 32, &
+      SPAR_FINDING_BEND_SHEAR = 64, SPAR_FINDING_POLAR = 128, SPAR_FINDING_ORDER = 256, SPAR_FINDING_UNITS = 512
   integer(c_int), parameter :: SPAR_QUADRATURE_GAUSS = 0, SPAR_QUADRATURE_LOBATTO = 1, SPAR_QUADRATURE_SECTIONS = 2
   integer(c_int), parameter :: SPAR_FIDELITY_PRESCRIBED = 0, SPAR_FIDELITY_RIGID = 1, SPAR_FIDELITY_LINEAR = 2, &
       SPAR_FIDELITY_MODAL = 3, SPAR_FIDELITY_EXACT = 4

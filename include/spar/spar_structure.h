@@ -14,6 +14,101 @@ extern "C" {
 
 typedef struct spar_joint spar_joint; /* connects two nodes; belongs to its session */
 
+/* ---- sections from engineering numbers --------------------------------------------------------------------------- */
+
+/* Properties of a cross-section. y and z are the section axes at the reference line. y' and z' are the principal axes
+   of bending: y and z rotated by ANGLE about x. A load that acts at the tension centre along x causes no curvature, one
+   that acts at the shear centre across x causes no twist. Each stiffness is load over strain if no other load acts. */
+enum {
+    SPAR_SECTION_EA = 0,             /* N, axial */
+    SPAR_SECTION_GA_Y = 1,           /* N, shear along y': G A times the shear factor */
+    SPAR_SECTION_GA_Z = 2,           /* N, shear along z' */
+    SPAR_SECTION_GJ = 3,             /* N m^2, torsion, about the shear centre */
+    SPAR_SECTION_EI_Y = 4,           /* N m^2, bending about y', which deflects along z'; about the tension centre */
+    SPAR_SECTION_EI_Z = 5,           /* N m^2, bending about z', which deflects along y' */
+    SPAR_SECTION_ANGLE = 6,          /* rad, from y to y', right-handed about x */
+    SPAR_SECTION_SHEAR_ANGLE = 7,    /* rad, from y' to the principal axis of shear of GA_Y; 0: y' itself */
+    SPAR_SECTION_TENSION_Y = 8,      /* m, tension (elastic) centre, along y, from the reference line */
+    SPAR_SECTION_TENSION_Z = 9,      /* m, along z */
+    SPAR_SECTION_SHEAR_Y = 10,       /* m, shear centre */
+    SPAR_SECTION_SHEAR_Z = 11,       /* m */
+    SPAR_SECTION_MASS = 12,          /* kg/m */
+    SPAR_SECTION_MASS_Y = 13,        /* m, mass centre */
+    SPAR_SECTION_MASS_Z = 14,        /* m */
+    SPAR_SECTION_INERTIA_Y = 15,     /* kg m, about y', at the mass centre; about x it is the sum of both */
+    SPAR_SECTION_INERTIA_Z = 16,     /* kg m, about z' */
+    SPAR_SECTION_INERTIA_ANGLE = 17, /* rad, from y' to the principal axis of INERTIA_Y; 0: y' itself */
+    SPAR_SECTION_COUNT = 18
+};
+/* Shapes of one material, with their dimensions. */
+enum {
+    SPAR_SHAPE_CIRCLE = 0,    /* diameter */
+    SPAR_SHAPE_TUBE = 1,      /* outer diameter, wall thickness */
+    SPAR_SHAPE_RECTANGLE = 2, /* width along y, height along z */
+    SPAR_SHAPE_BOX = 3        /* outer width along y and height along z, thickness of the two walls of this height, of
+                                 the two of this width */
+};
+/* Properties of a shape of one isotropic material, with its centre on the line. Change what differs (an angle, a centre
+   of mass, a mass that includes a coating), then build the matrices. Local, without a session.
+     shape: in, SPAR_SHAPE_*
+     n: in, number of dimensions of the shape
+     dimension[n]: in, m, > 0
+     young: in, Pa, > 0
+     poisson: in, Poisson's ratio, -1 < poisson <= 0.5
+     density: in, kg/m^3, 0: no mass
+     capacity: in
+     property[capacity]: out, by SPAR_SECTION_*
+   Shear factors of circle, tube and rectangle are those of Cowper (1966). The shear factor of a box comes from the
+   energy of its shear stresses: 1 % too small for walls of a twentieth of the side, 5 % for a fifth, up to 20 % if one
+   pair of walls is much thicker. GJ of a rectangle is the series of Saint-Venant; GJ of a box has an error below 0.5 %.
+   Walls of a box thicker than a fifth of the side across them are refused. SPAR_ERR_NUMERIC: a result is too small or
+   too large for a number. */
+SPAR_API int spar_section_from_shape(int shape, int64_t n, const double *dimension, double young, double poisson,
+                                     double density, int64_t capacity, double *property);
+/* Matrices for spar_beam_set_sections from properties. Local, without a session.
+     n: in, entries given, the rest is 0; at most SPAR_SECTION_COUNT
+     property[n]: in, by SPAR_SECTION_*; EA, GA, GJ, EI > 0
+     stiffness[36]: out, NULL: not wanted; then no stiffness has to be given
+     mass[36]: out, NULL: not wanted; else MASS > 0 and INERTIA >= 0
+   SPAR_ERR_NUMERIC: a centre is so far from the line that rounding spoils the matrix. */
+SPAR_API int spar_section_build(int64_t n, const double *property, double *stiffness, double *mass);
+/* What a section has beside plain properties. */
+enum {
+    SPAR_FINDING_ASYMMETRIC = 1,     /* the stiffness is not symmetric; its symmetric part is described */
+    SPAR_FINDING_INDEFINITE = 2,     /* the stiffness is not positive definite; it is not described */
+    SPAR_FINDING_MASS = 4,           /* the mass is not that of a plane rigid section; it is not described */
+    SPAR_FINDING_BEND_TWIST = 8,     /* bending and torsion are coupled */
+    SPAR_FINDING_STRETCH_TWIST = 16, /* axial strain and torsion */
+    SPAR_FINDING_STRETCH_SHEAR = 32, /* axial strain and shear */
+    SPAR_FINDING_BEND_SHEAR = 64,    /* bending and shear */
+    SPAR_FINDING_POLAR = 128,        /* the inertia about x is not the sum of those about y and z */
+    SPAR_FINDING_ORDER = 256,        /* looks like the order of BeamDyn: shears, axial, bending, torsion */
+    SPAR_FINDING_UNITS = 512         /* magnitudes of no known structure, in SI units */
+};
+/* Properties of given matrices: the inverse of spar_section_build. The principal axis of each of bending, shear and
+   inertia named Y is the one within 45 degrees of y (of y'). Couplings are K_ij / sqrt(K_ii K_jj) at the centres, in
+   principal axes; those below 0.001 are not findings. Local, without a session.
+     stiffness[36]: in
+     mass[36]: in, NULL: none
+     capacity: in
+     property[capacity]: out, by SPAR_SECTION_*; 0 where a finding says that it is not described, NULL: not wanted
+     findings: out, SPAR_FINDING_* combined, 0: plain properties are the whole section, NULL: not wanted */
+SPAR_API int spar_section_describe(const double stiffness[36], const double mass[36], int64_t capacity,
+                                   double *property, int *findings);
+/* The findings in words, with their numbers, one on a line.
+     stiffness[36]: in
+     mass[36]: in, NULL: none
+     capacity: in, 1000 is enough
+     text[capacity]: out, "" without findings; SPAR_ERR_ARGUMENT if it does not fit */
+SPAR_API int spar_section_report(const double stiffness[36], const double mass[36], int64_t capacity, char *text);
+/* The same section seen from another line and in other axes. For stiffness and mass alike. Local, without a session.
+     matrix[36]: in, in the order of spar, about the old line
+     y: in, m, where the new line is, in the old axes
+     z: in, m
+     angle: in, rad, from the old y to the new one, right-handed about x
+     out[36]: out, may be matrix */
+SPAR_API int spar_section_transform(const double matrix[36], double y, double z, double angle, double out[36]);
+
 /* ---- beams: nodes and integration -------------------------------------------------------------------------------- */
 
 /* Number of elements and of nodes in each. Within a trial that varies nodes: the present ones.

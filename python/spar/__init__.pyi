@@ -493,6 +493,23 @@ class Aero(_Thing):
 def status_text(status: int) -> str: ...
 def version() -> str: ...
 def has(feature: _Text) -> bool: ...
+@overload
+def section_from_shape(shape: int, dimension: ArrayLike, young: float, poisson: float, density: float) -> NDArray[numpy.float64]: ...
+@overload
+def section_from_shape(shape: int, dimension: ArrayLike, young: float, poisson: float, density: float, *, property: NDArray[numpy.float64] | None = ...) -> Any: ...
+@overload
+def section_build(property: ArrayLike) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64]]: ...
+@overload
+def section_build(property: ArrayLike, *, stiffness: NDArray[numpy.float64] | None = ..., mass: NDArray[numpy.float64] | None = ...) -> Any: ...
+@overload
+def section_describe(stiffness: ArrayLike, mass: ArrayLike | None = None) -> tuple[NDArray[numpy.float64], int]: ...
+@overload
+def section_describe(stiffness: ArrayLike, mass: ArrayLike | None = None, *, property: NDArray[numpy.float64] | None = ..., findings: None = ...) -> Any: ...
+def section_report(stiffness: ArrayLike, mass: ArrayLike | None = None) -> str: ...
+@overload
+def section_transform(matrix: ArrayLike, y: float, z: float, angle: float) -> NDArray[numpy.float64]: ...
+@overload
+def section_transform(matrix: ArrayLike, y: float, z: float, angle: float, *, out: NDArray[numpy.float64] | None = ...) -> Any: ...
 def effect_name(row: int) -> str: ...
 def vtk_series_add(path: _Text, time: float, part: int, file: _Text) -> None: ...
 def aero_effect_name(row: int) -> str: ...
@@ -523,6 +540,39 @@ LOAD_DEAD: int
 LOAD_FOLLOWER: int
 NODES_MOTION: int
 NODES_FORCE: int
+SECTION_EA: int
+SECTION_GA_Y: int
+SECTION_GA_Z: int
+SECTION_GJ: int
+SECTION_EI_Y: int
+SECTION_EI_Z: int
+SECTION_ANGLE: int
+SECTION_SHEAR_ANGLE: int
+SECTION_TENSION_Y: int
+SECTION_TENSION_Z: int
+SECTION_SHEAR_Y: int
+SECTION_SHEAR_Z: int
+SECTION_MASS: int
+SECTION_MASS_Y: int
+SECTION_MASS_Z: int
+SECTION_INERTIA_Y: int
+SECTION_INERTIA_Z: int
+SECTION_INERTIA_ANGLE: int
+SECTION_COUNT: int
+SHAPE_CIRCLE: int
+SHAPE_TUBE: int
+SHAPE_RECTANGLE: int
+SHAPE_BOX: int
+FINDING_ASYMMETRIC: int
+FINDING_INDEFINITE: int
+FINDING_MASS: int
+FINDING_BEND_TWIST: int
+FINDING_STRETCH_TWIST: int
+FINDING_STRETCH_SHEAR: int
+FINDING_BEND_SHEAR: int
+FINDING_POLAR: int
+FINDING_ORDER: int
+FINDING_UNITS: int
 QUADRATURE_GAUSS: int
 QUADRATURE_LOBATTO: int
 QUADRATURE_SECTIONS: int

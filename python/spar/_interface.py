@@ -28,6 +28,39 @@ CONSTANTS = {
     'SPAR_LOAD_FOLLOWER': 1,
     'SPAR_NODES_MOTION': 0,
     'SPAR_NODES_FORCE': 1,
+    'SPAR_SECTION_EA': 0,
+    'SPAR_SECTION_GA_Y': 1,
+    'SPAR_SECTION_GA_Z': 2,
+    'SPAR_SECTION_GJ': 3,
+    'SPAR_SECTION_EI_Y': 4,
+    'SPAR_SECTION_EI_Z': 5,
+    'SPAR_SECTION_ANGLE': 6,
+    'SPAR_SECTION_SHEAR_ANGLE': 7,
+    'SPAR_SECTION_TENSION_Y': 8,
+    'SPAR_SECTION_TENSION_Z': 9,
+    'SPAR_SECTION_SHEAR_Y': 10,
+    'SPAR_SECTION_SHEAR_Z': 11,
+    'SPAR_SECTION_MASS': 12,
+    'SPAR_SECTION_MASS_Y': 13,
+    'SPAR_SECTION_MASS_Z': 14,
+    'SPAR_SECTION_INERTIA_Y': 15,
+    'SPAR_SECTION_INERTIA_Z': 16,
+    'SPAR_SECTION_INERTIA_ANGLE': 17,
+    'SPAR_SECTION_COUNT': 18,
+    'SPAR_SHAPE_CIRCLE': 0,
+    'SPAR_SHAPE_TUBE': 1,
+    'SPAR_SHAPE_RECTANGLE': 2,
+    'SPAR_SHAPE_BOX': 3,
+    'SPAR_FINDING_ASYMMETRIC': 1,
+    'SPAR_FINDING_INDEFINITE': 2,
+    'SPAR_FINDING_MASS': 4,
+    'SPAR_FINDING_BEND_TWIST': 8,
+    'SPAR_FINDING_STRETCH_TWIST': 16,
+    'SPAR_FINDING_STRETCH_SHEAR': 32,
+    'SPAR_FINDING_BEND_SHEAR': 64,
+    'SPAR_FINDING_POLAR': 128,
+    'SPAR_FINDING_ORDER': 256,
+    'SPAR_FINDING_UNITS': 512,
     'SPAR_QUADRATURE_GAUSS': 0,
     'SPAR_QUADRATURE_LOBATTO': 1,
     'SPAR_QUADRATURE_SECTIONS': 2,
@@ -211,6 +244,11 @@ call spar_fluid_map int fluid|fluid|value||
 call spar_fluid_pull_poses int fluid|fluid|value|| which|int|value|| theta|double|value|| x|double|out|[n][3]|null q|double|out|[n][4]|null v|double|out|[n][3]|null omega|double|out|[n][3]|null accel|double|out|[n][3]|null alpha|double|out|[n][3]|null
 call spar_session_save int session|session|value|| path|char|in|[]|
 call spar_session_load int session|session|value|| path|char|in|[]|
+call spar_section_from_shape int shape|int|value|| n|int64_t|value|| dimension|double|in|[n]| young|double|value|| poisson|double|value|| density|double|value|| capacity|int64_t|value|| property|double|out|[SPAR_SECTION_COUNT]|
+call spar_section_build int n|int64_t|value|| property|double|in|[n]| stiffness|double|out|[36]|null mass|double|out|[36]|null
+call spar_section_describe int stiffness|double|in|[36]| mass|double|in|[36]|null capacity|int64_t|value|| property|double|out|[SPAR_SECTION_COUNT]|null findings|int|out||null
+call spar_section_report int stiffness|double|in|[36]| mass|double|in|[36]|null capacity|int64_t|value|| text|char|out|[capacity]|
+call spar_section_transform int matrix|double|in|[36]| y|double|value|| z|double|value|| angle|double|value|| out|double|out|[36]|
 call spar_beam_get_elements int beam|member|value|| elements|int|out||null nodes_per_element|int|out||null
 call spar_beam_set_nodes int beam|member|value|| n|int64_t|value|| x|double|in|[n][3]| q|double|in|[n][4]|null
 call spar_beam_set_quadrature int beam|member|value|| rule|int|value|| points|int|value||
@@ -438,6 +476,11 @@ DOCS = {
     "spar_fluid_pull_poses": "The whole motion of the nodes of one set at t^n + theta dt, for blade elements, actuator lines and fluids that need\naccelerations. What is not wanted costs nothing.\n  which: in, SPAR_NODES_MOTION, or SPAR_NODES_FORCE: where an actuator line spreads what spar_fluid_pull_forces gives\n        at the same theta\n  theta: in, in [0,1], as of spar_fluid_pull_motion\n  x[n][3]: out, m, position, NULL: not wanted\n  q[n][4]: out, orientation of the section, scalar part >= 0, NULL: not wanted\n  v[n][3]: out, m/s, NULL: not wanted\n  omega[n][3]: out, rad/s, angular velocity, NULL: not wanted\n  accel[n][3]: out, m/s^2, acceleration of the node, NULL: not wanted\n  alpha[n][3]: out, rad/s^2, angular acceleration, NULL: not wanted\nSteps with substeps, and steps from the first change of dt on, give mean accelerations: the mean over the step,\nextrapolated to the end of the step with the mean of the step before (T15). They are of second order too, and an\nadded mass may respond to them. A member with an added mass of its own (spar_member_set_added_mass) always gives the\naccelerations at the time itself.\nLocal. SPAR_ERR_UNSUPPORTED: a rotation of motion nodes with weights; SPAR_ERR_NUMERIC: as of\nspar_fluid_pull_motion.",
     "spar_session_save": "Writes the state of the session to a file, or reads it. A run that continues from the file has the same bits.\nCollective, between steps.\n  path: in, that of rank 0; other ranks may give any text\nsave writes path.new and renames it, so path is always a whole file. If ranks see rank 0's file they write their own\nparts, otherwise rank 0 writes for all. What is not a regular file is SPAR_ERR_IO.\nload needs the same members and joints, committed, and the same mapped fluids by name, on any number of ranks. Nodes\nare matched by their reference position, to 1e-9 of the member's length. Settings are not in the file; the host makes\nthem as before. After a failure the session is as it was. SPAR_ERR_IO: the file cannot be read, or is damaged;\nSPAR_ERR_ARGUMENT: it does not match the session.",
     "spar_session_load": "path: in. Collective.",
+    "spar_section_from_shape": "Properties of a shape of one isotropic material, with its centre on the line. Change what differs (an angle, a centre\nof mass, a mass that includes a coating), then build the matrices. Local, without a session.\n  shape: in, SPAR_SHAPE_*\n  n: in, number of dimensions of the shape\n  dimension[n]: in, m, > 0\n  young: in, Pa, > 0\n  poisson: in, Poisson's ratio, -1 < poisson <= 0.5\n  density: in, kg/m^3, 0: no mass\n  capacity: in\n  property[capacity]: out, by SPAR_SECTION_*\nShear factors of circle, tube and rectangle are those of Cowper (1966). The shear factor of a box comes from the\nenergy of its shear stresses: 1 % too small for walls of a twentieth of the side, 5 % for a fifth, up to 20 % if one\npair of walls is much thicker. GJ of a rectangle is the series of Saint-Venant; GJ of a box has an error below 0.5 %.\nWalls of a box thicker than a fifth of the side across them are refused. SPAR_ERR_NUMERIC: a result is too small or\ntoo large for a number.",
+    "spar_section_build": "Matrices for spar_beam_set_sections from properties. Local, without a session.\n  n: in, entries given, the rest is 0; at most SPAR_SECTION_COUNT\n  property[n]: in, by SPAR_SECTION_*; EA, GA, GJ, EI > 0\n  stiffness[36]: out, NULL: not wanted; then no stiffness has to be given\n  mass[36]: out, NULL: not wanted; else MASS > 0 and INERTIA >= 0\nSPAR_ERR_NUMERIC: a centre is so far from the line that rounding spoils the matrix.",
+    "spar_section_describe": "Properties of given matrices: the inverse of spar_section_build. The principal axis of each of bending, shear and\ninertia named Y is the one within 45 degrees of y (of y'). Couplings are K_ij / sqrt(K_ii K_jj) at the centres, in\nprincipal axes; those below 0.001 are not findings. Local, without a session.\n  stiffness[36]: in\n  mass[36]: in, NULL: none\n  capacity: in\n  property[capacity]: out, by SPAR_SECTION_*; 0 where a finding says that it is not described, NULL: not wanted\n  findings: out, SPAR_FINDING_* combined, 0: plain properties are the whole section, NULL: not wanted",
+    "spar_section_report": "The findings in words, with their numbers, one on a line.\n  stiffness[36]: in\n  mass[36]: in, NULL: none\n  capacity: in, 1000 is enough\n  text[capacity]: out, \"\" without findings; SPAR_ERR_ARGUMENT if it does not fit",
+    "spar_section_transform": "The same section seen from another line and in other axes. For stiffness and mass alike. Local, without a session.\n  matrix[36]: in, in the order of spar, about the old line\n  y: in, m, where the new line is, in the old axes\n  z: in, m\n  angle: in, rad, from the old y to the new one, right-handed about x\n  out[36]: out, may be matrix",
     "spar_beam_get_elements": "Number of elements and of nodes in each. Within a trial that varies nodes: the present ones.\n  elements: out, NULL: not wanted\n  nodes_per_element: out, NULL: not wanted",
     "spar_beam_set_nodes": "Gives the nodes themselves instead of an axis, in the beam's own frame. They must be the Gauss-Lobatto-Legendre\npoints of their elements; the commit refuses nodes that coincide or go back.\n  n: in, elements * nodes_per_element\n  x[n][3]: in, m; at an element boundary two nodes at one position\n  q[n][4]: in, section frames; different ones at a boundary make a kink; NULL: as spar_beam_set_axis without twist",
     "spar_beam_set_quadrature": "Integration along an element. Default: SECTIONS if there are more than two stations, else GAUSS with as many\npoints as nodes. The commit refuses a rule that is too coarse for the element.\n  rule: in, SPAR_QUADRATURE_*; SECTIONS has Gauss points in each piece between stations\n  points: in, per element or piece, 1 (Lobatto 2) to 512; 0: as many as needed",

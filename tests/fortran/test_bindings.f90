@@ -66,6 +66,12 @@ program test_bindings
   call refused(spar_fluid_pull_poses(none, 0_c_int, 0.0_c_double), 'spar_fluid_pull_poses')
   call refused(spar_session_save(none), 'spar_session_save')
   call refused(spar_session_load(none), 'spar_session_load')
+  call refused(spar_section_from_shape(0_c_int, 0_c_int64_t, young=0.0_c_double, poisson=0.0_c_double, &
+      density=0.0_c_double, capacity=0_c_int64_t), 'spar_section_from_shape')
+  call refused(spar_section_build(0_c_int64_t), 'spar_section_build')
+  call refused(spar_section_describe(capacity=0_c_int64_t), 'spar_section_describe')
+  call refused(spar_section_report(capacity=0_c_int64_t), 'spar_section_report')
+  call refused(spar_section_transform(y=0.0_c_double, z=0.0_c_double, angle=0.0_c_double), 'spar_section_transform')
   call refused(spar_beam_get_elements(none), 'spar_beam_get_elements')
   call refused(spar_beam_set_nodes(none, 0_c_int64_t), 'spar_beam_set_nodes')
   call refused(spar_beam_set_quadrature(none, 0_c_int, 0_c_int), 'spar_beam_set_quadrature')

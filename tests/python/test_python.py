@@ -167,6 +167,25 @@ class Values(unittest.TestCase):
             self.assertEqual(alpha.shape, (1, 2))
             aero.close()
 
+    def test_sections(self):
+        """A steel bar 0.2 x 0.1: E A, E b h^3/12; a mass centre off the line couples, and is found again."""
+        p = spar.section_from_shape(spar.SHAPE_RECTANGLE, [0.2, 0.1], 210e9, 0.3, 7850)
+        self.assertAlmostEqual(p[spar.SECTION_EA] / (210e9 * 0.02), 1, delta=1e-12)
+        self.assertAlmostEqual(p[spar.SECTION_EI_Y] / (210e9 * 0.2 * 0.1**3 / 12), 1, delta=1e-12)
+        p[spar.SECTION_MASS_Y] = 0.01
+        stiffness, mass = spar.section_build(p)
+        self.assertAlmostEqual(mass[5], -7850 * 0.02 * 0.01, delta=1e-12)
+        again, findings = spar.section_describe(stiffness, mass)
+        self.assertEqual(findings, 0)
+        self.assertTrue(numpy.allclose(again, p, rtol=1e-10, atol=1e-10))
+        self.assertEqual(spar.section_report(stiffness, mass), '')
+        self.assertAlmostEqual(spar.section_transform(mass, 0.01, 0, 0)[5], 0, delta=1e-12)
+        stiffness[1] = 1e9
+        self.assertIn('is not symmetric', spar.section_report(stiffness.reshape(6, 6)))
+        p[spar.SECTION_GA_Y] = 0
+        with self.assertRaisesRegex(spar.Error, 'SPAR_SECTION_GA_Y is 0'):
+            spar.section_build(p)
+
     def test_save(self):
         """A run that goes on from a file ends with the same bits."""
         ends = []

@@ -39,6 +39,11 @@
     CALL(spar_fluid_set_stations) \
     CALL(spar_fluid_map) \
     CALL(spar_fluid_pull_poses) \
+    CALL(spar_section_from_shape) \
+    CALL(spar_section_build) \
+    CALL(spar_section_describe) \
+    CALL(spar_section_report) \
+    CALL(spar_section_transform) \
     CALL(spar_beam_get_elements) \
     CALL(spar_beam_set_nodes) \
     CALL(spar_beam_set_quadrature) \

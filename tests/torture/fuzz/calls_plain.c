@@ -24,6 +24,44 @@ void do_spar_session_get_time(call *c) {
     RUN(c, spar_session_get_time(session->s, t, step, iteration));
 }
 
+void do_spar_section_from_shape(call *c) {
+    int shape = arg_int(c, 0, 3);
+    int64_t n = arg_count(c, 0, 4);
+    double *dimension = arg_reals(c, length(n), -1, 1);
+    double young = arg_real(c, 0, 1);
+    double poisson = arg_real(c, 0, 1);
+    double density = arg_real(c, 0, 1);
+    int64_t capacity = arg_count(c, 0, 4);
+    double *property = arg_out(c, SPAR_SECTION_COUNT * (int64_t)sizeof *property, 0);
+    RUN(c, spar_section_from_shape(shape, n, dimension, young, poisson, density, capacity, property));
+}
+
+void do_spar_section_build(call *c) {
+    int64_t n = arg_count(c, 0, 4);
+    double *property = arg_reals(c, length(n), -1, 1);
+    double *stiffness = arg_out(c, 36 * (int64_t)sizeof *stiffness, 1);
+    double *mass = arg_out(c, 36 * (int64_t)sizeof *mass, 1);
+    RUN(c, spar_section_build(n, property, stiffness, mass));
+}
+
+void do_spar_section_describe(call *c) {
+    double *stiffness = arg_reals(c, 36, -1, 1);
+    double *mass = arg_reals_or_null(c, 36, -1, 1);
+    int64_t capacity = arg_count(c, 0, 4);
+    double *property = arg_out(c, SPAR_SECTION_COUNT * (int64_t)sizeof *property, 1);
+    int *findings = arg_out(c, (int64_t)sizeof *findings, 1);
+    RUN(c, spar_section_describe(stiffness, mass, capacity, property, findings));
+}
+
+void do_spar_section_transform(call *c) {
+    double *matrix = arg_reals(c, 36, -1, 1);
+    double y = arg_real(c, 0, 1);
+    double z = arg_real(c, 0, 1);
+    double angle = arg_real(c, 0, 1);
+    double *out = arg_out(c, 36 * (int64_t)sizeof *out, 0);
+    RUN(c, spar_section_transform(matrix, y, z, angle, out));
+}
+
 void do_spar_session_get_integrator(call *c) {
     live_session *session = arg_session(c);
     double *rho_inf = arg_out(c, (int64_t)sizeof *rho_inf, 1);

@@ -439,6 +439,14 @@ void do_damage_file(call *c) {
     fuzz_after(c, SPAR_OK);
 }
 
+void do_spar_section_report(call *c) {
+    double *stiffness = arg_reals(c, 36, -1, 1);
+    double *mass = arg_reals_or_null(c, 36, -1, 1);
+    int64_t n = arg_count(c, 0, 1000);
+    char *into = arg_out(c, length(n), 0);
+    RUN(c, spar_section_report(stiffness, mass, n, into));
+}
+
 void do_spar_vtk_series_add(call *c) {
     const char *path = arg_path(c, ".pvd");
     double time = arg_real(c, 0, 10);

@@ -166,7 +166,7 @@ enum {
     CALL(spar_fluid_get_count, 40, FUZZ_PURE)                                                                          \
     CALL(spar_fluid_get_flag_count, 40, FUZZ_PURE)                                                                     \
     CALL(spar_fluid_get_map, 60, FUZZ_PURE)                                                                            \
-    CALL(spar_fluid_get_nearest, 60, FUZZ_PURE)                                                                           \
+    CALL(spar_fluid_get_nearest, 60, FUZZ_PURE)                                                                        \
     CALL(spar_fluid_get_basis, 60, FUZZ_PURE)                                                                          \
     CALL(spar_fluid_pull_motion, 150, FUZZ_PURE)                                                                       \
     CALL(spar_fluid_pull_motion_f32, 60, FUZZ_PURE)                                                                    \
@@ -225,6 +225,7 @@ enum {
     CALL(spar_trial_get_search, 20, FUZZ_PURE)                                                                         \
     CALL(spar_trial_apply, 10, FUZZ_CHANGES)                                                                           \
     CALL(spar_vtk_series_add, 10, FUZZ_PURE)                                                                           \
+    CALL(spar_section_report, 10, FUZZ_PURE)                                                                           \
     CALL(spar_polar_create, 25, FUZZ_CHANGES)                                                                          \
     CALL(spar_polar_set_interpolation, 25, FUZZ_CHANGES)                                                               \
     CALL(spar_polar_evaluate, 40, FUZZ_PURE)                                                                           \
