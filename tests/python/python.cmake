@@ -22,7 +22,9 @@ set_tests_properties(python_blade PROPERTIES PASS_REGULAR_EXPRESSION "12.1   0.7
 add_test(NAME python_wheel COMMAND "${CMAKE_CURRENT_LIST_DIR}/wheel" "${python}" "${PROJECT_BINARY_DIR}/tests/wheel")
 spar_set_test(python_wheel package 900)
 set_tests_properties(python_wheel PROPERTIES SKIP_RETURN_CODE 77)
-foreach(test IN ITEMS python python_blade)
+add_test(NAME python_turbine COMMAND "${python}" -B -W error "${CMAKE_CURRENT_LIST_DIR}/test_turbine.py" "${PROJECT_BINARY_DIR}/tests"
+  "${PROJECT_BINARY_DIR}/examples/spar-run")
+foreach(test IN ITEMS python python_blade python_turbine)
   spar_set_test(${test} unit 60)
   set_tests_properties(${test} PROPERTIES ENVIRONMENT "SPAR_LIBRARY=$<TARGET_FILE:spar>;PYTHONPATH=${PROJECT_SOURCE_DIR}/python")
 endforeach()
