@@ -13,16 +13,6 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
-void check(const SparTurbine& fi, int status)
-{
-    if (status != SPAR_OK) {
-        amrex::Abort(
-            "SparIface: turbine " + fi.tlabel + ": " +
-            std::string(spar_status_text(status)) + ": " +
-            std::string(actuator_message(fi.machine.get())));
-    }
-}
-
 // The turbine at t = 0, as the input file has it.
 void make_machine(SparTurbine& fi)
 {
@@ -58,7 +48,7 @@ void make_machine(SparTurbine& fi)
     actuator_machine* made = nullptr;
     const int status = actuator_create(&options, &made);
     fi.machine.reset(made);
-    check(fi, status);
+    fi.check(status);
     // one step of spar for one of the flow, with its own substeps inside
     fi.num_substeps = 1;
     fi.chkpt_interval = -1; // by AMR-Wind's interval alone; see ProcessOutputsOp
@@ -126,9 +116,9 @@ void ExtTurbIface<SparTurbine, SparSolverData>::init_solution(
     auto& fi = *m_turbine_data[local_id];
     compare_directions(fi);
     if (!fi.is_loaded) {
-        check(fi, actuator_start(fi.machine.get(), fi.fluid_velocity(0)));
+        fi.check(actuator_start(fi.machine.get(), fi.fluid_velocity(0)));
     }
-    check(fi, fi.populate_buffers());
+    fi.check(fi.populate_buffers());
     fi.put_hub_first();
     fi.is_solution0 = false;
 }
@@ -141,7 +131,7 @@ void ExtTurbIface<SparTurbine, SparSolverData>::get_hub_stats(
     double x[3];
     double omega[3];
     double axes[9];
-    check(fi, actuator_get_hub(fi.machine.get(), x, omega, axes));
+    fi.check(actuator_get_hub(fi.machine.get(), x, omega, axes));
     for (int i = 0; i < 3; ++i) {
         fi.hub_abs_pos[i] = static_cast<float>(x[i]) + fi.base_pos[i];
         fi.hub_rot_vel[i] = static_cast<float>(omega[i]);
@@ -154,12 +144,11 @@ void ExtTurbIface<SparTurbine, SparSolverData>::get_hub_stats(
 template <>
 void ExtTurbIface<SparTurbine, SparSolverData>::do_turbine_step(SparTurbine& fi)
 {
-    check(
-        fi, actuator_step(
-                fi.machine.get(), static_cast<double>(fi.dt_ext),
-                fi.fluid_velocity(0)));
+    fi.check(actuator_step(
+        fi.machine.get(), static_cast<double>(fi.dt_ext),
+        fi.fluid_velocity(0)));
     warn(fi);
-    check(fi, fi.populate_buffers());
+    fi.check(fi.populate_buffers());
     fi.put_hub_first();
 }
 
@@ -175,7 +164,7 @@ void ExtTurbIface<SparTurbine, SparSolverData>::ext_init_turbine(
     SparTurbine& fi)
 {
     make_machine(fi);
-    check(fi, fi.populate_buffers());
+    fi.check(fi.populate_buffers());
 }
 
 // The file's step and time must be the flow's.
@@ -194,7 +183,7 @@ void ExtTurbIface<SparTurbine, SparSolverData>::ext_restart_turbine(
             "; spar_restart_file names another file, and spar_sim_mode = init begins a turbine in a flow that had none");
     }
     fi.is_loaded = true;
-    check(fi, fi.populate_buffers());
+    fi.check(fi.populate_buffers());
 }
 
 // Nothing is replayed: a turbine goes on from its file.

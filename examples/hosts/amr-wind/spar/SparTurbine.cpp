@@ -76,16 +76,6 @@ void settle_size(const Parser& pp, const std::string& prefix, const char* key, d
     }
 }
 
-void check(const SparTurbine& fi, int status)
-{
-    if (status != SPAR_OK) {
-        amrex::Abort(
-            "SparIface: turbine " + fi.tlabel + ": " +
-            std::string(spar_status_text(status)) + ": " +
-            std::string(actuator_message(fi.machine.get())));
-    }
-}
-
 // A step's file has AMR-Wind's digits: chk00016 goes with T1.00016.
 std::string file_of_step(const SparTurbine& fi, int step)
 {
@@ -95,6 +85,16 @@ std::string file_of_step(const SparTurbine& fi, int step)
 }
 
 } // namespace
+
+void SparTurbine::check(int status) const
+{
+    if (status != SPAR_OK) {
+        amrex::Abort(
+            "SparIface: turbine " + tlabel + ": " +
+            std::string(spar_status_text(status)) + ": " +
+            std::string(actuator_message(machine.get())));
+    }
+}
 
 void SparTurbine::read_inputs(
     const Parser& pp, const std::string& label, const std::string& type)
@@ -179,9 +179,9 @@ void SparTurbine::begin_figures()
         return;
     }
     const std::string path = output_folder + "/" + tlabel + ".csv";
-    check(*this, actuator_open_figures(machine.get(), path.c_str(), is_loaded ? 1 : 0, static_cast<double>(time)));
+    check(actuator_open_figures(machine.get(), path.c_str(), is_loaded ? 1 : 0, static_cast<double>(time)));
     if (!is_loaded) {
-        check(*this, actuator_write_figures(machine.get(), time_index, static_cast<double>(time)));
+        check(actuator_write_figures(machine.get(), time_index, static_cast<double>(time)));
     }
 }
 
@@ -196,7 +196,7 @@ void SparTurbine::end_step(int step, amrex::Real flow_time, bool checkpoint)
     time = flow_time;
     time_index = step;
     if (csv_interval > 0 && step % csv_interval == 0) {
-        check(*this, actuator_write_figures(machine.get(), step, static_cast<double>(time)));
+        check(actuator_write_figures(machine.get(), step, static_cast<double>(time)));
     }
     if (checkpoint) {
         save();
@@ -206,7 +206,7 @@ void SparTurbine::end_step(int step, amrex::Real flow_time, bool checkpoint)
 void SparTurbine::save()
 {
     const std::string path = file_of_step(*this, time_index);
-    check(*this, actuator_save(machine.get(), path.c_str(), time_index, static_cast<double>(time)));
+    check(actuator_save(machine.get(), path.c_str(), time_index, static_cast<double>(time)));
 }
 
 } // namespace ext_turb

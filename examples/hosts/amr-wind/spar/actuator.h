@@ -7,8 +7,8 @@
    hub first. Velocities are sampled with the hub last: AMR-Wind's filtered lifting line correction takes the first
    points as those of blade 1. Arrays are those of AMR-Wind's ExternalTurbine: single precision, by component (x of all
    points, y, z), positions relative to the tower's base, z up. */
-#ifndef ACTUATOR_H
-#define ACTUATOR_H
+#ifndef SPAR_ACTUATOR_H
+#define SPAR_ACTUATOR_H
 
 #include <spar/spar.h>
 

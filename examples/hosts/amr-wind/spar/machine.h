@@ -1,6 +1,6 @@
 /* The turbine's state, shared by actuator.c and figures.c. */
-#ifndef MACHINE_H
-#define MACHINE_H
+#ifndef SPAR_ACTUATOR_MACHINE_H
+#define SPAR_ACTUATOR_MACHINE_H
 
 #include "actuator.h"
 #include "turbine_control.h"
