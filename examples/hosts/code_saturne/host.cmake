@@ -50,7 +50,16 @@ if(SPAR_BUILD_TESTS AND SPAR_MPI)
       --refine 0.4 --steps 2 --no-install --build "${PROJECT_BINARY_DIR}" --out ${out}${name})
     set_tests_properties(host_code_saturne_${name} PROPERTIES PASS_REGULAR_EXPRESSION "${message}")
   endforeach()
-  foreach(name IN ITEMS _np1 _np2 _flaps _whole _half _rest _without _other _wetted _fixed "")
+  # a mesh that folds: code_saturne itself ends with the status 0
+  file(READ "${CMAKE_CURRENT_LIST_DIR}/../cases/cylinder.case" text)
+  string(REPLACE "velocity 0 0.05 0" "velocity 0 30 0" text "${text}")
+  string(REPLACE "stiffness 0 4.93" "stiffness 0 0.93" text "${text}")
+  file(WRITE "${PROJECT_BINARY_DIR}/tests/fast.case" "${text}")
+  add_test(NAME host_code_saturne_fold COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/run" "${PROJECT_BINARY_DIR}/tests/fast.case"
+    --refine 0.5 --steps 30 --no-install --build "${PROJECT_BINARY_DIR}" --out ${out}fold)
+  set_tests_properties(host_code_saturne_fold PROPERTIES
+    PASS_REGULAR_EXPRESSION "the mesh has folded at step [0-9]+.*the run has ended early.*drawn:.*only [0-9]+ of 30 steps")
+  foreach(name IN ITEMS _fold _np1 _np2 _flaps _whole _half _rest _without _other _wetted _fixed "")
     spar_set_test(host_code_saturne${name} hosts 1200)
     set_tests_properties(host_code_saturne${name} PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2)
   endforeach()

@@ -23,6 +23,6 @@ void saturne_flow_broke(const char *why) {
     bft_error(
         __FILE__, __LINE__, 0,
         "spar: %s. The flow or its mesh has broken: the largest speed is %.3g m/s at (%.4g %.4g %.4g), %.0f cells "
-        "have none, the least cell has %.3g m3. Take a smaller dt, or give the mesh more room (fade)",
+        "have no number, the least cell has %.3g m3. Take a smaller dt, or give the mesh more room (fade)",
         why, most, where[0], where[1], where[2], none, q->min_vol);
 }

@@ -5,13 +5,19 @@
 #include "spar_saturne.h"
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static struct {
     cs_lnum_t n, *faces;
     double least, farthest;
-} seen = {.least = 1};
+    double *volume, least_part; /* of the cells at the start of the run; the least that one has kept of it */
+    int warned;
+} seen = {.least = 1, .least_part = 1};
 
 void saturne_mesh_begin(void) {
+    const cs_lnum_t cells = cs_glob_mesh->n_cells;
+    BFT_MALLOC(seen.volume, cells, double);
+    memcpy(seen.volume, cs_glob_mesh_quantities->cell_vol, (size_t)cells * sizeof *seen.volume);
     seen.n = saturne_faces("sliding", saturne_text("sliding", ""), &seen.faces);
 }
 
@@ -48,7 +54,50 @@ static void draw(void) {
     fclose(f);
 }
 
+/* Least part of its volume that a cell has kept, and where it is. Collective. */
+static double least_part(double where[3]) {
+    const cs_mesh_quantities_t *q = cs_glob_mesh_quantities;
+    double most = -1e300; /* of the negative: there is only the one for the largest */
+    where[0] = where[1] = where[2] = 0;
+    for (cs_lnum_t cell = 0; cell < cs_glob_mesh->n_cells; cell++) {
+        const double part = -q->cell_vol[cell] / seen.volume[cell];
+        if (part > most) {
+            most = part;
+            memcpy(where, q->cell_cen + 3 * cell, 3 * sizeof *where);
+        }
+    }
+    cs_parall_max_loc_vals(3, &most, where);
+    return -most;
+}
+
+static void watch_volumes(void) {
+    double where[3];
+    const double part = least_part(where);
+    seen.least_part = CS_MIN(seen.least_part, part);
+    if (part < 0.2 && !seen.warned) {
+        char text[160];
+        snprintf(text, sizeof text, "the cell at (%.4g %.4g %.4g) has %.3g of its volume at the start of the run",
+                 where[0], where[1], where[2], part);
+        saturne_tell(SPAR_LOG_WARNING, text);
+        seen.warned = 1;
+    }
+}
+
+void saturne_mesh_fold(void) {
+    double where[3];
+    char why[200];
+    const double part = least_part(where);
+    BFT_FREE(seen.volume);
+    if (part <= 0) {
+        snprintf(why, sizeof why,
+                 "the mesh has folded at step %d: the cell at (%.4g %.4g %.4g) has %.3g of its volume at the start",
+                 cs_glob_time_step->nt_cur, where[0], where[1], where[2], part);
+        saturne_flow_broke(why);
+    }
+}
+
 void saturne_mesh_step(double out) {
+    watch_volumes();
     for (cs_lnum_t i = 0; i < seen.n; i++) {
         const cs_lnum_t face = seen.faces[i],
                         n = cs_glob_mesh->b_face_vtx_idx[face + 1] - cs_glob_mesh->b_face_vtx_idx[face];
@@ -62,8 +111,9 @@ void saturne_mesh_step(double out) {
     }
 }
 
-double saturne_mesh_end(void) {
+double saturne_mesh_end(double *volume) {
     double least = seen.least;
+    *volume = seen.least_part;
     cs_parall_min(1, CS_DOUBLE, &least);
     BFT_FREE(seen.faces);
     return least;

@@ -134,7 +134,8 @@ void saturne_report_step(void) {
 void saturne_report_run(void) {
     double seconds[2];
     saturne_clock_read(seconds);
-    const double corner = saturne_mesh_end();
+    double volume;
+    const double corner = saturne_mesh_end(&volume);
     BFT_FREE(report.loaded);
     if (cs_glob_rank_id > 0 || report.steps == 0) {
         return;
@@ -148,7 +149,7 @@ void saturne_report_run(void) {
     fprintf(f, "force_error %.1e\nmoment_error %.1e\npower_error %.1e\n", report.errors[0], report.errors[1],
             report.errors[2]);
     fprintf(f, "seconds %.3f\nspar_seconds %.3f\nspar_share %.5f\n", seconds[1], seconds[0], seconds[0] / seconds[1]);
-    fprintf(f, "least_corner %.4f\n", corner);
+    fprintf(f, "least_corner %.4f\nleast_volume %.4f\n", corner, volume);
     fclose(f);
     if (report.history != NULL) {
         fclose(report.history);

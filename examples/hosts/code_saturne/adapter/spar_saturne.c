@@ -65,8 +65,8 @@ static void begin_step(const cs_real_t *dttab) {
     host.stepping = 1, host.done = 0;
 }
 
-/* A failure after forces that grew beyond all that the flow had before is the flow's, whatever it is called. */
-static void check_step(int status) {
+/* A structure that cannot be solved under forces far beyond all that the flow had before is not the one to blame. */
+static void check_solve(int status) {
     const double growth = saturne_bodies_growth();
     if (status == SPAR_ERR_NUMERIC && growth > 100) {
         char why[1200];
@@ -83,7 +83,7 @@ static void move(cs_real_3_t *displacement) {
         return;
     }
     saturne_clock_begin();
-    check_step(spar_step_solve(saturne_session()));
+    check_solve(spar_step_solve(saturne_session()));
     saturne_check_case(spar_case_blow(saturne_scene()));
     saturne_bodies_pull(displacement);
     saturne_clock_end();
@@ -95,7 +95,7 @@ static void take_forces(void) {
     }
     saturne_bodies_push();
     saturne_clock_begin();
-    check_step(spar_step_check(saturne_session(), &host.done));
+    saturne_check(spar_step_check(saturne_session(), &host.done));
     saturne_clock_end();
 }
 
@@ -189,6 +189,7 @@ void cs_ast_coupling_exchange_fields(void) {
 void cs_user_extra_operations_finalize(cs_domain_t *domain) {
     (void)domain;
     saturne_report_run();
+    saturne_mesh_fold();
     saturne_end();
     saturne_bodies_free();
 }

@@ -112,10 +112,16 @@ void saturne_report_step(void);
 /* summary.txt, at the end of the run. Collective. */
 void saturne_report_run(void);
 
-/* The mesh, mesh.c. out: how far the structure is out, m. end: the least sine of a corner in the run, collective. */
+/* The mesh, mesh.c. Collective.
+     out: how far the structure is out, m
+     volume: out, the least part of its volume at the start that a cell has had
+   end: the least sine of a corner in the run.
+   fold, last: an error if a cell has no volume now, on which code_saturne ends a run without a word and with status 0.
+ */
 void saturne_mesh_begin(void);
 void saturne_mesh_step(double out);
-double saturne_mesh_end(void);
+double saturne_mesh_end(double *volume);
+void saturne_mesh_fold(void);
 
 #if SATURNE_VERSION < 80
 /* code_saturne's Fortran user routines that are written in C here. */
