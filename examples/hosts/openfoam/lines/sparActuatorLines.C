@@ -15,7 +15,11 @@ namespace fv
 {
 
 defineTypeNameAndDebug(sparActuatorLines, 0);
+#if SPAR_FOAM_FOUNDATION
+addToRunTimeSelectionTable(fvModel, sparActuatorLines, dictionary);
+#else
 addToRunTimeSelectionTable(option, sparActuatorLines, dictionary);
+#endif
 
 }
 }
@@ -53,12 +57,20 @@ Foam::fv::sparActuatorLines::sparActuatorLines
 (
     const word& name,
     const word& modelType,
+#if SPAR_FOAM_FOUNDATION
+    const fvMesh& mesh,
+    const dictionary& dict
+)
+:
+    fvModel(name, modelType, mesh, dict),
+#else
     const dictionary& dict,
     const fvMesh& mesh
 )
 :
     option(name, modelType, dict, mesh),
-    density_(coeffs_.get<scalar>("density")),
+#endif
+    density_(sparFoam::get<scalar>(coeffs(), "density")),
     width_(0),
     speed_(0),
     angle_(0),
@@ -73,8 +85,10 @@ Foam::fv::sparActuatorLines::sparActuatorLines
     spar_(0),
     history_(nullptr)
 {
-    coeffs_.readEntry("fields", fieldNames_);
+#if !SPAR_FOAM_FOUNDATION
+    coeffs().readEntry("fields", fieldNames_);
     applied_.setSize(fieldNames_.size(), false);
+#endif
     const double began = processorSeconds();
     start();
     spar_ += processorSeconds() - began;
@@ -85,7 +99,7 @@ void Foam::fv::sparActuatorLines::start()
     double rpm, kernel, wind;
     List<double> twist(256);
     const char* folder = getenv("SPAR_DATA"); // the run script's: examples/data
-    fileName structure(coeffs_.get<fileName>("structure"));
+    fileName structure(sparFoam::get<fileName>(coeffs(), "structure"));
     // a serial run has not initialised MPI
     check(Pstream::parRun() ? spar_session_create_mpi(MPI_COMM_WORLD, &session_) : spar_session_create(&session_));
     checkCase(spar_case_read(structure.expand().c_str(), "openfoam", session_, &scene_));
@@ -121,7 +135,7 @@ void Foam::fv::sparActuatorLines::start()
 
 Foam::fileName Foam::fv::sparActuatorLines::stateFile(const word& timeName) const
 {
-    const Time& time = mesh_.time();
+    const Time& time = mesh().time();
     return time.rootPath()/time.globalCaseName()/"spar"/(caseName_ + "." + timeName);
 }
 
@@ -129,8 +143,8 @@ Foam::fileName Foam::fv::sparActuatorLines::stateFile(const word& timeName) cons
 void Foam::fv::sparActuatorLines::resume(const word& name)
 {
     caseName_ = name;
-    const Time& time = mesh_.time();
-    const scalar start = sparFoam::startTime(time), begun = coeffs_.lookupOrDefault<scalar>("begun", 0);
+    const Time& time = mesh().time();
+    const scalar start = sparFoam::startTime(time), begun = coeffs().lookupOrDefault<scalar>("begun", 0);
     const bool resumes = start > begun + 0.5*time.deltaTValue();
     checkCase(spar_case_resume(scene_, resumes ? stateFile(time.timeName(time.startTime().value())).c_str() : nullptr,
         resumes ? start - begun : 0, resumes ? -1 : 0));
@@ -171,8 +185,8 @@ void Foam::fv::sparActuatorLines::places()
 
 void Foam::fv::sparActuatorLines::sample(const volVectorField& U)
 {
-    const vectorField& centres = mesh_.C();
-    const scalarField& volumes = mesh_.V();
+    const vectorField& centres = mesh().C();
+    const scalarField& volumes = mesh().V();
     weight_ = 0;
     u_ = Zero;
     forAll(centres, cell)
@@ -233,7 +247,7 @@ void Foam::fv::sparActuatorLines::advance(const volVectorField& U, scalar dt)
 
 void Foam::fv::sparActuatorLines::spread(vectorField& source) const
 {
-    const vectorField& centres = mesh_.C();
+    const vectorField& centres = mesh().C();
     forAll(centres, cell)
     {
         forAll(x_, i)
@@ -249,7 +263,7 @@ void Foam::fv::sparActuatorLines::spread(vectorField& source) const
 
 void Foam::fv::sparActuatorLines::record(const volVectorField& U, const vectorField& source, scalar t)
 {
-    const scalarField& volumes = mesh_.V();
+    const scalarField& volumes = mesh().V();
     const vector spreadForce = -density_*gSum(vectorField(source*volumes));
     const scalar taken = -density_*gSum(scalarField((source & U.primitiveField())*volumes));
     if (!Pstream::master())
@@ -275,7 +289,7 @@ void Foam::fv::sparActuatorLines::record(const volVectorField& U, const vectorFi
     check(spar_session_get_time(session_, nullptr, nullptr, &iterations));
     if (!history_)
     {
-        checkCase(spar_case_cut_history("history.csv", t - 0.5*mesh_.time().deltaTValue()));
+        checkCase(spar_case_cut_history("history.csv", t - 0.5*mesh().time().deltaTValue()));
         history_ = fopen("history.csv", "a");
         if (!history_)
         {
@@ -293,15 +307,15 @@ void Foam::fv::sparActuatorLines::record(const volVectorField& U, const vectorFi
     fflush(history_);
 }
 
-void Foam::fv::sparActuatorLines::addSup(fvMatrix<vector>& eqn, const label)
+void Foam::fv::sparActuatorLines::addTo(fvMatrix<vector>& eqn)
 {
     const volVectorField& U = eqn.psi();
-    const Time& time = mesh_.time();
+    const Time& time = mesh().time();
     volVectorField source
     (
-        IOobject(name_ + ":source", time.timeName(), mesh_),
-        mesh_,
-        dimensionedVector(eqn.dimensions()/dimVolume, Zero)
+        IOobject(name() + ":source", time.timeName(), mesh()),
+        mesh(),
+        dimensionedVector("0", eqn.dimensions()/dimVolume, Zero)
     );
     const bool first = timeIndex_ != time.timeIndex(); // later correctors have the same force
     if (first)
@@ -326,3 +340,15 @@ void Foam::fv::sparActuatorLines::addSup(fvMatrix<vector>& eqn, const label)
     }
     eqn += source;
 }
+
+#if SPAR_FOAM_FOUNDATION
+void Foam::fv::sparActuatorLines::addSup(fvMatrix<vector>& eqn, const word&) const
+{
+    const_cast<sparActuatorLines&>(*this).addTo(eqn); // the first call of a step takes the rotor on
+}
+#else
+void Foam::fv::sparActuatorLines::addSup(fvMatrix<vector>& eqn, const label)
+{
+    addTo(eqn);
+}
+#endif
