@@ -14,7 +14,7 @@ int spari_pencil_create(spari_pencil *p, int unknowns) {
 
 void spari_pencil_free(spari_pencil *p) {
     free(p->entry);
-    free(p->row_held);
+    free(p->constraint);
     free(p->left);
     *p = (spari_pencil){0};
 }
@@ -42,15 +42,16 @@ void spari_pencil_put(spari_pencil *p, spari_pencil_entry entry) {
     }
 }
 
-void spari_pencil_hold_at(spari_pencil *p, spari_pencil_hold hold) {
-    if (hold.g == 0) {
+void spari_pencil_add_constraint(spari_pencil *p, spari_pencil_constraint entry) {
+    if (entry.g == 0) {
         return;
     }
-    spari_pencil_hold *grown = grow_entries(p->row_held, p->rows_held, &p->held_capacity, sizeof *grown);
+    spari_pencil_constraint *grown =
+        grow_entries(p->constraint, p->constraint_entries, &p->constraint_capacity, sizeof *grown);
     p->full = p->full || !grown;
     if (grown) {
-        p->row_held = grown;
-        p->row_held[p->rows_held++] = hold;
+        p->constraint = grown;
+        p->constraint[p->constraint_entries++] = entry;
     }
 }
 

@@ -15,17 +15,17 @@ typedef struct spari_pencil_entry {
     double k, c, m;
 } spari_pencil_entry;
 
-typedef struct spari_pencil_hold { /* of G */
+typedef struct spari_pencil_constraint { /* of G */
     int row, column;
     double g;
-} spari_pencil_hold;
+} spari_pencil_constraint;
 
 typedef struct spari_pencil {
-    int n, holds; /* unknowns, rows of G */
-    int base;     /* first unknown of the entries that are added now */
-    int64_t entries, entry_capacity, rows_held, held_capacity;
+    int n, constraints; /* unknowns, rows of G */
+    int base;           /* first unknown of the entries that are added now */
+    int64_t entries, entry_capacity, constraint_entries, constraint_capacity;
     spari_pencil_entry *entry;
-    spari_pencil_hold *row_held;
+    spari_pencil_constraint *constraint;
     double *left;        /* [n] internal minus external forces of the state */
     double scale, noise; /* reference force, and its rounding error */
     int full;            /* an entry did not fit in memory */
@@ -39,7 +39,7 @@ void spari_pencil_free(spari_pencil *pencil);
 void spari_pencil_add(spari_pencil *pencil, int at, int n, int64_t apart, const double *K, const double *C,
                       const double *M);
 void spari_pencil_put(spari_pencil *pencil, spari_pencil_entry entry);
-void spari_pencil_hold_at(spari_pencil *pencil, spari_pencil_hold hold);
+void spari_pencil_add_constraint(spari_pencil *pencil, spari_pencil_constraint entry);
 /* left += r [n] from unknown base + at on. */
 void spari_pencil_set_forces(spari_pencil *pencil, int at, int n, const double *r);
 /* y [n] += (a K + b C + c M) x of the entries from `first` on. */

@@ -34,13 +34,13 @@ enum { MOST_DENSE = 90 };
 
 typedef struct spectrum {
     spari_pencil *p;
-    int n, all;            /* unknowns; unknowns with multipliers */
-    double *d;             /* [n] scale factors of the unknowns */
-    double highest;        /* largest K_ii / M_ii, its root, rad/s */
-    int rank;              /* independent constraints: */
-    int *multiplier;       /* [holds] their number, or -1 if dependent */
-    double *Q;             /* [rank][n] orthonormal rows: the constrained motions */
-    spari_pencil_hold *at; /* [entries + 2 ties]: positions of the entries of the bordered matrix */
+    int n, all;                  /* unknowns; unknowns with multipliers */
+    double *d;                   /* [n] scale factors of the unknowns */
+    double highest;              /* largest K_ii / M_ii, its root, rad/s */
+    int rank;                    /* independent constraints: */
+    int *multiplier;             /* [constraints] their number, or -1 if dependent */
+    double *Q;                   /* [rank][n] orthonormal rows: the constrained motions */
+    spari_pencil_constraint *at; /* [entries + 2 constraint entries]: positions of the entries of the bordered matrix */
     spari_band *band;
     double complex sigma;
     double s;                  /* scale of x relative to y = lambda x */
@@ -84,8 +84,8 @@ static void scale_pencil(spectrum *a) {
         double f = 1 / (a->d[e->row] * a->d[e->column]);
         e->k *= f, e->c *= f, e->m *= f;
     }
-    for (int64_t i = 0; i < p->rows_held; i++) {
-        p->row_held[i].g /= a->d[p->row_held[i].column];
+    for (int64_t i = 0; i < p->constraint_entries; i++) {
+        p->constraint[i].g /= a->d[p->constraint[i].column];
     }
 }
 
@@ -94,7 +94,7 @@ static void scale_pencil(spectrum *a) {
 /* G^T = Q R with column pivoting: independent rows of G, and their span. */
 static int find_holds(spectrum *a) {
     spari_pencil *p = a->p;
-    int n = a->n, h = p->holds, most = n < h ? n : h;
+    int n = a->n, h = p->constraints, most = n < h ? n : h;
     if (h == 0) {
         return SPAR_OK;
     }
@@ -103,8 +103,8 @@ static int find_holds(spectrum *a) {
     a->Q = spari_zalloc((int64_t)most * n, sizeof *a->Q);
     int status = G && order && a->Q ? SPAR_OK : SPAR_ERR_MEMORY;
     if (status == SPAR_OK) {
-        for (int64_t i = 0; i < p->rows_held; i++) {
-            G[(int64_t)n * p->row_held[i].row + p->row_held[i].column] += p->row_held[i].g;
+        for (int64_t i = 0; i < p->constraint_entries; i++) {
+            G[(int64_t)n * p->constraint[i].row + p->constraint[i].column] += p->constraint[i].g;
         }
         int rank = spari_independent_rows(h, n, G, dependent_hold, order, most, a->Q);
         status = rank >= 0 ? SPAR_OK : SPAR_ERR_MEMORY;
@@ -141,16 +141,16 @@ static int make_band(spectrum *a) {
     int64_t count = 0;
     a->all = a->n + a->rank;
     for (int64_t i = 0; i < p->entries; i++) {
-        a->at[count++] = (spari_pencil_hold){p->entry[i].row, p->entry[i].column, 0};
+        a->at[count++] = (spari_pencil_constraint){p->entry[i].row, p->entry[i].column, 0};
     }
-    for (int64_t i = 0; i < p->rows_held; i++) {
-        int k = a->multiplier[p->row_held[i].row];
+    for (int64_t i = 0; i < p->constraint_entries; i++) {
+        int k = a->multiplier[p->constraint[i].row];
         if (k >= 0) {
-            a->at[count++] = (spari_pencil_hold){a->n + k, p->row_held[i].column, 0};
+            a->at[count++] = (spari_pencil_constraint){a->n + k, p->constraint[i].column, 0};
         }
     }
     for (int i = 0; i < a->all; i++) {
-        a->at[count++] = (spari_pencil_hold){i, i, 0};
+        a->at[count++] = (spari_pencil_constraint){i, i, 0};
     }
     a->band = spari_band_create(a->all, count, &a->at[0].row, &a->at[0].column, sizeof *a->at);
     return a->band ? SPAR_OK : SPAR_ERR_MEMORY;
@@ -168,11 +168,11 @@ static int factor_at(spectrum *a, double complex sigma) {
         size = fmax(size, cabs(x));
         spari_band_add(a->band, e->row, e->column, x);
     }
-    for (int64_t i = 0; i < p->rows_held; i++) {
-        int k = a->multiplier[p->row_held[i].row];
+    for (int64_t i = 0; i < p->constraint_entries; i++) {
+        int k = a->multiplier[p->constraint[i].row];
         if (k >= 0) {
-            spari_band_add(a->band, a->n + k, p->row_held[i].column, size * p->row_held[i].g);
-            spari_band_add(a->band, p->row_held[i].column, a->n + k, size * p->row_held[i].g);
+            spari_band_add(a->band, a->n + k, p->constraint[i].column, size * p->constraint[i].g);
+            spari_band_add(a->band, p->constraint[i].column, a->n + k, size * p->constraint[i].g);
         }
     }
     return spari_band_factor(a->band);
@@ -463,11 +463,11 @@ int spari_spectrum(spari_pencil *p, int n, double complex shift, int how, int *f
         int left = 2 * p->n;
         how = p->n <= MOST_DENSE || 6 * (n + 1) > left ? SPARI_SPECTRUM_DENSE : SPARI_SPECTRUM_SPARSE;
     }
-    a.multiplier = spari_zalloc(p->holds, sizeof *a.multiplier);
-    a.workspace = spari_zalloc(3 * (int64_t)p->n + p->holds, sizeof *a.workspace);
-    a.at = spari_zalloc(p->entries + p->rows_held + p->n + p->holds, sizeof *a.at);
+    a.multiplier = spari_zalloc(p->constraints, sizeof *a.multiplier);
+    a.workspace = spari_zalloc(3 * (int64_t)p->n + p->constraints, sizeof *a.workspace);
+    a.at = spari_zalloc(p->entries + p->constraint_entries + p->n + p->constraints, sizeof *a.at);
     int status = a.d && a.multiplier && a.workspace && a.at && !p->full ? SPAR_OK : SPAR_ERR_MEMORY;
-    for (int i = 0; i < p->holds && status == SPAR_OK; i++) {
+    for (int i = 0; i < p->constraints && status == SPAR_OK; i++) {
         a.multiplier[i] = -1;
     }
     if (status == SPAR_OK) {

@@ -871,7 +871,7 @@ static void restore_end(spari_assembly *a) {
     a->solved = 1;
 }
 
-int spari_assembly_response(spari_assembly *a, int64_t count, int64_t apart, double *stacked) {
+int spari_assembly_response(spari_assembly *a, int64_t count, int64_t stride, double *stacked) {
     if (!a->here || a->components == 0) {
         return 0;
     }
@@ -884,7 +884,7 @@ int spari_assembly_response(spari_assembly *a, int64_t count, int64_t apart, dou
     int singular = 0;
     a->standing = 0; /* the system was formed at slightly different positions */
     for (int64_t k = 0; k < count && !singular; k++) {
-        singular = has_loads(a, stacked + k * apart) && respond_once(a, stacked + k * apart);
+        singular = has_loads(a, stacked + k * stride) && respond_once(a, stacked + k * stride);
     }
     a->standing = 0;
     return singular;

@@ -52,11 +52,11 @@ int spari_assembly_balance(spari_assembly *assembly, double dt);
 /* The motion that a small additional load causes, to first order and over the last substep. After a step, on the
    owner; elsewhere it does nothing.
 
-   stacked: `count` vectors, `apart` numbers from each other, with six numbers for each node of all members of the
+   stacked: `count` vectors, `stride` numbers from each other, with six numbers for each node of all members of the
    session. On entry they are the loads on the members of this assembly, on return the motions. Zero vectors cost
    nothing. The following steps are not affected, to the last bit. Returns 0, or 1: there is no response, as after
    reading a step without tangents from a file. */
-int spari_assembly_response(spari_assembly *assembly, int64_t count, int64_t apart, double *stacked);
+int spari_assembly_response(spari_assembly *assembly, int64_t count, int64_t stride, double *stacked);
 /* The motion per unit force of the assembly's mass without any constraint, m/N; 0 without inertia. */
 double spari_assembly_mass_response(const spari_assembly *assembly);
 /* The estimated remaining correction of the last Newton solution. */

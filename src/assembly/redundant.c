@@ -192,7 +192,7 @@ static int take_row(loop_rows *all, int first, int end, double size) {
     return 1;
 }
 
-static void tell(const spari_constraint *l, int k) {
+static void warn_redundant(const spari_constraint *l, int k) {
     static const char *const motion[6] = {
         "x", "y", "z", "the rotation about x", "the rotation about y", "the rotation about z"};
     spari_warn(l->joint->session,
@@ -213,7 +213,7 @@ static int drop_from_constraint(loop_rows *all, const spari_assembly *a, const s
         }
         if (redundant) {
             l->joint->constrained &= ~(1 << k);
-            tell(l, k);
+            warn_redundant(l, k);
         }
     }
     return SPAR_OK;

@@ -47,15 +47,15 @@ static void take_rotation(spari_assembly *a, const prescribed_motion *t) {
 
 /* Whether the motion agrees with the rotation that has been found. */
 static int goes_along(const spari_assembly *a, const prescribed_motion *t) {
-    double v[6], acceleration[6], apart[3], rotation[3];
+    double v[6], acceleration[6], difference[3], rotation[3];
     const spari_steady_rotation *g = &a->rotating.rotation;
     spari_rotating_frame_rates(&a->rotating, 1, t->x, v, acceleration);
     for (int k = 0; k < 3; k++) {
-        apart[k] = v[k] - t->v[k];
+        difference[k] = v[k] - t->v[k];
         rotation[k] = v[3 + k] - t->v[3 + k];
     }
     double size = spari_norm(g->v0) + spari_norm(v) + spari_norm(t->v);
-    return spari_norm(rotation) <= same_motion * spari_norm(g->w) && spari_norm(apart) <= same_motion * size;
+    return spari_norm(rotation) <= same_motion * spari_norm(g->w) && spari_norm(difference) <= same_motion * size;
 }
 
 static int refuse_rotations(const spari_assembly *a, const prescribed_motion *one, const prescribed_motion *other) {
@@ -309,9 +309,9 @@ static int is_same_view(const spari_constraint *l, const constraint_view *now, c
     const spar_joint *j = l->joint;
     int given = spari_joint_constrained(j), same = 1,
         axis = j->kinematics.line ? -1 : spari_kinematics_free_axis(j->kinematics.free);
-    double apart = 0, size = 0, most = 0, reach = spari_member_length(j->member[0]);
+    double difference = 0, size = 0, most = 0, reach = spari_member_length(j->member[0]);
     for (int k = 0; k < 6; k++) {
-        apart = fmax(apart, fabs(now->force[k] - then->force[k]));
+        difference = fmax(difference, fabs(now->force[k] - then->force[k]));
         size = fmax(size, fabs(now->force[k]));
         if (!(given >> k & 1) || (j->kinematics.line && k > 0)) {
             continue;
@@ -324,7 +324,7 @@ static int is_same_view(const spari_constraint *l, const constraint_view *now, c
     for (int i = 0; i < 36; i++) { /* of a motion that is only rounding */
         most = fmax(most, (fabs(j->stiffness[i]) + speed * fabs(j->damping[i])) * (i % 6 < 3 ? reach : 1));
     }
-    return same && apart <= 1e-6 * size + 1e-9 * most;
+    return same && difference <= 1e-6 * size + 1e-9 * most;
 }
 
 static int check_constraint(const spari_assembly *a, spari_constraint *l) {

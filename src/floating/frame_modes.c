@@ -220,11 +220,11 @@ int spari_frame_problem(const spar_member *m, double *K, double *M) {
 /* Small deformation is relative to the root, so the root must rotate as the frame does. */
 int spari_frame_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
     const spari_frame *f = m->solution;
-    double apart[3], own = spari_norm(m->after.v + 3);
+    double difference[3], own = spari_norm(m->after.v + 3);
     for (int k = 0; k < 3; k++) {
-        apart[k] = m->after.v[3 + k] - w[k];
+        difference[k] = m->after.v[3 + k] - w[k];
     }
-    if (spari_norm(apart) > 1e-4 * fmax(own, spari_norm(w))) {
+    if (spari_norm(difference) > 1e-4 * fmax(own, spari_norm(w))) {
         return SPAR_ERR_UNSUPPORTED;
     }
     const spari_pose pose = spari_member_pose(m, &m->after);

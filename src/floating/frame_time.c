@@ -199,11 +199,11 @@ static void subtract_jump(const spari_frame *f, const spar_member *m, double h, 
             x[k] -= cblas_ddot(6, f->M + (int64_t)f->n * k, 1, J, 1);
         }
         for (int i = 1; i < f->nodes && !f->basis; i++) {
-            double arm[3], turn[3];
+            double arm[3], rotation[3];
             spari_member_arm(m, i, arm);
-            spari_cross(J + 3, arm, turn);
+            spari_cross(J + 3, arm, rotation);
             for (int k = 0; k < 3; k++) {
-                x[6 * i + k] -= J[k] + turn[k];
+                x[6 * i + k] -= J[k] + rotation[k];
                 x[6 * i + 3 + k] -= J[3 + k];
             }
         }

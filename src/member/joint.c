@@ -373,17 +373,17 @@ const spar_joint *spari_joint_of(const spar_member *m) {
     return j;
 }
 
-static int64_t place_in_session(const spar_member *member) {
-    int64_t place = 0;
+int64_t spari_member_number(const spar_member *member) {
+    int64_t number = 0;
     for (const spar_member *m = member ? member->session->members : NULL; m && m != member; m = m->next) {
-        place++;
+        number++;
     }
-    return member ? place : -1;
+    return member ? number : -1;
 }
 
 uint64_t spari_joint_hash(const spar_joint *j) {
-    const int64_t numbers[] = {place_in_session(j->member[0]),
-                               place_in_session(j->member[1]),
+    const int64_t numbers[] = {spari_member_number(j->member[0]),
+                               spari_member_number(j->member[1]),
                                j->node[0],
                                j->node[1],
                                j->kinematics.free,

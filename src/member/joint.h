@@ -51,6 +51,8 @@ struct spar_joint {
 
 /* Unique node of a node in the host's numbering. */
 int spari_member_unique(const spar_member *member, int64_t node);
+/* The number of a member in the order of creation, in which loads and motions of all members are stacked. NULL: -1. */
+int64_t spari_member_number(const spar_member *member);
 /* A joint that connects the member: the first one. NULL: none does. */
 const spar_joint *spari_joint_of(const spar_member *member);
 /* The description as one number: all that is said of it before the first step. */

@@ -11,6 +11,7 @@
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/check_arguments.h"
+#include "../member/joint.h"
 #include "../member/mean_acceleration.h"
 #include "../time/fidelity.h"
 #include "../time/newton_tolerance.h"
@@ -32,7 +33,7 @@ static int rigid_field(spar_member *m) {
         spari_cross(w, r, v);
         spari_cross(
             w, v,
-            a); /* centripetal: what a body turning steadily has; the solver replaces it by the balance of forces */
+            a); /* centripetal: that of a body in steady rotation; the solver replaces it by the balance of forces */
         for (int c = 0; c < 3; c++) {
             v[c] += v0[c];
             v[3 + c] = w[c];
@@ -450,15 +451,6 @@ void spari_member_gravity(spar_member *m) {
     }
 }
 
-/* Loads and motions of all members are stacked in the order of their creation. */
-static int place_of(const spar_member *member) {
-    int place = 0;
-    for (const spar_member *m = member->session->members; m && m != member; m = m->next) {
-        place++;
-    }
-    return place;
-}
-
 int spar_member_commit(spar_member *member) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_member(member, __func__));
@@ -476,10 +468,10 @@ int spar_member_commit(spar_member *member) {
             }
         }
     }
-    const spari_agreed must_agree[] = {spari_whole("positions of it in the order of creation", place_of(member)),
-                                       spari_whole("owners of it", member->owner),
-                                       spari_given("owners of it (set or not)", member->owner_given),
-                                       spari_hash("descriptions of it", spari_member_hash(member))};
+    const spari_agreed must_agree[] = {
+        spari_whole("positions of it in the order of creation", spari_member_number(member)),
+        spari_whole("owners of it", member->owner), spari_given("owners of it (set or not)", member->owner_given),
+        spari_hash("descriptions of it", spari_member_hash(member))};
     int agreed = spari_member_enter(member, __func__, must_agree, 4, status);
     if (agreed != SPAR_OK) {
         if (status == SPAR_OK) {

@@ -16,7 +16,12 @@ int spar_member_get_reaction(const spar_member *member, double load[6]) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_committed(member, __func__));
     SPARI_REQUIRE(member->session, load, SPAR_ERR_ARGUMENT, "%s: '%s': load is NULL", __func__, member->name);
-    return spari_named(member->session, __func__, spari_member_reaction(member, load));
+    double *workspace = spari_zalloc(spari_member_reaction_size(member), sizeof *workspace);
+    SPARI_REQUIRE(member->session, workspace, SPAR_ERR_MEMORY, "%s: '%s': no memory for its reaction", __func__,
+                  member->name);
+    spari_member_reaction_in(member, workspace, load);
+    free(workspace);
+    return SPAR_OK;
 }
 
 int64_t spari_member_reaction_size(const spar_member *m) {
@@ -121,14 +126,6 @@ void spari_reaction_of_whole(const spar_member *m, double *workspace, double loa
     }
     int constrained = spari_member_constrained(m);
     memset(load + constrained, 0, (size_t)(6 - constrained) * sizeof *load);
-}
-
-int spari_member_reaction(const spar_member *m, double load[6]) {
-    double *workspace = spari_zalloc(spari_member_reaction_size(m), sizeof *workspace);
-    SPARI_REQUIRE(m->session, workspace, SPAR_ERR_MEMORY, "member '%s': no memory for its reaction", m->name);
-    spari_member_reaction_in(m, workspace, load);
-    free(workspace);
-    return SPAR_OK;
 }
 
 int spari_energy_of_body(const spar_member *m, double energy[4]) {

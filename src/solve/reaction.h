@@ -4,10 +4,8 @@
 
 #include "../member/structure.h"
 
-/* The reaction at the root at t^{n+1}. It is zero if the root is free, or if spar does not solve for the member.
-   Returns 0 or SPAR_ERR_MEMORY. */
-int spari_member_reaction(const spar_member *member, double load[6]);
-/* The same with a workspace of so many doubles. */
+/* The reaction at the root at t^{n+1}, with a workspace of so many doubles. It is zero if the root is free, or if spar
+   does not solve for the member. */
 int64_t spari_member_reaction_size(const spar_member *member);
 void spari_member_reaction_in(const spar_member *member, double *workspace, double load[6]);
 

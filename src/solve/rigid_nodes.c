@@ -45,7 +45,7 @@ void spari_rigid_nodes_equilibrium(spar_member *m) {
     const double none[6] = {0};
     spari_pose root = spari_pose_of(m->now.q, none, none);
     if (m->root == SPAR_ROOT_DRIVEN && (spari_norm(m->now.v + 3) > 0 || spari_norm(m->now.a) > 0)) {
-        memcpy(root.v, m->now.v, sizeof root.v); /* turning steadily, as the members that are solved for */
+        memcpy(root.v, m->now.v, sizeof root.v); /* in steady rotation, as the members that are solved for */
         memcpy(root.a, m->now.a, 3 * sizeof *root.a);
     }
     spari_rigid_nodes_move(m, &root, &m->after);

@@ -1,8 +1,8 @@
-/* The call for modes, and those of an assembly: the parts' problems side by side, springs and the turning of the
-   joints' loads between them, and what joints hold eliminated. Of the constraints G x = 0, orthonormal rows Q of which
-   the first span the rows of G: the others are a basis of the motions that the constraints allow, on which stiffness
-   and mass are projected, so that no multiplier or penalty is left in the eigenproblem, and holds that say a thing
-   twice do no harm. */
+/* The call for modes, and the modes of an assembly. Stiffness and mass of the members stand side by side; springs and
+   the rotation of the joints' loads couple them. Constraints G x = 0 are eliminated: of orthonormal rows Q the first
+   span the rows of G, and the others are a basis of the motions that the constraints allow. Stiffness and mass are
+   projected on this basis, so the eigenproblem has no multiplier and no penalty, and redundant constraints do no
+   harm. */
 #include "../algebra/cblas.h"
 #include "../algebra/dense.h"
 #include "../assembly/assembly.h"
@@ -29,10 +29,10 @@ typedef struct modal_part {
 typedef struct joined_modes {
     modal_part *part;
     int parts;
-    int64_t size, holds; /* unknowns; rows of G */
-    double *K, *M;       /* [size][size] of all unknowns */
-    double *G;           /* [holds][size] */
-    double *Q;           /* [size][size] orthonormal rows; the first `rank` are the motions that the holds take away */
+    int64_t size, constraints; /* unknowns; rows of G */
+    double *K, *M;             /* [size][size] of all unknowns */
+    double *G;                 /* [constraints][size] */
+    double *Q; /* [size][size] orthonormal rows; the first `rank` are the motions that the constraints remove */
     int64_t rank;
     double *workspace; /* of a shape, twice */
 } joined_modes;
@@ -98,7 +98,7 @@ static int gather_parts(joined_modes *t, const spar_member *first) {
     for (const spar_joint *j = s->joints; j; j = j->next) {
         int here = modal_part_of(t, j->member[0]) || modal_part_of(t, j->member[1]);
         for (int k = 0; k < 6 && here; k++) {
-            t->holds += spari_joint_constrained(j) >> k & 1;
+            t->constraints += spari_joint_constrained(j) >> k & 1;
         }
     }
     return SPAR_OK;
@@ -161,7 +161,7 @@ static void add_block(int64_t size, double *K, const modal_part *a, const double
 }
 
 /* A row of G += B_k S, over one side's unknowns. */
-static void add_hold(double *G, const modal_part *p, const double *S, const double *row) {
+static void add_constraint_row(double *G, const modal_part *p, const double *S, const double *row) {
     for (int64_t c = 0; c < p->size; c++) {
         double sum = 0;
         for (int i = 0; i < 6; i++) {
@@ -171,7 +171,7 @@ static void add_hold(double *G, const modal_part *p, const double *S, const doub
     }
 }
 
-static int add_joint_to_modes(joined_modes *t, const spar_joint *j, int64_t *holds) {
+static int add_joint_to_modes(joined_modes *t, const spar_joint *j, int64_t *constraints) {
     const modal_part *of[2] = {modal_part_of(t, j->member[0]), modal_part_of(t, j->member[1])};
     double K[12][12], B[6][12], *S[2] = {NULL, NULL};
     if (!of[0] && !of[1]) {
@@ -196,10 +196,10 @@ static int add_joint_to_modes(joined_modes *t, const spar_joint *j, int64_t *hol
     for (int k = 0; k < 6; k++) {
         for (int side = 0; side < 2 && (spari_joint_constrained(j) >> k & 1); side++) {
             if (of[side]) {
-                add_hold(t->G + t->size * *holds, of[side], S[side], B[k] + 6 * side);
+                add_constraint_row(t->G + t->size * *constraints, of[side], S[side], B[k] + 6 * side);
             }
         }
-        *holds += spari_joint_constrained(j) >> k & 1;
+        *constraints += spari_joint_constrained(j) >> k & 1;
     }
     free(block);
     return SPAR_OK;
@@ -217,13 +217,13 @@ static int alloc_joined_modes(joined_modes *t) {
         most = shape > most ? shape : most;
     }
     t->workspace = spari_zalloc(most, sizeof *t->workspace);
-    t->K = spari_zalloc(3 * square + t->holds * t->size, sizeof *t->K);
+    t->K = spari_zalloc(3 * square + t->constraints * t->size, sizeof *t->K);
     t->M = t->K + square, t->Q = t->M + square, t->G = t->Q + square;
     return t->workspace && t->K;
 }
 
 static int fill_joined_modes(joined_modes *t, const spar_session *s) {
-    int64_t holds = 0;
+    int64_t constraints = 0;
     for (int i = 0; i < t->parts; i++) {
         const modal_part *p = t->part + i;
         double *K = t->workspace, *M = K + p->size * p->size;
@@ -236,7 +236,7 @@ static int fill_joined_modes(joined_modes *t, const spar_session *s) {
         }
     }
     for (const spar_joint *j = s->joints; j; j = j->next) {
-        SPARI_TRY(add_joint_to_modes(t, j, &holds));
+        SPARI_TRY(add_joint_to_modes(t, j, &constraints));
     }
     return SPAR_OK;
 }
@@ -244,12 +244,12 @@ static int fill_joined_modes(joined_modes *t, const spar_session *s) {
 /* ---- constraints ---- */
 
 /* Scales rows of G to 1, then replaces G^T by Q and R. */
-static int factor_holds(joined_modes *t) {
-    int *order = spari_zalloc(t->holds + 1, sizeof *order), n = (int)t->size;
-    if (order && t->holds > 0) {
-        t->rank = spari_independent_rows((int)t->holds, n, t->G, dependent_row, order, n, t->Q);
+static int factor_constraints(joined_modes *t) {
+    int *order = spari_zalloc(t->constraints + 1, sizeof *order), n = (int)t->size;
+    if (order && t->constraints > 0) {
+        t->rank = spari_independent_rows((int)t->constraints, n, t->G, dependent_row, order, n, t->Q);
     }
-    for (int64_t i = 0; i < n && t->holds == 0; i++) {
+    for (int64_t i = 0; i < n && t->constraints == 0; i++) {
         t->Q[(t->size + 1) * i] = 1;
     }
     int status = order && t->rank >= 0 ? SPAR_OK : SPAR_ERR_MEMORY;
@@ -257,7 +257,8 @@ static int factor_holds(joined_modes *t) {
     return status;
 }
 
-/* The part of a symmetric A that the holds leave, Q A Q^T by the last rows of Q, into B; half [size][size]: room. */
+/* B := the part of a symmetric A that the constraints allow, Q A Q^T by the last rows of Q. half [size][size]:
+   workspace. */
 static void onto_allowed(const joined_modes *t, const double *A, double *half, double *B) {
     int n = (int)t->size, left = n - (int)t->rank;
     const double *Q = t->Q + t->size * t->rank;
@@ -271,7 +272,7 @@ static void onto_allowed(const joined_modes *t, const double *A, double *half, d
     }
 }
 
-/* x [size]: room */
+/* x [size]: workspace */
 static void give_shapes(const joined_modes *t, spari_modal *p, const spar_member *m, int64_t n, double *x,
                         double *shapes) {
     const modal_part *own = modal_part_of(t, m);
@@ -287,7 +288,7 @@ static void give_shapes(const joined_modes *t, spari_modal *p, const spar_member
 static int solve_joined_modes(joined_modes *t, spar_member *m, int64_t n, double *frequency, double *shapes) {
     spar_session *s = m->session;
     int status = alloc_joined_modes(t) ? fill_joined_modes(t, s) : SPAR_ERR_MEMORY;
-    status = status == SPAR_OK ? factor_holds(t) : status;
+    status = status == SPAR_OK ? factor_constraints(t) : status;
     SPARI_REQUIRE(s, status == SPAR_OK, status, "no memory for the modes of the assembly of '%s'", m->name);
     int64_t left = t->size - t->rank;
     SPARI_REQUIRE(s, n <= left, SPAR_ERR_ARGUMENT, "the assembly of '%s': %lld modes; the assembly has %lld", m->name,

@@ -113,7 +113,7 @@ static int check_same(const spari_small_motions *w, const spari_motion_part *p, 
     if (spari_norm(s) <= one_turn * fmax(spari_norm(p->own), spari_norm(w->w))) {
         return SPAR_OK;
     }
-    double *x = spari_zalloc(5 * (int64_t)w->size, sizeof *x), *turned = x + w->size, *y = turned + w->size,
+    double *x = spari_zalloc(5 * (int64_t)w->size, sizeof *x), *rotated = x + w->size, *y = rotated + w->size,
            *z = y + w->size, *last = z + w->size;
     SPARI_REQUIRE(w->session, x, SPAR_ERR_MEMORY, "no memory for eigenvalues");
     int same = p->size % 3 == 0, kinds = p->member->body->C ? 3 : 2; /* weight alone may have a direction */
@@ -123,8 +123,8 @@ static int check_same(const spari_small_motions *w, const spari_motion_part *p, 
     for (int kind = 0; kind < kinds && same; kind++) {
         double change = 0, size = 0;
         memset(y, 0, 3 * (size_t)w->size * sizeof *y);
-        rotate_vectors(p->size, s, x + p->at, turned + p->at);
-        spari_pencil_times(&w->pencil, first, kind == 2, kind == 1, kind == 0, turned, y);
+        rotate_vectors(p->size, s, x + p->at, rotated + p->at);
+        spari_pencil_times(&w->pencil, first, kind == 2, kind == 1, kind == 0, rotated, y);
         spari_pencil_times(&w->pencil, first, kind == 2, kind == 1, kind == 0, x, z);
         rotate_vectors(p->size, s, z + p->at, last + p->at);
         for (int i = p->at; i < p->at + p->size; i++) {
@@ -144,7 +144,7 @@ static int check_same(const spari_small_motions *w, const spari_motion_part *p, 
 
 static int fill_motions(spari_small_motions *w) {
     spar_session *s = w->session;
-    int holds = 0;
+    int constraints = 0;
     spari_pencil_free(&w->pencil);
     SPARI_REQUIRE(s, spari_pencil_create(&w->pencil, w->size) == SPAR_OK, SPAR_ERR_MEMORY, "no memory for eigenvalues");
     for (int i = 0; i < w->parts; i++) {
@@ -160,9 +160,9 @@ static int fill_motions(spari_small_motions *w) {
         SPARI_TRY(w->loose ? SPAR_OK : check_same(w, p, first));
     }
     for (const spar_joint *j = s->joints; j; j = j->next) {
-        SPARI_TRY(spari_small_motions_add_joint(w, j, &holds));
+        SPARI_TRY(spari_small_motions_add_joint(w, j, &constraints));
     }
-    w->pencil.holds = holds;
+    w->pencil.constraints = constraints;
     SPARI_REQUIRE(s, !w->pencil.full, SPAR_ERR_MEMORY, "no memory for eigenvalues");
     return SPAR_OK;
 }

@@ -35,15 +35,15 @@ static int symmetric_part(const spari_pencil *p, double more, spari_pencil *to) 
     if (spari_pencil_create(to, p->n) != SPAR_OK) {
         return SPAR_ERR_MEMORY;
     }
-    to->holds = p->holds;
+    to->constraints = p->constraints;
     for (int64_t i = 0; i < p->entries; i++) {
         const spari_pencil_entry *e = p->entry + i;
         double k = 0.5 * (e->k + more * e->m), m = 0.5 * e->m;
         spari_pencil_put(to, (spari_pencil_entry){e->row, e->column, k, 0, m});
         spari_pencil_put(to, (spari_pencil_entry){e->column, e->row, k, 0, m});
     }
-    for (int64_t i = 0; i < p->rows_held; i++) {
-        spari_pencil_hold_at(to, p->row_held[i]);
+    for (int64_t i = 0; i < p->constraint_entries; i++) {
+        spari_pencil_add_constraint(to, p->constraint[i]);
     }
     return to->full ? SPAR_ERR_MEMORY : SPAR_OK;
 }

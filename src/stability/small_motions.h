@@ -48,7 +48,7 @@ void spari_small_motions_shape(const spari_small_motions *motions, const spari_m
                                const double complex *x, double *nodes);
 
 /* Adds the entries of a joint, after those of the parts; SPAR_ERR_UNSUPPORTED: they depend on time in this frame.
-   holds: number of rows of G. */
-int spari_small_motions_add_joint(spari_small_motions *motions, const spar_joint *joint, int *holds);
+   constraints: number of rows of G. */
+int spari_small_motions_add_joint(spari_small_motions *motions, const spar_joint *joint, int *constraints);
 
 #endif

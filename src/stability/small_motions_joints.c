@@ -203,7 +203,7 @@ SPARI_APART static int check_around(const spari_small_motions *w, const spar_joi
 }
 
 /* S_a^T X S_b of two sides, and the constraints */
-static void put_joint(spari_small_motions *w, const motion_side side[2], const motion_joint *of, int *holds) {
+static void put_joint(spari_small_motions *w, const motion_side side[2], const motion_joint *of, int *constraints) {
     for (int ab = 0; ab < 4; ab++) {
         const motion_side *a = side + ab / 2, *b = side + ab % 2;
         for (int64_t rc = 0; rc < (int64_t)a->count * b->count; rc++) {
@@ -227,19 +227,19 @@ static void put_joint(spari_small_motions *w, const motion_side side[2], const m
                     row[k] += side[n].S[c][i] * of->B[k][6 * n + i];
                 }
             }
-            for (int k = 0, at = *holds; k < 6; at += of->given >> k & 1, k++) {
+            for (int k = 0, at = *constraints; k < 6; at += of->given >> k & 1, k++) {
                 if (of->given >> k & 1) {
-                    spari_pencil_hold_at(&w->pencil, (spari_pencil_hold){at, side[n].column[c], row[k]});
+                    spari_pencil_add_constraint(&w->pencil, (spari_pencil_constraint){at, side[n].column[c], row[k]});
                 }
             }
         }
     }
     for (int k = 0; k < 6; k++) {
-        *holds += of->given >> k & 1;
+        *constraints += of->given >> k & 1;
     }
 }
 
-int spari_small_motions_add_joint(spari_small_motions *w, const spar_joint *j, int *holds) {
+int spari_small_motions_add_joint(spari_small_motions *w, const spar_joint *j, int *constraints) {
     motion_side side[2] = {{.part = spari_small_motions_part(w, j->member[0])},
                            {.part = spari_small_motions_part(w, j->member[1])}};
     if (!side[0].part && !side[1].part) {
@@ -255,7 +255,7 @@ int spari_small_motions_add_joint(spari_small_motions *w, const spar_joint *j, i
     linearise_joint(w, j, side, of);
     int status = w->loose ? SPAR_OK : check_around(w, j, side, of);
     if (status == SPAR_OK) {
-        put_joint(w, side, of, holds);
+        put_joint(w, side, of, constraints);
     }
     free(of);
     return status;

@@ -65,7 +65,7 @@ void spari_nodes_correct(const spari_node_work *t, int64_t from, int64_t to) {
 }
 
 spari_node_size spari_nodes_positions(const spari_node_work *t, int64_t from, int64_t to) {
-    return largest_of(SPARI_SIZED_BY_PLACE, t, from, to);
+    return largest_of(SPARI_SIZED_BY_POSITION, t, from, to);
 }
 
 void spari_nodes_advance(const spari_node_work *t, int64_t from, int64_t to, spari_node_size *by,

@@ -6,7 +6,7 @@
 #include "node_kinematics.h"
 
 /* Passes over nodes that return the size of their motions. */
-enum { SPARI_SIZED_BY_TAKE, SPARI_SIZED_BY_PLACE, SPARI_SIZED_BY_SIZE, SPARI_SIZED };
+enum { SPARI_SIZED_BY_TAKE, SPARI_SIZED_BY_POSITION, SPARI_SIZED_BY_SIZE, SPARI_SIZED };
 
 typedef struct spari_node_kernels {
     int width;

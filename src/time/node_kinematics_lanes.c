@@ -339,7 +339,7 @@ HERE void NAME(place_block)(const int whole, const int64_t *at, const spari_node
     NAME(put_places)(whole, at, t, i, x, psi);
 }
 
-TARGET static spari_node_size NAME(place)(const spari_node_work *t, int64_t from, int64_t to) {
+TARGET static spari_node_size NAME(set_positions)(const spari_node_work *t, int64_t from, int64_t to) {
     L size[2] = {0};
 #define WORK(whole) NAME(place_block)(whole, at, t, i, size);
     EACH_BLOCK(from, to, WORK)
@@ -587,8 +587,9 @@ const spari_node_kernels NAME(spari_node_kernels) = {
     .width = W,
     .back = NAME(forces_back),
     .forth = NAME(corrections_forth),
-    .sized =
-        {[SPARI_SIZED_BY_TAKE] = NAME(take), [SPARI_SIZED_BY_PLACE] = NAME(place), [SPARI_SIZED_BY_SIZE] = NAME(size)},
+    .sized = {[SPARI_SIZED_BY_TAKE] = NAME(take),
+              [SPARI_SIZED_BY_POSITION] = NAME(set_positions),
+              [SPARI_SIZED_BY_SIZE] = NAME(size)},
     .predict = NAME(predict),
     .correct = NAME(correct),
     .advance = NAME(advance),

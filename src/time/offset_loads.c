@@ -10,7 +10,7 @@ void spari_offset_loads_at(spari_offset_loads *offset_loads, double s) {
 }
 
 /* Y = R Z = sum (R rho) f^T */
-static void turned(const spari_offset_loads *offset_loads, const double q[4], double Y[9]) {
+static void rotate_sums(const spari_offset_loads *offset_loads, const double q[4], double Y[9]) {
     for (int j = 0; j < 3; j++) {
         double column[3] = {offset_loads->Z[j], offset_loads->Z[3 + j], offset_loads->Z[6 + j]};
         spari_rotate(q, column, column);
@@ -22,7 +22,7 @@ static void turned(const spari_offset_loads *offset_loads, const double q[4], do
 
 void spari_offset_loads_residual(const spari_offset_loads *offset_loads, const double q[4], double r[3]) {
     double Y[9];
-    turned(offset_loads, q, Y);
+    rotate_sums(offset_loads, q, Y);
     r[0] -= Y[5] - Y[7];
     r[1] -= Y[6] - Y[2];
     r[2] -= Y[1] - Y[3];
@@ -31,7 +31,7 @@ void spari_offset_loads_residual(const spari_offset_loads *offset_loads, const d
 /* (dtheta x r) x f = r (f . dtheta) - (r . f) dtheta, summed: Y - tr(Y) */
 void spari_offset_loads_tangent(const spari_offset_loads *offset_loads, const double q[4], double S[36]) {
     double Y[9];
-    turned(offset_loads, q, Y);
+    rotate_sums(offset_loads, q, Y);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
             S[6 * (3 + i) + 3 + j] -= Y[3 * i + j] - (i == j ? Y[0] + Y[4] + Y[8] : 0);

@@ -153,15 +153,15 @@ int spari_member_rotates_stiffly(const spar_member *m) {
 
 int spari_scheme_rotates(const spar_session *s, double dt) {
     const spari_scheme c = {.h = dt / s->integrator.substeps};
-    int turns = 0;
-    for (const spar_member *m = s->members; m && !turns; m = m->next) {
+    int rotates = 0;
+    for (const spar_member *m = s->members; m && !rotates; m = m->next) {
         if (spari_member_rotates_stiffly(m)) {
             double w[3];
             spari_mean_rotation(m->nodes, m->now.v, w);
-            turns = exceeds_limit(1.1 * spari_norm(w), &c, s);
+            rotates = exceeds_limit(1.1 * spari_norm(w), &c, s);
         }
     }
-    return turns;
+    return rotates;
 }
 
 spari_scheme spari_scheme_resize(const spari_scheme *alpha, double h) {

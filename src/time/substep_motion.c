@@ -94,13 +94,13 @@ void spari_alpha_carry(const spari_solver *s, const spar_member *member, const s
     spari_quat_log(rotation, psi);
     for (int i = 0; i < s->n; i++) {
         const double *position = spari_member_position(member, i);
-        double arm[3], turned[3];
+        double arm[3], rotated[3];
         for (int k = 0; k < 3; k++) {
             arm[k] = position[k] + from->q[7 * i + k] - member->xr[k] - from->q[k];
         }
-        spari_rotate(rotation, arm, turned);
+        spari_rotate(rotation, arm, rotated);
         for (int k = 0; k < 3; k++) {
-            x[6 * i + k] = driven ? root->q[k] - from->q[k] + turned[k] - arm[k] : 0;
+            x[6 * i + k] = driven ? root->q[k] - from->q[k] + rotated[k] - arm[k] : 0;
             x[6 * i + 3 + k] = driven ? psi[k] : 0;
         }
     }

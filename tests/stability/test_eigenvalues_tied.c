@@ -216,10 +216,10 @@ static void test_dense_and_sparse(void **state) {
             }
         }
         for (int copy = 0; copy < 4; copy++) { /* each chain's first two move alike; said twice */
-            spari_pencil_hold_at(&p, (spari_pencil_hold){copy, N * (copy % 2), 1});
-            spari_pencil_hold_at(&p, (spari_pencil_hold){copy, N * (copy % 2) + 1, -1});
+            spari_pencil_add_constraint(&p, (spari_pencil_constraint){copy, N * (copy % 2), 1});
+            spari_pencil_add_constraint(&p, (spari_pencil_constraint){copy, N * (copy % 2) + 1, -1});
         }
-        p.holds = 4;
+        p.constraints = 4;
         int found = 0;
         assert_int_equal(spari_spectrum(&p, ASK, CMPLX(0, 2), how ? SPARI_SPECTRUM_SPARSE : SPARI_SPECTRUM_DENSE,
                                         &found, value[how], x[how]),
