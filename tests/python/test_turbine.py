@@ -3,13 +3,14 @@
 All models are made here: a straight blade of one section, in a turbine of round numbers.
 """
 import os
+import struct
 import subprocess
 import sys
 import unittest
 
 import numpy
 import spar
-from spar import openfast, turbine, windio
+from spar import hawc2, openfast, results, turbine, windio
 
 RUN = sys.argv.pop() if len(sys.argv) > 2 else None
 WORK = sys.argv.pop() if len(sys.argv) > 1 else '.'
@@ -182,6 +183,46 @@ class Blade(unittest.TestCase):
         numpy.testing.assert_allclose(blade.points, numpy.column_stack([z, x, 0 * x]))
         a = 6 / LENGTH  # slope at the tip of the parabola
         self.assertAlmostEqual(blade.length(), LENGTH / 2 * (numpy.sqrt(1 + a * a) + numpy.arcsinh(a) / a), delta=1e-3)
+
+    def hawc2_files(self, rows):
+        """A blade of the model's length in HAWC2's files, of one row of numbers at both ends."""
+        text = '\n'.join(f'{r} ' + ' '.join(f'{x:.16g}' for x in rows) for r in (0, LENGTH))
+        write('blade.st', f'1 sets\n#1 made by the test\nr m ...\n$1 2 flexible\n{text}\n')
+        return write('blade.htc', 'begin main_body ;\n  name blade1 ; of three\n  damping_posdef 0 0 0 1e-3 2e-3 3e-3 ;\n  begin timoschenko_input ;\n'
+                     '    filename ./blade.st ;\n    set 1 1 ;\n  end timoschenko_input ;\n  begin c2_def ;\n    nsec 2 ;\n'
+                     f'    sec 1 0 0 0 -10 ;\n    sec 2 0 0 {LENGTH} -10 ;\n  end c2_def ;\nend main_body ;\n')
+
+    def test_hawc2(self):
+        """The model's blade as HAWC2 has it, x to the leading edge: E = 1e10, G = 1e9, A = 1."""
+        mass = [MASS, -CENTRE, 0, numpy.sqrt(20 / MASS), numpy.sqrt((100 - MASS * CENTRE**2) / MASS)]
+        of_windio = windio.read(model()).blade
+        upper = numpy.diag([2e9, 1e9, AXIAL, FLAP, EDGE, TORSION])[numpy.triu_indices(6)]
+        for rows in ([*mass, 0, 0, 1e10, 1e9, 0.1, 0.4, 1, 2, 1, 1, 0, 0, 0], [*mass, 0, 0, 0, *upper]):
+            blade = hawc2.read_body(self.hawc2_files(rows), 'blade1')
+            for name in ('points', 'twist'):
+                numpy.testing.assert_allclose(getattr(blade, name)[[0, -1]], getattr(of_windio, name)[[0, -1]], atol=1e-12)
+            numpy.testing.assert_allclose(blade.stiffness[0], of_windio.stiffness[0], rtol=1e-12, atol=1e-3)
+            numpy.testing.assert_allclose(blade.mass[0], of_windio.mass[0], rtol=1e-12, atol=1e-10)
+            numpy.testing.assert_allclose(blade.damping, [0, 0, 0, 3e-3, 2e-3, 1e-3])
+
+    def test_hawc2_centres(self):
+        """Elastic centre 0.3 m ahead of the line and 0.1 m to the suction side, principal axes at 90 degrees: a force along the beam
+        at that point does not bend. Both kinds of rows give one matrix."""
+        mass = [MASS, 0, 0, 0.3, 0.7]
+        upper = numpy.diag([1e9, 1e9, AXIAL, EDGE, FLAP, TORSION])[numpy.triu_indices(6)]
+        found = []
+        for rows in ([*mass, 0.3, 0.1, 1e10, 1e9, 0.4, 0.1, 1, 1, 1, 1, 90, 0.3, 0.1], [*mass, 90, 0.3, 0.1, *upper]):
+            self.hawc2_files(rows)
+            _, stiffness, inertia = hawc2.read_st(os.path.join(WORK, 'blade.st'))
+            flexibility = numpy.linalg.inv(stiffness[0])
+            pull = numpy.array([1, 0, 0, 0, -0.3, -0.1])  # at y = 0.1, z = -0.3: moments z N about y, -y N about z
+            numpy.testing.assert_allclose((flexibility @ pull)[3:], 0, atol=1e-16)  # beside 1e-10 of one that bends
+            numpy.testing.assert_allclose(inertia[0][3:, 3:], MASS * numpy.diag([0.3**2 + 0.7**2, 0.3**2, 0.7**2]), atol=1e-9)
+            found.append(stiffness[0])
+        numpy.testing.assert_allclose(*found, rtol=1e-12, atol=1e-2)
+        self.assertAlmostEqual(found[0][4, 4], EDGE + AXIAL * 0.3**2, delta=1)  # about y, to which x has turned
+        with self.assertRaisesRegex(turbine.ModelError, 'set #2'):
+            hawc2.read_st(os.path.join(WORK, 'blade.st'), number=2)
 
     def test_case(self):
         """spar-run finds the frequencies of the case file that are found here."""
@@ -407,6 +448,62 @@ class Rotor(unittest.TestCase):
         self.assertGreater(abs(tip[0]), 0.05)
         last = table[[i for i, row in enumerate(table) if row[0] == 'blade1'][-1]]
         self.assertAlmostEqual(float(last['ux_m']), tip[0], delta=2e-3 * abs(tip[0]))
+
+
+class Results(unittest.TestCase):
+    """Files for other tools, taken apart by hand: the layout is that of OpenFAST's WrBinFAST."""
+
+    def channels(self, name):
+        t = 1 + 0.05 * numpy.arange(40)
+        return {'Time': ('s', t), name: ('kW', 1e3 * numpy.sin(t)), 'Still': ('-', 0 * t + 3.25), 'Far': ('m', 1e6 + 1e-3 * t)}
+
+    def test_outb(self):
+        """Without compression: identifier 3, names of 10 characters, all digits."""
+        path, made = os.path.join(WORK, 'run.outb'), self.channels('GenPwr')
+        results.write(path, made, 'hello')
+        with open(path, 'rb') as file:
+            data = file.read()
+        self.assertEqual(struct.unpack_from('<hiidd', data)[:4], (3, 3, 40, 1.0))
+        self.assertAlmostEqual(struct.unpack_from('<hiidd', data)[4], 0.05, delta=1e-15)
+        self.assertEqual(data[26:35], b'\x05\x00\x00\x00hello')
+        self.assertEqual(data[35:115].decode().split(), ['Time', 'GenPwr', 'Still', 'Far', '(s)', '(kW)', '(-)', '(m)'])
+        values = numpy.frombuffer(data, '<f8', offset=115).reshape(40, 3)
+        numpy.testing.assert_array_equal(values, numpy.column_stack([v for _, v in list(made.values())[1:]]))
+
+    def test_packed(self):
+        """With a longer name: identifier 4, 16 bits, (value - offset) / scale; a channel far from 0 keeps 1e-7 of its size."""
+        path, made = os.path.join(WORK, 'run.outb'), self.channels('GeneratorPower')
+        results.write(path, made, '')
+        with open(path, 'rb') as file:
+            data = file.read()
+        kind, width, count, rows = struct.unpack_from('<hhii', data)
+        self.assertEqual((kind, width, count, rows), (4, 14, 3, 40))
+        scale, offset = (numpy.frombuffer(data, '<f4', 3, at).astype(float) for at in (28, 40))
+        self.assertEqual(data[56 + 14:56 + 28].decode(), 'GeneratorPower')
+        packed = numpy.frombuffer(data, '<i2', offset=56 + 8 * 14).reshape(40, 3)
+        found = (packed - offset) / scale
+        for i, (name, bound) in enumerate((('GeneratorPower', 2e3 / 65535), ('Still', 1e-6), ('Far', 0.2))):
+            self.assertLess(abs(found[:, i] - made[name][1]).max(), bound)
+
+    def test_others(self):
+        """CSV goes and comes; what does not fit is refused."""
+        made = self.channels('Power')
+        path = os.path.join(WORK, 'run.csv')
+        results.write(path, made)
+        with open(path, encoding='utf-8') as file:
+            self.assertEqual(file.readline(), 'Time_(s),Power_(kW),Still_(-),Far_(m)\n')
+        history = write('history.csv', 't_s,iterations,blade_ux_m,blade_My_Nm\n0,1,0.5,2e3\n0.1,2,0.6,3e3\n')
+        read = results.read_history(history)
+        self.assertEqual([(name, unit) for name, (unit, _) in read.items()], [('Time', 's'), ('iterations', '-'), ('blade_ux', 'm'), ('blade_My', 'Nm')])
+        self.assertEqual(list(read['blade_My'][1]), [2e3, 3e3])
+        made['Time'] = ('s', made['Time'][1]**2)
+        with self.assertRaisesRegex(ValueError, 'even time steps'):
+            results.write(os.path.join(WORK, 'run.outb'), made)
+        with self.assertRaisesRegex(ValueError, 'ending must be one of .outb, .csv, .h5'):
+            results.write(os.path.join(WORK, 'run.txt'), made)
+        made['Power'] = ('kW', [1.0])
+        with self.assertRaisesRegex(ValueError, 'each of one length'):
+            results.write(path, made)
 
 
 if __name__ == '__main__':
