@@ -249,9 +249,13 @@ static int renew_by_node(spar_fluid *fluid, int64_t n) {
 
 static void take_nodes(spari_node_set *set, spari_nodes *nodes) {
     spari_node_set was = *set;
-    *set = (spari_node_set){
-        .sections = was.sections, .n = nodes->n, .nodes = nodes, .weight = was.weight, .home = was.home};
-    was.weight = was.home = NULL; /* they belong to nodes, whatever the line */
+    *set = (spari_node_set){.sections = was.sections,
+                            .n = nodes->n,
+                            .nodes = nodes,
+                            .weight = was.weight,
+                            .home = was.home,
+                            .fade = was.fade};
+    was.weight = was.home = NULL, was.fade = NULL; /* they belong to nodes, whatever the line */
     spari_node_set_clear(&was);
 }
 
@@ -276,6 +280,10 @@ int spar_fluid_map(spar_fluid *fluid) {
     spari_line_free(line);
     if (status == SPAR_OK && fresh && renew_by_node(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->n) != SPAR_OK) {
         status = spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, __func__, "no memory for the node forces");
+    }
+    spari_fade *fade = fluid->set[SPAR_NODES_MOTION].fade;
+    if (status == SPAR_OK && fade && made[SPAR_NODES_MOTION] && spari_fade_map(fade, made[SPAR_NODES_MOTION])) {
+        status = no_memory_to_map(fluid, __func__, made[SPAR_NODES_MOTION]->n, SPAR_NODES_MOTION);
     }
     for (int which = 0; which < 2; which++) {
         if (status == SPAR_OK && made[which]) {

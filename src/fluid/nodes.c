@@ -56,6 +56,7 @@ void spari_node_set_clear(spari_node_set *set) {
     free(set->frame);
     free(set->weight);
     free(set->home);
+    spari_fade_free(set->fade);
     spari_nodes_free(set->nodes);
     *set = (spari_node_set){0};
 }

@@ -8,6 +8,7 @@ enum {
     WARNED_FAR = 1,
     WARNED_UNPUSHED = 2,
     WARNED_VELOCITY = 4,
+    WARNED_FOLD = 8,
     STEPS_WITHOUT_PUSH = 2,      /* accepted steps before a missing push is reported */
     STEPS_WITHOUT_VELOCITY = 10, /* and before missing velocities are */
 };
@@ -39,6 +40,18 @@ void spari_fluid_warn_far(spar_fluid *fluid) {
                    "long (up to %.3g m; length %.3g m); check the units of positions and the member's placement",
                    fluid->name, m->name, (long long)count, (long long)set->n, most, length);
     }
+}
+
+void spari_fluid_warn_fold(spar_fluid *fluid, spari_fold fold) {
+    const spari_fade *fade = fluid->set[SPAR_NODES_MOTION].fade;
+    if (fold.jacobian > 0.2 || fluid->warned & WARNED_FOLD) {
+        return;
+    }
+    fluid->warned |= WARNED_FOLD;
+    spari_warn(fluid->member->session,
+               "fluid '%s' of member '%s': the fade from %g to %g m leaves cells at motion node %lld %.0f %% of their "
+               "volume; at 0 the mesh folds and the motion is refused; give spar_fluid_fade_motion a wider range",
+               fluid->name, fluid->member->name, fade->within, fade->beyond, (long long)fold.node, 100 * fold.jacobian);
 }
 
 /* At the end of an accepted step. */

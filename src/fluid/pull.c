@@ -314,18 +314,21 @@ typedef struct pulling {
     const wanted *wanted;
     int what, states, direct;
     double share[2];
-    double least[SPARI_MOST_THREADS]; /* smallest |Q|^2 of each thread */
+    double least[SPARI_MOST_THREADS];    /* smallest |Q|^2 of each thread */
+    spari_fold fold[SPARI_MOST_THREADS]; /* largest of each thread */
 } pulling;
 
-static void pull_tile(pulling *p, int64_t first, const states *t, double *least) {
+static void pull_tile(pulling *p, int64_t first, const states *t, int worker) {
     const spar_fluid *fluid = p->fluid;
-    const spari_nodes *s = p->set->nodes;
+    const spari_nodes *s = spari_moving_nodes(p->set);
+    double *least = &p->least[worker];
     const wanted *w = p->wanted;
+    int what = p->what | (p->set->fade ? SPARI_POSES : 0);
     for (int i = 0; i < t->n; i++) {
-        *least = fmin(*least, spari_tile_motion(s, first, fluid->field[i], fluid->consistent, p->what, t->buf[i]));
+        *least = fmin(*least, spari_tile_motion(s, first, fluid->field[i], fluid->consistent, what, t->buf[i]));
     }
     for (int i = 0; i < t->n && p->set->weight; i++) {
-        spari_fluid_weigh(p->set, first, p->what & SPARI_UPTO, t->buf[i]);
+        spari_fluid_weigh(p->set, first, p->what & SPARI_UPTO, t->buf[i], &p->fold[worker]);
     }
     emit(s, first, t, SPARI_R_POSITION, w->x, w->layout);
     emit(s, first, t, SPARI_R_RATE, w->v, w->layout);
@@ -348,7 +351,7 @@ static void pull_slab(void *context, int64_t slab, int worker) {
         p->least[worker] = fmin(p->least[worker], least);
     }
     for (int64_t first = from; first < end && !p->direct; first += SPARI_TILE) {
-        pull_tile(p, first, &t, &p->least[worker]);
+        pull_tile(p, first, &t, worker);
     }
     spari_tiles_end();
 }
@@ -361,11 +364,24 @@ static int is_direct(const pulling *p) {
            (single ? !w->x.d && !w->v.d : 1) && spari_can_move_to(p->set->nodes, single);
 }
 
-/* All pulls: the nodes of one set at t^n + theta dt. */
-static int pull_set(const spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
+static int check_fold(const spar_fluid *fluid, spari_fold fold, const char *caller) {
+    const spari_fade *fade = fluid->set[SPAR_NODES_MOTION].fade;
+    if (fold.jacobian <= 0) {
+        return spari_fluid_refuse(fluid, SPAR_ERR_NUMERIC, caller,
+                                  "the mesh folds at motion node %lld: the member moves farther than the fade from %g "
+                                  "to %g m can take; give spar_fluid_fade_motion a wider range",
+                                  (long long)fold.node, fade->within, fade->beyond);
+    }
+    return SPAR_OK;
+}
+
+/* All pulls: the nodes of one set at t^n + theta dt. fold: out. */
+static int pull_set(const spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller,
+                    spari_fold *fold) {
     spari_thread_pool *pool = fluid->member->session->pool;
     pulling p = {.fluid = fluid, .set = spari_fluid_set(fluid, which), .wanted = w, .what = what_of(w)};
     const spari_nodes *s;
+    *fold = spari_fold_none();
     SPARI_TRY(spari_fluid_check_theta(fluid, theta, caller));
     SPARI_TRY(spari_fluid_mapped(fluid, which, caller, &s));
     if (!s || s->n == 0) {
@@ -379,12 +395,16 @@ static int pull_set(const spar_fluid *fluid, int which, double theta, const want
     p.direct = is_direct(&p);
     for (int k = 0; k < spari_thread_pool_threads(pool); k++) {
         p.least[k] = HUGE_VAL;
+        p.fold[k] = spari_fold_none();
     }
     spari_thread_pool_run(pool, spari_slabs(s->n, SPARI_SLAB), pull_slab, &p);
     for (int k = 1; k < spari_thread_pool_threads(pool); k++) {
         p.least[0] = fmin(p.least[0], p.least[k]);
+        p.fold[0] = spari_fold_worse(p.fold[0], p.fold[k]);
     }
-    return spari_fluid_check_rotation(fluid, p.least[0], caller);
+    *fold = p.fold[0];
+    SPARI_TRY(spari_fluid_check_rotation(fluid, p.least[0], caller));
+    return check_fold(fluid, p.fold[0], caller);
 }
 
 /* Public pulls. */
@@ -405,7 +425,10 @@ static int pull_nodes(spar_fluid *fluid, int which, double theta, const wanted *
             mute_parts(fluid, spari_fluid_set(fluid, which), &left);
         }
     }
-    return pull_set(fluid, which, theta, &left, caller);
+    spari_fold fold;
+    SPARI_TRY(pull_set(fluid, which, theta, &left, caller, &fold));
+    spari_fluid_warn_fold(fluid, fold);
+    return SPAR_OK;
 }
 
 static int pull_motion(spar_fluid *fluid, double theta, const wanted *w, const char *caller) {
@@ -447,7 +470,9 @@ int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
     double square = 0, least = HUGE_VAL;
+    const spari_node_set *set = &fluid->set[SPAR_NODES_MOTION];
     const spari_nodes *s;
+    spari_fold fold = spari_fold_none();
     int64_t farthest = -1;
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_MOTION, __func__, &s));
     SPARI_TRY(need_second(fluid, __func__));
@@ -458,11 +483,12 @@ int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
     for (int64_t first = 0; s && first < s->n; first += SPARI_TILE) {
         const states t = tiles_of(fluid, 0, 2, (const double[2]){1, 0});
         for (int i = 0; i < t.n; i++) {
-            double met = spari_tile_motion(s, first, fluid->field[i], fluid->consistent, SPARI_UPTO_POSITION, t.buf[i]);
+            double met = spari_tile_motion(spari_moving_nodes(set), first, fluid->field[i], fluid->consistent,
+                                           SPARI_UPTO_POSITION | (set->fade ? SPARI_POSES : 0), t.buf[i]);
             least = fmin(least, met);
         }
-        for (int i = 0; i < t.n && fluid->set[SPAR_NODES_MOTION].weight; i++) {
-            spari_fluid_weigh(&fluid->set[SPAR_NODES_MOTION], first, SPARI_UPTO_POSITION, t.buf[i]);
+        for (int i = 0; i < t.n && set->weight; i++) {
+            spari_fluid_weigh(set, first, SPARI_UPTO_POSITION, t.buf[i], &fold);
         }
         if (t.buf[1]) { /* see need_second */
             longest_way(s, first, &t, &square, &farthest);
@@ -568,7 +594,8 @@ int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *m
     SPARI_FLUID_REQUIRE(fluid, right, SPAR_ERR_MEMORY, "no memory for %lld matrices", (long long)n);
     wanted w = {.matrix.d = right, .convention = convention};
     int status = check_rotations(fluid, SPAR_NODES_MOTION, &w, __func__);
-    status = status != SPAR_OK ? status : pull_set(fluid, SPAR_NODES_MOTION, 1, &w, __func__);
+    spari_fold fold;
+    status = status != SPAR_OK ? status : pull_set(fluid, SPAR_NODES_MOTION, 1, &w, __func__, &fold);
     for (int64_t j = 0; j < n && status == SPAR_OK; j++) {
         const char *why = wrong_with(matrix + 9 * j, right + 9 * j);
         if (why) {
@@ -585,7 +612,8 @@ int spar_fluid_get_positions(const spar_fluid *fluid, int which, double *x, doub
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     wanted w = {.x.d = x, .v.d = v, .q.d = q};
-    SPARI_TRY(pull_set(fluid, which, 1, &w, __func__)); /* also fills the coefficients of the motion */
+    spari_fold fold;
+    SPARI_TRY(pull_set(fluid, which, 1, &w, __func__, &fold)); /* also fills the coefficients of the motion */
     const spari_nodes *s = spari_fluid_set(fluid, which)->nodes;
     for (int64_t p = 0; s && nearest && p < s->n; p++) {
         const double *c = fluid->field[0] + (ptrdiff_t)spari_nodes_element(s, p) * s->per_element * SPARI_FIELDS;

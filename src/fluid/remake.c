@@ -77,7 +77,9 @@ static int keep_weights(spar_fluid *f, const spar_fluid *old) {
     }
     to->weight = spari_copy(from->weight, from->n);
     to->home = spari_copy(from->home, 3 * from->n);
-    return to->weight && to->home ? SPAR_OK : no_memory_for_trial(f);
+    to->fade = from->fade ? spari_fade_copy(from->fade, from->n) : NULL;
+    int fades = !from->fade || (to->fade && !spari_fade_map(to->fade, to->nodes));
+    return to->weight && to->home && fades ? SPAR_OK : no_memory_for_trial(f);
 }
 
 static int copy_history(const spari_history *from, int order, spari_history **to) {
@@ -245,6 +247,7 @@ static void drop_own(spar_fluid *f, const spar_fluid *old) {
             free(f->set[which].frame);
             free(f->set[which].weight);
             free(f->set[which].home);
+            spari_fade_free(f->set[which].fade);
             spari_nodes_free(f->set[which].nodes);
         }
     }

@@ -11,6 +11,20 @@
    states. */
 enum { SPARI_PULL_ONE = SPARI_ROWS + SPARI_R_OMEGA, SPARI_PULL_BOTH = SPARI_PULL_ONE + SPARI_ROWS };
 
+/* A fade with the distance from the line: far nodes follow the translation of their nearest point, and of its rotation
+   only what it does to a shorter lever arm. */
+typedef struct spari_fade_node {
+    double slope[3];   /* gradient of the weight; 0: the node needs no check */
+    double tangent[3]; /* of the line at the nearest point; 0: an end, where it stays as the node moves along */
+    double growth;     /* derivative of the shorter arm's length by the arm's */
+} spari_fade_node;
+typedef struct spari_fade {
+    double within, beyond;
+    double *reach;         /* [n] part of the lever arm that rotates */
+    spari_fade_node *node; /* [n] for the mesh's deformation */
+    spari_nodes *nodes;    /* the mapped nodes with these arms; NULL: not mapped */
+} spari_fade;
+
 /* A set of nodes: as the host gave it until it is mapped, and as mapped. */
 typedef struct spari_node_set {
     int pending;  /* given, not mapped yet */
@@ -21,7 +35,14 @@ typedef struct spari_node_set {
     spari_nodes *nodes; /* after the map */
     double *frame;      /* [n][4]: frames that sections keep when the line gets other nodes; NULL: the line's frames */
     double *weight, *home; /* [n], [n][3]: motion weight and reference position; NULL: full motion */
+    spari_fade *fade;      /* NULL: weights alone, for whole lever arms */
 } spari_node_set;
+
+/* The least Jacobian of a faded mesh, and its node. */
+typedef struct spari_fold {
+    double jacobian;
+    int64_t node;
+} spari_fold;
 
 /* Node forces over time, for hosts that pull them back between steps (SPAR_EFFECT_FLUID_HISTORY). */
 typedef struct spari_history {
@@ -112,8 +133,9 @@ struct spar_fluid {
     spari_taking *taking;   /* while a file is loaded (saved_state.c), or after giving up; otherwise NULL */
 };
 
-/* Warnings, once per fluid: at the map, and at the end of an accepted step (plausible.c). */
+/* Warnings, once per fluid: at the map, at a pull, and at the end of an accepted step (plausible.c). */
 void spari_fluid_warn_far(spar_fluid *fluid);
+void spari_fluid_warn_fold(spar_fluid *fluid, spari_fold fold);
 void spari_fluid_warn_step(spar_fluid *fluid);
 /* Message that begins with caller, fluid and member; returns status. */
 int spari_fluid_refuse(const spar_fluid *fluid, int status, const char *caller, const char *format, ...)
@@ -134,6 +156,11 @@ static inline const spari_node_set *spari_fluid_set(const spar_fluid *fluid, int
     return &fluid->set[fluid->shared ? SPAR_NODES_MOTION : which];
 }
 
+/* The nodes of a set with the lever arms that move them. */
+static inline const spari_nodes *spari_moving_nodes(const spari_node_set *set) {
+    return set->fade ? set->fade->nodes : set->nodes;
+}
+
 /* Frees and empties a set of nodes. */
 void spari_node_set_clear(spari_node_set *set);
 /* Nodes and maps can only change between steps, and not in a trial. */
@@ -141,8 +168,25 @@ int spari_fluid_check_idle(const spar_fluid *fluid, const char *caller);
 /* The mapped set, or a refusal; *nodes NULL: an empty set. */
 int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, const spari_nodes **nodes);
 /* Applies the motion weights to the positions, velocities and accelerations of one state's tile. The set must have
-   weights. */
-void spari_fluid_weigh(const spari_node_set *set, int64_t first, int upto, double (*buf)[SPARI_ROW]);
+   weights. fold: in and out, the worst so far; a fade needs the quaternions. */
+void spari_fluid_weigh(const spari_node_set *set, int64_t first, int upto, double (*buf)[SPARI_ROW], spari_fold *fold);
+/* The worse of the two; of equal ones that of the lower node. */
+static inline spari_fold spari_fold_worse(spari_fold a, spari_fold b) {
+    return b.jacobian < a.jacobian || (b.jacobian == a.jacobian && b.node < a.node) ? b : a;
+}
+static inline spari_fold spari_fold_none(void) {
+    return (spari_fold){1, 0};
+}
+/* Weight at s, of the width of a fade: 1 at s <= 0, 0 at s >= 1. */
+double spari_fade_weight(double s);
+/* create: for nodes with these lever arms and tangents of the line [n][3], held (NULL: none). copy: for a line with
+   other nodes; neither is mapped yet. NULL: no memory. map: for nodes that are mapped; returns 0, or 1: no memory, and
+   nothing has changed. */
+spari_fade *spari_fade_create(int64_t n, const double *arm, const double *tangent, const int *held, double within,
+                              double beyond);
+void spari_fade_free(spari_fade *fade);
+spari_fade *spari_fade_copy(const spari_fade *from, int64_t n);
+int spari_fade_map(spari_fade *fade, const spari_nodes *nodes);
 /* Allocates the workspace of the fluid's calls for all threads. Returns 0, or 1: no memory. */
 int spari_fluid_reserve_workspace(const spar_fluid *fluid);
 /* Workspace of a thread, valid for one call: rows of tiles. */

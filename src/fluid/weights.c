@@ -35,22 +35,25 @@ static double *reference_positions(const spar_fluid *fluid) {
                         : spari_copy(set->x, 3 * set->n);
 }
 
-static void take_weights(spari_node_set *set, double *weight, double *home) {
+static void take_weights(spari_node_set *set, double *weight, double *home, spari_fade *fade) {
     free(set->weight);
     free(set->home);
-    set->weight = weight, set->home = home;
+    spari_fade_free(set->fade);
+    set->weight = weight, set->home = home, set->fade = fade;
 }
 
-/* Takes ownership of the array. */
-static int use_weights(spar_fluid *fluid, double *weight, const char *caller) {
+/* Takes ownership of the array and of the fade, if any. */
+static int use_weights(spar_fluid *fluid, double *weight, spari_fade *fade, const char *caller) {
+    const spari_nodes *nodes = fluid->set[SPAR_NODES_MOTION].nodes;
     double *home = reference_positions(fluid);
-    if (!weight || !home) {
+    if (!weight || !home || (fade && nodes && spari_fade_map(fade, nodes))) {
         free(weight);
         free(home);
+        spari_fade_free(fade);
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the weights of %lld motion nodes",
                                   (long long)fluid->set[SPAR_NODES_MOTION].n);
     }
-    take_weights(&fluid->set[SPAR_NODES_MOTION], weight, home);
+    take_weights(&fluid->set[SPAR_NODES_MOTION], weight, home, fade);
     return SPAR_OK;
 }
 
@@ -59,7 +62,7 @@ int spar_fluid_set_motion_weights(spar_fluid *fluid, int64_t n, const double *w)
     SPARI_FLUID_HANDLE(fluid);
     if (n == 0 && !w) {
         SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
-        take_weights(&fluid->set[SPAR_NODES_MOTION], NULL, NULL);
+        take_weights(&fluid->set[SPAR_NODES_MOTION], NULL, NULL, NULL);
         return SPAR_OK;
     }
     SPARI_TRY(check_weighable(fluid, n, __func__));
@@ -70,7 +73,7 @@ int spar_fluid_set_motion_weights(spar_fluid *fluid, int64_t n, const double *w)
                             "the weight of motion node %lld is %g; give 0 (fixed) to 1 (moves with the section)",
                             (long long)j, w[j]);
     }
-    return use_weights(fluid, spari_copy(w, n), __func__);
+    return use_weights(fluid, spari_copy(w, n), NULL, __func__);
 }
 
 int spar_fluid_get_motion_weights(const spar_fluid *fluid, double *w) {
@@ -84,11 +87,19 @@ int spar_fluid_get_motion_weights(const spar_fluid *fluid, double *w) {
     return SPAR_OK;
 }
 
-/* Distances of the motion nodes from the line, [n]; free with free(). */
-static int line_distances(const spar_fluid *fluid, double **distance, const char *caller) {
+/* ---- fading ---- */
+
+static void unit(double x[3]) {
+    double length = spari_norm(x);
+    for (int i = 0; i < 3 && length > 0; i++) {
+        x[i] /= length;
+    }
+}
+
+/* Lever arms of the motion nodes from the line, and its tangents there, 0 at an end; [n][3], free with free(). */
+static int look_at_line(const spar_fluid *fluid, double **arm, double **tangent, const char *caller) {
     const spar_member *m = fluid->member;
     int64_t n = fluid->set[SPAR_NODES_MOTION].n;
-    *distance = NULL;
     if (!m->committed) {
         return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
                                   "the member is not committed, so distances from its axis are not known; call "
@@ -96,33 +107,30 @@ static int line_distances(const spar_fluid *fluid, double **distance, const char
     }
     spari_line *line = spari_line_create(m->mesh.elements, m->mesh.per_element, m->xr);
     double *x = reference_positions(fluid), *nearest = spari_zalloc(3 * n, sizeof *nearest),
-           *xi = spari_zalloc(n, sizeof *xi);
+           *xi = spari_zalloc(n, sizeof *xi), point[3];
     int *element = spari_zalloc(n, sizeof *element);
     uint8_t *flags = spari_zalloc(n, sizeof *flags);
     int whole = line && x && nearest && xi && element && flags;
     whole = whole && !spari_line_project(line, m->session->pool, fluid->method, n, x, element, xi, nearest, flags);
-    if (whole) {
-        for (int64_t j = 0; j < n; j++) {
-            double arm[3] = {x[3 * j] - nearest[3 * j], x[3 * j + 1] - nearest[3 * j + 1],
-                             x[3 * j + 2] - nearest[3 * j + 2]};
-            xi[j] = spari_norm(arm);
+    for (int64_t j = 0; whole && j < n; j++) {
+        for (int i = 0; i < 3; i++) {
+            x[3 * j + i] -= nearest[3 * j + i];
         }
-        *distance = xi, xi = NULL;
+        memset(nearest + 3 * j, 0, 3 * sizeof *nearest);
+        if (m->mesh.per_element > 1 && !(flags[j] & SPAR_MAP_END)) {
+            spari_line_point(line, element[j], xi[j], point, nearest + 3 * j);
+            unit(nearest + 3 * j);
+        }
     }
+    *arm = whole ? x : NULL, *tangent = whole ? nearest : NULL;
     spari_line_free(line);
-    free(x);
-    free(nearest);
+    free(whole ? NULL : x);
+    free(whole ? NULL : nearest);
     free(xi);
     free(element);
     free(flags);
     return whole ? SPAR_OK
                  : spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory to measure %lld nodes", (long long)n);
-}
-
-/* 1 at s <= 0, 0 at s >= 1, the first two derivatives 0 at both ends. */
-static double quintic_fade(double s) {
-    double r = 1 - s;
-    return s <= 0 ? 1 : s >= 1 ? 0 : r * r * r * (10 - r * (15 - 6 * r));
 }
 
 int spar_fluid_fade_motion(spar_fluid *fluid, double within, double beyond, int64_t n, const double *distance,
@@ -135,35 +143,78 @@ int spar_fluid_fade_motion(spar_fluid *fluid, double within, double beyond, int6
     if (distance) {
         SPARI_TRY(spari_fluid_check_values(fluid, __func__, "distance of motion node", distance, n, 1));
     }
-    double *own = NULL;
+    double *arm = NULL, *tangent = NULL;
     if (!distance) {
-        SPARI_TRY(line_distances(fluid, &own, __func__));
+        SPARI_TRY(look_at_line(fluid, &arm, &tangent, __func__));
     }
     double *weight = spari_zalloc(n, sizeof *weight), span = beyond / 2 - within / 2; /* halved: both may be large */
     for (int64_t j = 0; weight && j < n; j++) {
-        double at = distance ? distance[j] : own[j];
-        weight[j] = held && held[j] ? 0 : quintic_fade((at / 2 - within / 2) / span);
+        double at = distance ? distance[j] : spari_norm(arm + 3 * j);
+        weight[j] = held && held[j] ? 0 : spari_fade_weight((at / 2 - within / 2) / span);
     }
-    free(own);
-    return use_weights(fluid, weight, __func__);
+    spari_fade *fade = arm ? spari_fade_create(n, arm, tangent, held, within, beyond) : NULL;
+    if (arm && !fade) {
+        free(weight);
+        weight = NULL; /* refused as no memory */
+    }
+    free(arm);
+    free(tangent);
+    return use_weights(fluid, weight, fade, __func__);
 }
 
-void spari_fluid_weigh(const spari_node_set *set, int64_t first, int upto, double (*buf)[SPARI_ROW]) {
+/* det of I + w (R - I) M + way slope^T, M the derivative of the shorter arm's end by the node's position. Curvature and
+   strain of the line are left out: they act on arms of twice `within` at most. */
+static double jacobian(const spari_fade_node *f, double reach, double w, const double q[4], const double way[3]) {
+    double e[3] = {f->slope[0], f->slope[1], f->slope[2]}, R[9], M[3][3], F[3][3], unit_q[4] = {q[0], q[1], q[2], q[3]},
+           minor[3];
+    unit(e);
+    spari_quat_normalise(unit_q);
+    spari_quat_matrix(unit_q, R);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            M[i][k] =
+                (1 - reach) * f->tangent[i] * f->tangent[k] + (f->growth - reach) * e[i] * e[k] + (i == k ? reach : 0);
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            F[i][k] = (i == k) + way[i] * f->slope[k] - w * M[i][k];
+            for (int l = 0; l < 3; l++) {
+                F[i][k] += w * R[3 * i + l] * M[l][k];
+            }
+        }
+    }
+    spari_cross(F[1], F[2], minor);
+    return spari_dot(F[0], minor);
+}
+
+void spari_fluid_weigh(const spari_node_set *set, int64_t first, int upto, double (*buf)[SPARI_ROW], spari_fold *fold) {
+    const spari_fade *fade = set->fade;
     int count = spari_tile_count(set->nodes, first), rows[] = {SPARI_R_RATE, SPARI_R_ACCEL};
     int moves = upto >= SPARI_UPTO_ACCEL ? 2 : upto >= SPARI_UPTO_RATE ? 1 : 0;
     for (int i = 0; i < count; i++) {
         int64_t node = spari_nodes_node(set->nodes, first + i);
-        double w = set->weight[node];
+        double w = set->weight[node], way[3];
         if (w == 1) { /* the same bits as without weights */
             continue;
         }
         for (int k = 0; k < 3; k++) {
             double *x = &buf[SPARI_R_POSITION + k][i], home = set->home[3 * node + k];
-            *x = w == 0 ? home : home + w * (*x - home);
+            way[k] = *x - home;
+            if (fade) { /* x is the end of the shorter arm */
+                way[k] += set->nodes->con[k][first + i] - fade->nodes->con[k][first + i];
+            }
+            *x = w == 0 ? home : home + w * way[k];
             for (int r = 0; r < moves; r++) {
                 double *rate = &buf[rows[r] + k][i];
                 *rate = w == 0 ? 0 : w * *rate;
             }
+        }
+        if (fade && w != 0) {
+            const double q[4] = {buf[SPARI_R_QUAT][i], buf[SPARI_R_QUAT + 1][i], buf[SPARI_R_QUAT + 2][i],
+                                 buf[SPARI_R_QUAT + 3][i]};
+            spari_fold here = {jacobian(fade->node + node, fade->reach[node], w, q, way), node};
+            *fold = spari_fold_worse(*fold, here);
         }
     }
 }

@@ -72,6 +72,35 @@ void spari_nodes_free(spari_nodes *s) {
     free(s);
 }
 
+spari_nodes *spari_nodes_shorten(const spari_nodes *from, const double *factor) {
+    spari_nodes *s = spari_zalloc(1, sizeof *s);
+    int whole = s != NULL;
+    if (s) {
+        *s = *from;
+    }
+    for (int i = 0; i < 3 && s; i++) {
+        s->con[i] = spari_zalloc(from->n, sizeof *s->con[i]);
+        whole = whole && s->con[i];
+    }
+    for (int64_t p = 0; whole && p < from->n; p++) {
+        for (int i = 0; i < 3; i++) {
+            s->con[i][p] = factor[spari_nodes_node(from, p)] * from->con[i][p];
+        }
+    }
+    if (!whole) {
+        spari_nodes_free_shortened(s);
+        return NULL;
+    }
+    return s;
+}
+
+void spari_nodes_free_shortened(spari_nodes *s) {
+    for (int i = 0; i < 3 && s; i++) {
+        free(s->con[i]);
+    }
+    free(s);
+}
+
 /* Orders the tile's nodes by element, keeping their order within an element. */
 static void order_tile(const int *element, int count, uint16_t *place) {
     for (int i = 0; i < count; i++) {

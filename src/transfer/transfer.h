@@ -98,6 +98,10 @@ typedef struct spari_audit {
 /* Allocates n nodes, to be filled by spari_nodes_put. NULL: no memory. */
 spari_nodes *spari_nodes_create(int64_t n, int elements, int per_element);
 void spari_nodes_free(spari_nodes *nodes);
+/* The same nodes with lever arms of their own, factor [n] by node times those of `from`, which must live on. NULL: no
+   memory. Free them with spari_nodes_free_shortened. */
+spari_nodes *spari_nodes_shorten(const spari_nodes *from, const double *factor);
+void spari_nodes_free_shortened(spari_nodes *nodes);
 /* Stores the nearest points, by node: element [n], local xi [n], con [n][3]. */
 void spari_nodes_put(spari_nodes *nodes, const int *element, const double *xi, const double *con, const uint8_t *flags);
 /* Numbers of nodes. SPARI_FAR: more than fit in the second-level cache, so later ones are prefetched. SPARI_PAST:
