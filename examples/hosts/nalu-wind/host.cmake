@@ -31,7 +31,7 @@ target_compile_features(nalu_wind_stand_in PRIVATE cxx_std_17)
 target_compile_options(nalu_wind_stand_in PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wpedantic>)
 target_compile_definitions(nalu_wind_stand_in PRIVATE SPAR_DATA_DIR="${PROJECT_SOURCE_DIR}/examples/data" NALU_USES_SPAR
   NALU_USES_OPENFAST OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
-target_include_directories(nalu_wind_stand_in PRIVATE "${tree}/include" "${names}" "${PROJECT_SOURCE_DIR}/examples")
+target_include_directories(nalu_wind_stand_in PRIVATE "${tree}/include" "${tree}/include/aero/spar" "${names}" "${PROJECT_SOURCE_DIR}/examples")
 target_link_libraries(nalu_wind_stand_in PRIVATE spar_flags spar_example_parts spar_aero spar m MPI::MPI_C)
 
 if(SPAR_BUILD_TESTS)

@@ -1,4 +1,4 @@
-#include "aero/spar/fsi_turbine.h"
+#include "fsi_turbine.h"
 #include "turbine_control.h"
 #include "turbine_model.h"
 #include <math.h>
@@ -152,18 +152,20 @@ int fsi_turbine_has(const fsi_turbine *f, int part) {
 static int blend_root(fsi_turbine *f, int b) {
     const mesh *p = &f->mesh[b];
     double x[3], q[4], *left = calloc((size_t)p->n + 1, sizeof *left);
-    int status = left ? SPAR_OK : say(f, SPAR_ERR_MEMORY, "no memory");
+    if (!left) {
+        return say(f, SPAR_ERR_MEMORY, "no memory");
+    }
     nrel5mw_root(&f->turbine.data, &f->turbine.rotor, b, 0, x, q);
     const double axis[3] = {1 - 2 * (q[2] * q[2] + q[3] * q[3]), 2 * (q[1] * q[2] + q[0] * q[3]),
                             2 * (q[1] * q[3] - q[0] * q[2])}; /* the span is the root frame's first axis */
-    for (int64_t i = 0; i < p->n && status == SPAR_OK; i++) {
+    for (int64_t i = 0; i < p->n; i++) {
         double span = 0;
         for (int k = 0; k < 3; k++) {
             span += axis[k] * (p->x[3 * i + k] - x[k]);
         }
         left[i] = fmax(0, f->options.root_ramp - span);
     }
-    status = status ? status : spar_fluid_fade_motion(p->fluid, 0, f->options.root_ramp, p->n, left, NULL);
+    int status = spar_fluid_fade_motion(p->fluid, 0, f->options.root_ramp, p->n, left, NULL);
     status = status ? status : spar_fluid_set_motion_nodes(p->root, p->n, p->x);
     status = status ? status : spar_fluid_get_motion_weights(p->fluid, left);
     for (int64_t i = 0; i < p->n && status == SPAR_OK; i++) {

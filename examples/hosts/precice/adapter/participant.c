@@ -110,7 +110,7 @@ static int read_members(run *r) {
     TRY(told_case(r, spar_case_get_word(r->scene, "members", 0, &r->members, &word)));
     TRY(told_case(r, spar_case_get_word(r->scene, "force_meshes", 0, &apart, NULL)));
     r->wet = zeros(r, (size_t)r->members, sizeof *r->wet);
-    r->fluid = zeros(r, (size_t)r->members, sizeof *r->fluid);
+    r->fluid = zeros(r, (size_t)r->members, sizeof(spar_fluid *));
     if (!r->wet || !r->fluid) {
         return SPAR_ERR_MEMORY;
     }

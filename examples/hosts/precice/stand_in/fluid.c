@@ -8,12 +8,11 @@
 #include <string.h>
 
 typedef struct vertices {
-    int n, *at;             /* direct: numbers of the vertices in the region */
+    int n, total, *at;      /* on this rank, on all; direct: numbers of the vertices in the region */
     double *x, *d, *v;      /* [n][3], as written */
     double *d0, *v0;        /* at the beginning of the window */
     double *force, *force0; /* read at the end of the window, and at its beginning */
     double box[6];
-    int total;
 } vertices;
 
 static fluid played;
@@ -26,6 +25,7 @@ static void need(int good, const char *what) {
     if (!good) {
         fprintf(stderr, "stand-in of preCICE: %s\n", what);
         MPI_Abort(MPI_COMM_WORLD, 1);
+        exit(1);
     }
 }
 
