@@ -1,4 +1,4 @@
-/* spar_saturne.h: code_saturne 6.0 as a host of spar. What the parts of the adapter share, and what a case's flow may
+/* spar_saturne.h: code_saturne as a host of spar. What the parts of the adapter share, and what a case's flow may
    ask the case file for.
 
    Keys of [host code_saturne]; criteria are code_saturne's, which knows gmsh's numbers of faces and no names:
@@ -7,7 +7,7 @@
      later T S            from the time T on steps of S seconds, of a mesh that moves; steps N counts all
      member NAME ...      members in the flow, and wetted CRITERION ..., the faces that each of them moves: as many; a
                           member that stands twice has both groups. The last node of each is in the history.
-     loaded CRITERION     faces whose force the history has, per metre of span S; default: the wetted ones, 1 m
+     loaded CRITERION     faces whose force the history has, per metre of span S; default: the first member's, 1 m
      fixed CRITERION      faces whose vertices stand still; sliding CRITERION: faces that vertices stay in
      fade WITHIN BEYOND   spar moves all vertices: as the structure up to WITHIN metres from its line, not at all from
                           BEYOND metres on. Without it code_saturne's own equation moves what is not wetted. Between

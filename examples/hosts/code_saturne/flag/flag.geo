@@ -1,5 +1,5 @@
 // Turek and Hron's channel with cylinder and flag, a slab one cell thick. gmsh 4.
-// -setnumber n: refinement, 1: 9200 cells, 0.6: 3480. Faces: 1 inlet, 2 outlet, 3 walls, 4 cylinder, 5 front and back, 6 flag.
+// -setnumber n: refinement, 1: 9212 cells, 0.6: 3390. Faces: 1 inlet, 2 outlet, 3 walls, 4 cylinder, 5 front and back, 6 flag.
 If (!Exists(n)) n = 1; EndIf
 span = 0.01; h = 0.01; cx = 0.2; cy = 0.2; r = 0.05; L = 2.5; H = 0.41; B = 0.1; tip = 0.6; // h: half the flag's thickness
 around = Ceil(20*n) + 1; ring = Ceil(14*n) + 1; beside = Ceil(20*n) + 1; along = Ceil(40*n) + 1; end = Ceil(8*n) + 1;
