@@ -100,7 +100,7 @@ static void test_turns(void **unused) {
             most = fmax(most, fabs(r[i]));
         }
         for (int k = 0; k < WIDTHS; k++) {
-            spari_node_work t = {.lanes = widths[k], .q = q, .kept = kept, .r = r, .rotation = rotation, .dx = dx};
+            spari_node_work t = {.lanes = widths[k], .q = q, .tangent_q = kept, .r = r, .rotation = rotation, .dx = dx};
             rotation[4 * n] = dx[6 * n] = 77;
             assert_true(spari_nodes_rotate_back(&t, 0, n) == most);
             assert_near(4 * n, rotation, exact_turn, 1e-15, "a turn");
@@ -446,7 +446,7 @@ static void check_look(const spari_root_view *shown, int n, double *first) {
     }
     assert_near(19 * n, out, exact, 1e-13, "what a root sees"); /* 1e2 of the acceleration goes in and out */
     assert_alike(19 * n, out, first, t.lanes, "what a root sees");
-    assert_memory_equal(own.b, shown->seen->b, sizeof(double) * (size_t)(6 * n));
+    assert_memory_equal(own.b, shown->absolute->b, sizeof(double) * (size_t)(6 * n));
 }
 
 /* x + u goes back by what a small rigid motion E takes it, u-dot by what the rates J take it; the turn by exp(-E). */
