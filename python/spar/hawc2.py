@@ -103,7 +103,8 @@ def read_body(path, name, st=None):
         raise ModelError(f'{path}: body {name} is not there, or its c2_def does not go along z upwards')
     folder = os.path.dirname(os.path.abspath(path))
     if st is None:
-        places = [os.path.join(folder, *up, body['filename'][0]) for up in ([], ['..'], ['..', 'htc'])] if 'filename' in body else []
+        named = body.get('filename', ['?'])[0]
+        places = [os.path.join(folder, *up, named) for up in ([], ['..'], ['..', 'htc'])]
         st = next((place for place in places if os.path.exists(place)), None)
         if st is None:
             raise ModelError(f'{path}: the st file of {name} is not found; name it by st=')

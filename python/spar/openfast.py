@@ -86,7 +86,8 @@ def _spline(x, y, to):
     m = numpy.linalg.solve(a, b)
     i = numpy.clip(numpy.searchsorted(x, to) - 1, 0, n - 2)
     s, d = (to - x[i])[:, None], h[i][:, None]
-    return y[i] + s * ((y[i + 1] - y[i]) / d - d * (2 * m[i] + m[i + 1]) / 6) + s**2 * m[i] / 2 + s**3 * (m[i + 1] - m[i]) / (6 * d)
+    slope = (y[i + 1] - y[i]) / d - d * (2 * m[i] + m[i + 1]) / 6
+    return y[i] + s * slope + s**2 * m[i] / 2 + s**3 * (m[i + 1] - m[i]) / (6 * d)
 
 
 def read_beamdyn(path, blade_path=None):
@@ -119,8 +120,8 @@ def read_beamdyn(path, blade_path=None):
     if blade.number('damp_type'):
         damping = blade.table('damp_type', 6, 1)[0][[2, 0, 1, 5, 3, 4]]
     stiffness = reorder(rows[:, 1:37].reshape(-1, 6, 6))
-    return Beam('blade', along / along[-1], xyz, -numpy.radians(points[:, 2]), rows[:, 0], (stiffness + stiffness.transpose(0, 2, 1)) / 2,
-                reorder(rows[:, 37:].reshape(-1, 6, 6)), damping)
+    return Beam('blade', along / along[-1], xyz, -numpy.radians(points[:, 2]), rows[:, 0],
+                (stiffness + stiffness.transpose(0, 2, 1)) / 2, reorder(rows[:, 37:].reshape(-1, 6, 6)), damping)
 
 
 def read_elastodyn_blade(path, length):
@@ -140,7 +141,8 @@ def read_elastodyn_blade(path, length):
         mass[:, i, i], mass[:, 3 + i, 3 + i] = density, 1e-3 * density
     mass[:, 3, 3] = 2e-3 * density
     points = numpy.column_stack([eta * length, 0 * eta, 0 * eta])
-    return Beam('blade', eta, points, twist, eta, stiffness, mass).damped(file.number('BldFlDmp(1)', 'BldFlDmp1', otherwise=0.0) / 100)
+    ratio = file.number('BldFlDmp(1)', 'BldFlDmp1', otherwise=0.0) / 100
+    return Beam('blade', eta, points, twist, eta, stiffness, mass).damped(ratio)
 
 
 def read_elastodyn_tower(path, height):
@@ -175,13 +177,15 @@ def read_elastodyn(path, blade=None):
     level = file.number('NacYIner') - file.number('NacMass') * (centre[0] ** 2 + centre[1] ** 2)  # about the centre of mass
     if level < 0:
         file.fail(f'NacYIner is {file.number("NacYIner"):g}, less than that of the nacelle\'s mass at its centre')
-    nacelle = body_mass(file.number('NacMass'), centre, numpy.diag([level] * 3)) + body_mass(file.number('YawBrMass', otherwise=0.0))
+    nacelle = body_mass(file.number('NacMass'), centre, numpy.diag([level] * 3))
+    nacelle = nacelle + body_mass(file.number('YawBrMass', otherwise=0.0))
     iner = file.number('HubIner')
     hub = body_mass(file.number('HubMass'), [file.number('HubCM'), 0, 0], numpy.diag([iner] * 3))
-    return Turbine(name=os.path.basename(file.path), blade=blade, blades=int(file.number('NumBl', otherwise=3)), hub_radius=hub_radius,
-                   cone=-file.number('PreCone(1)') * degrees, tilt=tilt, overhang=over * numpy.cos(tilt),
+    return Turbine(name=os.path.basename(file.path), blade=blade, blades=int(file.number('NumBl', otherwise=3)),
+                   hub_radius=hub_radius, cone=-file.number('PreCone(1)') * degrees, tilt=tilt, overhang=over * numpy.cos(tilt),
                    shaft_height=file.number('Twr2Shft') + over * numpy.sin(tilt), hub=hub, nacelle=nacelle,
-                   generator_inertia=file.number('GenIner') * gear**2, drivetrain=(file.number('DTTorSpr'), file.number('DTTorDmp')),
+                   generator_inertia=file.number('GenIner') * gear**2,
+                   drivetrain=(file.number('DTTorSpr'), file.number('DTTorDmp')),
                    tower=read_elastodyn_tower(file.file('TwrFile'), file.number('TowerHt') - base), tower_base=base)
 
 

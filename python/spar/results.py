@@ -7,7 +7,6 @@
 Tools that read the binary files of OpenFAST open an .outb: openfast-io, pCrunch, pydatview, welib. HDF5 needs h5py.
 """
 import os
-import re
 import struct
 
 import numpy
@@ -23,7 +22,7 @@ def write(path, channels, description='written by spar'):
     table = {name: (unit, numpy.asarray(values, float)) for name, (unit, values) in channels.items()}
     lengths = {values.shape for _, values in table.values()}
     if len(table) < 2 or len(lengths) != 1 or len(next(iter(lengths))) != 1 or next(iter(lengths))[0] < 1:
-        raise ValueError(f'{path}: the channels must be two at least, the time first, each of one length; they have {sorted(lengths)}')
+        raise ValueError(f'{path}: give two channels at least, the time first, each of one length; they have {sorted(lengths)}')
     ending = os.path.splitext(os.fspath(path))[1].lower()
     if ending not in _WRITERS:
         raise ValueError(f'{path}: the ending must be one of {", ".join(_WRITERS)}')
@@ -39,7 +38,8 @@ def read_history(path):
     for name, column in zip(names, values.T):
         unit = next((u for u in sorted(_UNITS, key=len, reverse=True) if name.endswith('_' + u)), None)
         plain = name[:-len(unit) - 1] if unit else name
-        channels['Time' if plain == 't' else plain] = (re.sub('_', '/', unit, count=1).replace('s2', 's^2') if unit else '-', column)
+        unit = unit.replace('_', '/').replace('s2', 's^2') if unit else '-'
+        channels['Time' if plain == 't' else plain] = (unit, column)
     return channels
 
 

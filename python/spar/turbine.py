@@ -21,7 +21,8 @@ import numpy
 
 import spar
 
-FROM_OPENFAST = [2, 0, 1, 5, 3, 4]  # spar's order (axial, shear y, z, torsion, bending y, z) of OpenFAST's (x, y, z, about x, y, z)
+# spar's order (axial, shear y, z, torsion, bending y, z) of OpenFAST's (forces x, y, z, moments about x, y, z)
+FROM_OPENFAST = [2, 0, 1, 5, 3, 4]
 _TUBE_SHEAR = 0.53  # shear factor of a thin tube (Cowper 1966, Poisson's ratio 0.3)
 
 
@@ -110,8 +111,8 @@ class Beam:
         inner = (self.section_eta > 0) & (self.section_eta < 1)
         eta = numpy.concatenate([[0], self.section_eta[inner], [1]])
         density = numpy.interp(eta, self.section_eta, self.mass[:, 0, 0])
-        return float(numpy.trapezoid(density, eta) if hasattr(numpy, 'trapezoid') else numpy.trapz(density, eta)) * self.length() \
-            + sum(matrix[0][0] for _, matrix in self.masses)
+        mean = float(((density[1:] + density[:-1]) * numpy.diff(eta)).sum() / 2)
+        return mean * self.length() + sum(matrix[0][0] for _, matrix in self.masses)
 
     def create(self, session, name=None):
         """The member, described, on a fixed root at the origin: give it a placement, a root and the commit."""
@@ -151,6 +152,9 @@ class Beam:
     def write_case(self, path, modes=10):
         """A case file for spar-run: modes of the clamped beam."""
         _write(path, [f'# {self.name}', *self.case_lines(), 'root fixed', '', '[host run]', 'do modes', f'modes {modes}'])
+
+
+_UPRIGHT = quaternion([[0, 1, 0], [0, 0, 1], [1, 0, 0]])  # of a tower: its x upwards, its y downwind
 
 
 @dataclass
@@ -276,30 +280,65 @@ class Turbine:
             rotor.start([wind, 0, 0])
             thrust, torque, power = rotor.aero.get_rotor()
             tip = rotor.blades[0].get_motion(v=None, a=None)[-1, :3] @ self.shaft()
-        return {'speed': self.speed_at(wind), 'pitch': float(pitch), 'thrust': thrust, 'torque': torque, 'power': power, 'tip': float(tip)}
+        return {'speed': self.speed_at(wind), 'pitch': float(pitch), 'thrust': thrust, 'torque': torque, 'power': power,
+                'tip': float(tip)}
 
     def build(self, session, speed=0.0, pitch=0.0, rigid=False):
         """The whole in a session: see Rotor.
         speed: rad/s, at the start; pitch: rad, at the start; rigid: no tower and nacelle, a hub that turns at this speed"""
         return Rotor(self, session, speed, pitch, rigid)
 
-    def write_case(self, path, speed, pitch=0.0, wind=None):
-        """A case file of the rotor for spar-run: blades on roots that turn about the shaft at a given speed, and a wind on them.
-        speed: rad/s; pitch: rad; wind: m/s along global x, None: no air"""
+    def write_case(self, path, speed, pitch=0.0, wind=None, torque=None):
+        """A case file for spar-run and the adapters.
+        speed: rad/s; pitch: rad; wind: m/s along global x, None: no air
+        torque: N m of the generator: the whole turbine, whose rotor turns freely from this speed on under air and torque
+            None: the rotor alone, on roots that turn about the shaft at this speed"""
         n, apex = self.shaft(), self.apex()
-        lines = [f'# {self.name}', '[session]', 'rtol 1e-5', 'rho_inf 0.9', '']
+        lines = [f'# {self.name}', '[session]', 'rtol 1e-4', 'rho_inf 0.9', '']
+        spin = ['spin ' + _numbers(*(speed * n)), 'about ' + _numbers(*apex)]
+        if torque is not None:
+            lines[2:] = ['gravity 0 0 -9.81', *lines[2:]]
+            lines += self._carrier_lines(torque, spin)
         for b in range(self.blades):
             x, q = self.blade_placement(b, pitch)
-            lines += [*self.blade.case_lines(f'blade{b + 1}'), 'place ' + _numbers(*x), 'orientation ' + _numbers(*q),
-                      'root driven', '']
+            lines += [*self.blade.case_lines(f'blade{b + 1}'), 'place ' + _numbers(*x), 'orientation ' + _numbers(*q)]
+            if torque is None:
+                lines += ['root driven', '']
+            else:
+                lines += ['root free', *spin, '', f'[joint bearing{b + 1}]', f'a blade{b + 1} 0', 'b hub 0', 'place ' + _numbers(*x),
+                          'axes ' + _numbers(*q), '']
         if wind is not None:
             lines += self._aero_lines(path, wind)
-        lines += ['[host run]', 'do modes run', 'rotation ' + _numbers(*apex, *n, speed), 'modes 6', 'dt 0.05', 'duration 10']
+        lines += ['[host run]', 'do run', 'dt 0.05', 'duration 10']
+        if torque is None:
+            lines += ['rotation ' + _numbers(*apex, *n, speed)]
         _write(path, lines)
+
+    def _carrier_lines(self, torque, spin):
+        """Tower, nacelle, generator and hub of a case file, with their joints, as Rotor has them."""
+        self.need('tower', 'nacelle', 'hub')
+        top = [0, 0, self.tower_base + self.tower.length()]
+        place = ['place ' + _numbers(*self.apex()), 'orientation ' + _numbers(*quaternion(turned([0, 1, 0], self.tilt)))]
+        frame = [place[0], place[1].replace('orientation', 'axes')]
+        lines = [*self.tower.case_lines(), 'place ' + _numbers(0, 0, self.tower_base), 'orientation ' + _numbers(*_UPRIGHT),
+                 'root fixed', '',
+                 '[rigid nacelle]', 'mass ' + _numbers(*self.nacelle.ravel()), 'place ' + _numbers(*top), '',
+                 '[joint yaw]', 'a nacelle 0', 'b tower last', '',
+                 '[rigid hub]', 'mass ' + _numbers(*self.hub.ravel()), *place, *spin, '']
+        carrier = 'hub'
+        if self.drivetrain[0]:
+            carrier = 'generator'
+            lines += ['[rigid generator]', 'mass ' + _numbers(0, 0, 0, self.generator_inertia, 0, 0), *place, *spin,
+                      'effects_off gravity gyroscopic', '', '[joint drivetrain]', 'a hub 0', 'b generator 0', 'free rx', *frame,
+                      'stiffness ' + _numbers(0, 0, 0, self.drivetrain[0], 0, 0),
+                      'damping ' + _numbers(0, 0, 0, self.drivetrain[1], 0, 0), '']
+        return [*lines, '[joint shaft]', f'a {carrier} 0', 'b nacelle 0', 'free rx', *frame,
+                'load ' + _numbers(0, 0, 0, -torque, 0, 0), '']
 
     def _aero_lines(self, path, wind):
         s = self.need_sections()
-        lines = ['[aero rotor]', 'blades ' + ' '.join(f'blade{b + 1}' for b in range(self.blades)), 'wind ' + _numbers(wind, 0, 0),
+        names = ' '.join(f'blade{b + 1}' for b in range(self.blades))
+        lines = ['[aero rotor]', f'blades {names}', 'wind ' + _numbers(wind, 0, 0),
                  'rotor ' + _numbers(*self.apex(), *self.shaft(), self.hub_radius, self.tip_radius()),
                  'density ' + _numbers(self.air_density), 'effects induction tip_loss hub_loss swirl drag moment']
         own = self.section_twist()
@@ -308,6 +347,12 @@ class Turbine:
             numpy.savetxt(name, numpy.column_stack(polar), fmt='%.9g', header='alpha (rad) cl cd cm')
             lines.append(f'section {_numbers(s.eta[i], s.chord[i], own[i])} {os.path.basename(name)} {_numbers(*s.centre[i])}')
         return [*lines, '']
+
+    def need(self, *parts):
+        """Refuses a turbine that lacks a part."""
+        for part in parts:
+            if getattr(self, part) is None:
+                raise ModelError(f'{self.name}: it has no {part}; set Turbine.{part}, or take the rotor alone')
 
     def need_sections(self):
         """The blade elements, or a refusal."""
@@ -345,11 +390,9 @@ class Rotor:
     def _carry(self):
         """Tower, nacelle, generator and hub, with their joints."""
         m, s = self.machine, self.session
-        for part in ('tower', 'nacelle', 'hub'):
-            if getattr(m, part) is None:
-                raise ModelError(f'{m.name}: it has no {part}; set Turbine.{part}, or build with rigid=True')
+        m.need('tower', 'nacelle', 'hub')
         self.tower = m.tower.create(s)
-        self.tower.set_placement([0, 0, m.tower_base], quaternion([[0, 1, 0], [0, 0, 1], [1, 0, 0]]))
+        self.tower.set_placement([0, 0, m.tower_base], _UPRIGHT)
         self.tower.commit()
         top = self.tower.get_reference(q=None)[-1]
         self.nacelle = s.rigid_create('nacelle', top, [1, 0, 0, 0], m.nacelle)

@@ -70,7 +70,7 @@ def _at(curve, grid, what):
     """Values of {grid, values} at a grid."""
     x, y = numpy.asarray(_need(curve, 'grid', what), float), numpy.asarray(_need(curve, 'values', what), float)
     if x.shape != y.shape or x.size < 1 or not (numpy.diff(x) > 0).all():
-        raise ModelError(f'windIO: {what} has {x.size} grid points and {y.size} values; the grid must rise, with a value for each')
+        raise ModelError(f'windIO: {what} has {x.size} grid points and {y.size} values; give a rising grid with a value for each')
     return numpy.interp(grid, x, y)
 
 
@@ -141,7 +141,8 @@ def read_blade(data):
         damping = numpy.zeros(6)
     else:
         elastic = _need(_need(blade, 'structure', 'blade'), 'elastic_properties', 'blade.structure')
-        line, twist, degrees = _need(blade, 'reference_axis', 'blade'), _need(blade['outer_shape'], 'twist', 'outer_shape'), numpy.pi / 180
+        line, degrees = _need(blade, 'reference_axis', 'blade'), numpy.pi / 180
+        twist = _need(_need(blade, 'outer_shape', 'blade'), 'twist', 'outer_shape')
         grid_k, stiffness = _stiffness(_need(elastic, 'stiffness_matrix', 'elastic_properties'), 'stiffness_matrix')
         grid_m, mass = _inertia(_need(elastic, 'inertia_matrix', 'elastic_properties'), 'inertia_matrix')
         damping = numpy.asarray(elastic.get('structural_damping', {}).get('mu', numpy.zeros(6)), float)
@@ -203,8 +204,8 @@ def _tower_of_layers(data, tower, shape):
     area = numpy.pi / 4 * (outer**2 - (outer - 2 * wall) ** 2)
     second = numpy.pi / 64 * (outer**4 - (outer - 2 * wall) ** 4)
     shear = steel.get('G') or steel['E'] / 2 / (1 + steel['nu'])
-    stiffness, mass = tube(outer - wall, steel['E'] * second, 2 * shear * second, steel['rho'] * area * inner.get('outfitting_factor', 1.0))
-    return at, stiffness, mass
+    density = steel['rho'] * area * inner.get('outfitting_factor', 1.0)
+    return at, *tube(outer - wall, steel['E'] * second, 2 * shear * second, density)
 
 
 def _bodies(machine, parts):
@@ -222,7 +223,7 @@ def _bodies(machine, parts):
         yaw = (parts.get('yaw') or {}).get('elastic_properties')
         if yaw:
             machine.nacelle = machine.nacelle + matrix(yaw)
-        machine.drivetrain = (drive['elastic_properties'].get('spring_constant', 0.0), drive['elastic_properties'].get('damping_coefficient', 0.0))
+        machine.drivetrain = tuple(drive['elastic_properties'].get(key, 0.0) for key in ('spring_constant', 'damping_coefficient'))
     generator = drive.get('generator', {}).get('elastic_properties', {})
     if 'inertia' in generator:
         machine.generator_inertia = generator['inertia'][0] * drive.get('gearbox', {}).get('gear_ratio', 1.0) ** 2

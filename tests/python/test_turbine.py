@@ -354,6 +354,25 @@ class Rotor(unittest.TestCase):
             inertia = 3 * numpy.mean(MASS * LENGTH * (r * numpy.cos(3 * DEGREE)) ** 2) + 3 * MASS * LENGTH * CENTRE**2 + 1e5 + 1e6
             self.assertAlmostEqual(1.0 - rotor.get_speed(), 1e6 / inertia, delta=1e-2 * 1e6 / inertia)
 
+    def test_pitch(self):
+        """Pitch by 3 degrees in ten steps: the blade has turned by that on the hub, its trailing edge downwind."""
+        data = stiffened(model(), 1e3, 'blade', 'tower')
+        del data['airfoils']
+        machine = windio.read(data)
+        with spar.Session() as session:
+            rotor = machine.build(session, 0.0)
+            for step in range(10):
+                rotor.set_pitch((step + 1) * 0.3 * DEGREE, 0.3 * DEGREE / 0.1)
+                session.step(0.1)
+            turns = []
+            for member in (rotor.hub, rotor.blades[1]):
+                w, *v = member.get_motion(v=None, a=None)[0, 3:]
+                turns.append(numpy.eye(3) + 2 * w * turbine.cross_matrix(v) + 2 * turbine.cross_matrix(v) @ turbine.cross_matrix(v))
+            relative, axes = turns[0].T @ turns[1], machine.blade_axes(1)
+            self.assertAlmostEqual(numpy.arccos((numpy.trace(relative) - 1) / 2), 3 * DEGREE, delta=1e-6)
+            expected = machine.blade_axes(1, 3 * DEGREE)
+            numpy.testing.assert_allclose(relative @ axes, expected, atol=1e-6)
+
     def test_steady(self):
         """Below the rated power the pitch is the least one; above it the power is the rated one, here half of what it could be."""
         machine = windio.read(model())
@@ -437,7 +456,7 @@ class Rotor(unittest.TestCase):
         machine.write_case(path, 1.0, 2 * DEGREE, 8.0)
         with open(path, encoding='utf-8') as file:
             text = file.read()
-        write('rotor.case', text.replace('do modes run', 'do static').replace('duration 10', 'duration 1'))
+        write('rotor.case', text.replace('do run', 'do static'))
         done = subprocess.run([RUN, path, '--out', path + '.out'], capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
         with spar.Session() as session:
@@ -448,6 +467,36 @@ class Rotor(unittest.TestCase):
         self.assertGreater(abs(tip[0]), 0.05)
         last = table[[i for i, row in enumerate(table) if row[0] == 'blade1'][-1]]
         self.assertAlmostEqual(float(last['ux_m']), tip[0], delta=2e-3 * abs(tip[0]))
+
+
+    def test_whole_case(self):
+        """spar-run steps the whole turbine of a case file as the session here does: the top of the tower and the rotor's power."""
+        if RUN is None or not os.path.exists(RUN):
+            self.skipTest('no spar-run')
+        machine = windio.read(model(), stations=(numpy.arange(8) + 0.5) / 8)
+        machine.blade.elements = machine.tower.elements = 1
+        path = os.path.join(WORK, 'whole.case')
+        machine.write_case(path, 0.5, 1 * DEGREE, 8.0, torque=1e5)
+        with open(path, encoding='utf-8') as file:
+            text = file.read()
+        write('whole.case', text.replace('duration 10', 'duration 1').replace('rtol 1e-4', 'rtol 1e-6'))
+        done = subprocess.run([RUN, path, '--out', path + '.out'], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
+        history = results.read_history(path + '.out/history.csv')
+        with spar.Session() as session:
+            session.set_coupling(spar.COUPLING_IQN_ILS, 1e-9, 1e-6, 50)
+            session.set_integrator(0.9, 1)
+            session.set_gravity([0, 0, -9.81])
+            rotor = machine.build(session, 0.5, 1 * DEGREE)
+            rotor.set_torque(1e5)
+            rotor.blow([8, 0, 0])
+            for _ in range(20):
+                session.step(0.05, lambda *_: rotor.blow([8, 0, 0]))
+            top = rotor.tower.get_motion(v=None, a=None)[-1]
+            power = rotor.aero.get_rotor()[2]
+        self.assertGreater(abs(top[0]), 1e-3)
+        self.assertAlmostEqual(history['tower_ux'][1][-1], top[0], delta=1e-3 * abs(top[0]))
+        self.assertAlmostEqual(history['rotor_power'][1][-1], power, delta=1e-3 * abs(power))
 
 
 class Results(unittest.TestCase):
