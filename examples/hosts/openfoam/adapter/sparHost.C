@@ -300,31 +300,34 @@ void Foam::sparHost::checkForce(scalar area) const
 {
     const scalar largest = area*surfaces_[0].density*
         (sqr(speed_) + mesh_.bounds().mag()*speed_/mesh_.time().deltaTValue() + pressure_);
-    if (steps_ >= 2 && !(force_ <= 1000*largest))
+    if (!(force_ < GREAT) || (steps_ >= 2 && force_ > 1000*largest))
     {
         std::ostringstream text;
-        text << "the flow has broken down, not the structure: where the velocities and pressures of the last step give "
-            << "forces up to some " << largest << " N" << flowNow();
+        text << "the forces are beyond what the flow's velocities and pressures of the last step can give, some " << largest
+            << " N: the flow has broken down, or the coupling (take more correctors or a smaller dt)" << flowNow();
         refuse(text.str());
     }
 }
 
 void Foam::sparHost::push()
 {
-    scalar sum[2] = {0, 0};
+    std::vector<vectorField> force;
+    scalar area = 0;
     leastVolume_ = gMin(mesh_.V().field());
-    for (surface& wet : surfaces_)
+    force_ = 0;
+    for (const surface& wet : surfaces_)
     {
-        const vectorField force(forces(wet));
-        sum[0] += gSum(mag(force)());
-        sum[1] += gSum(mesh_.magSf().boundaryField()[wet.id]);
-        const stopwatch watch(spar_);
-        const vectorField moment(planar_ ? moments(wet, force) : vectorField());
-        check(spar_fluid_push_forces(wet.fluid, triples(force), triples(moment)));
+        force.push_back(forces(wet));
+        force_ += gSum(mag(force.back())());
+        area += gSum(mesh_.magSf().boundaryField()[wet.id]);
     }
-    force_ = sum[0];
-    checkForce(sum[1]);
+    checkForce(area);
     const stopwatch watch(spar_);
+    for (std::size_t i = 0; i < surfaces_.size(); i++)
+    {
+        const vectorField moment(planar_ ? moments(surfaces_[i], force[i]) : vectorField());
+        check(spar_fluid_push_forces(surfaces_[i].fluid, triples(force[i]), triples(moment)));
+    }
     int done;
     check(spar_step_check(session_, &done)); // when to stop is OpenFOAM's affair: residualControl
 }
