@@ -206,6 +206,8 @@ module spar
     procedure :: get_damping => member_get_damping
     procedure :: set_mass_damping => member_set_mass_damping
     procedure :: get_mass_damping => member_get_mass_damping
+    procedure :: set_plane => member_set_plane
+    procedure :: get_plane => member_get_plane
     procedure :: get_fidelity => member_get_fidelity
     procedure :: set_effects => member_set_effects
     procedure :: get_effects => member_get_effects
@@ -2706,6 +2708,24 @@ contains
 
     call finish(spar_beam_get_mass_damping(self%handle, alpha), self%session, stat, errmsg)
   end subroutine member_get_mass_damping
+
+  subroutine member_set_plane(self, normal, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    real(c_double), intent(in), optional :: normal(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_set_plane(self%handle, normal), self%session, stat, errmsg)
+  end subroutine member_set_plane
+
+  subroutine member_get_plane(self, normal, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    real(c_double), intent(inout) :: normal(3)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_beam_get_plane(self%handle, normal), self%session, stat, errmsg)
+  end subroutine member_get_plane
 
   subroutine member_get_fidelity(self, kind, modes, stat, errmsg)
     class(spar_member), intent(in) :: self

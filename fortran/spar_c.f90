@@ -532,6 +532,20 @@ module spar_calls
       integer(c_int) :: status
     end function spar_beam_get_mass_damping
 
+    function spar_beam_set_plane(beam, normal) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: beam
+      real(c_double), intent(in), optional :: normal(3)
+      integer(c_int) :: status
+    end function spar_beam_set_plane
+
+    function spar_beam_get_plane(beam, normal) bind(c) result(status)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: beam
+      real(c_double), intent(inout), optional :: normal(3)
+      integer(c_int) :: status
+    end function spar_beam_get_plane
+
     function spar_member_set_fidelity(member, kind, modes) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
       type(c_ptr), value :: member

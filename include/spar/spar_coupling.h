@@ -324,10 +324,10 @@ SPAR_API int spar_fluid_set_motion_weights(spar_fluid *fluid, int64_t n, const d
 SPAR_API int spar_fluid_get_motion_weights(const spar_fluid *fluid, double *w);
 /* Sets weights that decrease with a distance d. With s = (d - within) / (beyond - within) the weight is 1 for s <= 0
    and 0 for s >= 1. Between 1/6 and 5/6 it is 1.1 - 1.2 s, before 1 - 43.2 s^3 + 129.6 s^4, behind the mirror image.
-   If d is the distance from the reference line, two things are added. The section's rotation is limited to a lever arm:
-   the true arm up to `within`, which grows to twice that at 3 times `within` and stays so. And the least Jacobian of the
-   motion is watched in each pull: a warning, once, when cells keep less than a fifth of their volume. Where they fold,
-   the pull is SPAR_ERR_NUMERIC. Near 3 times `within` and farther, sections may rotate by less than a right angle.
+   If d is the distance from the reference line, two things are added. The section's rotation acts on a limited lever
+   arm: the true arm up to `within`, twice `within` from 3 times `within` on. And each pull computes the least Jacobian
+   of the motion: it warns, once, when cells keep less than a fifth of their volume, and where they fold the pull is
+   SPAR_ERR_NUMERIC. Far from the line they fold when a section has rotated by a right angle.
      within: in, m, must contain the body's section if the distance is that from the line
      beyond: in, m, > within, some 1.5 times as far from it as the member moves, or more
      n: in, number of motion nodes

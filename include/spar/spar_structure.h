@@ -202,6 +202,17 @@ SPAR_API int spar_beam_set_mass_damping(spar_member *beam, double alpha);
 /* alpha: out, 1/s */
 SPAR_API int spar_beam_get_mass_damping(const spar_member *beam, double *alpha);
 
+/* Holds a beam in a plane: displacements along the normal and rotations about other axes are 0 at all nodes. For
+   two-dimensional flows, where mean pressure on both faces would twist a slab out of the plane. Loads out of the plane
+   have no effect; what holds the beam in the plane is in no reaction. Modes and eigenvalues are those in the plane;
+   section forces come from the strains. The root may be of any kind; initial velocities and driven roots must stay in
+   the plane (SPAR_ERR_ARGUMENT).
+     normal[3]: in, direction of any length, NULL or 0: not held (default)
+   SPAR_ERR_UNSUPPORTED at the commit: fidelity below exact, or external; at the step: with joints. */
+SPAR_API int spar_beam_set_plane(spar_member *beam, const double normal[3]);
+/* normal[3]: out, of length 1; 0: not held; NULL: not wanted */
+SPAR_API int spar_beam_get_plane(const spar_member *beam, double normal[3]);
+
 /* ---- members: fidelity and effects ------------------------------------------------------------------------------- */
 
 /* How much of a beam's mechanics is solved. For small deformation each entry is the limit of those below it. */

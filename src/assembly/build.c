@@ -1,6 +1,7 @@
 /* Creation of assemblies: finds the members that joints connect, allocates and frees. */
 #include "../base/session.h"
 #include "../comm/enter.h"
+#include "../member/plane.h"
 #include "../solve/life.h"
 #include "../time/fidelity.h"
 #include "assembly.h"
@@ -190,10 +191,24 @@ static int gather_all(spar_session *s) {
     return SPAR_OK;
 }
 
+/* What a joint asks of a node out of its plane has no unknown. */
+static int check_planes(const spar_joint *j) {
+    for (int side = 0; side < 2; side++) {
+        const spar_member *m = j->member[side];
+        SPARI_REQUIRE(
+            j->session, !m || !spari_member_plane(m), SPAR_ERR_UNSUPPORTED,
+            "joint '%s' connects '%s', which is held in a plane (spar_beam_set_plane); such a beam can have no "
+            "joints, only a root that is free, pinned, fixed or driven",
+            j->name, m->name);
+    }
+    return SPAR_OK;
+}
+
 /* Nothing is changed until all of them can be placed. */
 static int check_joints(const spar_session *s) {
     for (const spar_joint *j = s->joints; j; j = j->next) {
         SPARI_TRY(check_members(j));
+        SPARI_TRY(check_planes(j));
         SPARI_TRY(spari_joint_check_place(j));
     }
     return SPAR_OK;

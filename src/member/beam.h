@@ -21,6 +21,8 @@ struct spari_beam {
     double mu[6];
     int damped;
     double drag; /* 1/s, mass-proportional damping */
+    int planar;  /* held in a plane, with this unit normal */
+    double normal[3];
 };
 
 /* Computes member->xr, qr (placed) from the axis or the given nodes. */

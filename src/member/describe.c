@@ -453,6 +453,7 @@ uint64_t spari_member_copy_hash(const spar_member *m) {
         h = spari_hash_bytes(h, more, sizeof more);
         h = spari_hash_bytes(h, b->mu, sizeof b->mu);
         h = spari_hash_bytes(h, &b->drag, sizeof b->drag);
+        h = b->planar ? spari_hash_bytes(h, b->normal, sizeof b->normal) : h;
         h = b->eta ? spari_hash_bytes(spari_hash_bytes(h, b->eta, n * d), b->xyz, 3 * n * d) : h;
         h = b->twist ? spari_hash_bytes(h, b->twist, n * d) : h;
         h = b->node_x ? spari_hash_bytes(h, b->node_x, 3 * (size_t)m->nodes * d) : h;

@@ -6,6 +6,7 @@
 #include "body.h"
 #include "check_arguments.h"
 #include "joint.h"
+#include "plane.h"
 #include "structure.h"
 
 #include <stdlib.h>
@@ -163,7 +164,7 @@ void spari_member_gather(const spar_member *m, const double *nodal, double *uniq
 
 void spari_member_even_loads(const spar_member *m, double *load) {
     int P = m->mesh.per_element;
-    memset(load, 0, (size_t)spari_member_constrained(m) * sizeof *load);
+    spari_member_constrain(m, m->nodes, load);
     for (int64_t e = 1; e < m->mesh.elements; e++) {
         double *left = load + 6 * (e * P - 1), *right = left + 6;
         for (int k = 0; k < 6; k++) {

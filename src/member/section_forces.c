@@ -8,6 +8,7 @@
 #include "../math/rotation.h"
 #include "applied.h"
 #include "joint.h"
+#include "plane.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -30,8 +31,8 @@ struct spari_beyond {
 };
 
 int spari_beyond_is_known(const spar_member *m) {
-    return m->state.balanced[1] && m->body && m->body->C && m->body->elements == m->mesh.elements &&
-           m->body->per_element == m->mesh.per_element;
+    return m->state.balanced[1] && !spari_member_plane(m) && m->body && m->body->C &&
+           m->body->elements == m->mesh.elements && m->body->per_element == m->mesh.per_element;
 }
 
 int spari_beyond_is_undeformed(const spar_member *m) {

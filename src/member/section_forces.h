@@ -8,7 +8,8 @@
 
 typedef struct spari_beyond spari_beyond;
 
-/* Whether the motion `after` is in equilibrium with its loads, for a member whose nodes are its body's. */
+/* Whether the motion `after` is in equilibrium with its loads, for a member whose nodes are its body's. What holds a
+   beam in a plane is not among these loads. */
 int spari_beyond_is_known(const spar_member *member);
 /* NULL: no memory. */
 spari_beyond *spari_beyond_create(const spar_member *member);

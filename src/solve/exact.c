@@ -4,6 +4,7 @@
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/beam.h"
+#include "../member/plane.h"
 #include "../time/body_solver.h"
 #include "../time/component.h"
 #include "../time/fidelity.h"
@@ -79,12 +80,34 @@ static void exact_take_static(spar_member *m, const double *fluid) {
 
 /* ---- modes ---- */
 
+/* Unknowns of a node, and how many of the root's its condition holds: fewer in a plane. */
+static int node_unknowns(const spar_member *m) {
+    return spari_member_plane(m) ? 3 : 6;
+}
+
+static int root_constrained(const spar_member *m) {
+    int all = spari_member_constrained(m);
+    return !spari_member_plane(m) ? all : all == 3 ? 2 : all / 2;
+}
+
 static int64_t exact_unknowns(const spar_member *m) {
-    return 6 * (int64_t)m->body->unique - spari_member_constrained(m);
+    return node_unknowns(m) * (int64_t)m->body->unique - root_constrained(m);
+}
+
+/* Number of the first unknown of an element; negative where the root's are held. */
+static int first_unknown(const spar_member *m, int e) {
+    return node_unknowns(m) * e * (m->mesh.per_element - 1) - root_constrained(m);
+}
+
+static void reduce_matrix(const spar_member *m, double *S) {
+    if (spari_member_plane(m)) {
+        spari_plane_reduce(spari_member_plane(m), m->mesh.per_element, S);
+    }
 }
 
 static int exact_problem(const spar_member *m, double *K, double *M) {
     int64_t u = m->body->unique, n = 6 * (int64_t)m->mesh.per_element, free_unknowns = exact_unknowns(m);
+    int own = node_unknowns(m) * m->mesh.per_element;
     double *q = spari_zalloc(19 * u + 2 * n * n, sizeof *q), *v = q + 7 * u, *a = v + 6 * u, *S = a + 6 * u,
            *mass = S + n * n;
     if (!q) {
@@ -97,13 +120,15 @@ static int exact_problem(const spar_member *m, double *K, double *M) {
         spari_rotating_frame_nodes(&frame, 1, m, (int)u, q, v, a);
     }
     for (int e = 0; e < m->mesh.elements; e++) {
-        int at = 6 * e * (m->mesh.per_element - 1) - spari_member_constrained(m);
+        int at = first_unknown(m, e);
         spari_steady_rotation_tangent(m->body, rotating ? &frame.rotation : NULL, e, q, v, a, 1, S, mass);
         if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, S);
         }
-        spari_eigen_add(at, (int)n, S, 1, free_unknowns, K);
-        spari_eigen_add(at, (int)n, mass, 1, free_unknowns, M);
+        reduce_matrix(m, S);
+        reduce_matrix(m, mass);
+        spari_eigen_add(at, own, S, 1, free_unknowns, K);
+        spari_eigen_add(at, own, mass, 1, free_unknowns, M);
     }
     free(q);
     return SPAR_OK;
@@ -125,7 +150,10 @@ static int exact_left(const spar_member *m, const double *q, const double *v, co
             to->scale = fmax(to->scale, fabs(sum[i]));
         }
         to->noise = fmax(to->noise, m->body->stiffest);
-        spari_pencil_set_forces(to, -spari_member_constrained(m), (int)(6 * u), r);
+        if (spari_member_plane(m)) {
+            spari_plane_collect(spari_member_plane(m), u, r, r);
+        }
+        spari_pencil_set_forces(to, -root_constrained(m), (int)(node_unknowns(m) * u), r);
     }
     free(load);
     return status;
@@ -133,6 +161,7 @@ static int exact_left(const spar_member *m, const double *q, const double *v, co
 
 static int exact_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
     int64_t u = m->body->unique, n = 6 * (int64_t)m->mesh.per_element;
+    int own = node_unknowns(m) * m->mesh.per_element;
     double *q = spari_zalloc(19 * u + 3 * n * n, sizeof *q), *v = q + 7 * u, *a = v + 6 * u, *K = a + 6 * u,
            *C = K + n * n, *M = C + n * n;
     if (!q) {
@@ -151,7 +180,10 @@ static int exact_linearise(const spar_member *m, const double w[3], spari_pencil
         if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, K);
         }
-        spari_pencil_add(to, 6 * e * (m->mesh.per_element - 1) - spari_member_constrained(m), (int)n, n, K, C, M);
+        reduce_matrix(m, K);
+        reduce_matrix(m, C);
+        reduce_matrix(m, M);
+        spari_pencil_add(to, first_unknown(m, e), own, own, K, C, M);
     }
     int status = exact_left(m, q, v, a, to);
     free(q);
@@ -159,9 +191,12 @@ static int exact_linearise(const spar_member *m, const double w[3], spari_pencil
 }
 
 static void exact_shape(const spar_member *m, const double *x, double *workspace, double *nodes) {
-    int64_t constrained = spari_member_constrained(m);
+    int64_t constrained = root_constrained(m);
     memset(workspace, 0, (size_t)constrained * sizeof *workspace);
     memcpy(workspace + constrained, x, (size_t)exact_unknowns(m) * sizeof *workspace);
+    if (spari_member_plane(m)) {
+        spari_plane_spread(spari_member_plane(m), m->body->unique, workspace, workspace);
+    }
     spari_member_from_unique(m, 6, workspace, nodes);
 }
 

@@ -13,6 +13,7 @@
 #include "../member/check_arguments.h"
 #include "../member/joint.h"
 #include "../member/mean_acceleration.h"
+#include "../member/plane.h"
 #include "../time/fidelity.h"
 #include "../time/newton_tolerance.h"
 #include "work.h"
@@ -24,6 +25,11 @@
 /* ---- the motion at t^0 and the steps ---- */
 
 static int rigid_field(spar_member *m) {
+    const double *normal = spari_member_plane(m);
+    double motion[6];
+    memcpy(motion, m->initial.velocity[1], sizeof m->initial.velocity[1]);
+    memcpy(motion + 3, m->initial.velocity[2], sizeof m->initial.velocity[2]);
+    SPARI_TRY(spari_plane_take(m, "initial velocity", NULL, motion, NULL));
     const double *x0 = m->initial.velocity[0], *v0 = m->initial.velocity[1], *w = m->initial.velocity[2];
     for (int64_t i = 0; i < m->nodes; i++) {
         double r[3], *v = m->now.v + 6 * i, *a = m->now.a + 6 * i;
@@ -39,6 +45,10 @@ static int rigid_field(spar_member *m) {
             v[3 + c] = w[c];
             a[3 + c] = 0;
         }
+    }
+    if (normal) {
+        spari_plane_project(normal, m->nodes, m->now.v);
+        spari_plane_project(normal, m->nodes, m->now.a);
     }
     if (m->row->moves && m->root != SPAR_ROOT_DRIVEN) { /* what stands has no velocity */
         memset(m->now.v, 0, (size_t)spari_member_constrained(m) * sizeof(double));
@@ -560,8 +570,10 @@ int spar_member_drive(spar_member *member, const double q[7], const double v[6],
     const double *in[2] = {v ? v : rest, a ? a : rest};
     SPARI_TRY(spari_need_finite(s, __func__, member->name, "v", 6, in[0]));
     SPARI_TRY(spari_need_finite(s, __func__, member->name, "a", 6, in[1]));
-    member->drive[1] = spari_pose_of(q, in[0], in[1]);
-    spari_quat_normalise(member->drive[1].q + 3);
+    spari_pose to = spari_pose_of(q, in[0], in[1]);
+    spari_quat_normalise(to.q + 3);
+    SPARI_TRY(spari_plane_take(member, __func__, to.q, to.v, to.a));
+    member->drive[1] = to;
     member->state.drive_given = 1;
     return SPAR_OK;
 }

@@ -7,6 +7,7 @@
 #include "../member/body.h"
 #include "../member/check_arguments.h"
 #include "../member/joint.h"
+#include "../member/plane.h"
 #include "../time/fidelity.h"
 
 #include <stdlib.h>
@@ -61,6 +62,9 @@ void spari_reaction_at_root(const spar_member *m, double *workspace, double load
     spari_joints_on(m, 0, joint_load);
     for (int i = 0; i < constrained; i++) { /* the root is node 0, which no element shares */
         load[i] = r[i] - m->load.solved[1][i] - joint_load[i];
+    }
+    if (spari_member_plane(m)) {
+        spari_plane_project(spari_member_plane(m), 1, load);
     }
 }
 

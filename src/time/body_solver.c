@@ -6,6 +6,7 @@
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied.h"
+#include "../member/plane.h"
 #include "steady_rotation.h"
 
 #include <stdlib.h>
@@ -175,6 +176,7 @@ static void add_tangents(const spari_body *body, int tile, int from, int to, voi
     const spari_tangent_at *t = state->at;
     const spari_solver *s = state->s;
     const spar_member *m = state->member;
+    const double *normal = spari_member_plane(m);
     (void)tile;
     for (int e = from; e < to; e++) {
         if (t->rotation) {
@@ -190,6 +192,9 @@ static void add_tangents(const spari_body *body, int tile, int from, int to, voi
         }
         if (t->tinv && m->added) { /* part of the balance of a step, not of the initial one */
             spari_added_tangent(m, e, t->cm, t->tinv, body->matrix);
+        }
+        if (normal) {
+            spari_plane_tangent(normal, body->per_element, body->matrix);
         }
         spari_linear_add(s->linear, e, body->matrix);
     }

@@ -5,6 +5,7 @@
 #include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "../member/joint.h"
+#include "../member/plane.h"
 #include "component.h"
 #include "fidelity.h"
 #include "node_kinematics.h"
@@ -94,8 +95,16 @@ void spari_component_take_velocities(const spari_component *p) {
     }
 }
 
+/* In an inclined plane rounding leaves it, and rates would carry it on. */
 static void end_nodes(spari_component *p) {
+    const double *normal = spari_member_plane(p->member);
+    const spari_state *to = &p->solver->to;
     spari_stage_end(p->solver, p->member, &p->scheme, &p->stage);
+    if (normal) {
+        spari_plane_project(normal, p->solver->n, to->v);
+        spari_plane_project(normal, p->solver->n, to->a);
+        spari_plane_project(normal, p->solver->n, to->b);
+    }
 }
 
 void spari_component_keep_rates(spari_component *p, int back) {
@@ -144,7 +153,7 @@ static double balance_nodes(spari_component *p) {
     if (p->member->added) {
         scale = fmax(scale, spari_added_times(p->member, SPARI_UNKNOWNS, SPARI_UNKNOWNS, at->a, 1, s->r));
     }
-    memset(s->r, 0, (size_t)spari_member_constrained(p->member) * sizeof *s->r);
+    spari_member_constrain(p->member, s->n, s->r);
     return scale;
 }
 
@@ -342,7 +351,7 @@ void spari_component_shift_rates(spari_component *p, double v, double a, double 
 
 static void apply_load_to_nodes(spari_component *p, const double *load) {
     p->member->row->apply_load(p->member, load, p->solver->r);
-    memset(p->solver->r, 0, (size_t)spari_member_constrained(p->member) * sizeof(double));
+    spari_member_constrain(p->member, p->solver->n, p->solver->r);
 }
 
 static void response_of_nodes(spari_component *p, double *motion) {
@@ -385,7 +394,7 @@ static void unbalance_nodes(spari_component *p) {
     for (int i = 0; i < 6 * s->n; i++) {
         s->r[i] -= s->steps.load0[i];
     }
-    memset(s->r, 0, (size_t)spari_member_constrained(p->member) * sizeof *s->r);
+    spari_member_constrain(p->member, s->n, s->r);
 }
 
 static void correct_start_of_nodes(spari_component *p) {
@@ -444,7 +453,7 @@ static double balance_nodes_static(spari_component *p, double f) {
         spari_offset_loads_at(s->offset_loads, f);
         spari_offset_loads_residual(s->offset_loads, s->to.q + 3, s->r + 3);
     }
-    memset(s->r, 0, (size_t)spari_member_constrained(p->member) * sizeof *s->r);
+    spari_member_constrain(p->member, s->n, s->r);
     return scale;
 }
 

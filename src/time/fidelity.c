@@ -4,6 +4,7 @@
 #include "../member/beam.h"
 #include "../member/check_arguments.h"
 #include "../member/joint.h"
+#include "../member/plane.h"
 
 #define SPARI_FIDELITY_ENTRY(number, name) [SPAR_FIDELITY_##number] = &spari_fidelity_##name,
 static const spari_fidelity *const table[] = {SPARI_FIDELITIES(SPARI_FIDELITY_ENTRY)};
@@ -50,6 +51,11 @@ int spari_fidelity_check(const spar_member *m) {
                   "member '%s' is a linear or modal beam, which joint '%s' cannot connect; use SPAR_FIDELITY_EXACT "
                   "(spar_member_set_fidelity), which costs about as much with joints",
                   m->name, joint->name);
+    SPARI_REQUIRE(m->session, !spari_member_plane(m) || spari_fidelity_of(m) == &spari_fidelity_exact,
+                  SPAR_ERR_UNSUPPORTED,
+                  "member '%s' is held in a plane (spar_beam_set_plane), which needs fidelity exact; choose it "
+                  "(spar_member_set_fidelity), or remove the plane",
+                  m->name);
     return row->check ? row->check(m) : SPAR_OK;
 }
 

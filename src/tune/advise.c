@@ -10,6 +10,7 @@
 #include "../math/basis.h"
 #include "../member/beam.h"
 #include "../member/joint.h"
+#include "../member/plane.h"
 #include "../time/fidelity.h"
 
 #include <math.h>
@@ -607,7 +608,7 @@ static int lower_fidelity(const spari_advisor *d, spari_plan *p, int g) {
         b->modes /= 2;
         return 1;
     }
-    int lower = spari_fidelity_row(b->fidelity)->lower;
+    int lower = spari_member_plane(spari_plan_member(d, g)) ? 0 : spari_fidelity_row(b->fidelity)->lower;
     if (lower > 0) {
         b->fidelity = lower;
         b->modes = spari_fidelity_row(lower)->takes_modes ? spari_rule.modes : 0;

@@ -6,9 +6,10 @@
 #include "../math/basis.h"
 #include "../math/resample.h"
 #include "../member/body.h"
+#include "../member/plane.h"
 #include "../session/step_control.h"
-#include "../time/substep_motion.h"
 #include "../time/fidelity.h"
+#include "../time/substep_motion.h"
 #include "../trial/rebuild.h"
 
 #include <math.h>
@@ -59,7 +60,7 @@ static int correct_shape(const spar_member *m, spari_solver *s, const finer *f, 
     for (int i = 0; i < 6 * s->n; i++) {
         s->r[i] -= f->load[i];
     }
-    memset(s->r, 0, (size_t)spari_member_constrained(m) * sizeof *s->r);
+    spari_member_constrain(m, s->n, s->r);
     if (spari_solver_factor(s, m, &(spari_tangent_at){.q = f->q, .v = f->v, .a = f->a, .factor = 1, .cm = cm})) {
         return 1;
     }
@@ -119,7 +120,7 @@ static int find_loads(const spar_member *m, double **load) {
         spari_member_to_unique(m, 6, m->now.v, x + 7 * n);
         spari_member_to_unique(m, 6, m->now.a, x + 13 * n);
         spari_body_residual(body, x, x + 7 * n, x + 13 * n, 1, r, NULL);
-        memset(r, 0, (size_t)spari_member_constrained(m) * sizeof *r);
+        spari_member_constrain(m, n, r);
         spari_member_from_unique(m, 6, r, *load);
         for (int64_t e = 1; e < m->mesh.elements;
              e++) { /* of the two nodes at an element boundary, one has the whole load */

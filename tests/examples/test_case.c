@@ -704,22 +704,24 @@ static void test_added_mass(void **state) {
     spar_session_destroy(&s);
 }
 
-/* Springs along a beam, and section forces of its reference; effects by name, each the bit it is. */
+/* Springs along a beam, section forces of its reference, and its plane; effects by name, each the bit it is. */
 static void test_stations(void **state) {
     (void)state;
     spar_session *s = scene_session();
     spar_case *c =
         read_text(s, NULL,
                   "[beam pile]\nnodes 4\naxis 0 0 0 0\naxis 1 2 0 0\nsection 0 4e4 4e4 4e4 800 600 600 1 1 1 "
-                  ".02 .01 .01\nfoundation .2 1 2 3\nfoundation .2 4 5 6\npretension 0 100 0 0 1 2 3\n"
+                  ".02 .01 .01\nfoundation .2 1 2 3\nfoundation .2 4 5 6\npretension 0 100 0 0 1 2 3\nplane 0 2 0\n"
                   "effects_off gravity gyroscopic fluid_moment\neffects_on work\nroot fixed\n");
-    double eta[2], k[2][3], force[6];
+    double eta[2], k[2][3], force[6], normal[3];
     int64_t n = 0;
     int effects = 0;
     OK(s, spar_beam_get_foundation(spar_case_member_at(c, 0), &n, 2, eta, k[0]));
     assert_true(n == 2 && eta[0] == .2 && eta[1] == .2 && k[0][0] == 1 && k[0][2] == 3 && k[1][1] == 5);
     OK(s, spar_beam_get_pretension(spar_case_member_at(c, 0), &n, 1, eta, force));
     assert_true(n == 1 && eta[0] == 0 && force[0] == 100 && force[3] == 1 && force[5] == 3);
+    OK(s, spar_beam_get_plane(spar_case_member_at(c, 0), normal));
+    assert_true(normal[0] == 0 && normal[1] == 1 && normal[2] == 0);
     OK(s, spar_member_get_effects(spar_case_member_at(c, 0), &effects));
     assert_int_equal(effects, SPAR_EFFECT_INERTIA | SPAR_EFFECT_FOUNDATION | SPAR_EFFECT_PRETENSION | SPAR_EFFECT_WORK);
     spar_case_free(&c);

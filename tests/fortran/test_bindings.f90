@@ -87,6 +87,8 @@ program test_bindings
   call refused(spar_beam_get_damping(none), 'spar_beam_get_damping')
   call refused(spar_beam_set_mass_damping(none, 0.0_c_double), 'spar_beam_set_mass_damping')
   call refused(spar_beam_get_mass_damping(none), 'spar_beam_get_mass_damping')
+  call refused(spar_beam_set_plane(none), 'spar_beam_set_plane')
+  call refused(spar_beam_get_plane(none), 'spar_beam_get_plane')
   call refused(spar_member_set_fidelity(none, 0_c_int, 0_c_int64_t), 'spar_member_set_fidelity')
   call refused(spar_member_get_fidelity(none), 'spar_member_get_fidelity')
   call refused(spar_member_set_effects(none, 0_c_int, 0_c_int), 'spar_member_set_effects')

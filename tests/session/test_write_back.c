@@ -147,6 +147,9 @@ static void beam_settings(scene *w, spar_member *b) {
     OK(w->s, spar_beam_get_mass_damping(b, &alpha));
     WRITE(w, spar_beam_set_mass_damping(b, alpha));
     keep_one(w, alpha);
+    OK(w->s, spar_beam_get_plane(b, mu));
+    WRITE(w, spar_beam_set_plane(b, mu));
+    keep(w, 3, mu);
     OK(w->s, spar_member_get_fidelity(b, &kind, &modes));
     WRITE(w, spar_member_set_fidelity(b, kind, modes));
     keep_one(w, kind), keep_one(w, (double)modes);
@@ -471,7 +474,8 @@ static void test_all_settings_are_tried(void **state) {
         " session_gravity session_integrator session_newton session_predictor session_coupling session_relaxation "
         "session_reproducible session_threads session_option session_tolerance trial_steps trial_goals trial_motion "
         "trial_option beam_masses "
-        "beam_foundation beam_pretension beam_quadrature beam_damping beam_mass_damping member_placement member_root "
+        "beam_foundation beam_pretension beam_quadrature beam_damping beam_mass_damping beam_plane member_placement "
+        "member_root "
         "member_external member_effects member_fidelity member_added_mass member_owner fluid_motion_weights "
         "fluid_layout fluid_projection fluid_interpolation fluid_states fluid_option member_added_mass_response ";
     static const char *const other = " joint_load aero_rotor member_motion ";

@@ -59,6 +59,8 @@
     CALL(spar_beam_get_damping) \
     CALL(spar_beam_set_mass_damping) \
     CALL(spar_beam_get_mass_damping) \
+    CALL(spar_beam_set_plane) \
+    CALL(spar_beam_get_plane) \
     CALL(spar_member_set_fidelity) \
     CALL(spar_member_get_fidelity) \
     CALL(spar_member_set_effects) \

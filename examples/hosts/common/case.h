@@ -37,6 +37,7 @@
      fidelity exact|linear|rigid|prescribed, or modal n
      line_load* dead|follower eta fx fy fz mx my mz
      mass_damping alpha         1/s (spar_beam_set_mass_damping)
+     plane nx ny nz             holds the beam in the plane with this normal (spar_beam_set_plane)
      body* eta mass             a rigid body that sits on it (spar_beam_set_masses)
      foundation* eta kx ky kz   springs to the ground along it, N/m^2 (spar_beam_set_foundation)
      pretension* eta n vy vz t my mz    section forces of the reference (spar_beam_set_pretension)

@@ -358,6 +358,10 @@ static int describe_beam(const spar_case *c, const case_block *block, spar_membe
         CASE_TRY(case_numbers(&c->text, line, 1, 1, mu));
         DO(c, line->number, spar_beam_set_mass_damping(*beam, mu[0]));
     }
+    if ((line = case_find(block, "plane"))) {
+        CASE_TRY(case_numbers(&c->text, line, 1, 3, mu));
+        DO(c, line->number, spar_beam_set_plane(*beam, mu));
+    }
     CASE_TRY(set_masses(c, block, "added_mass", spar_member_set_added_mass, *beam));
     CASE_TRY(set_response(c, block, *beam));
     CASE_TRY(set_masses(c, block, "body", spar_beam_set_masses, *beam));

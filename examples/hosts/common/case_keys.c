@@ -59,6 +59,7 @@ static const known_key beam_keys[] = {
     {"line_load", 8, 8, 1, "dead|follower eta fx fy fz mx my mz, N/m, N m/m"},
     {"added_mass", 7, 37, 1, "eta, then 6, 21 or 36 numbers (kg/m, kg, kg m): a guess of the fluid's"},
     {"mass_damping", 1, 1, 0, "alpha, 1/s; default 0"},
+    {"plane", 3, 3, 0, "normal x y z of the plane that holds the beam"},
     {"body", 7, 37, 1, "eta, then 6, 21 or 36 numbers (kg, kg m, kg m^2): a rigid body on the beam"},
     {"foundation", 4, 4, 1, "eta kx ky kz, N/m^2: springs to the ground"},
     {"pretension", 7, 7, 1, "eta n vy vz t my mz, N, N m: section forces of the reference"},

@@ -191,6 +191,18 @@ void do_spar_beam_get_mass_damping(call *c) {
     RUN(c, spar_beam_get_mass_damping(m->m, alpha));
 }
 
+void do_spar_beam_set_plane(call *c) {
+    live_member *m = arg_member(c, -1);
+    const double normal[3] = {arg_real(c, -1, 1), arg_real(c, -1, 1), arg_real(c, -1, 1)};
+    RUN(c, spar_beam_set_plane(m->m, chance(c, 50) ? NULL : normal));
+}
+
+void do_spar_beam_get_plane(call *c) {
+    live_member *m = arg_member(c, -1);
+    double *normal = OUT_OR_NULL(c, 3);
+    RUN(c, spar_beam_get_plane(m->m, normal));
+}
+
 void do_spar_beam_set_masses(call *c) {
     live_member *m = arg_member(c, -1);
     int64_t n = chance(c, 10) ? 0 : arg_count(c, 1, 3), room = length(n);

@@ -90,6 +90,8 @@ enum {
     CALL(spar_beam_set_damping, 40, FUZZ_CHANGES)                                                                      \
     CALL(spar_beam_set_mass_damping, 30, FUZZ_CHANGES)                                                                 \
     CALL(spar_beam_get_mass_damping, 20, FUZZ_PURE)                                                                    \
+    CALL(spar_beam_set_plane, 20, FUZZ_CHANGES)                                                                        \
+    CALL(spar_beam_get_plane, 20, FUZZ_PURE)                                                                           \
     CALL(spar_beam_set_masses, 40, FUZZ_CHANGES)                                                                       \
     CALL(spar_beam_get_masses, 20, FUZZ_PURE)                                                                          \
     CALL(spar_beam_set_foundation, 40, FUZZ_CHANGES)                                                                   \

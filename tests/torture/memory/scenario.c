@@ -474,6 +474,8 @@ static void act_fidelities(void) {
             CALL(spar_member_get_added_mass_response, m, &response);
             CALL(spar_beam_set_mass_damping, m, what[k].root == SPAR_ROOT_FIXED ? 0.1 : 0);
             CALL(spar_beam_get_mass_damping, m, work);
+            CALL(spar_beam_set_plane, m, NULL);
+            CALL(spar_beam_get_plane, m, work);
             CALL(spar_beam_set_masses, m, 2, eta, body);
             CALL(spar_beam_get_masses, m, &stations, 2, NULL, body);
             CALL(spar_member_learn_added_mass, m, 2, eta);
