@@ -726,6 +726,16 @@ static void act_output(void) {
         (void)snprintf(path, sizeof path, "%s/series_%d.pvd", run.folder, run.rank);
         CALL(spar_vtk_series_add, path, 0.1 * k, k, "member.vtp");
     }
+    const double diameter = 0.1;
+    double property[SPAR_SECTION_COUNT], K[36], M[36];
+    char text[1000];
+    int findings;
+    CALL(spar_section_from_shape, SPAR_SHAPE_CIRCLE, 1, &diameter, 2e11, 0.3, 7850, SPAR_SECTION_COUNT, property);
+    CALL(spar_section_build, SPAR_SECTION_COUNT, property, K, M);
+    CALL(spar_section_transform, K, 0.1, 0, 0, K);
+    CALL(spar_section_describe, K, M, SPAR_SECTION_COUNT, property, &findings);
+    CALL(spar_section_report, K, M, (int64_t)sizeof text, text);
+    NOTE(property);
     end_session(&h.session);
 }
 
