@@ -381,6 +381,11 @@ SPAR_API int spar_fluid_get_interpolation(const spar_fluid *fluid, int *kind);
    audit    on (default) | off: whether a push computes the figures of spar_fluid_get_audit
    velocity pulled (default) | own: own: the fluid needs no velocities, or finds them from its moving mesh; there is no
             warning if positions are pulled and velocities are not
+   ramp     0 (default) | seconds: all pushed forces and moments are multiplied by a factor that rises linearly from 0
+            to 1 over this time, or falls from 1 to 0 over -ramp if it is negative. The product is what spar knows as
+            the loads of the fluid, in sums and in spar_fluid_pull_forces too. Two fluids with ramps T and -T blend
+            from one source of loads to another
+   ramp.start 0 (default) | seconds: time of the session at which the ramp begins
    Local, between steps and not in a trial. SPAR_ERR_ARGUMENT: no such key or value; the message lists them. */
 SPAR_API int spar_fluid_set_option(spar_fluid *fluid, const char *key, const char *value);
 /* The value of an option, as a text that spar_fluid_set_option takes.

@@ -4,6 +4,7 @@
 #include "../base/setting.h"
 #include "state.h"
 
+#include <float.h>
 #include <stddef.h>
 
 #define FLUID_WORD(key, field, zero, one)                                                                              \
@@ -11,11 +12,18 @@
         "option " key, key, offsetof(spar_fluid, options.field), SPARI_IS_WORD, 0, 0, 1, zero " or " one, {zero, one}, \
             0, 0                                                                                                       \
     }
+#define FLUID_REAL(key, field)                                                                                         \
+    {                                                                                                                  \
+        "option " key, key, offsetof(spar_fluid, options.field), SPARI_IS_REAL, 0, -DBL_MAX, DBL_MAX,                  \
+            "a finite number of seconds", {NULL, NULL}, 0, 0                                                           \
+    }
 static const spari_setting options[] = {
     FLUID_WORD("theta", theta_on_group, "average", "group"),
     FLUID_WORD("far", far_refuse, "take", "refuse"),
     FLUID_WORD("audit", audit_off, "on", "off"),
     FLUID_WORD("velocity", own_velocity, "pulled", "own"),
+    FLUID_REAL("ramp", ramp),
+    FLUID_REAL("ramp.start", ramp_start),
 };
 enum { OPTIONS = sizeof options / sizeof *options };
 
@@ -25,8 +33,8 @@ int spar_fluid_set_option(spar_fluid *fluid, const char *key, const char *value)
     SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, key && value, SPAR_ERR_ARGUMENT, "key or value is NULL");
     const spari_setting *of = spari_setting_find(options, OPTIONS, 0, key);
-    SPARI_FLUID_REQUIRE(fluid, of, SPAR_ERR_ARGUMENT, "there is no option '%s'; give theta, far, audit or velocity",
-                        key);
+    SPARI_FLUID_REQUIRE(fluid, of, SPAR_ERR_ARGUMENT,
+                        "there is no option '%s'; give theta, far, audit, velocity, ramp or ramp.start", key);
     double x;
     SPARI_FLUID_REQUIRE(fluid, spari_setting_read(of, value, &x), SPAR_ERR_ARGUMENT,
                         "option '%s' does not accept '%s'; give %s", key, value, of->range);
@@ -39,7 +47,7 @@ int spar_fluid_get_option(const spar_fluid *fluid, const char *key, int64_t capa
     SPARI_FLUID_HANDLE(fluid);
     SPARI_FLUID_REQUIRE(fluid, key && text, SPAR_ERR_ARGUMENT, "key or text is NULL");
     const spari_setting *of = spari_setting_find(options, OPTIONS, 0, key);
-    SPARI_FLUID_REQUIRE(fluid, of, SPAR_ERR_ARGUMENT, "there is no option '%s'; give theta, far, audit or velocity",
-                        key);
+    SPARI_FLUID_REQUIRE(fluid, of, SPAR_ERR_ARGUMENT,
+                        "there is no option '%s'; give theta, far, audit, velocity, ramp or ramp.start", key);
     return spari_setting_write(fluid->member->session, __func__, of, spari_setting_value(fluid, of), capacity, text);
 }

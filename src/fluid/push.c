@@ -260,8 +260,50 @@ static int push_loads(spar_fluid *fluid, spari_source force, spari_source moment
     return SPAR_OK;
 }
 
+/* Factor of a ramp at t^n + theta dt */
+static double ramp_at(const spar_fluid *fluid, double theta) {
+    const spar_session *s = fluid->member->session;
+    double ahead = s->state.phase == SPARI_IDLE || s->state.standing ? 0 : theta * s->clock.dt;
+    double part = (s->clock.time + ahead - fluid->options.ramp_start) / fabs(fluid->options.ramp);
+    part = fmax(0, fmin(1, part));
+    return fluid->options.ramp > 0 ? part : 1 - part;
+}
+
+/* Multiplies force and moment by the factor of the option ramp: in a copy, which the caller frees. Nodes that are not
+   mapped are refused later. */
+static int ramp_loads(spar_fluid *fluid, double theta, spari_source load[2], double **copy, const char *caller) {
+    const spari_node_set *set = spari_fluid_set(fluid, SPAR_NODES_FORCE);
+    double factor = fluid->options.ramp == 0 ? 1 : ramp_at(fluid, theta);
+    *copy = NULL;
+    if (factor == 1 || set->pending || !set->nodes || set->nodes->n == 0) {
+        return SPAR_OK;
+    }
+    int64_t n = set->nodes->n;
+    *copy = spari_zalloc(6 * n, sizeof **copy);
+    if (!*copy) {
+        int status = spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the ramp of its loads");
+        note_refusal(fluid, status, fluid->member->session->message);
+        return status;
+    }
+    for (int k = 0; k < 2; k++) {
+        double *to = *copy + 3 * n * k;
+        if (load[k].d || load[k].f) {
+            for (int64_t i = 0; i < 3 * n; i++) {
+                to[i] = factor * spari_source_at(load[k], i / 3, (int)(i % 3));
+            }
+            load[k] = (spari_source){.d = to};
+        }
+    }
+    return SPAR_OK;
+}
+
 static int push_forces(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
-    SPARI_TRY(push_loads(fluid, force, moment, caller));
+    spari_source load[2] = {force, moment};
+    double *copy;
+    SPARI_TRY(ramp_loads(fluid, 1, load, &copy, caller));
+    int status = push_loads(fluid, load[0], load[1], caller);
+    free(copy);
+    SPARI_TRY(status);
     if (fluid->parts) {
         spari_parts_begin(fluid);
         fluid->parts->plain = 1;
@@ -352,8 +394,11 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
                         "the force array is NULL though there are force nodes");
     int moments = (fluid->member->effects & SPAR_EFFECT_FLUID_MOMENT) != 0;
     const spari_layout *layout = spari_fluid_layout(fluid, SPAR_NODES_FORCE);
-    const spari_source f = {.d = force, .layout = layout}, m = {.d = moments ? moment : NULL, .layout = layout};
-    int failed = spari_parts_add(fluid, s->n, theta, f, m);
+    spari_source load[2] = {{.d = force, .layout = layout}, {.d = moments ? moment : NULL, .layout = layout}};
+    double *copy, before = fluid->parts && theta > fluid->parts->theta ? fluid->parts->theta : 0;
+    SPARI_TRY(ramp_loads(fluid, 0.5 * (before + theta), load, &copy, __func__));
+    int failed = spari_parts_add(fluid, s->n, theta, load[0], load[1]);
+    free(copy);
     SPARI_FLUID_REQUIRE(fluid, failed == SPAR_OK, failed, "no memory for loads over parts of a step");
     return push_parts(fluid, s, theta, __func__);
 }

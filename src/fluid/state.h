@@ -99,6 +99,8 @@ typedef struct spari_fluid_options {
     int far_refuse;     /* far = take (default) | refuse: nodes beyond max_distance */
     int audit_off;      /* audit = on (default) | off */
     int own_velocity;   /* velocity = pulled (default) | own: velocities need not be pulled */
+    double ramp;        /* s, over which loads rise from 0 (> 0) or fall to 0 (< 0); 0: off */
+    double ramp_start;  /* s, time at which the ramp begins */
 } spari_fluid_options;
 
 struct spar_fluid {

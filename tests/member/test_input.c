@@ -353,7 +353,7 @@ static void test_read_members(void **state) {
         assert_string_equal(word, option[i][2]);
     }
     REFUSED(s, SPAR_ERR_ARGUMENT, "needs 7 characters; the buffer has 6", spar_fluid_get_option(f, "far", 6, word));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "no option 'fluid.far'; give theta, far, audit or velocity",
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no option 'fluid.far'; give theta, far, audit, velocity, ramp or ramp.start",
             spar_fluid_get_option(f, "fluid.far", 32, word));
     REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_fluid_set_option(f, "fluid.far", "take"));
     REFUSED(s, SPAR_ERR_ARGUMENT,
