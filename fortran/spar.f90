@@ -249,6 +249,7 @@ module spar
     procedure :: solve_modes => member_solve_modes
     procedure :: solve_eigenvalues => member_solve_eigenvalues
     procedure :: set_modal_damping => member_set_modal_damping
+    procedure :: fit_damping => member_fit_damping
   end type spar_member
 
   type :: spar_joint
@@ -1476,6 +1477,25 @@ contains
     call finish(spar_beam_set_modal_damping(self%handle, int(mode, c_int64_t) - 1, ratio, mu), self%session, stat, &
         errmsg)
   end subroutine member_set_modal_damping
+
+  subroutine member_fit_damping(self, mode, ratio, achieved, stat, errmsg)
+    class(spar_member), intent(inout) :: self
+    integer, contiguous, intent(in) :: mode(:)
+    real(c_double), contiguous, intent(in) :: ratio(:)
+    real(c_double), contiguous, intent(inout), optional :: achieved(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+
+    call need(fault, 'ratio', shape(ratio, kind=c_int64_t), shape(mode, kind=c_int64_t))
+    if (present(achieved)) call need(fault, 'achieved', shape(achieved, kind=c_int64_t), shape(mode, kind=c_int64_t))
+    if (allocated(fault)) then
+      call refuse('member%fit_damping', fault, stat, errmsg, self%name)
+      return
+    end if
+    call finish(spar_beam_fit_damping(self%handle, size(mode, kind=c_int64_t), int(mode, c_int64_t) - 1, ratio, &
+        achieved), self%session, stat, errmsg)
+  end subroutine member_fit_damping
 
   subroutine member_solve_modes(self, frequency_hz, shapes, stat, errmsg)
     class(spar_member), intent(in) :: self

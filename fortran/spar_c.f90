@@ -684,6 +684,16 @@ module spar_calls
       integer(c_int) :: status
     end function spar_beam_set_modal_damping
 
+    function spar_beam_fit_damping(beam, n, mode, ratio, achieved) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in), optional :: mode(*)
+      real(c_double), intent(in), optional :: ratio(*)
+      real(c_double), intent(inout), optional :: achieved(*)
+      integer(c_int) :: status
+    end function spar_beam_fit_damping
+
     function spar_joint_create(session, name, a, node_a, b, node_b, free_motions, joint) bind(c) result(status)
       import :: c_char, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: session

@@ -381,6 +381,18 @@ SPAR_API int spar_member_solve_eigenvalues(spar_member *member, int64_t n, const
      mu[6]: out, s, NULL: not wanted
    SPAR_ERR_ARGUMENT: both modes have the same group; SPAR_ERR_NUMERIC: no mu gives these ratios. */
 SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const double ratio[2], double mu[6]);
+/* Chooses proportional damping for the damping ratios of any number of modes: mu of three groups of strains (as
+   spar_beam_set_modal_damping) and alpha of spar_beam_set_mass_damping, none below 0. It replaces both. The sum of the
+   squares of (achieved / ratio - 1) is least. Up to four modes can be met if they differ in kind: first flap, second
+   flap, first edge, first torsion. A group that no mode depends on gets the mean of what the modes ask for. Between
+   commit and first step. Collective.
+     n: in, 1 to 1000
+     mode[n]: in, from 0, as spar_member_solve_modes numbers them about the present state (at rest, or in steady
+           rotation after a static solution), of the member without joints
+     ratio[n]: in, of critical damping, > 0
+     achieved[n]: out, ratios that the modes have, NULL: not wanted */
+SPAR_API int spar_beam_fit_damping(spar_member *beam, int64_t n, const int64_t *mode, const double *ratio,
+                                   double *achieved);
 
 /* ---- joints ------------------------------------------------------------------------------------------------------ */
 

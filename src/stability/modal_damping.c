@@ -1,7 +1,9 @@
 /* Stiffness-proportional damping from the damping ratios of two modes. With D_ij = sqrt(mu_i mu_j) C_ij, a mode of
    unit modal mass has the ratio x^T B x / (2 omega), B the beam's damping matrix. The strain components form three
    groups: bending about y with shear z, bending about z with shear y, torsion with stretch. Each of the two modes
-   sets the mu of the group with most of its strain energy; the third group gets their geometric mean. */
+   sets the mu of the group with most of its strain energy; the third group gets their geometric mean. A fit to any
+   number of modes has the mu of the groups and the mass-proportional alpha, which adds alpha / (2 omega). */
+#include "../algebra/dense.h"
 #include "../base/environment.h"
 #include "../math/rotation.h"
 #include "../member/beam.h"
@@ -17,15 +19,16 @@ enum { GROUPS = 3 };
 static const int GROUP[6] = {2, 1, 0, 2, 0, 1}; /* group of axial, shear y, shear z, torsion, bending y, bending z */
 static const char *const GROUP_NAME[GROUPS] = {"bending about y", "bending about z", "torsion and stretch"};
 
-/* x^T B x of both shapes [2][unique][6] at the state q */
-static void modal_damping(const spari_body *b, const double *q, const double *x, double *S, double *S0, double c[2]) {
+/* x^T B x of `count` shapes [count][unique][6] at the state q */
+static void modal_damping(const spari_body *b, const double *q, int64_t count, const double *x, double *S, double *S0,
+                          double *c) {
     int P = b->per_element, n = 6 * P;
-    c[0] = c[1] = 0;
+    memset(c, 0, (size_t)count * sizeof *c);
     for (int e = 0; e < b->elements; e++) {
         spari_body_tangent(b, e, q, NULL, NULL, 1, 0, 1, NULL, S);
         spari_body_tangent(b, e, q, NULL, NULL, 1, 0, 0, NULL, S0);
-        for (int k = 0; k < 2; k++) {
-            const double *xe = x + 6 * ((int64_t)k * b->unique + (int64_t)e * (P - 1));
+        for (int64_t k = 0; k < count; k++) {
+            const double *xe = x + 6 * (k * b->unique + (int64_t)e * (P - 1));
             for (int i = 0; i < n; i++) {
                 for (int j = 0; j < n; j++) {
                     c[k] += xe[i] * (S[n * i + j] - S0[n * i + j]) * xe[j];
@@ -35,21 +38,21 @@ static void modal_damping(const spari_body *b, const double *q, const double *x,
     }
 }
 
-/* share[k][g][h]: the ratio of mode k is sum sqrt(mu_g mu_h) share */
-static int find_shares(spar_member *m, const double omega[2], const double *q, const double *x, double *work,
-                       double share[2][GROUPS][GROUPS]) {
+/* share[k][g][h]: the ratio of mode k is sum sqrt(mu_g mu_h) share. work: 2 tangents of an element and count */
+static int find_shares(spar_member *m, int64_t count, const double *omega, const double *q, const double *x,
+                       double *work, double (*share)[GROUPS][GROUPS]) {
     int64_t size = 36 * (int64_t)m->mesh.per_element * m->mesh.per_element;
     for (int g = 0; g < GROUPS; g++) {
         for (int h = g; h >= 0; h--) { /* the diagonal first */
             spari_body *b;
-            double mu[6], c[2];
+            double mu[6], *c = work + 2 * size;
             for (int i = 0; i < 6; i++) {
                 mu[i] = GROUP[i] == g || GROUP[i] == h ? 1 : 0;
             }
             SPARI_TRY(spari_beam_build(m, 0, mu, &b));
-            modal_damping(b, q, x, work, work + size, c);
+            modal_damping(b, q, count, x, work, work + size, c);
             spari_body_free(b);
-            for (int k = 0; k < 2; k++) {
+            for (int64_t k = 0; k < count; k++) {
                 double value = c[k] / (2 * omega[k]);
                 share[k][g][h] = share[k][h][g] = g == h ? value : 0.5 * (value - share[k][g][g] - share[k][h][h]);
             }
@@ -122,16 +125,19 @@ static int rigid_modes(const spar_member *m) {
     return m->root == SPAR_ROOT_FREE ? 6 : m->root == SPAR_ROOT_PINNED ? 3 : 0;
 }
 
-static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2], double mu[6]) {
+/* Shares of the given modes, and their angular frequencies */
+static int find_damped_modes(spar_member *m, int64_t count, const int64_t *mode, double *omega,
+                             double (*share)[GROUPS][GROUPS]) {
     spar_session *s = m->session;
-    int64_t most = 1 + (mode[0] > mode[1] ? mode[0] : mode[1]), u = m->body->unique,
-            size = 36 * (int64_t)m->mesh.per_element * m->mesh.per_element;
-    double *all = spari_zalloc(most * (1 + 6 * m->nodes) + 7 * u + 12 * u + 2 * size, sizeof *all);
+    int64_t most = 1, u = m->body->unique, size = 36 * (int64_t)m->mesh.per_element * m->mesh.per_element;
+    for (int64_t k = 0; k < count; k++) {
+        most = mode[k] >= most ? mode[k] + 1 : most;
+    }
+    double *all = spari_zalloc(most * (1 + 6 * m->nodes) + 7 * u + 6 * u * count + 2 * size + count, sizeof *all);
     SPARI_REQUIRE(s, all, SPAR_ERR_MEMORY, "no memory for '%s'", m->name);
-    double *shapes = all + most, *q = shapes + 6 * m->nodes * most, *x = q + 7 * u, *work = x + 12 * u;
-    double omega[2], share[2][GROUPS][GROUPS], groups[GROUPS];
-    int own[2] = {0, 0}, status = spari_modes_of_member(m, most, all, shapes);
-    for (int k = 0; k < 2 && status == SPAR_OK; k++) {
+    double *shapes = all + most, *q = shapes + 6 * m->nodes * most, *x = q + 7 * u, *work = x + 6 * u * count;
+    int status = spari_modes_of_member(m, most, all, shapes);
+    for (int64_t k = 0; k < count && status == SPAR_OK; k++) {
         if (mode[k] < rigid_modes(m)) {
             status =
                 spari_fail(s, SPAR_ERR_NUMERIC,
@@ -148,9 +154,16 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
         spari_member_to_unique(m, 6, shapes + 6 * m->nodes * mode[k], x + 6 * u * k);
     }
     spari_member_to_unique(m, 7, m->after.q, q);
-    status = status == SPAR_OK ? find_shares(m, omega, q, x, work, share) : status;
+    status = status == SPAR_OK ? find_shares(m, count, omega, q, x, work, share) : status;
     free(all);
-    SPARI_TRY(status);
+    return status;
+}
+
+static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2], double mu[6]) {
+    spar_session *s = m->session;
+    double omega[2], share[2][GROUPS][GROUPS], groups[GROUPS];
+    int own[2] = {0, 0};
+    SPARI_TRY(find_damped_modes(m, 2, mode, omega, share));
     for (int k = 0; k < 2; k++) {
         for (int g = 1; g < GROUPS; g++) {
             own[k] = share[k][g][g] > share[k][own[k]][own[k]] ? g : own[k];
@@ -170,7 +183,7 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
     return SPAR_OK;
 }
 
-static int check_pair(const spar_member *m, const int64_t mode[2], const double ratio[2]) {
+static int check_modes(const spar_member *m, int64_t n, const int64_t *mode, const double *ratio) {
     spar_session *s = m->session;
     SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "member '%s' is not a beam", m->name);
     SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
@@ -187,31 +200,44 @@ static int check_pair(const spar_member *m, const int64_t mode[2], const double 
                   "and pass it to spar_beam_set_damping",
                   m->name);
     SPARI_REQUIRE(s, mode && ratio, SPAR_ERR_ARGUMENT, "member '%s': %s is NULL", m->name, mode ? "ratio" : "mode");
-    for (int k = 0; k < 2; k++) {
+    for (int64_t k = 0; k < n; k++) {
         SPARI_REQUIRE(s, mode[k] >= 0 && mode[k] < 6 * m->nodes, SPAR_ERR_ARGUMENT,
                       "member '%s': there is no mode %lld", m->name, (long long)mode[k]);
         SPARI_REQUIRE(s, ratio[k] > 0 && ratio[k] < 1e3, SPAR_ERR_ARGUMENT,
-                      "member '%s': ratio %d is %g; give a damping ratio above 0, such as 0.005", m->name, k, ratio[k]);
+                      "member '%s': ratio %lld is %g; give a damping ratio above 0, such as 0.005", m->name,
+                      (long long)k, ratio[k]);
     }
     return SPAR_OK;
+}
+
+/* The body with this damping, before it is put in force */
+static int make_body(const spar_member *m, const double mu[6], spari_body **body) {
+    SPARI_TRY(spari_beam_build(m, 0, mu, body));
+    SPARI_TRY(spari_beam_drag(m, *body));
+    (*body)->gyroscopic = m->body->gyroscopic;
+    memcpy((*body)->gravity, m->body->gravity, sizeof m->body->gravity);
+    return SPAR_OK;
+}
+
+static void put_damping_in_force(spar_member *m, const double mu[6], spari_body *body) {
+    spari_body_free(m->body);
+    m->body = body;
+    memcpy(m->beam->mu, mu, sizeof m->beam->mu);
+    m->beam->damped = 1;
+    m->effects |= SPAR_EFFECT_DAMPING;
+    if (spari_fidelity_is_here(m)) {
+        m->row->renew(m);
+    }
 }
 
 int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const double ratio[2], double mu[6]) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
-    spar_session *s = beam->session;
     double found[6];
     spari_body *body = NULL;
-    int status = check_pair(beam, mode, ratio);
+    int status = check_modes(beam, 2, mode, ratio);
     status = status == SPAR_OK ? find_mu(beam, mode, ratio, found) : status;
-    status = status == SPAR_OK ? spari_beam_build(beam, 0, found, &body) : status;
-    if (status == SPAR_OK) {
-        status = spari_beam_drag(beam, body);
-    }
-    if (status == SPAR_OK) {
-        body->gyroscopic = beam->body->gyroscopic;
-        memcpy(body->gravity, beam->body->gravity, sizeof body->gravity);
-    }
+    status = status == SPAR_OK ? make_body(beam, found, &body) : status;
     int given = mode && ratio;
     const spari_agreed must_agree[] = {
         spari_whole("mode[0]", given ? mode[0] : 0), spari_whole("mode[1]", given ? mode[1] : 0),
@@ -219,18 +245,147 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
     status = spari_member_enter(beam, __func__, must_agree, 4, status);
     if (status != SPAR_OK) {
         spari_body_free(body);
-        return spari_named(s, __func__, status);
+        return spari_named(beam->session, __func__, status);
     }
-    spari_body_free(beam->body);
-    beam->body = body;
-    memcpy(beam->beam->mu, found, sizeof found);
-    beam->beam->damped = 1;
-    beam->effects |= SPAR_EFFECT_DAMPING;
-    if (spari_fidelity_is_here(beam)) {
-        beam->row->renew(beam);
-    }
+    put_damping_in_force(beam, found, body);
     if (mu) {
         memcpy(mu, found, sizeof found);
     }
+    return SPAR_OK;
+}
+
+/* ---- fit to any number of modes ---- */
+
+/* The fit minimises sum (found / given - 1)^2 over y = (sqrt(mu) of the groups, sqrt(alpha)): squares keep all of them
+   from being negative. */
+enum { FITTED = GROUPS + 1, MOST_FITTED = 1000 };
+
+static double fitted_ratio(const double share[GROUPS][GROUPS], double omega, const double y[FITTED]) {
+    const double mu[GROUPS] = {y[0] * y[0], y[1] * y[1], y[2] * y[2]};
+    return ratio_of(share, mu) + y[GROUPS] * y[GROUPS] / (2 * omega);
+}
+
+/* Normal equations of a step in log y: A [FITTED][FITTED], g [FITTED]; returns the sum of squares. */
+static double fit_step(int64_t n, const double (*share)[GROUPS][GROUPS], const double *omega, const double *ratio,
+                       const double y[FITTED], double A[FITTED * FITTED], double g[FITTED]) {
+    double sum = 0;
+    memset(A, 0, FITTED * FITTED * sizeof *A);
+    memset(g, 0, FITTED * sizeof *g);
+    for (int64_t k = 0; k < n; k++) {
+        double row[FITTED], off = fitted_ratio(share[k], omega[k], y) / ratio[k] - 1;
+        for (int i = 0; i < GROUPS; i++) {
+            row[i] = 0;
+            for (int j = 0; j < GROUPS; j++) {
+                row[i] += 2 * y[i] * y[j] * share[k][i][j] / ratio[k];
+            }
+        }
+        row[GROUPS] = y[GROUPS] * y[GROUPS] / (omega[k] * ratio[k]);
+        for (int i = 0; i < FITTED; i++) {
+            g[i] -= row[i] * off;
+            for (int j = 0; j < FITTED; j++) {
+                A[FITTED * i + j] += row[i] * row[j];
+            }
+        }
+        sum += off * off;
+    }
+    return sum;
+}
+
+/* Levenberg and Marquardt's method. What no mode depends on keeps its first value, the geometric mean over the modes.
+ */
+static void fit(int64_t n, const double (*share)[GROUPS][GROUPS], const double *omega, const double *ratio,
+                double y[FITTED]) {
+    double mean = 0, lowest = omega[0], damp = 1e-3;
+    for (int64_t k = 0; k < n; k++) {
+        mean += log(ratio[k] / (share[k][0][0] + share[k][1][1] + share[k][2][2])) / (double)n;
+        lowest = fmin(lowest, omega[k]);
+    }
+    y[0] = y[1] = y[2] = exp(0.5 * mean);
+    y[GROUPS] = sqrt(0.1 * 2 * lowest * ratio[0]);
+    for (int it = 0; it < 1000; it++) {
+        double A[FITTED * FITTED], g[FITTED], next[FITTED], B[FITTED * FITTED], h[FITTED];
+        double sum = fit_step(n, share, omega, ratio, y, A, g), largest = 0;
+        for (int i = 0; i < FITTED; i++) {
+            A[(FITTED + 1) * i] += damp * (A[(FITTED + 1) * i] + 1e-6);
+        }
+        if (spari_cholesky(FITTED, A)) {
+            return;
+        }
+        spari_cholesky_solve(FITTED, A, g);
+        for (int i = 0; i < FITTED; i++) {
+            next[i] = y[i] * exp(fmax(-1, fmin(1, g[i])));
+            largest = fmax(largest, fabs(g[i]) * (next[i] * next[i] > 1e-12 ? 1 : 0));
+        }
+        if (fit_step(n, share, omega, ratio, next, B, h) <= sum) {
+            memcpy(y, next, sizeof next);
+            damp *= 0.1;
+            if (largest < 1e-12) {
+                return;
+            }
+        } else if ((damp *= 10) > 1e12) {
+            return;
+        }
+    }
+}
+
+/* mu, alpha and the ratios that they give */
+static int fit_damping(spar_member *m, int64_t n, const int64_t *mode, const double *ratio, double mu[6], double *alpha,
+                       double *found) {
+    double *omega = spari_zalloc(n, sizeof *omega), y[FITTED];
+    double(*share)[GROUPS][GROUPS] = spari_zalloc(n, sizeof *share);
+    int status = omega && share
+                     ? find_damped_modes(m, n, mode, omega, share)
+                     : spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for the modes of member '%s'", m->name);
+    if (status == SPAR_OK) {
+        const double(*kept)[GROUPS][GROUPS] = (const double(*)[GROUPS][GROUPS])share;
+        fit(n, kept, omega, ratio, y);
+        for (int64_t k = 0; k < n; k++) {
+            found[k] = fitted_ratio(kept[k], omega[k], y);
+        }
+        for (int i = 0; i < 6; i++) {
+            mu[i] = y[GROUP[i]] * y[GROUP[i]];
+        }
+        *alpha = y[GROUPS] * y[GROUPS];
+    }
+    free(omega);
+    free(share);
+    return status;
+}
+
+int spar_beam_fit_damping(spar_member *beam, int64_t n, const int64_t *mode, const double *ratio, double *achieved) {
+    SPARI_GUARD_ENVIRONMENT;
+    SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
+    double mu[6], alpha = 0, before = beam->beam ? beam->beam->drag : 0, *found = NULL;
+    spari_body *body = NULL;
+    int status = n >= 1 && n <= MOST_FITTED
+                     ? check_modes(beam, n, mode, ratio)
+                     : spari_fail(beam->session, SPAR_ERR_ARGUMENT, "member '%s': %lld modes; give 1 to %d", beam->name,
+                                  (long long)n, MOST_FITTED);
+    int given = status == SPAR_OK;
+    uint64_t modes = given ? spari_hash_bytes(SPARI_HASH_BEGIN, mode, (size_t)n * sizeof *mode) : 0;
+    uint64_t ratios = given ? spari_hash_bytes(SPARI_HASH_BEGIN, ratio, (size_t)n * sizeof *ratio) : 0;
+    if (given && !(found = spari_zalloc(n, sizeof *found))) {
+        status = spari_fail(beam->session, SPAR_ERR_MEMORY, "no memory for the damping of member '%s'", beam->name);
+    }
+    status = status == SPAR_OK ? fit_damping(beam, n, mode, ratio, mu, &alpha, found) : status;
+    if (status == SPAR_OK) {
+        beam->beam->drag = alpha;
+        status = make_body(beam, mu, &body);
+    }
+    const spari_agreed must_agree[] = {spari_whole("n", n), spari_hash("mode", modes), spari_hash("ratio", ratios)};
+    status = spari_member_enter(beam, __func__, must_agree, 3, status);
+    if (status != SPAR_OK) {
+        if (beam->beam) {
+            beam->beam->drag = before;
+        }
+        spari_body_free(body);
+        free(found);
+        return spari_named(beam->session, __func__, status);
+    }
+    put_damping_in_force(beam, mu, body);
+    if (achieved) {
+        memcpy(achieved, found, (size_t)n * sizeof *found);
+    }
+    free(found);
     return SPAR_OK;
 }

@@ -107,6 +107,7 @@ program test_bindings
   call refused(spar_member_solve_modes(none, 0_c_int64_t), 'spar_member_solve_modes')
   call refused(spar_member_solve_eigenvalues(none, 0_c_int64_t), 'spar_member_solve_eigenvalues')
   call refused(spar_beam_set_modal_damping(none), 'spar_beam_set_modal_damping')
+  call refused(spar_beam_fit_damping(none, 0_c_int64_t), 'spar_beam_fit_damping')
   call refused(spar_joint_create(none, a=none, node_a=0_c_int64_t, b=none, node_b=0_c_int64_t, &
       free_motions=0_c_int, joint=made), 'spar_joint_create')
   call refused(spar_joint_set_frame(none), 'spar_joint_set_frame')

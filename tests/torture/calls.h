@@ -219,6 +219,7 @@
     CALL(spar_session_load) \
     CALL(spar_member_solve_static) \
     CALL(spar_beam_set_modal_damping) \
+    CALL(spar_beam_fit_damping) \
     CALL(spar_session_solve_initial) \
     CALL(spar_step_begin_initial) \
     CALL(spar_session_solve_static) \

@@ -389,14 +389,26 @@ void do_spar_beam_set_line_load(call *c) {
     RUN(c, spar_beam_set_line_load(b->m, kind, n, eta, load));
 }
 
-void do_spar_beam_set_modal_damping(call *c) {
-    live_member *b = arg_member(c, KIND_BEAM);
+static int64_t *arg_modes(call *c, int64_t n) {
     static const int64_t odds[] = {-1, INT64_MIN, INT64_MAX, 5, 1000};
-    int64_t *mode = arg_out(c, 2 * sizeof *mode, 0);
-    for (int k = 0; mode && k < 2; k++) {
+    int64_t *mode = arg_out(c, n * (int64_t)sizeof *mode, 0);
+    for (int k = 0; mode && k < n; k++) {
         mode[k] = odd(c) ? odds[below(c, 5)] : below(c, 4);
         text(c, ", %lld", (long long)mode[k]);
     }
+    return mode;
+}
+
+void do_spar_beam_fit_damping(call *c) {
+    live_member *b = arg_member(c, KIND_BEAM);
+    int64_t n = arg_count(c, 1, 5), *mode = arg_modes(c, length(n));
+    double *ratio = arg_reals(c, length(n), 0.001, 0.05), *achieved = OUT_OR_NULL(c, length(n));
+    RUN(c, spar_beam_fit_damping(b->m, n, mode, ratio, achieved));
+}
+
+void do_spar_beam_set_modal_damping(call *c) {
+    live_member *b = arg_member(c, KIND_BEAM);
+    int64_t *mode = arg_modes(c, 2);
     double *ratio = arg_reals(c, 2, 0.001, 0.05), *mu = OUT_OR_NULL(c, 6);
     RUN(c, spar_beam_set_modal_damping(b->m, mode, ratio, mu));
 }

@@ -101,6 +101,7 @@ enum {
     CALL(spar_beam_read_beamdyn, 15, FUZZ_CHANGES)                                                                     \
     CALL(spar_beam_set_line_load, 100, FUZZ_CHANGES)                                                                   \
     CALL(spar_beam_set_modal_damping, 30, FUZZ_CHANGES)                                                                \
+    CALL(spar_beam_fit_damping, 30, FUZZ_CHANGES)                                                                      \
     CALL(spar_beam_evaluate, 100, FUZZ_PURE)                                                                           \
     CALL(spar_member_set_placement, 40, FUZZ_CHANGES)                                                                  \
     CALL(spar_member_set_root, 40, FUZZ_CHANGES)                                                                       \

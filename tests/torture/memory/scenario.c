@@ -589,6 +589,8 @@ static void act_static(void) {
         CALL(spar_member_commit, b);
         CALL(spar_beam_set_modal_damping, b, mode, ratio, mu);
         NOTE(mu);
+        CALL(spar_beam_fit_damping, b, 2, mode, ratio, mu);
+        NOTE(mu);
         CALL(spar_member_set_load, b, 3, SPAR_LOAD_DEAD, load);
         if (k == 1) {
             double turned[7] = {0, 0, 0, 1}, rate[6] = {0, 0, 0, 0.5};

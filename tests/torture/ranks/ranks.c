@@ -217,6 +217,9 @@ static int make_static(scene *c, const arguments *a) {
 static int make_damping(scene *c, const arguments *a) {
     return spar_beam_set_modal_damping(c->beam, a->no_modes ? NULL : a->mode, a->ratio, a->no_out ? NULL : out);
 }
+static int make_fit(scene *c, const arguments *a) {
+    return spar_beam_fit_damping(c->beam, 2, a->no_modes ? NULL : a->mode, a->ratio, a->no_out ? NULL : out);
+}
 static int make_begin(scene *c, const arguments *a) {
     return spar_step_begin(c->session, a->dt);
 }
@@ -368,6 +371,7 @@ static const struct call {
     {"spar_session_sum_balance", make_balance, IDLE, OUT},
     {"spar_trial_solve_eigenvalues", make_eigenvalues, IDLE, TRIAL_SETTINGS | OUT | NEEDS_SOLVE},
     {"spar_trial_solve_floquet", make_floquet, IDLE, TRIAL_SETTINGS | OUT},
+    {"spar_beam_fit_damping", make_fit, FIRST, MODES | SETTINGS},
 };
 enum {
     CREATE = 0,
