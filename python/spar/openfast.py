@@ -226,6 +226,9 @@ def read_aerodyn(path, blade, blade_path=None, stations=None):
         values = [(1 - part) * numpy.interp(alpha, pair[0][0], a) + part * numpy.interp(alpha, pair[1][0], b)
                   for a, b in zip(pair[0][1:], pair[1][1:])]
         polars.append([alpha, *values])
+    if file.text('UseBlCm', otherwise='True').lower().startswith('f'):
+        for polar in polars:
+            polar[3] = 0 * polar[0]
     away = numpy.column_stack([at(k + 1) - numpy.interp(stations, blade.eta, blade.points[:, k + 1]) for k in (0, 1)])
     turn = numpy.interp(stations, blade.eta, blade.twist)
     centre = numpy.column_stack([numpy.cos(turn) * away[:, 0] + numpy.sin(turn) * away[:, 1],

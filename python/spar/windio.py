@@ -4,6 +4,7 @@
 
 Taken are the blade's line, twist, 6x6 matrices and airfoils, the tower (6x6 or bending, torsion and mass), hub, drivetrain, yaw, and
 of the control the rated values. Files of version 1 have no masses of hub and nacelle: the blade and the geometry are read.
+The tower stands on a rigid base: monopile and floater are not read.
 Matrices are in the axes that the files of IEA-15 and IEA-22 use, which are BeamDyn's: x to the suction side, y to the trailing edge,
 z to the tip, so K44 is the edgewise bending stiffness. (The schema's text says otherwise.)
 Needs PyYAML.

@@ -7,6 +7,8 @@ import gc
 import inspect
 import os
 import pickle
+import shutil
+import subprocess
 import sys
 import unittest
 
@@ -483,6 +485,24 @@ class Edges(unittest.TestCase):
             x.flags.writeable = False
             with self.assertRaisesRegex(TypeError, 'can be written'):
                 fluid.pull_motion(1.0, x=x)
+
+    def test_releases(self):
+        """A table of another release than the library's, and one with a call that the library lacks, are refused at the import."""
+        for old, new, said in (("VERSION = '", "VERSION = '7.", 'install both from one release'),
+                               ('call spar_version text', 'call spar_vision text', 'the library has no spar_vision')):
+            folder = os.path.join(WORK, 'releases')
+            shutil.rmtree(folder, ignore_errors=True)
+            shutil.copytree(os.path.dirname(spar.__file__), os.path.join(folder, 'spar'))
+            with open(os.path.join(folder, 'spar', '_interface.py'), 'r+', encoding='utf-8') as file:
+                text = file.read().replace(old, new).replace('"spar_version"', '"spar_vision"')
+                file.seek(0)
+                file.write(text)
+                file.truncate()
+            library = spar._library._name  # pylint: disable=protected-access
+            done = subprocess.run([sys.executable, '-B', '-c', 'import spar'], capture_output=True, text=True, check=False,
+                                  env={**os.environ, 'PYTHONPATH': folder, 'SPAR_LIBRARY': library})
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn(said, done.stderr)
 
     def test_errors(self):
         """Each status has its class, which can be sent to another process."""

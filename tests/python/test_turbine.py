@@ -445,6 +445,14 @@ class Rotor(unittest.TestCase):
             numpy.testing.assert_allclose(getattr(sections, name), getattr(machine.sections, name), atol=1e-8)
         for a, b in zip(sections.polars, machine.sections.polars):
             numpy.testing.assert_allclose(a, b, atol=1e-8)
+        alpha = machine.sections.polars[0][0]
+        write('thin.dat', f'{len(alpha)} NumAlf - rows\n' + '\n'.join(f'{a / DEGREE:.9f} 0 0 0.1' for a in alpha) + '\n')
+        for use, moment in (('True', 0.1), ('False', 0.0)):  # UseBlCm
+            path = write('ad.dat', f'---\nmade by the test\n{use} UseBlCm - (flag)\n1 NumAFfiles - (-)\n"thin.dat" AFNames - names\n'
+                         '"ad_blade1.dat" ADBlFile(1) - name\n')
+            write('ad_blade1.dat', '2 NumBlNds - (-)\n0 0 0 0 10 4 1\n60 0 0 0 10 4 1\n')
+            polars = openfast.read_aerodyn(path, machine.blade, stations=[0.5]).polars
+            numpy.testing.assert_allclose(polars[0][3], moment, atol=1e-12)
 
     def test_case(self):
         """spar-run turns the rotor of a case file in a wind, with the power that is found here after the same time."""
@@ -533,6 +541,17 @@ class Results(unittest.TestCase):
         found = (packed - offset) / scale
         for i, (name, bound) in enumerate((('GeneratorPower', 2e3 / 65535), ('Still', 1e-6), ('Far', 0.2))):
             self.assertLess(abs(found[:, i] - made[name][1]).max(), bound)
+
+    def test_hdf5(self):
+        """A data set for each channel, with its unit."""
+        try:
+            import h5py  # pylint: disable=import-outside-toplevel
+        except ImportError:
+            self.skipTest('no h5py')
+        path, made = os.path.join(WORK, 'run.h5'), self.channels('Power')
+        results.write(path, made)
+        with h5py.File(path) as file:
+            self.assertEqual((list(file['Power'][:]), file['Power'].attrs['unit']), (list(made['Power'][1]), 'kW'))
 
     def test_others(self):
         """CSV goes and comes; what does not fit is refused."""
