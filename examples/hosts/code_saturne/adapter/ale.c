@@ -55,7 +55,6 @@ void CS_PROCF(usaste, USASTE)(int *idfstr) {
 
 void cs_user_boundary_conditions_ale(cs_domain_t *domain, int bc_type[], int ale_bc_type[], int impale[]) {
     (void)domain, (void)bc_type;
-    saturne_set_reference(cs_field_by_name("vtx_coord0")->val);
     set_conditions(ale_bc_type, impale);
     saturne_bodies_follow(impale);
 }

@@ -45,6 +45,9 @@ static void choose_step(void) {
 static void couple(void) {
     const double never[2] = {0, 0};
     saturne_clock_begin();
+#if SATURNE_VERSION >= 70
+    host.reference = cs_field_by_name("vtx_coord0")->val;
+#endif
     saturne_check_case(spar_case_make_aero(saturne_scene(), CS_MAX(cs_glob_rank_id, 0)));
     saturne_bodies_create(host.reference);
     saturne_check_case(spar_case_get_numbers(saturne_scene(), "later", 2, never, host.later));
