@@ -51,6 +51,7 @@ static const struct {
     {"control_points_of_their_own", "so are the sections of the blade element fluid", 0},
     {"explicit_beam", "its run without a guess diverges, and rounding with it", 1},
     {"explicit_after", "its run without added mass diverges, and rounding with it", 1},
+    {"test_pressure", "its slab twists out of its plane, and rounding grows with it", 1},
 };
 
 /* What numbers are, and up to six arrays of a call that pulls. */

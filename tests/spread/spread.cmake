@@ -1,6 +1,6 @@
 # Serial tests of transfer, coupling, stability and what hangs on them, once more on several ranks (spread.h). In the suite those that take
 # seconds, on 2 and 3 ranks; tests/ranks spread: all, on 1, 2, 3, 4 and 7, with every deal of the nodes.
-set(spar_spread_tests fluid/test_fluid fluid/test_weights fluid/test_sections solve/test_energy session/test_start session/test_static_coupled assembly/test_joint assembly/test_turning)
+set(spar_spread_tests fluid/test_fluid fluid/test_weights fluid/test_sections member/test_plane solve/test_energy session/test_start session/test_static_coupled assembly/test_joint assembly/test_turning)
 set(spar_spread_more stability/test_floquet stability/coupling member/test_learned_mass_life coupling/test_coupling coupling/test_coupling_tied member/test_learned_mass member/test_added_mass member/test_added_mass_life assembly/test_assembly trial/test_joint_trial
   trial/test_trial stability/substeps)
 add_library(spar_spread OBJECT "${CMAKE_CURRENT_LIST_DIR}/spread.c")
