@@ -387,7 +387,7 @@ void Foam::sparHost::checkPlane()
     {
         leftPlane_ = true;
         Info<< "spar, warning: the structure leaves the plane of the mesh, by " << out << " m at t = " << mesh_.time().value()
-            << " s; the flow sees its motion in the plane alone; hold it in the plane" << endl;
+            << " s; the flow sees its motion in the plane alone; hold the beam there by `plane` in the case file" << endl;
     }
 }
 
