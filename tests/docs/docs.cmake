@@ -7,6 +7,8 @@ if(SPAR_AWK)
   # every public name has words; the book has no page with a link that leads nowhere
   add_test(NAME docs_names COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/names" "${PROJECT_BINARY_DIR}/tests/docs/names")
   spar_set_test(docs_names docs 30)
+  add_test(NAME docs_sentences COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/sentences")
+  spar_set_test(docs_sentences docs 30)
   find_program(SPAR_DOXYGEN doxygen)
   mark_as_advanced(SPAR_DOXYGEN)
   if(SPAR_DOXYGEN)
