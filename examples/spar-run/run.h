@@ -7,6 +7,10 @@
 #include <spar/spar_all.h>
 #include <stdio.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { RUN_STATIC = 1, RUN_MODES = 2, RUN_CAMPBELL = 4, RUN_STEPS = 8 };
 
 typedef struct run {
@@ -66,5 +70,9 @@ int run_fail(int status, const char *format, ...)
             return status_;                                                                                            \
         }                                                                                                              \
     } while (0)
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

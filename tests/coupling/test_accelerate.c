@@ -679,9 +679,9 @@ static int lagging_step(spari_accelerator *a, lagging *l, double *x, double *g, 
 
 /* (T31): rho is found to rounding, whatever it is (three pairs of columns determine it, and the fluid keeps to it); the
    residual tells of it to the digits that a difference of answers near 1e-8 of them has. Loads of the settled fluid
-   change by a tenth from step to step; steps end at 1e-8 of them. From the fourth on J is known in all directions, and
-   what is left falls by rho at least in an evaluation, as it does of itself: three evaluations beside those for what a
-   step begins with. */
+   change by a tenth from step to step; steps end at 1e-7 of them (nearer to 1e-8 rounding, which depends on the BLAS,
+   may hide what is left). From the fourth on J is known in all directions, and what is left falls by rho at least in an
+   evaluation, as it does of itself: three evaluations beside those for what a step begins with. */
 static void memory_is_found(void **state) {
     (void)state;
     static const double parts[] = {0.1, 0.3, 0.5, 0.7};
@@ -689,10 +689,10 @@ static void memory_is_found(void **state) {
         lagging l = lagging_by(parts[p]);
         spari_accelerator *a = create_six();
         double x[SIX] = {0}, g[SIX] = {0}, rho = 0;
-        int most = (int)ceil(log(1e-8) / log(parts[p])) + 3, counted = 0;
+        int most = (int)ceil(log(1e-7) / log(parts[p])) + 3, counted = 0;
         for (int step = 0; step < 8; step++) {
             l.f[step % SIX] *= 1.1;
-            int evaluations = lagging_step(a, &l, x, g, 1e-8, MOST, &rho, &counted);
+            int evaluations = lagging_step(a, &l, x, g, 1e-7, MOST, &rho, &counted);
             assert_true(evaluations < MOST && (step < 3 || evaluations <= most));
             assert_true(fabs(rho - parts[p]) < 1e-6);
             spari_accelerator_accept(a, g);

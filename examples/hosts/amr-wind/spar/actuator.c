@@ -54,7 +54,7 @@ int actuator_get_size(const char *data, double *diameter, double *hub_height, ch
 
 /* Loads of the blades in their latest motion, in the flow that was sampled. */
 static int blow(actuator_machine *a) {
-    turbine *t = &a->turbine;
+    turbine *t = &a->model;
     const int64_t n = TURBINE_BLADES * t->sections;
     const double cone = cos(t->rotor.precone);
     double hub[3], axis[3];
@@ -74,7 +74,7 @@ static int blow(actuator_machine *a) {
 
 /* Forces half-way through the step under way. */
 static int take_half(actuator_machine *a) {
-    const turbine *t = &a->turbine;
+    const turbine *t = &a->model;
     for (int b = 0; b < TURBINE_BLADES; b++) { /* spar_aero wants its fluids packed: back at once */
         TRY(spar_fluid_set_layout(t->air[b], SPAR_NODES_FORCE, 1, a->points));
         int status = spar_fluid_pull_forces_f32(t->air[b], 0.5, a->half + 1 + b * t->sections);
@@ -104,7 +104,7 @@ static void uniform(const double x[3], double t, void *context, double wind[3]) 
 
 /* Blades at a given speed: bent and set turning. */
 static int start_blades(actuator_machine *a) {
-    turbine *t = &a->turbine;
+    turbine *t = &a->model;
     double omega[3];
     for (int i = 0; i < 3; i++) {
         omega[i] = a->speed * t->rotor.axis[i];
@@ -125,14 +125,13 @@ static int start_blades(actuator_machine *a) {
 }
 
 static int allocate(actuator_machine *a) {
-    const size_t n = (size_t)a->turbine.sections, all = (size_t)TURBINE_BLADES * n;
-    a->points = 1 + TURBINE_BLADES * (int)a->turbine.sections;
+    const size_t n = (size_t)a->model.sections, all = (size_t)TURBINE_BLADES * n;
+    a->points = 1 + TURBINE_BLADES * (int)a->model.sections;
     a->force = calloc(3 * all, sizeof *a->force);
     a->half = calloc(3 * (size_t)a->points, sizeof *a->half);
     a->spread = calloc(3 * (size_t)a->points, sizeof *a->spread);
     a->axes = calloc(9 * n, sizeof *a->axes);
-    const int64_t nodes =
-        a->turbine.blade_nodes > a->turbine.tower_nodes ? a->turbine.blade_nodes : a->turbine.tower_nodes;
+    const int64_t nodes = a->model.blade_nodes > a->model.tower_nodes ? a->model.blade_nodes : a->model.tower_nodes;
     a->motion = calloc(7 * (size_t)nodes, sizeof *a->motion);
     a->reference = calloc(3 * (size_t)nodes, sizeof *a->reference);
     const int good = a->force && a->half && a->spread && a->axes && a->motion && a->reference;
@@ -142,7 +141,7 @@ static int allocate(actuator_machine *a) {
 /* Sections that nothing is pushed to, at the places of a blade's own, whose numbers lie in AMR-Wind's arrays: single
    precision, one component behind the other, the hub's before the blades'. */
 static int make_points(actuator_machine *a, int b) {
-    const turbine *t = &a->turbine;
+    const turbine *t = &a->model;
     const int64_t n = t->sections;
     double *work = calloc(11 * (size_t)n, sizeof *work), *eta = work;
     if (!work) {
@@ -184,7 +183,7 @@ static int describe(actuator_machine *a) {
     /* residual_is_small decides on them */
     TRY(spar_session_set_option(a->session, "coupling.unconverged", "accept"));
     TRY(spar_session_set_option(a->session, "coupling.patience", "1000000"));
-    TRY(turbine_create(&a->turbine, a->session, &how));
+    TRY(turbine_create(&a->model, a->session, &how));
     TRY(allocate(a));
     for (int b = 0; b < TURBINE_BLADES; b++) {
         TRY(make_points(a, b));
@@ -215,12 +214,12 @@ int actuator_create(const actuator_options *options, actuator_machine **out) {
     }
     TRY(describe(a));
     if (options->whole) {
-        TRY(turbine_start(&a->turbine, a->speed, uniform, a, 4));
+        TRY(turbine_start(&a->model, a->speed, uniform, a, 4));
         turbine_control_begin(&a->control, turbine_gear * a->speed, options->pitch);
     } else {
         TRY(start_blades(a));
     }
-    return spar_aero_set_effects(a->turbine.aero, SPAR_AERO_DRAG | SPAR_AERO_MOMENT); /* the flow is the solver's now */
+    return spar_aero_set_effects(a->model.aero, SPAR_AERO_DRAG | SPAR_AERO_MOMENT); /* the flow is the solver's now */
 }
 
 void actuator_destroy(actuator_machine **out) {
@@ -228,7 +227,7 @@ void actuator_destroy(actuator_machine **out) {
     if (!a) {
         return;
     }
-    turbine_free(&a->turbine);
+    turbine_free(&a->model);
     spar_session_destroy(&a->session);
     if (a->figures) {
         fclose(a->figures);
@@ -260,7 +259,7 @@ int actuator_start(actuator_machine *a, const float *velocity) {
 
 /* What is held or driven during the step. */
 static int steer(actuator_machine *a, double dt) {
-    turbine *t = &a->turbine;
+    turbine *t = &a->model;
     double angle, speed, twist;
     if (a->options.whole) {
         TRY(turbine_get_shaft(t, &angle, &speed, &twist));
@@ -390,7 +389,7 @@ static void turn_all(const actuator_machine *a, float *v) {
 }
 
 int actuator_rotor_pose(actuator_machine *a, double place[3], double turn[4]) {
-    const turbine *t = &a->turbine;
+    const turbine *t = &a->model;
     double axis[3];
     if (t->hub) {
         return turbine_get_hub(t, place, axis, turn);
@@ -414,7 +413,7 @@ static void turn_axes(const actuator_machine *a, double axes[9]) {
 }
 
 int actuator_get_hub(actuator_machine *a, double x[3], double omega[3], double axes[9]) {
-    const turbine *t = &a->turbine;
+    const turbine *t = &a->model;
     double place[3], turn[4], q[4], v[6];
     TRY(actuator_rotor_pose(a, place, turn));
     for (int i = 0; i < 3; i++) {
@@ -439,14 +438,14 @@ int actuator_get_hub(actuator_machine *a, double x[3], double omega[3], double a
 
 int actuator_get_rotor(actuator_machine *a, double *thrust, double *torque, double *speed, double force[3]) {
     double angle, twist;
-    TRY(spar_aero_get_rotor(a->turbine.aero, thrust, torque, NULL));
+    TRY(spar_aero_get_rotor(a->model.aero, thrust, torque, NULL));
     if (speed) {
         *speed = a->speed;
-        TRY(a->options.whole ? turbine_get_shaft(&a->turbine, &angle, speed, &twist) : SPAR_OK);
+        TRY(a->options.whole ? turbine_get_shaft(&a->model, &angle, speed, &twist) : SPAR_OK);
     }
     for (int k = 0; force && k < 3; k++) {
         force[k] = 0;
-        for (int64_t i = 0; i < TURBINE_BLADES * a->turbine.sections; i++) {
+        for (int64_t i = 0; i < TURBINE_BLADES * a->model.sections; i++) {
             force[k] += a->force[3 * i + k];
         }
     }
@@ -469,8 +468,8 @@ static void turn_to_chord(const double *axes, double twist, float *out) {
 static int get_hub_point(actuator_machine *a, float *place, float *speed, float *orientation, float *chord) {
     double x[3], axes[9], v[6] = {0};
     TRY(actuator_get_hub(a, x, NULL, axes));
-    if (a->turbine.hub) {
-        TRY(spar_member_get_motion(a->turbine.hub, NULL, v, NULL));
+    if (a->model.hub) {
+        TRY(spar_member_get_motion(a->model.hub, NULL, v, NULL));
         turn_out(a, v);
     }
     for (int k = 0; k < 3; k++) {
@@ -492,7 +491,7 @@ static int get_hub_point(actuator_machine *a, float *place, float *speed, float 
 
 /* Of blade b, from point `first` on. */
 static int get_axes(actuator_machine *a, int b, int first, float *orientation) {
-    const turbine *t = &a->turbine;
+    const turbine *t = &a->model;
     TRY(spar_fluid_pull_matrices(a->point[b], 1, SPAR_MATRIX_LOCAL_TO_GLOBAL, a->axes));
     for (int64_t i = 0; i < t->sections; i++) {
         turn_axes(a, a->axes + 9 * i);
@@ -502,10 +501,10 @@ static int get_axes(actuator_machine *a, int b, int first, float *orientation) {
 }
 
 static int get_blade_points(actuator_machine *a, int b, float *place, float *speed, float *orientation, float *chord) {
-    const int n = (int)a->turbine.sections, first = 1 + b * n;
+    const int n = (int)a->model.sections, first = 1 + b * n;
     TRY(spar_fluid_pull_motion_f32(a->point[b], 1, place ? place + first : NULL, speed ? speed + first : NULL));
     for (int i = 0; chord && i < n; i++) {
-        chord[first + i] = (float)a->turbine.data.chord[i];
+        chord[first + i] = (float)a->model.data.chord[i];
     }
     return orientation ? get_axes(a, b, first, orientation) : SPAR_OK;
 }
@@ -639,6 +638,6 @@ const char *actuator_message(const actuator_machine *a) {
     if (!a) {
         return "no memory";
     }
-    const char *text = a->message[0] ? a->message : turbine_message(&a->turbine);
+    const char *text = a->message[0] ? a->message : turbine_message(&a->model);
     return text[0] ? text : spar_session_message(a->session);
 }

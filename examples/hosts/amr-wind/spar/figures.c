@@ -45,7 +45,7 @@ static void turn_back(const double q[4], const double v[3], double out[3]) {
 }
 
 static int get_tip(actuator_machine *a, int b, double out[2]) {
-    turbine *t = &a->turbine;
+    turbine *t = &a->model;
     const int64_t tip = t->blade_nodes - 1;
     double hub[3], turn[4], x0[3], root[4], here[3], then[3];
     TRY(actuator_rotor_pose(a, hub, turn));
@@ -67,7 +67,7 @@ static int get_tip(actuator_machine *a, int b, double out[2]) {
 }
 
 static int get_root(actuator_machine *a, int b, double out[2]) {
-    turbine *t = &a->turbine;
+    turbine *t = &a->model;
     const double eta = 0;
     double force[6], q[4], axes[9], moment[3], x[3], frame[4], root[4];
     TRY(spar_beam_evaluate(t->blade[b], 1, &eta, NULL, force, NULL, q));
@@ -85,7 +85,7 @@ static int get_root(actuator_machine *a, int b, double out[2]) {
 }
 
 static int get_tower(actuator_machine *a, double top[2], double base[2]) {
-    turbine *t = &a->turbine;
+    turbine *t = &a->model;
     double support[6];
     top[0] = top[1] = base[0] = base[1] = NAN;
     if (!t->tower) {
@@ -106,7 +106,7 @@ static int get_figures(actuator_machine *a, double row[FIGURES]) {
     row[GENERATOR_POWER] = NAN;
     row[PITCH] = a->options.pitch * 180 / pi;
     if (a->options.whole) {
-        TRY(turbine_get_shaft(&a->turbine, &angle, &speed, &twist));
+        TRY(turbine_get_shaft(&a->model, &angle, &speed, &twist));
         row[GENERATOR_POWER] = turbine_efficiency * turbine_gear * a->control.torque * speed;
         row[PITCH] = a->control.pitch * 180 / pi;
     }

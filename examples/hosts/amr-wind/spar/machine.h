@@ -7,12 +7,16 @@
 #include "turbine_model.h"
 #include <stdio.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* The model's wind blows along x. The host's frame is turned by `turned` about z: what comes in is turned back, what
    goes out is turned. */
 struct actuator_machine {
     actuator_options options;
     spar_session *session;
-    turbine turbine;
+    turbine model;
     turbine_control control;
     double angle, speed; /* of the rotor where they are given */
     double turned, c, s; /* rad; its cosine and sine */
@@ -41,5 +45,9 @@ int actuator_say(actuator_machine *a, int status, const char *format, ...);
 int actuator_rotor_pose(actuator_machine *a, double place[3], double turn[4]);
 void actuator_product(const double p[4], const double q[4], double out[4]);
 void actuator_matrix(const double q[4], double axes[9]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

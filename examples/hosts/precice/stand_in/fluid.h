@@ -5,6 +5,10 @@
 #ifndef FLUID_H
 #define FLUID_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { FLUID_MESHES = 4, FLUID_WINDOWS = 4000 };
 
 typedef struct fluid_mesh {
@@ -35,5 +39,9 @@ int fluid_iterations(int window);
 /* Displacement of vertex i of this rank in the last window. */
 const double *fluid_vertex(int mesh, int i);
 int fluid_vertices(int mesh);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
