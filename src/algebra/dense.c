@@ -127,7 +127,7 @@ int spari_least_squares(int m, int n, double *A, int columns, double *b) {
 }
 
 int spari_independent_rows(int h, int n, double *G, double least, int *order, int want, double *Q) {
-    int most = n < h ? n : h, taken = want < most ? want : most, size = 32 * (h + n), rank = 0, bad;
+    int most = n < h ? n : h, reflectors = want < most ? want : most, size = 32 * (h + n), rank = 0, bad;
     double *tau = spari_zalloc(most + size, sizeof *tau);
     if (!tau) {
         return -1;
@@ -144,9 +144,9 @@ int spari_independent_rows(int h, int n, double *G, double least, int *order, in
     for (int i = 0; i < h; i++) {
         order[i]--;
     }
-    memcpy(Q, G, (size_t)taken * (size_t)n * sizeof *Q);
+    memcpy(Q, G, (size_t)reflectors * (size_t)n * sizeof *Q);
     if (want > 0) {
-        SPARI_BLAS(dorgqr_(&n, &want, &taken, Q, &n, tau, tau + most, &size, &bad));
+        SPARI_BLAS(dorgqr_(&n, &want, &reflectors, Q, &n, tau, tau + most, &size, &bad));
     }
     free(tau);
     return rank;

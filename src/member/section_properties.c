@@ -149,7 +149,7 @@ int spar_section_build(int64_t n, const double *property, double *stiffness, dou
 
 /* ---- describe ---- */
 
-/* A section taken apart. */
+/* A section by its parts. */
 typedef struct described {
     double p[SPAR_SECTION_COUNT];
     int findings;

@@ -22,7 +22,7 @@ static void circle(double d, double wall, double poisson, geometry *s) {
     s->k_y = s->k_z = 6 * (1 + poisson) * squared / ((7 + 6 * poisson) * squared + (20 + 12 * poisson) * m);
 }
 
-/* Saint-Venant's series, with sum 1/n^5 over odd n taken out: what is left converges like exp(-n pi a/b). */
+/* Saint-Venant's series, with sum 1/n^5 over odd n subtracted: the rest converges like exp(-n pi a/b). */
 static double torsion_of_rectangle(double width, double height) {
     double a = fmax(width, height), b = fmin(width, height), sum = 31.0 / 32 * 1.0369277551433699263;
     for (int n = 1; n <= 13; n += 2) {

@@ -74,7 +74,7 @@ static void copy_saved(spar_session *to, const spar_session *from) {
 
 typedef struct snapshot {
     spar_session session;  /* the saved fields of it */
-    double *pack, *motion; /* private data of the session that are set aside */
+    double *pack, *motion; /* private data of the session that are saved meanwhile */
     int64_t pack_count, *first;
     spari_coupling *coupling;
     spar_member *members;                /* [member_count] old members; */
