@@ -675,12 +675,12 @@ static void bent_cantilever_keeps_its_mesh(void **state) {
         least = least_corner(&f);
     }
     printf("warned with the tip %.0f mm out, Jacobian %.3f\n", 1000 * tip - 1, least);
-    assert_true(least > 0.15 && least < 0.22);
+    assert_true(fabs(least - 0.2) < 0.015); /* a step of the tip changes it by 0.009 */
     for (; bend(&f, tip) == SPAR_OK; tip += 0.001) {
         least = least_corner(&f);
     }
     printf("refused with the tip %.0f mm out, the last accepted Jacobian %.3f\n", 1000 * tip, least);
-    assert_true(least > -0.03 && least < 0.03);
+    assert_true(fabs(least) < 0.015);
     assert_int_equal(f.warnings, 1);
     REFUSED(f.session, SPAR_ERR_NUMERIC, "folds", bend(&f, tip));
     REFUSED(f.session, SPAR_ERR_NUMERIC, "0.02 to 0.2 m", bend(&f, 0.18));
