@@ -73,24 +73,30 @@ static int read_rotation(run *r) {
     return SPAR_OK;
 }
 
-/* The words of `do` as bits. */
-static int read_do(run *r) {
+int run_read_tasks(const char *where, const char *list, int *tasks) {
     static const char *const names[] = {"static", "modes", "campbell", "run"};
-    const char *text;
     char copy[256], *rest = NULL;
-    int tasks = 0;
-    RUN_TRY(spar_case_get_text(r->scene, "do", "static modes", &text));
-    (void)snprintf(copy, sizeof copy, "%s", text);
-    for (char *word = strtok_r(copy, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
+    (void)snprintf(copy, sizeof copy, "%s", list);
+    *tasks = 0;
+    for (char *word = strtok_r(copy, ", ", &rest); word; word = strtok_r(NULL, ", ", &rest)) {
         int k = 0;
         while (k < 4 && strcmp(word, names[k]) != 0) {
             k++;
         }
         if (k == 4) {
-            return run_fail(SPAR_ERR_ARGUMENT, "[host run]: do '%.60s'; there are static, modes, campbell, run", word);
+            return run_fail(SPAR_ERR_ARGUMENT, "%s: no task '%.60s'; there are static, modes, campbell, run", where,
+                            word);
         }
-        tasks |= 1 << k;
+        *tasks |= 1 << k;
     }
+    return *tasks ? SPAR_OK : run_fail(SPAR_ERR_ARGUMENT, "%s needs a task: static, modes, campbell, run", where);
+}
+
+static int read_do(run *r) {
+    const char *text;
+    int tasks;
+    RUN_TRY(spar_case_get_text(r->scene, "do", "static modes", &text));
+    RUN_TRY(run_read_tasks("[host run]: do", text, &tasks));
     r->tasks = r->tasks ? r->tasks : tasks;
     return SPAR_OK;
 }

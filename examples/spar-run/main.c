@@ -35,24 +35,6 @@ static int refuse(const char *format, const char *what) {
     return USAGE;
 }
 
-static int read_tasks(const char *list, int *tasks) {
-    static const char *const names[] = {"static", "modes", "campbell", "run"};
-    char copy[LONGEST];
-    (void)snprintf(copy, sizeof copy, "%s", list);
-    *tasks = 0;
-    for (char *rest = NULL, *word = strtok_r(copy, ", ", &rest); word; word = strtok_r(NULL, ", ", &rest)) {
-        int k = 0;
-        while (k < 4 && strcmp(word, names[k]) != 0) {
-            k++;
-        }
-        if (k == 4) {
-            return refuse("no task '%s'; there are static, modes, campbell, run", word);
-        }
-        *tasks |= 1 << k;
-    }
-    return *tasks ? 0 : refuse("%s needs a task: static, modes, campbell, run", "--do");
-}
-
 /* 0: go on; -1: the answer was given; otherwise the exit status. */
 static int read_arguments(int count, char **word, arguments *a) {
     for (int i = 1; i < count; i++) {
@@ -71,9 +53,8 @@ static int read_arguments(int count, char **word, arguments *a) {
             run_explain(stdout);
             return -1;
         } else if (strcmp(word[i], "--do") == 0) {
-            int status = read_tasks(word[++i], &a->tasks);
-            if (status) {
-                return status;
+            if (run_read_tasks("--do", word[++i], &a->tasks) != SPAR_OK) {
+                return refuse("%s", run_message(&(const run){0}));
             }
         } else if (strcmp(word[i], "--out") == 0) {
             a->out = word[++i];

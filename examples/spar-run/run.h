@@ -28,6 +28,8 @@ typedef struct run {
     double dt, duration;
 } run;
 
+/* The tasks of a list of words as RUN_*. where: of the list, for the message. */
+int run_read_tasks(const char *where, const char *list, int *tasks);
 /* Reads the keys of [host run]. tasks: from the command line, 0: those of the file. Returns a spar status; a failure's
    message is in run_message. */
 int run_read_keys(run *r, int tasks);
