@@ -117,7 +117,7 @@ add_test(NAME example_rotor_gust
           --no-plots --quiet --out ${PROJECT_BINARY_DIR}/tests/rotor_gust)
 spar_set_test(example_rotor_gust stability 120 ${spar_example_environment})
 
-# The figures that docs/rotor.md quotes (unoptimised and sanitized it takes minutes).
+# The figures that docs/examples/rotor.md quotes (unoptimised and sanitized it takes minutes).
 if(CMAKE_BUILD_TYPE STREQUAL "Release" AND SPAR_AWK)
   add_test(NAME docs_rotor COMMAND sh "${PROJECT_SOURCE_DIR}/tests/docs/rotor" $<TARGET_FILE:examples_rotor>
     "${PROJECT_BINARY_DIR}/tests/docs-rotor")

@@ -167,11 +167,11 @@ SPAR_API int spar_aero_set_tower(spar_aero *aero, const double base[3], const do
    shear and tower once these are set.
      effects: in, SPAR_AERO_* combined
    Inflow, stall and unsteady have memory, integrated exactly for input that is linear in a step ((T27) to (T30) of
-   docs/theory.md). They begin with the steady state, and have it in static and initial solutions. Their memory is kept
-   as states of the fluids (spar_fluid_set_states), so iterations, rejected steps, trials, save and load treat it
-   rightly. Momentum theory takes the static polar's lift. Stall acts on lift; attached flow is the steepest line from
-   the angle without lift; its time constant is 4 c / V. Unsteady takes the flow at three quarters of the chord and
-   pushes moments; it uses accelerations, so begin with spar_session_solve_initial.
+   docs/explanation/theory.md). They begin with the steady state, and have it in static and initial solutions. Their
+   memory is kept as states of the fluids (spar_fluid_set_states), so iterations, rejected steps, trials, save and
+   load treat it rightly. Momentum theory takes the static polar's lift. Stall acts on lift; attached flow is the
+   steepest line from the angle without lift; its time constant is 4 c / V. Unsteady takes the flow at three quarters
+   of the chord and pushes moments; it uses accelerations, so begin with spar_session_solve_initial.
    SPAR_ERR_STATE: one of these three is switched on during a step, or the fluids have states of the host. */
 SPAR_API int spar_aero_set_effects(spar_aero *aero, int effects);
 /* Pulls the motion, computes the loads in the wind, and pushes them.

@@ -15,8 +15,8 @@ extern "C" {
 /* Estimates the present error of a member's motion, as the root of the mean square over its nodes. In the mean over
    a run the step's estimate is right to a factor of 3. The nodes' estimate is right to a factor of 4 if the run
    forgets its past within some periods; a single one may be farther off. Without damping, a frequency that is
-   slightly wrong shifts the phase more and more; only trials show this (spar_trial_advise). docs/advice.md has the
-   measurements. Local, the same on all ranks; the estimate of the nodes solves up to five systems.
+   slightly wrong shifts the phase more and more; only trials show this (spar_trial_advise). See
+   docs/explanation/advice.md. Local, the same on all ranks; the estimate of the nodes solves up to five systems.
      step: out, m, error of the last step, or of the step in progress once it is solved, NULL: not wanted
      nodes: out, m, displacement towards the shape of a beam with four more nodes per element, between steps; 0: the
            member has no shape; -1: not known (linear or modal, 24 nodes per element, a free root before the first step,
@@ -287,7 +287,7 @@ SPAR_API int spar_trial_get_motion(const spar_trial *trial, int64_t *modes, doub
    acceleration; it may make them from the positions at both ends of the step. A fluid with memory is called
    2 modes (22 + memory) times: the motion is a pulse of a few steps, and the loads are recorded until so many steps
    after it. Their later decay is that of the linear system that they show. Joints that constrain or drive do not move;
-   neither does what the callback before a step drives or loads (docs/stability.md).
+   neither does what the callback before a step drives or loads (docs/explanation/stability.md).
 
    The structure is exact in time: steps show these growth rates to the order of their integrator. Of the trial's steps
    only dt is used. With memory, eigenvalues are found up to |lambda| dt = 1. A rotor's eigenvalues are those in a fluid

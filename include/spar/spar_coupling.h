@@ -31,7 +31,7 @@ SPAR_API int spar_session_get_integrator(const spar_session *session, double *rh
    scale: the member's length for displacements, 1 for rotations. Static solutions always use these tolerances.
    Steps use them alone if the option newton.stop is strict. By default (balanced) the iteration of a step may stop
    earlier, when its error is negligible compared with the time-step error and the coupling tolerance
-   (docs/accuracy.md).
+   (docs/explanation/accuracy.md).
      atol: in, >= 0; default 1e-15
      rtol: in, >= 0; default 1e-12
      max_iterations: in, >= 1; after that many SPAR_ERR_NUMERIC; default 50 */
@@ -64,9 +64,9 @@ SPAR_API int spar_session_get_relaxation(const spar_session *session, double *om
      value: in, a number or a word
    newton.stop            balanced (default) | strict: where Newton's iteration of a step stops. Strict: at the
                           tolerances of spar_session_set_newton; choose it for bitwise comparison of runs. Balanced:
-                          when its error is a thousandth of the time-step error, (E4) of docs/theory.md, and of the
-                          coupling tolerance, between rtol and 1e-7 of the increments. If the time-step error is
-                          unknown, balanced is strict
+                          when its error is a thousandth of the time-step error, (E4) of docs/explanation/theory.md,
+                          and of the coupling tolerance, between rtol and 1e-7 of the increments. If the time-step
+                          error is unknown, balanced is strict
    coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations. Choose accept if the
                           host cannot repeat a step, and look at SPAR_REPORT_UNCONVERGED
    coupling.unstable      error (default) | accept: what spar_step_check does if the error of the predicted loads has
@@ -250,7 +250,7 @@ SPAR_API int spar_step_adaptive(spar_session *session, double *dt, spar_before_s
 
 /* Reproducible sums: nodal loads have the same bits for any number of ranks, any distribution and order of the fluid
    nodes, and any vector width. Choose them to compare runs on different numbers of ranks. They must be on before forces
-   are pushed, for up to 2^28 force nodes of a member. docs/accuracy.md has the cost.
+   are pushed, for up to 2^28 force nodes of a member. docs/explanation/accuracy.md has the cost.
      on: in, 1 or 0 (default) */
 SPAR_API int spar_session_set_reproducible(spar_session *session, int on);
 /* on: out */

@@ -360,9 +360,9 @@ SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
            members, NULL: not wanted */
 SPAR_API int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
 /* Eigenvalues lambda of small motions x e^(lambda t) about the present state, at rest or in steady rotation. Damping,
-   Coriolis, gyroscopic and unsymmetric stiffness terms are included (docs/theory.md). lambda is growth rate, 1/s, plus
-   i times angular frequency, rad/s. A growth rate > 0 is an instability. Of conjugate pairs only the one with
-   frequency >= 0 counts. Fluid loads stay constant. With joints: of all connected members. Local.
+   Coriolis, gyroscopic and unsymmetric stiffness terms are included (docs/explanation/theory.md). lambda is growth
+   rate, 1/s, plus i times angular frequency, rad/s. A growth rate > 0 is an instability. Of conjugate pairs only the
+   one with frequency >= 0 counts. Fluid loads stay constant. With joints: of all connected members. Local.
      n: in, at most the number of free unknowns
      shift[2]: in, growth rate and angular frequency; the eigenvalues nearest to it are found; NULL: 0, the lowest
      eigenvalue[n][2]: out, growth rate and angular frequency, by distance from the shift

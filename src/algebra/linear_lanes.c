@@ -1,5 +1,5 @@
 /* Factors and back-substitution for one width of vectors (math/lanes.h). Columns lie one after the other, contiguous.
-   BLAS takes three to four times as many instructions for so few unknowns (docs/performance.md). */
+   BLAS takes three to four times as many instructions for so few unknowns (docs/evidence/performance.md). */
 #include "linear_kernels.h"
 
 #include "../base/status.h"

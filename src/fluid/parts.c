@@ -1,4 +1,4 @@
-/* Loads pushed several times in a step, each over a part of it: see docs/theory.md, (T13).
+/* Loads pushed several times in a step, each over a part of it: see docs/explanation/theory.md, (T13).
    The load of a part is its mean over the part. The structure needs the load at t^{n+1}; between t^n and t^{n+1} it
      interpolates linearly. The least-squares line through the parts has their mean m, so it conserves their impulse,
      and tends to e at the end of the step. The mean alone would lag by half a step.

@@ -1,6 +1,6 @@
 /* Known added mass: an estimate of the fluid's added mass, given by the host, which stabilises the coupling. The member
    has this mass in its equations of motion, and its loads are corrected by the same amount, so that the converged
-   result is unchanged. See docs/theory.md, "Known added mass".
+   result is unchanged. See docs/explanation/theory.md, "Known added mass".
 
    With A the added mass, rotated with the member at t^n, a step solves
      forces(q, v, a) + A a = y,     y = loads + A a of the last iterate,
@@ -56,7 +56,8 @@ double spari_added_times(const spar_member *m, spari_numbering from, spari_numbe
 void spari_added_tangent(const spar_member *m, int e, double cm, const double *tinv, double *S);
 
 /* Predicts y; w: the predictor's weights in a step dt. load.used += A (w[0] a^n + w[1] a^{n-1} + w[2] a^{n-2}), and
-   the shift is that of t^n. For a fluid that takes accelerations from velocities see (T19) of docs/theory.md. */
+   the shift is that of t^n. For a fluid that takes accelerations from velocities see (T19) of
+   docs/explanation/theory.md. */
 void spari_added_predict(spar_member *m, const double w[3], double dt);
 /* Resets the past after the motion was set: as if it had always had the present acceleration. */
 void spari_added_restart(spar_member *m);

@@ -1,6 +1,7 @@
 /* Identifies the fluid's added mass from coupling iterations, in the form that a host can give (added_mass.h). Each
    difference of two iterations of a step compares the change of the loads with the change of the accelerations. See
-   docs/theory.md, "Known added mass". Every rank that has the motion and the loads of a member finds the same mass. */
+   docs/explanation/theory.md, "Known added mass". Every rank that has the motion and the loads of a member finds the
+   same mass. */
 #ifndef SPARI_ADDED_MASS_FIT_H
 #define SPARI_ADDED_MASS_FIT_H
 

@@ -1,6 +1,6 @@
 /* The discretised member: spectral elements, quadrature points, section properties. A rigid body is one node with
    one point and no stiffness. This file computes forces and tangents; time integration is in time/. Formulation:
-   geometrically exact (Simo-Reissner) beam, docs/theory.md, "The beam".
+   geometrically exact (Simo-Reissner) beam, docs/explanation/theory.md, "The beam".
    Unknowns are at `unique` nodes, where element boundaries count once: unique = elements (P - 1) + 1, element e
      begins at e (P - 1). Fields within an element are Lagrange sums of nodal u and of nodal unit quaternions q as
      4-vectors, Q = sum phi_l q_l. The section rotates by R(Q/|Q|). Strains, virtual work and inertia all use this

@@ -1,5 +1,5 @@
 /* Accelerations for fluids in steps with several substeps, and after the first change of dt: the mean over the step,
-   extrapolated to its end with the mean before, (T15) of docs/theory.md.
+   extrapolated to its end with the mean before, (T15) of docs/explanation/theory.md.
    Loads are linear over a step. In substeps and stages of TR-BDF2, a mode that the step does not resolve then ends
      with an acceleration of the wrong sign, and an added mass that responds to it would amplify the mode. A member
      with an added mass in its equations has it in every stage and does not need this. A member that learns its added

@@ -1,5 +1,5 @@
 /* Computations at quadrature points for forces, tangent and energy of a body: interpolated fields, strains, section
-   forces, inertia. docs/theory.md, "The beam". */
+   forces, inertia. docs/explanation/theory.md, "The beam". */
 #ifndef SPARI_POINT_H
 #define SPARI_POINT_H
 

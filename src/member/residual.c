@@ -1,4 +1,4 @@
-/* Forces and energy of a body: sums over quadrature points. docs/theory.md, "The beam". */
+/* Forces and energy of a body: sums over quadrature points. docs/explanation/theory.md, "The beam". */
 #include "../base/thread_pool.h"
 #include "../math/basis.h"
 #include "point.h"

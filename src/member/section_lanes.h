@@ -1,6 +1,6 @@
 /* Computations at W quadrature points at once, one per lane. Included once per width with the macros of
    math/width.h; with W = 1 it is plain C for one point. No include guard: this is a body, not an interface.
-   docs/theory.md, "The beam".
+   docs/explanation/theory.md, "The beam".
    Lanes are independent. Most of the work uses fused multiply-adds if the processor can: results agree to rounding
      at every width. */
 #include "../math/rotation_lanes.h"

@@ -42,7 +42,7 @@ static void rectangle(double width, double height, double poisson, geometry *s) 
 /* With psi the function that is 1 at the cavity, 0 outside and harmonic between, and S the flux of its gradient, the
    torsion constant is 4 (A + int psi)^2 / S plus that of the wall cut open. Walls have their closed forms between the
    corners. Flux of a corner: conformal map (Cockcroft 1928). Its other two integrals: limits for one thin wall, and a
-   fit for equal walls; all within 0.5 % of finite elements (docs/sections.md). */
+   fit for equal walls; all within 0.5 % of finite elements (docs/reference/sections.md). */
 static double torsion_of_box(double w, double h, double t_y, double t_z) {
     double wi = w - 2 * t_y, hi = h - 2 * t_z, both = t_y * t_z, squares = t_y * t_y + t_z * t_z;
     double corner = 2 / PI * (log(squares / (4 * both)) + t_y / t_z * atan(t_z / t_y) + t_z / t_y * atan(t_y / t_z));
@@ -54,7 +54,8 @@ static double torsion_of_box(double w, double h, double t_y, double t_z) {
 }
 
 /* Shear factor along z by the energy of shear stresses in equilibrium with bending: along z in the webs and in the
-   corners above them, along y in the flanges (docs/sections.md). Thin walls: Cowper's with Poisson's ratio 0. */
+   corners above them, along y in the flanges (docs/reference/sections.md). Thin walls: Cowper's with Poisson's ratio
+   0. */
 static double shear_of_box(double w, double h, double t_y, double t_z) {
     double wi = w - 2 * t_y, e = 0.5 * h - t_z, half = 0.5 * h, a = w * h - 4 * wi * 0.5 * e;
     double i_y = (w * h * h * h - 8 * wi * e * e * e) / 12, first = 0.5 * w * t_z * (half + e);

@@ -1,4 +1,4 @@
-/* The exact tangent of a body: docs/theory.md, "The beam". */
+/* The exact tangent of a body: docs/explanation/theory.md, "The beam". */
 #include "tangent.h"
 
 #include "../math/basis.h"

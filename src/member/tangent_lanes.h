@@ -1,6 +1,6 @@
 /* Tangents of an element for one vector width: matrices at points, their sums over points, and the map to nodal
    unknowns. Included by element_lanes.c once per width, after forces_lanes.h. No include guard: this is a body, not
-   an interface. docs/theory.md, "The tangent of a point". */
+   an interface. docs/explanation/theory.md, "The tangent of a point". */
 
 /* ---- points: lanes are points ---- */
 

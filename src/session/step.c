@@ -81,7 +81,7 @@ static void predict_nodes_loads(void *context, int64_t from, int64_t to) {
 }
 
 /* Extrapolates the loads by the polynomial of `order` through t^n, t^{n-1}, t^{n-2}. Order 1 is (T11) of
-   docs/theory.md. */
+   docs/explanation/theory.md. */
 static void predict_loads(spar_member *m, int order, double dt, const double last[2]) {
     load_extrapolation t = {.m = m, .order = order};
     spari_predictor(order, dt, last, t.w);

@@ -1,5 +1,5 @@
 /* Step-size control: error of a step, estimated from the accelerations at its ends, and the dt that a tolerance
-   permits for the next step ((E1), (E2) of docs/theory.md). If it is off, nothing is stored or computed. */
+   permits for the next step ((E1), (E2) of docs/explanation/theory.md). If it is off, nothing is stored or computed. */
 #ifndef SPARI_STEP_CONTROL_H
 #define SPARI_STEP_CONTROL_H
 

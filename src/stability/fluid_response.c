@@ -78,8 +78,8 @@ static void add_cross(double f, const double a[3], const double b[3], double c[3
     }
 }
 
-/* Adds motion along a shape, (W1) and (W2) of docs/theory.md, in the axes of the frame at t. frame: its rotation; w:
-   its angular velocity; s: that of the member relative to it. */
+/* Adds motion along a shape, (W1) and (W2) of docs/explanation/theory.md, in the axes of the frame at t. frame: its
+   rotation; w: its angular velocity; s: that of the member relative to it. */
 static void add_motion(const double shape[6], response_law at, const double frame[4], const double w[3],
                        const double s[3], double q[7], double v[6], double a[6]) {
     double d[3][6] = {{0}}, once[3], turned[4], old[4], ws[3] = {w[0] - s[0], w[1] - s[1], w[2] - s[2]};

@@ -1,5 +1,5 @@
 /* Generalised-alpha on W nodes at once, one in each lane of a vector, for one vector width (math/lanes.h).
-   docs/theory.md, "Time".
+   docs/explanation/theory.md, "Time".
 
    Lanes are independent and nothing is fused, so the numbers of a node have the same bits at every width. */
 #include "node_kinematics_kernels.h"

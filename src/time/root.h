@@ -1,5 +1,5 @@
 /* The motion of the nodes relative to a driven root, in the axes of the root. In these axes a steady rotation is
-   rest, and stiff directions stay (docs/beam.md). */
+   rest, and stiff directions stay (docs/evidence/beam.md). */
 #ifndef SPARI_ROOT_H
 #define SPARI_ROOT_H
 

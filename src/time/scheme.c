@@ -131,8 +131,9 @@ spari_scheme spari_scheme_last(const spar_member *m, int damped, const spari_pat
     return pattern->even < SPARI_EVEN && !c.still ? spari_scheme_stage(&c, SPARI_BACKWARD) : c;
 }
 
-/* In free rotation at W, generalised-alpha amplifies unresolved parts from 1 - rho_inf = 1.5 W h on (docs/beam.md,
-   "Stiff members that turn"); with rho_inf = 1 those of omega h > 4 / (W h). TR-BDF2 does not. */
+/* In free rotation at W, generalised-alpha amplifies unresolved parts from 1 - rho_inf = 1.5 W h on
+   (docs/evidence/beam.md, "Stiff members that turn"); with rho_inf = 1 those of omega h > 4 / (W h). TR-BDF2 does
+   not. */
 static int exceeds_limit(double rotation_rate, const spari_scheme *c, const spar_session *session) {
     static const double least = 0.05;
     return 1.5 * rotation_rate * c->h > fmax(1 - session->integrator.rho_inf, least);

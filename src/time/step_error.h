@@ -1,4 +1,5 @@
-/* The local error of a time step, estimated from the change of acceleration over the step: (E1) of docs/theory.md. */
+/* The local error of a time step, estimated from the change of acceleration over the step: (E1) of
+   docs/explanation/theory.md. */
 #ifndef SPARI_STEP_ERROR_H
 #define SPARI_STEP_ERROR_H
 

@@ -1,5 +1,5 @@
 /* Error due to the nodes of a beam: solves its equations with more nodes from its present shape ((E3) of
-   docs/theory.md). */
+   docs/explanation/theory.md). */
 #include "../base/environment.h"
 #include "../base/session.h"
 #include "../comm/comm.h"

@@ -1101,7 +1101,7 @@ static void compare_ways(int turns, double dt, double apart[2]) {
 }
 
 /* A driven joint and a driven root are one thing to rounding where the root goes steadily along; where it turns they
-   are two discretisations of it, dt^2 apart (docs/theory.md): seen from the root, and in global axes. */
+   are two discretisations of it, dt^2 apart (docs/explanation/theory.md): seen from the root, and in global axes. */
 static void test_driven_root(void **state) {
     (void)state;
     double steady[2], coarse[2], fine[2];

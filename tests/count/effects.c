@@ -5,7 +5,7 @@
      effects bytes   "effect state bytes": memory that library and host hold once the steps are done
      effects words   on two ranks: "effect state up down", doubles that go from and to the members' owners per iteration
 
-   tests/count/run makes the table of docs/effects.md from the three, and fails where off costs anything. */
+   tests/count/run makes the table of docs/explanation/effects.md from the three, and fails where off costs anything. */
 #include <math.h>
 #include <spar/spar_aero.h>
 #include <stdio.h>

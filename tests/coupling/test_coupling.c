@@ -602,8 +602,8 @@ static void order_may_change(void **state) {
 /* ---- several fluid steps in one ---- */
 
 /* Parts of a step: 8 over 1/4, 4 over 1/4, 2 over 1/2 have the mean 4 and the line of least squares
-   4 - 7.5 (s - 1/2), which ends at 1/4 (docs/theory.md, (T13)). After no load at t = 0: 4 + (1/4 - 0) / 2; each pass
-   anew. */
+   4 - 7.5 (s - 1/2), which ends at 1/4 (docs/explanation/theory.md, (T13)). After no load at t = 0: 4 + (1/4 - 0) /
+   2; each pass anew. */
 static void pushes_over_parts(void **state) {
     (void)state;
     static const double theta[3] = {0.25, 0.5, 1}, r = 0;

@@ -1,6 +1,7 @@
 /* A guess of the fluid's added mass in the structure's equations (spar_member_set_added_mass): contraction and limits
    of stability in closed form, the converged answer as without it, energy, fidelities, joints, files. With m the mass,
-   m_a the fluid's and M the guess the map of a load y has the derivative (M - m_a) / (m + M): docs/theory.md. */
+   m_a the fluid's and M the guess the map of a load y has the derivative (M - m_a) / (m + M):
+   docs/explanation/theory.md. */
 #include "pistons.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* The fluid's added mass learned from iterations (spar_member_learn_added_mass), and loads of fluids that take
-   accelerations from velocities (spar_member_set_added_mass_response): docs/theory.md, (T19) to (T22). What is learned
-   of an exact fluid is its mass to rounding, with what its springs add over the step. */
+   accelerations from velocities (spar_member_set_added_mass_response): docs/explanation/theory.md, (T19) to (T22).
+   What is learned of an exact fluid is its mass to rounding, with what its springs add over the step. */
 #include "buoy.h"
 #include "pistons.h"
 

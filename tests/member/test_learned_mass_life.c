@@ -1,5 +1,6 @@
 /* The added mass learned from iterations (spar_member_learn_added_mass) through what happens to a run: steps given up,
-   trials, files, failures, substeps, joints, directions that move little. docs/theory.md, (T21) to (T23). */
+   trials, files, failures, substeps, joints, directions that move little. docs/explanation/theory.md, (T21) to
+   (T23). */
 #include "buoy.h"
 #include "trials.h"
 

@@ -1,7 +1,7 @@
-/* A farm of turbines: one session per turbine, each on a communicator of its own (docs/scaling.md). Each turbine of a
-   farm must have the bits of the same turbine alone in a session without MPI, with reproducible sums, on a communicator
-   of one rank and of several. With plain sums it must have the bits of the same run on the same communicator without
-   the other turbine. A failure in one turbine must leave the other turbine as it is. */
+/* A farm of turbines: one session per turbine, each on a communicator of its own (docs/evidence/scaling.md). Each
+   turbine of a farm must have the bits of the same turbine alone in a session without MPI, with reproducible sums, on
+   a communicator of one rank and of several. With plain sums it must have the bits of the same run on the same
+   communicator without the other turbine. A failure in one turbine must leave the other turbine as it is. */
 #include "scene.h"
 
 #include "ranks.h"

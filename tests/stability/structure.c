@@ -294,8 +294,8 @@ static void test_more_than_a_turn_a_step(void **state) {
 
 /* The arm of the spin-up case (tests/verification/spin_up.c), whose fastest modes turn a thousand times in a step: spun
    up to 6 rad/s in 5 s, then steady. Seen from its root nothing grows, rho_inf = 1 and a step of 0.02 included (in axes
-   that stand 1 - rho_inf > 0.18 would be needed: docs/beam.md). The tip's acceleration at the end is the centripetal
-   one of the stretched arm, and what bending the start has left rides on it. */
+   that stand 1 - rho_inf > 0.18 would be needed: docs/evidence/beam.md). The tip's acceleration at the end is the
+   centripetal one of the stretched arm, and what bending the start has left rides on it. */
 static void test_stiff_arm_that_turns(void **state) {
     (void)state;
     const struct {

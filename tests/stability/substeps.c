@@ -1,7 +1,7 @@
 /* Several substeps in a step and a heavy fluid. Loads are linear between the ends of a step; a mode that the step does
    not resolve ends such a ramp with an acceleration of the wrong sign (sin(theta)/theta, theta = omega dt, from pi on),
    and an added mass that answered to it made the iteration diverge from 4.6 times the mass on and fed the mode from
-   0.3 times on. Fluids see the mean over the step, carried on to its end (docs/theory.md, T15). */
+   0.3 times on. Fluids see the mean over the step, carried on to its end (docs/explanation/theory.md, T15). */
 #include "scene.h"
 
 #include "math/basis.h"

@@ -416,11 +416,11 @@ static void test_manoeuvre_is_of_order_2(void **state) {
 
 /* A rejected step has not been: the run goes on to the same bits. */
 /* One motion of a root, given as that of a driven root and by a joint that drives the end: 10 m of the box beam, from
-   rest without a jump of acceleration or jerk. (F2) of docs/theory.md says how far the tip of the one is from the
-   other's, seen from the root: (c - 1/12) h^2 of its acceleration there, c = 1/6 + 3/4 ((1 - rho)/(1 + rho))^2, and
-   what is of third order, 2 % of it with 800 steps and rho_inf 0. It takes that the root's motion counts at the
-   instants at which the scheme has all else, and that the nodes keep what its velocities have beyond its accelerations.
-   3 %. */
+   rest without a jump of acceleration or jerk. (F2) of docs/explanation/theory.md says how far the tip of the one is
+   from the other's, seen from the root: (c - 1/12) h^2 of its acceleration there, c = 1/6 + 3/4 ((1 - rho)/(1 +
+   rho))^2, and what is of third order, 2 % of it with 800 steps and rho_inf 0. It takes that the root's motion counts
+   at the instants at which the scheme has all else, and that the nodes keep what its velocities have beyond its
+   accelerations. 3 %. */
 typedef struct lead {
     int joint;
     double rho, turning;

@@ -77,9 +77,9 @@ static void add_step(const world *w, double q[WORLD_MEMBERS][7 * MOST], sums *e)
 
 /* Root of the mean square over 24 steps of the run, each at its dt and at twice that, is that of the same steps in 16
    parts, for every member within a factor of 3; measured 0.98 to 1.07. Of the stiff rod, which turns freely, 4;
-   measured 3.0 to 3.4: steps of another length begin with the velocities that belong to the places (docs/theory.md,
-   "Steps that change"), and those of generalised-alpha, which the estimate is made of, are off these by C h^2 times the
-   rate of the acceleration. */
+   measured 3.0 to 3.4: steps of another length begin with the velocities that belong to the places
+   (docs/explanation/theory.md, "Steps that change"), and those of generalised-alpha, which the estimate is made of,
+   are off these by C h^2 times the rate of the acceleration. */
 static void errors_of_steps_are_true(void **state) {
     (void)state;
     for (int k = 0; k < WORLD_COUNT; k++) {
@@ -166,7 +166,7 @@ static void errors_of_nodes_are_true(void **state) {
 
 /* What cannot be seen in a shape: the second mode of the undamped pile is off by 0.55 % of its frequency on 6 nodes
    (9.6142 Hz; 9.5615 Hz on 14), and what the waves left of it at the start is out of phase by 2 rad after the run. 0.06
-   of the error is said, as the header and docs/advice.md have it: were it more, they would be wrong. */
+   of the error is said, as the header and docs/explanation/advice.md have it: were it more, they would be wrong. */
 static void frequencies_are_not_seen(void **state) {
     (void)state;
     sums e = {{0}, {0}};

@@ -7,5 +7,5 @@ add_custom_target(verification-table
   COMMAND "${CMAKE_COMMAND}" --build "${PROJECT_BINARY_DIR}"
   COMMAND "${CMAKE_CTEST_COMMAND}" -L verification --output-on-failure
   COMMAND "${PROJECT_SOURCE_DIR}/tests/verification/table" --markdown "${PROJECT_BINARY_DIR}"
-          > "${PROJECT_SOURCE_DIR}/docs/verification.md"
+          > "${PROJECT_SOURCE_DIR}/docs/evidence/verification.md"
   WORKING_DIRECTORY "${PROJECT_BINARY_DIR}" VERBATIM USES_TERMINAL)

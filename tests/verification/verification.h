@@ -1,5 +1,6 @@
 /* A verification case: figures of the literature or of mathematics, with what spar gives beside them. Every figure goes
-   into a table that `ctest -L verification` prints and tests/verification/table turns into docs/verification.md. */
+   into a table that `ctest -L verification` prints and tests/verification/table turns into
+   docs/evidence/verification.md. */
 #ifndef VERIFICATION_H
 #define VERIFICATION_H
 
