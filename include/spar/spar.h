@@ -433,7 +433,7 @@ SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, int which, double theta, d
    them as before. After a failure the session is as it was. SPAR_ERR_IO: the file cannot be read, or is damaged;
    SPAR_ERR_ARGUMENT: it does not match the session. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
-/* path: in. Collective. */
+/* Reads a saved state into the session. path: in. Collective. */
 SPAR_API int spar_session_load(spar_session *session, const char *path);
 
 #ifdef __cplusplus
