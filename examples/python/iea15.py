@@ -1,15 +1,17 @@
 """The IEA 15-MW turbine from its windIO file: masses, frequencies, the steady curve, and a gust on the whole turbine.
-    iea15.py [FILE.yaml [OUT]]
+    iea15.py [FILE.yaml [OUT]] [--controller LIBRARY INPUT]
 FILE: default the one of the package windIO (pip install windio PyYAML matplotlib); a turbine of windIO 2, IEA-22 too
 OUT: writes OUT.csv, and OUT.png where matplotlib is
+--controller: a gust through rated wind twice, with spar's controller and with this library of Bladed's interface, for example
+    ROSCO with its input file for this turbine (pip install rosco). Nothing else is computed.
 """
+import argparse
 import importlib.util
 import os
-import sys
 
 import numpy
 import spar
-from spar import windio
+from spar import controller, windio
 
 # BeamDyn's blade file of the turbine has these coefficients, s; the windIO file has none
 DAMPING = numpy.array([0.00084171, 0.00299005, 0.00218775, 0.00084171, 0.00218775, 0.00299005])
@@ -64,6 +66,76 @@ def gust(machine, mean=9.0, rise=3.0, seconds=50.0, dt=0.05):
     return numpy.array(rows)
 
 
+# Quasi-steady air hardly damps the torsion of these blades (3.4 Hz): pitching in a gust excites it
+AIR = (spar.AERO_INDUCTION | spar.AERO_TIP_LOSS | spar.AERO_HUB_LOSS | spar.AERO_SWIRL | spar.AERO_DRAG | spar.AERO_MOMENT
+       | spar.AERO_UNSTEADY | spar.AERO_INFLOW)
+
+
+def controlled(machine, control, mean=10.0, rise=4.0, seconds=120.0, dt=0.05):
+    """The whole turbine under a controller; from 60 to 75 s a gust through rated wind comes and goes."""
+    start, rows = machine.steady(mean), []
+    with spar.Session() as session:
+        session.set_coupling(spar.COUPLING_IQN_ILS, 1.0, 1e-3, 30)
+        session.set_integrator(0.7, 1)
+        session.set_gravity([0, 0, -9.81])
+        rotor = machine.build(session, start['speed'], start['pitch'])
+        rotor.aero.set_effects(AIR)
+        rotor.start([mean, 0, 0])
+        pitch, torque, wind = start['pitch'], start['torque'], mean
+        for step in range(round(seconds / dt)):
+            t, before = (step + 1) * dt, pitch
+            pitch, torque = control.step(controller.measure(rotor, t - dt, dt, wind, torque, pitch))
+            wind = mean + (rise / 2 * (1 - numpy.cos(2 * numpy.pi * (t - 60) / 15)) if 60 < t < 75 else 0)
+            rotor.set_pitch(pitch, (pitch - before) / dt)
+            rotor.set_torque(torque)
+            session.step(dt, lambda *_, wind=wind: rotor.blow([wind, 0, 0]))
+            rows.append([t, wind, rotor.get_speed() * 30 / numpy.pi, numpy.degrees(pitch), rotor.get_speed() * torque / 1e6,
+                         rotor.aero.get_rotor()[0] / 1e6, rotor.tower.get_motion(v=None, a=None)[-1, 0]])
+    control.close()
+    return numpy.array(rows)
+
+
+def compare(machine, library, given, out):
+    """The gust with both controllers: a table, OUT.csv and OUT.png."""
+    runs = {"spar's": controlled(machine, controller.Regions(machine)),
+            os.path.basename(library): controlled(machine, controller.Library(library, given, (out or 'iea15') + '-controller'))}
+    print('gust from 10 to 14 m/s      before: rev/min, MW    highest rev/min     MW  degrees  least MN  at the end: rev/min, MW')
+    for name, rows in runs.items():
+        calm, after = rows[(rows[:, 0] > 50) & (rows[:, 0] < 60)], rows[rows[:, 0] > 60]
+        print('%-27s %14.2f %5.2f %18.2f %6.2f %8.2f %9.2f %20.2f %4.2f' % (
+            name, calm[:, 2].mean(), calm[:, 4].mean(), after[:, 2].max(), after[:, 4].max(), after[:, 3].max(), after[:, 5].min(),
+            rows[-100:, 2].mean(), rows[-100:, 4].mean()))
+    if out:
+        rows = list(runs.values())
+        names = ',speed_rpm,pitch_deg,power_MW,thrust_MN,tower_top_m'
+        numpy.savetxt(out + '.csv', numpy.hstack([rows[0], rows[1][:, 2:]]), delimiter=',', fmt='%.6g', comments='',
+                      header='t_s,wind_m_s' + names + names.replace(',', ',library_'))
+        plot_controlled(out + '.png', runs, machine.name)
+
+
+def plot_controlled(path, runs, name):
+    """Wind, speed, pitch, power, thrust and the tower's top, with each controller."""
+    try:
+        import matplotlib  # pylint: disable=import-outside-toplevel
+    except ImportError:
+        print('no matplotlib: no picture')
+        return
+    matplotlib.use('Agg')
+    from matplotlib import pyplot  # pylint: disable=import-outside-toplevel
+    figure, axes = pyplot.subplots(2, 3, figsize=(12, 6), constrained_layout=True)
+    figure.suptitle(name)
+    titles = ('wind, m/s', 'rotor speed, rev/min', 'pitch, degrees', 'power, MW', 'thrust, MN', "tower's top, downwind, m")
+    for k, (axis, title) in enumerate(zip(axes.ravel(), titles)):
+        for label, rows in runs.items():
+            late = rows[:, 0] > 40
+            axis.plot(rows[late, 0], rows[late, k + 1], label=label)
+        axis.set_title(title, fontsize=10)
+        axis.set_xlabel('t, s')
+        axis.grid(alpha=0.3)
+    axes[0, 1].legend()
+    figure.savefig(path, dpi=110)
+
+
 def picture(path, curve, motion, name):
     """Steady curve above, gust below."""
     try:
@@ -89,10 +161,18 @@ def picture(path, curve, motion, name):
 
 
 def main():
-    """All of it."""
-    machine = windio.read(sys.argv[1] if len(sys.argv) > 1 else packaged())
+    """All of it, or the controllers."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('file', nargs='?')
+    parser.add_argument('out', nargs='?')
+    parser.add_argument('--controller', nargs=2, metavar=('LIBRARY', 'INPUT'))
+    said = parser.parse_args()
+    machine = windio.read(said.file or packaged())
     machine.blade.elements, machine.blade.nodes, machine.tower.elements, machine.blade.damping = 2, 7, 1, DAMPING
     print(machine.name)
+    if said.controller:
+        compare(machine, *said.controller, said.out)
+        return
     print('masses, t:', ', '.join(f'{name} {mass / 1e3:.1f}' for name, mass in machine.masses().items()))
     whole, blade = frequencies(machine)
     print('blade, Hz:', ' '.join(f'{f:.3f}' for f in blade))
@@ -104,10 +184,10 @@ def main():
     motion = gust(machine)
     print(f'gust from {motion[0, 1]:.0f} to {motion[:, 1].max():.0f} m/s: speed up to {motion[:, 2].max():.2f} rev/min, '
           f"the tower's top from {motion[300:400, 5].mean():.2f} to {motion[:, 5].max():.2f} m")
-    if len(sys.argv) > 2:
-        numpy.savetxt(sys.argv[2] + '.csv', motion, delimiter=',', fmt='%.6g', comments='',
+    if said.out:
+        numpy.savetxt(said.out + '.csv', motion, delimiter=',', fmt='%.6g', comments='',
                       header='t_s,wind_m_s,speed_rpm,shaft_power_MW,thrust_MN,tower_top_m,root_1_moment_MNm')
-        picture(sys.argv[2] + '.png', curve, motion, machine.name)
+        picture(said.out + '.png', curve, motion, machine.name)
 
 
 if __name__ == '__main__':

@@ -509,6 +509,13 @@ class Rotor:
         _, n = self._place()
         return float(n @ (self.hub.get_motion(q=None, a=None)[0, 3:] - self.nacelle.get_motion(q=None, a=None)[0, 3:]))
 
+    def get_azimuth(self):
+        """rad, of the first blade, from where it stands at azimuth 0; within one revolution."""
+        if self.rigid:
+            return self.angle % (2 * numpy.pi)
+        q = self.hub.get_motion(v=None, a=None)[0, 3:]
+        return float(2 * numpy.arctan2(q[1:] @ self.machine.shaft(), q[0]) % (2 * numpy.pi))
+
     def turn(self, dt):
         """Rigid rotors: drives the roots through the next step, at the speed `speed`."""
         m, n = self.machine, self.machine.shaft()

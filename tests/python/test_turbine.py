@@ -10,7 +10,7 @@ import unittest
 
 import numpy
 import spar
-from spar import hawc2, openfast, results, turbine, windio
+from spar import controller, hawc2, openfast, results, turbine, windio
 
 RUN = sys.argv.pop() if len(sys.argv) > 2 else None
 WORK = sys.argv.pop() if len(sys.argv) > 1 else '.'
@@ -402,6 +402,10 @@ class Rotor(unittest.TestCase):
         self.assertAlmostEqual(late[1], 12, delta=0.02)
         self.assertGreater(late[2], calm[:, 2].max())
         self.assertGreater(motion[200:, 5].max(), calm[-50:, 5].max())
+        machine.rated_speed, machine.rated_power = 2.5 * 9 / machine.tip_radius(), 0.5 * machine.steady(9.0, pitch=0.0)['power']
+        run = iea15.controlled(machine, controller.Regions(machine, winds=(9.5, 11.0)), mean=9.0, rise=1.0, seconds=75.0, dt=0.1)
+        self.assertAlmostEqual(run[580:600, 2].mean(), machine.rated_speed * 30 / numpy.pi, delta=0.02 * machine.rated_speed * 30 / numpy.pi)
+        self.assertGreater(run[600:, 3].max(), run[580:600, 3].max())
 
     def test_elastodyn(self):
         """A turbine of ElastoDyn's file: geometry and masses by their keys; the blade bends as a beam, flap and edge."""
@@ -505,6 +509,79 @@ class Rotor(unittest.TestCase):
         self.assertGreater(abs(top[0]), 1e-3)
         self.assertAlmostEqual(history['tower_ux'][1][-1], top[0], delta=1e-3 * abs(top[0]))
         self.assertAlmostEqual(history['rotor_power'][1][-1], power, delta=1e-3 * abs(power))
+
+
+class Controller(unittest.TestCase):
+    def regions(self):
+        """Rated at half the power that 9 m/s could give."""
+        machine = windio.read(model(), stations=(numpy.arange(8) + 0.5) / 8)
+        machine.rated_speed, machine.rated_power = 2.5 * 9 / machine.tip_radius(), 0.5 * machine.steady(9.0, pitch=0.0)['power']
+        return machine, controller.Regions(machine, winds=(9.5, 11.0))
+
+    def measures(self, t, speed, pitch=0.0, dt=0.1):
+        return controller.Measures(t, dt, speed, speed, 0.0, pitch)
+
+    def test_torque(self):
+        """At a constant speed: k speed^2 below rated, with k of the steady point at 70 % of it; power / speed above."""
+        machine, control = self.regions()
+        low = machine.steady(0.7 * machine.rated_speed * machine.tip_radius() / machine.tip_speed_ratio)
+        self.assertAlmostEqual(low['speed'], 0.7 * machine.rated_speed, delta=1e-12)
+        for speed, torque in ((0.7 * machine.rated_speed, low['torque']), (0.35 * machine.rated_speed, low['torque'] / 4),
+                              (1.1 * machine.rated_speed, machine.rated_power / (1.1 * machine.rated_speed))):
+            control.integral = None
+            self.assertAlmostEqual(control.step(self.measures(0.0, speed))[1], torque, delta=1e-9 * torque)
+
+    def test_speed(self):
+        """A rotor of one degree of freedom, whose torque falls with the pitch as the turbine's at 9.5 m/s and stays with the speed:
+        after a rise of its torque by 10 % it returns to the rated speed, and the pitch to where the torque is the generator's."""
+        machine, control = self.regions()
+        inertia, point = controller._inertia(machine), machine.steady(9.5)
+        slope = control.proportional[0] / (2 * 0.8 * 0.2 * inertia)  # rad/(N m)
+        speed, pitch, dt, most = machine.rated_speed, point['pitch'], 0.02, 0.0
+        for step in range(6000):
+            air = 1.1 * machine.rated_power / machine.rated_speed - (pitch - point['pitch']) / slope
+            pitch, torque = control.step(self.measures(step * dt, speed, pitch, dt))
+            speed += dt * (air - torque) / inertia
+            most = max(most, speed)
+        self.assertGreater(most, 1.001 * machine.rated_speed)
+        self.assertAlmostEqual(speed, machine.rated_speed, delta=1e-3 * machine.rated_speed)
+        want = point['pitch'] + 0.1 * machine.rated_power / machine.rated_speed * slope
+        self.assertAlmostEqual(pitch, want, delta=0.02 * (want - point['pitch']))
+
+    def test_inertia(self):
+        """Three straight blades without cone: 3 m ((R + L)^3 - R^3) / 3, with the hub's and the generator's."""
+        machine = windio.read(model())
+        blades = MASS * ((machine.hub_radius + LENGTH)**3 - machine.hub_radius**3)
+        machine.blade.section_eta = numpy.linspace(0, 1, 401)
+        machine.blade.mass = numpy.repeat(machine.blade.mass[:1], 401, axis=0)
+        want = blades + machine.hub[3, 3] + machine.generator_inertia
+        self.assertAlmostEqual(controller._inertia(machine), want, delta=1e-5 * want)
+
+    def test_library(self):
+        """The published controller of the NREL 5-MW turbine behind DISCON: 0.0255764 N m/(rev/min)^2 below rated
+        (NREL/TP-500-38060, table 7-1). A library that is missing, of another interface or fails is told in its own words."""
+        library = os.path.join(WORK, 'libspar_test_discon.so')
+        if not os.path.isfile(library):
+            self.skipTest('no library of tests/examples/discon.c')
+        speed = 100.0
+        for word, said in (('follow', None), ('fail', 'generator too hot$'), ('nan', 'no number'), ('individual', 'switch individual pitch off')):
+            control = controller.Library(library, write(f'{word}.in', word))
+            answers = []
+            try:
+                for step in range(100):
+                    answers.append(control.step(controller.Measures(0.02 * step, 0.02, speed / 97, speed, 0.0, 0.0)))
+                self.assertIsNone(said)
+                self.assertAlmostEqual(answers[-1][1], 0.0255764 * (speed * 30 / numpy.pi)**2, delta=1e-3 * answers[-1][1])
+                self.assertEqual(answers[-1][0], 0)
+            except controller.ControllerError as error:
+                self.assertIsNotNone(said, str(error))
+                self.assertRegex(str(error), said)
+                self.assertGreater(len(answers), 20)
+            control.close()
+        for path, given, said in ((library, 'none.in', 'none.in is not there'), (os.path.join(WORK, 'none.so'), 'follow.in', 'none.so'),
+                                  (os.path.join(WORK, 'libspar_test_other.so'), 'follow.in', 'no function DISCON')):
+            with self.assertRaisesRegex(controller.ControllerError, said):
+                controller.Library(path, os.path.join(WORK, given))
 
 
 class Results(unittest.TestCase):
