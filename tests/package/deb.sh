@@ -8,7 +8,7 @@ rm -rf "$work"
 mkdir -p "$work/root"
 # the book goes into spar-doc where it was made
 made=
-if command -v doxygen >/dev/null 2>&1 && [ ! -d "$build/book" ]; then
+if command -v pandoc >/dev/null 2>&1 && [ ! -d "$build/book" ]; then
     made=$build/book
     trap 'rm -rf "$made"' EXIT
     "$source/docs/book" "$build/book" >"$work/book.log" 2>&1 || { tail -n 20 "$work/book.log"; exit 1; }
@@ -28,7 +28,7 @@ sort "$work"/*.files | uniq -d >"$work/twice"
 [ ! -s "$work/twice" ] || { echo "in two packages:"; cat "$work/twice"; exit 1; }
 [ "$(grep -v /doc/ "$work/libspar$soversion.files" | grep -vE 'lib/libspar\.so\.[0-9.]+$|lib/[a-z0-9_-]+/libspar\.so\.[0-9.]+$')" = "" ]
 if [ -d "$build/book" ]; then
-    for page in index spar_8h spar__aero_8h spar__output_8h spar__mpi_8h; do
+    for page in index reference-spar reference-spar_aero reference-spar_output reference-spar_mpi explanation-theory; do
         grep -q "/html/$page\.html$" "$work/spar-doc.files" || { echo "spar-doc has no page $page of the book"; exit 1; }
     done
     # every picture and page that the first page leads to is there
