@@ -161,7 +161,7 @@ class Book:
         theory = self.pages["docs/explanation/theory.md"]
         parts = re.split(r"(<pre.*?</pre>|<math.*?</math>|<code.*?</code>|<a .*?</a>|<[^>]*>)", text, flags=re.S)
         for i in range(0, len(parts), 2):
-            parts[i] = re.sub(r"\(([TESWFL]\d+)\)", lambda m: f'(<a href="{theory}#{m.group(1)}">{m.group(1)}</a>)' if m.group(1) in self.equations
+            parts[i] = re.sub(r"\(([TESWFJ]\d+)\)", lambda m: f'(<a href="{theory}#{m.group(1)}">{m.group(1)}</a>)' if m.group(1) in self.equations
                               else m.group(0), parts[i])
             parts[i] = re.sub(r"(?<=[\w)])\^(?:\{([^}]*)\}|(-?\d+|n)\b)", lambda m: f"<sup>{m.group(1) or m.group(2)}</sup>", parts[i])
         text = "".join(parts)
@@ -328,7 +328,7 @@ pre code { background: none; padding: 0; font-size: 1em; } pre.source { font-siz
 .table { overflow-x: auto; margin: 1rem 0; } table { border-collapse: collapse; font-size: 14.5px; }
 th, td { border-bottom: 1px solid var(--line); padding: .35rem .7rem; text-align: left; vertical-align: top; } th { background: var(--back); }
 figure { margin: 1.5rem 0; } img { max-width: 100%; } figcaption { color: var(--soft); font-size: 14px; }
-.equation { display: flex; align-items: center; margin: 1rem 0; overflow-x: auto; } .equation math { flex: 1; font-size: 1.08em; }
+.equation { display: flex; align-items: center; margin: 1rem 0; overflow-x: auto; } .equation math { flex: 1; font-size: 1.2em; } sup { line-height: 0; font-size: .75em; }
 .equation .tag { color: var(--soft); padding-left: 1rem; } .equation:target { background: #fff6d6; }
 footer { display: flex; justify-content: space-between; gap: 2rem; margin-top: 3rem; padding-top: 1rem; border-top: 1px solid var(--line); }
 .co, .sourceCode .co { color: #5d7a4d; } .sourceCode .kw, .sourceCode .cf { color: #8a3ea8; } .sourceCode .dt { color: #0f6a8b; }
