@@ -21,6 +21,9 @@ if(SPAR_AWK)
     add_test(NAME docs_languages COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/languages" "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}"
       "${PROJECT_BINARY_DIR}/tests/docs/languages" "${CMAKE_C_COMPILER}" ${CMAKE_Fortran_COMPILER})
     spar_set_test(docs_languages docs 60)
+    add_test(NAME docs_programs COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/programs" "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}"
+      "${PROJECT_BINARY_DIR}/tests/docs/programs" "${CMAKE_C_COMPILER}" ${CMAKE_Fortran_COMPILER})
+    spar_set_test(docs_programs docs 60)
   endif()
 endif()
 if(NOT SPAR_AWK OR CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
