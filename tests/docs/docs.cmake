@@ -24,6 +24,9 @@ if(SPAR_AWK)
     add_test(NAME docs_programs COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/programs" "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}"
       "${PROJECT_BINARY_DIR}/tests/docs/programs" "${CMAKE_C_COMPILER}" ${CMAKE_Fortran_COMPILER})
     spar_set_test(docs_programs docs 60)
+    add_test(NAME docs_tutorial COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/tutorial" "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}"
+      "${PROJECT_BINARY_DIR}/tests/docs/tutorial" "${CMAKE_C_COMPILER}")
+    spar_set_test(docs_tutorial docs 60)
   endif()
 endif()
 if(NOT SPAR_AWK OR CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
