@@ -13,7 +13,7 @@ set format y "%g"
 set yrange [0.1:10]
 set xrange [1e-5:1]
 set xlabel "error of the motion, relative to the deformation"
-set ylabel "cost: ".cost." over those of the scene's default"
+set ylabel "cost: ".cost.", over that of the scene's default"
 set key top right reverse Left spacing 1.2
 set output out
 standard(c) = (strcol(2) eq "default" ? column(c) : NaN)
