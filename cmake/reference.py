@@ -213,13 +213,24 @@ MADE = "<!-- written by cmake/reference.py -->\n"
 OBJECTS = "version session step member point rigid beam section joint spring link fluid trial vtk aero".split()
 
 
+SUBJECTS = {
+    "spar": "sessions, steps, members, fluids",
+    "spar_structure": "sections, beams, loads, modes, joints",
+    "spar_coupling": "integrator, coupling, added mass, step size, ranks",
+    "spar_mpi": "a session on an MPI communicator",
+    "spar_output": "files for ParaView",
+    "spar_analysis": "trials, advice, flutter, periodic states",
+    "spar_aero": "blade elements",
+}
+
+
 def object_of(name):
     word = name.split("_")[1]
     return word if word in OBJECTS else "library"
 
 
 def header_page(header):
-    out = [MADE + f"# {header.name}", markdown(re.sub(r"^\w+\.h: (\w)", lambda m: m.group(1).upper(), header.intro)), "## Calls by object"]
+    out = [MADE + f"# {header.name}: {SUBJECTS[header.name[:-2]]}", markdown(re.sub(r"^\w+\.h: (\w)", lambda m: m.group(1).upper(), header.intro)), "## Calls by object"]
     groups = {}
     for name, _, comment in header.calls():
         groups.setdefault(object_of(name), []).append(f"| {span(name)} | {purpose(name, comment)} |")
