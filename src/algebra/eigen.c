@@ -98,39 +98,6 @@ int spari_symmetric(int n, double *A, double *mu, double *workspace) {
     return SPAR_OK;
 }
 
-/* A := L^-1 A L^-T with B = L L^T, L in B. 0, or 1: B is not positive definite. */
-static int standardise(int n, double *A, double *B) {
-    if (spari_cholesky(n, B)) {
-        return 1;
-    }
-    SPARI_BLAS(cblas_dtrsm(CblasRowMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, n, n, 1, B, n, A, n));
-    SPARI_BLAS(cblas_dtrsm(CblasRowMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, n, n, 1, B, n, A, n));
-    return 0;
-}
-
-int spari_eigen(int n, double *A, double *B, double *mu, double *x) {
-    int of_A, of_B;
-    if (n < 1) {
-        return SPAR_OK;
-    }
-    if (!bring_to_one((int64_t)n * n, A, &of_A) || !bring_to_one((int64_t)n * n, B, &of_B) || standardise(n, A, B)) {
-        return SPAR_ERR_NUMERIC;
-    }
-    double *value = spari_zalloc(n + SPARI_SYMMETRIC_ROOM((int64_t)n), sizeof *value);
-    int status = value ? spari_symmetric(n, A, value, value + n) : SPAR_ERR_MEMORY;
-    if (status == SPAR_OK) {
-        SPARI_BLAS(cblas_dtrsm(CblasRowMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, n, n, 1, B, n, A, n));
-    }
-    for (int k = 0; k < n && status == SPAR_OK; k++) {
-        double *to = x + (int64_t)n * k;
-        memcpy(to, A + (int64_t)n * (n - 1 - k), (size_t)n * sizeof *to);
-        cblas_dscal(n, 1 / cblas_dnrm2(n, to, 1), to, 1);
-        mu[k] = ldexp(value[n - 1 - k], of_A - of_B);
-    }
-    free(value);
-    return status;
-}
-
 int spari_eigenvalues(int n, double *A, double complex *z) {
     double *re = spari_zalloc(2 * (int64_t)n + SPARI_SYMMETRIC_ROOM((int64_t)n), sizeof *re), *im = re + n;
     int of_A, bad = -1;
@@ -143,14 +110,4 @@ int spari_eigenvalues(int n, double *A, double complex *z) {
     }
     free(re);
     return status;
-}
-
-void spari_eigen_add(int at, int n, const double *X, double scale, int64_t size, double *A) {
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            if (at + i >= 0 && at + j >= 0) {
-                A[size * (at + i) + at + j] += 0.5 * scale * (X[(int64_t)n * i + j] + X[(int64_t)n * j + i]);
-            }
-        }
-    }
 }

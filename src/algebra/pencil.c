@@ -66,6 +66,17 @@ void spari_pencil_add(spari_pencil *p, int at, int n, int64_t apart, const doubl
     }
 }
 
+void spari_pencil_add_symmetric(spari_pencil *p, int at, int n, const double *K, const double *M) {
+    for (int i = at < 0 ? -at : 0; i < n; i++) {
+        for (int j = at < 0 ? -at : 0; j < n; j++) {
+            int64_t ij = (int64_t)n * i + j, ji = (int64_t)n * j + i;
+            spari_pencil_entry e = {p->base + at + i, p->base + at + j, 0.5 * (K[ij] + K[ji]), 0,
+                                    0.5 * (M[ij] + M[ji])};
+            spari_pencil_put(p, e);
+        }
+    }
+}
+
 void spari_pencil_set_forces(spari_pencil *p, int at, int n, const double *r) {
     for (int i = at < 0 ? -at : 0; i < n; i++) {
         p->left[p->base + at + i] += r[i];

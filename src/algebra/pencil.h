@@ -38,6 +38,8 @@ void spari_pencil_free(spari_pencil *pencil);
    constrained and skipped. NULL: zero. */
 void spari_pencil_add(spari_pencil *pencil, int at, int n, int64_t apart, const double *K, const double *C,
                       const double *M);
+/* Adds the symmetric parts of blocks K and M. */
+void spari_pencil_add_symmetric(spari_pencil *pencil, int at, int n, const double *K, const double *M);
 void spari_pencil_put(spari_pencil *pencil, spari_pencil_entry entry);
 void spari_pencil_add_constraint(spari_pencil *pencil, spari_pencil_constraint entry);
 /* left += r [n] from unknown base + at on. */

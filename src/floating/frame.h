@@ -92,7 +92,7 @@ void spari_frame_publish(spar_member *member);
  */
 int spari_frame_energy(const spar_member *member, double energy[4]);
 /* K + N of the angular velocity of the root of member->after, and M. */
-int spari_frame_problem(const spar_member *member, double *K, double *M);
+int spari_frame_problem(const spar_member *member, struct spari_pencil *to);
 int spari_frame_linearise(const spar_member *member, const double w[3], struct spari_pencil *to);
 void spari_frame_shape(const spar_member *member, const double *x, double *workspace, double *nodes);
 int64_t spari_frame_state_size(const spar_member *member);

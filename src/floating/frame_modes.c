@@ -2,7 +2,7 @@
 #include "frame.h"
 
 #include "../algebra/cblas.h"
-#include "../algebra/eigen.h"
+#include "../algebra/lowest_modes.h"
 #include "../algebra/pencil.h"
 #include "../base/status.h"
 #include "../math/rotation.h"
@@ -13,14 +13,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A [n - from][n - from] += scale times the symmetric part of X, over the unknowns from `from` on. */
-static void assemble_dense(const spari_frame *f, const double *X, double scale, int from, double *A) {
-    int m = f->block, step = f->block - f->overlap;
-    for (int e = 0; e < f->elements; e++) {
-        spari_eigen_add(e * step - from, m, X + (int64_t)m * m * e, scale, f->n - from, A);
-    }
-}
 
 /* The six rigid motions about the root, as columns of the basis. */
 static void rigid_columns(spari_frame *f, const double *arm, int cols) {
@@ -65,30 +57,47 @@ static int orthonormalise(spari_frame *f, int cols, int from, int end, double *w
     return 0;
 }
 
+/* W [6 - constrained][6 nodes - 6]: images of the rigid motions that the root leaves free, over the nodes beside it. */
+static void rigid_images(const spari_frame *f, int cols, double *work, double *W) {
+    int n = 6 * f->nodes - 6;
+    for (int k = f->constrained; k < 6; k++) {
+        image_of(f, cols, k, work, work + 6 * f->nodes);
+        memcpy(W + (int64_t)n * (k - f->constrained), work + 6 * f->nodes + 6, (size_t)n * sizeof *W);
+    }
+}
+
 /* The lowest modes relative to the root, as the columns after the rigid ones: K z = lambda (M - M R R^T M) z over the
    nodes beside the root. R are the orthonormal rigid motions that the root leaves free; their inertia is not that of
-   the deformation. K is not singular here even for a free beam, because rigid motions are separate columns. Solved for
-   1 / lambda, in which the low modes keep their digits. */
+   the deformation. K is not singular here even for a free beam, because rigid motions are separate columns. */
 static int elastic_columns(spari_frame *f, int cols, double *work) {
-    int n = 6 * f->nodes - 6;
-    int64_t size = (int64_t)n * n;
-    double *K = spari_zalloc(3 * size + n, sizeof *K), *M = K + size, *z = M + size, *mu = z + size;
-    int status = K ? SPAR_OK : SPAR_ERR_MEMORY;
-    if (status == SPAR_OK) {
-        double *x = work, *image = work + 6 * f->nodes;
-        assemble_dense(f, f->K, 1, 6, K);
-        assemble_dense(f, f->M, 1, 6, M);
-        for (int k = f->constrained; k < 6; k++) {
-            image_of(f, cols, k, x, image);
-            cblas_dger(CblasRowMajor, n, n, -1, image + 6, 1, image + 6, 1, M, n);
+    int n = 6 * f->nodes - 6, wanted = cols - 6, step = f->block - f->overlap, available;
+    spari_pencil pencil;
+    int status = spari_pencil_create(&pencil, n);
+    double *square = spari_zalloc(wanted + (int64_t)n * (wanted + 6), sizeof *square), *z = square + wanted;
+    int *block = spari_zalloc(n, sizeof *block);
+    if (status != SPAR_OK || !square || !block) {
+        status = SPAR_ERR_MEMORY;
+    } else {
+        double *W = z + (int64_t)n * wanted;
+        rigid_images(f, cols, work, W);
+        for (int e = 0; e < f->elements; e++) {
+            int64_t at = (int64_t)f->block * f->block * e;
+            spari_pencil_add_symmetric(&pencil, e * step - 6, f->block, f->K + at, f->M + at);
         }
-        status = spari_eigen(n, M, K, mu, z);
+        for (int i = 0; i < n; i++) {
+            block[i] = i / 6;
+        }
+        const spari_modes_problem problem = {&pencil, block, 6 - f->constrained, W};
+        status = pencil.full ? SPAR_ERR_MEMORY : spari_lowest_modes(&problem, wanted, square, z, &available);
     }
-    for (int k = 6; k < cols && status == SPAR_OK; k++) {
-        status = mu[k - 6] > DBL_EPSILON * mu[0] ? status : SPAR_ERR_NUMERIC;
-        cblas_dcopy(n, z + (int64_t)n * (k - 6), 1, f->basis + (int64_t)6 * cols + k, cols);
+    status = status == SPAR_OK || status == SPAR_ERR_MEMORY ? status : SPAR_ERR_NUMERIC;
+    for (int k = 0; k < wanted && status == SPAR_OK; k++) {
+        status = DBL_EPSILON * square[k] < square[0] ? status : SPAR_ERR_NUMERIC;
+        cblas_dcopy(n, z + (int64_t)n * k, 1, f->basis + (int64_t)6 * cols + 6 + k, cols);
     }
-    free(K);
+    spari_pencil_free(&pencil);
+    free(square);
+    free(block);
     return status;
 }
 
@@ -202,18 +211,27 @@ void spari_frame_remass(spar_member *m) {
 
 /* ---- about a state ---- */
 
-int spari_frame_problem(const spar_member *m, double *K, double *M) {
+int spari_frame_problem(const spar_member *m, spari_pencil *to) {
     const spari_frame *f = m->solution;
     const spari_pose pose = spari_member_pose(m, &m->after);
-    double omega[3];
-    spari_rotate_back(pose.q + 3, pose.v + 3, omega);
-    int constrained = spari_member_constrained(m);
-    assemble_dense(f, f->K, 1, constrained, K);
-    assemble_dense(f, f->M, 1, constrained, M);
-    for (int k = 0; k < SPARI_SPIN_PRODUCTS && f->N[0]; k++) {
-        double c = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
-        assemble_dense(f, f->N[k], c, constrained, K);
+    int constrained = spari_member_constrained(m), step = f->block - f->overlap;
+    int64_t size = (int64_t)f->block * f->block;
+    double omega[3], *K = spari_zalloc(size, sizeof *K);
+    if (!K) {
+        return SPAR_ERR_MEMORY;
     }
+    spari_rotate_back(pose.q + 3, pose.v + 3, omega);
+    for (int e = 0; e < f->elements; e++) {
+        memcpy(K, f->K + size * e, (size_t)size * sizeof *K);
+        for (int k = 0; k < SPARI_SPIN_PRODUCTS && f->N[0]; k++) {
+            double c = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
+            for (int64_t i = 0; i < size; i++) {
+                K[i] += c * f->N[k][size * e + i];
+            }
+        }
+        spari_pencil_add_symmetric(to, e * step - constrained, f->block, K, f->M + size * e);
+    }
+    free(K);
     return SPAR_OK;
 }
 

@@ -1,5 +1,4 @@
 /* The exact member: geometrically exact beams and rigid bodies. */
-#include "../algebra/eigen.h"
 #include "../algebra/pencil.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
@@ -105,8 +104,8 @@ static void reduce_matrix(const spar_member *m, double *S) {
     }
 }
 
-static int exact_problem(const spar_member *m, double *K, double *M) {
-    int64_t u = m->body->unique, n = 6 * (int64_t)m->mesh.per_element, free_unknowns = exact_unknowns(m);
+static int exact_problem(const spar_member *m, spari_pencil *to) {
+    int64_t u = m->body->unique, n = 6 * (int64_t)m->mesh.per_element;
     int own = node_unknowns(m) * m->mesh.per_element;
     double *q = spari_zalloc(19 * u + 2 * n * n, sizeof *q), *v = q + 7 * u, *a = v + 6 * u, *S = a + 6 * u,
            *mass = S + n * n;
@@ -120,15 +119,13 @@ static int exact_problem(const spar_member *m, double *K, double *M) {
         spari_rotating_frame_nodes(&frame, 1, m, (int)u, q, v, a);
     }
     for (int e = 0; e < m->mesh.elements; e++) {
-        int at = first_unknown(m, e);
         spari_steady_rotation_tangent(m->body, rotating ? &frame.rotation : NULL, e, q, v, a, 1, S, mass);
         if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, S);
         }
         reduce_matrix(m, S);
         reduce_matrix(m, mass);
-        spari_eigen_add(at, own, S, 1, free_unknowns, K);
-        spari_eigen_add(at, own, mass, 1, free_unknowns, M);
+        spari_pencil_add_symmetric(to, first_unknown(m, e), own, S, mass);
     }
     free(q);
     return SPAR_OK;

@@ -2,7 +2,6 @@
    bodies advances it. */
 #include "rigid_beam.h"
 
-#include "../algebra/eigen.h"
 #include "../algebra/pencil.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
@@ -254,7 +253,7 @@ static int64_t rigid_unknowns(const spar_member *m) {
     return 6 - spari_member_constrained(m);
 }
 
-static int rigid_problem(const spar_member *m, double *K, double *M) {
+static int rigid_problem(const spar_member *m, spari_pencil *to) {
     const spari_rigid_beam *b = m->solution;
     double *load = spari_zalloc(6 * m->nodes, sizeof *load), sum[6] = {0}, v[6], a[6], S[36], mass[36];
     spari_offset_loads moments = {0};
@@ -275,8 +274,7 @@ static int rigid_problem(const spar_member *m, double *K, double *M) {
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
     spari_steady_rotation_tangent(b->body, rotating ? &rotation : NULL, 0, m->after.q, v, a, 1, S, mass);
     spari_offset_loads_tangent(&moments, m->after.q + 3, S);
-    spari_eigen_add(-constrained, 6, S, 1, rigid_unknowns(m), K);
-    spari_eigen_add(-constrained, 6, mass, 1, rigid_unknowns(m), M);
+    spari_pencil_add_symmetric(to, -constrained, 6, S, mass);
     return SPAR_OK;
 }
 

@@ -136,7 +136,7 @@ static int find_damped_modes(spar_member *m, int64_t count, const int64_t *mode,
     double *all = spari_zalloc(most * (1 + 6 * m->nodes) + 7 * u + 6 * u * count + 2 * size + count, sizeof *all);
     SPARI_REQUIRE(s, all, SPAR_ERR_MEMORY, "no memory for '%s'", m->name);
     double *shapes = all + most, *q = shapes + 6 * m->nodes * most, *x = q + 7 * u, *work = x + 6 * u * count;
-    int status = spari_modes_of_member(m, most, all, shapes);
+    int status = spari_modes(m, 0, most, all, shapes);
     for (int64_t k = 0; k < count && status == SPAR_OK; k++) {
         if (mode[k] < rigid_modes(m)) {
             status =

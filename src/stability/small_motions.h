@@ -19,16 +19,22 @@ typedef struct spari_small_motions {
     int parts, size;
     double w[3]; /* angular velocity of the frame */
     int loose;   /* for shapes alone: each part has a frame of its own; time-dependent terms are ignored */
+    int modes;   /* symmetric stiffness and mass alone */
     spari_pencil pencil;
     double *workspace; /* of a shape */
 } spari_small_motions;
 
+/* SPAR_ERR_UNSUPPORTED if spar does not know the member's mass. */
+int spari_need_mass(const spar_member *member);
 /* Collects the parts: a member and everything that joints connect to it; first NULL: everything that spar solves.
    Then forms their equations, in a frame where the coefficients are constant. A status and a message; free it in any
    case. */
 int spari_small_motions_create(spari_small_motions *motions, spar_session *session, const spar_member *first);
 /* The same for everything that spar solves, for shapes alone: in any state, also an unsteady one. */
 int spari_small_motions_create_loose(spari_small_motions *motions, spar_session *session);
+/* The same for modes: the symmetric parts of stiffness and mass, in any state. connected: with all that joints connect
+   to the member; otherwise without joints. */
+int spari_small_motions_create_modes(spari_small_motions *motions, const spar_member *first, int connected);
 void spari_small_motions_free(spari_small_motions *motions);
 /* The part of a member, or NULL. */
 static inline const spari_motion_part *spari_small_motions_part(const spari_small_motions *motions,

@@ -113,14 +113,21 @@ SPARI_APART static void linearise_joint(const spari_small_motions *w, const spar
         of->K[i / 12][i % 12] *= -1;
         of->bound[i / 12][i % 12] *= -1;
     }
-    if (springs) {
+    memset(R, 0, sizeof R);
+    if (springs && !w->modes) {
         spari_kinematics_rates(&j->kinematics, &pose[0], &pose[1], v, R);
         for (int i = 0; i < 72; i++) {
             for (int k = 0; k < 12; k++) {
                 R[i / 12][i % 12] += of->B[i / 12][k] * V[k][i % 12];
             }
         }
+    }
+    if (springs) {
         add_spring(j, R, of);
+    }
+    for (int i = 0; i < 144 && w->modes; i++) {
+        double *x = &of->K[i / 12][i % 12], *y = &of->K[i % 12][i / 12];
+        *x = *y = 0.5 * (*x + *y);
     }
 }
 
@@ -253,7 +260,7 @@ int spari_small_motions_add_joint(spari_small_motions *w, const spar_joint *j, i
         }
     }
     linearise_joint(w, j, side, of);
-    int status = w->loose ? SPAR_OK : check_around(w, j, side, of);
+    int status = w->loose || w->modes ? SPAR_OK : check_around(w, j, side, of);
     if (status == SPAR_OK) {
         put_joint(w, side, of, constraints);
     }

@@ -65,11 +65,11 @@ typedef struct spari_fidelity {
     /* every rank: kinetic, strain and potential energy of m->after */
     int (*energy)(const spar_member *m, double energy[4]);
 
-    /* every rank: the number of unknowns that the root condition leaves free; K and M about m->after, dense,
-       symmetric parts; a vector of the unknowns as a field [nodes][6], global axes (workspace: 6 of each unique
-       node). Called only for bodies with mass. */
+    /* every rank: the number of unknowns that the root condition leaves free; adds the symmetric parts of K and M
+       about m->after; a vector of the unknowns as a field [nodes][6], global axes (workspace: 6 of each unique node).
+       Called only for bodies with mass. */
     int64_t (*unknowns)(const spar_member *m);
-    int (*problem)(const spar_member *m, double *K, double *M);
+    int (*problem)(const spar_member *m, struct spari_pencil *to);
     void (*shape)(const spar_member *m, const double *x, double *workspace, double *nodes);
     /* every rank: adds the small-motion equations about m->after, unsymmetric and with rates, in a frame that
        rotates with w, to the pencil, and the residual of the forces. SPAR_ERR_UNSUPPORTED: the equations exist only
