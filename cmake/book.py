@@ -48,6 +48,21 @@ def tracked():
         return {os.path.relpath(os.path.join(d, f), ROOT) for d, _, files in os.walk(ROOT) for f in files if "/build" not in d}
 
 
+def raised(text):
+    """Exponents: t^n, t^{n+1}, s^2, S^-1/2, R^T."""
+    return re.sub(r"(?<=[\w)])\^(?:\{([^}]*)\}|(-1/2|-?\d+|n|T)\b)", lambda m: f"<sup>{m.group(1) or m.group(2)}</sup>", text)
+
+
+GREEK = dict(zip("alpha beta gamma theta kappa lambda xi rho sigma tau phi psi omega mu eps Omega Phi".split(), "αβγθκλξρστφψωμεΩΦ"))
+
+
+def symbols(text):
+    """Greek letters and indices in a text with formulas."""
+    text = re.sub(r"\brho_inf\b", "ρ<sub>∞</sub>", text)
+    text = re.sub(r"(?<![A-Za-z])(" + "|".join(GREEK) + r")(?![A-Za-z])", lambda m: GREEK[m.group(1)], text)
+    return re.sub(r"(?<![\w>])([A-Za-zαβγθκλξρστφψωμεΩΦ])_([A-Za-z0-9]{1,2}|map)(?![\w(])", r"\1<sub>\2</sub>", text)
+
+
 class Book:
     def __init__(self, out):
         self.out = os.path.join(out, "html")
@@ -121,6 +136,8 @@ class Book:
     def code(self, text):
         """A text in code, with a link where the book has a page of it."""
         plain = html.unescape(text)
+        if "src/" + plain in self.files:
+            return f'<a href="{self.source("src/" + plain)}"><code>{text}</code></a>'
         if plain in self.calls:
             return f'<a href="{self.calls[plain]}"><code>{text}</code></a>'
         word = re.match(r"((?:examples|src|include|tests|benchmarks|cmake|python|fortran|docs)/[\w./-]*\w)(?= |$)", plain)
@@ -163,7 +180,9 @@ class Book:
         for i in range(0, len(parts), 2):
             parts[i] = re.sub(r"\(([TESWFJ]\d+)\)", lambda m: f'(<a href="{theory}#{m.group(1)}">{m.group(1)}</a>)' if m.group(1) in self.equations
                               else m.group(0), parts[i])
-            parts[i] = re.sub(r"(?<=[\w)])\^(?:\{([^}]*)\}|(-?\d+|n)\b)", lambda m: f"<sup>{m.group(1) or m.group(2)}</sup>", parts[i])
+            parts[i] = raised(parts[i])
+            if document == "docs/explanation/theory.md":
+                parts[i] = symbols(parts[i])
         text = "".join(parts)
         return re.sub(r"(<table>.*?</table>)", r'<div class="table">\1</div>', text, flags=re.S)
 
@@ -328,7 +347,7 @@ pre code { background: none; padding: 0; font-size: 1em; } pre.source { font-siz
 .table { overflow-x: auto; margin: 1rem 0; } table { border-collapse: collapse; font-size: 14.5px; }
 th, td { border-bottom: 1px solid var(--line); padding: .35rem .7rem; text-align: left; vertical-align: top; } th { background: var(--back); }
 figure { margin: 1.5rem 0; } img { max-width: 100%; } figcaption { color: var(--soft); font-size: 14px; }
-.equation { display: flex; align-items: center; margin: 1rem 0; overflow-x: auto; } .equation math { flex: 1; font-size: 1.2em; } sup { line-height: 0; font-size: .75em; }
+.equation { display: flex; align-items: center; margin: 1rem 0; overflow-x: auto; } .equation math { flex: 1; font-size: 1.2em; } sup, sub { line-height: 0; font-size: .75em; }
 .equation .tag { color: var(--soft); padding-left: 1rem; } .equation:target { background: #fff6d6; }
 footer { display: flex; justify-content: space-between; gap: 2rem; margin-top: 3rem; padding-top: 1rem; border-top: 1px solid var(--line); }
 .co, .sourceCode .co { color: #5d7a4d; } .sourceCode .kw, .sourceCode .cf { color: #8a3ea8; } .sourceCode .dt { color: #0f6a8b; }
