@@ -210,7 +210,8 @@ FILE *run_open(const run *r, const char *name) {
     (void)snprintf(path, sizeof path, "%.1000s/%.1000s", r->out, name);
     FILE *file = fopen(path, "w");
     if (!file) {
-        (void)run_fail(SPAR_ERR_IO, "cannot write %.600s: %s; check folder and rights", path, strerror(errno));
+        (void)run_fail(SPAR_ERR_IO, "cannot write %.600s: %s; check the folder and its permissions", path,
+                       strerror(errno));
     }
     return file;
 }

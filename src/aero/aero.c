@@ -269,8 +269,8 @@ int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist
                        (long long)aero->n);
     SPARI_AERO_REQUIRE(aero->session, isfinite(chord) && chord >= 0.0, SPAR_ERR_ARGUMENT,
                        "%s: section %lld: chord %g; give a length >= 0", __func__, (long long)i, chord);
-    SPARI_AERO_REQUIRE(aero->session, isfinite(twist), SPAR_ERR_ARGUMENT, "%s: section %lld: the twist is not finite",
-                       __func__, (long long)i);
+    SPARI_AERO_REQUIRE(aero->session, isfinite(twist), SPAR_ERR_ARGUMENT,
+                       "%s: section %lld: the twist is not finite; give a finite angle, rad", __func__, (long long)i);
     SPARI_AERO_REQUIRE(aero->session, polar, SPAR_ERR_ARGUMENT, "%s: section %lld: the polar is NULL", __func__,
                        (long long)i);
     if (aero->blades == 0) {
@@ -300,7 +300,8 @@ int spar_aero_set_rotor(spar_aero *aero, const double hub[3], const double axis[
     REQUIRE_HANDLE(aero);
     SPARI_AERO_REQUIRE(aero->session, hub && axis, SPAR_ERR_ARGUMENT, "%s: hub or axis is NULL", __func__);
     SPARI_AERO_REQUIRE(aero->session, spari_first_nonfinite(hub, 3) < 0 && spari_first_nonfinite(axis, 3) < 0,
-                       SPAR_ERR_ARGUMENT, "%s: hub or axis has an entry that is not finite", __func__);
+                       SPAR_ERR_ARGUMENT, "%s: hub or axis has an entry that is not finite; give finite numbers",
+                       __func__);
     double length = hypot(hypot(axis[0], axis[1]), axis[2]);
     SPARI_AERO_REQUIRE(aero->session, isfinite(length) && length > 0.0, SPAR_ERR_ARGUMENT,
                        "%s: the axis has length %g; give a direction, pointing downwind", __func__, length);
@@ -347,7 +348,8 @@ static int check_shear(const spar_aero *aero, int law, double height, double par
                        "%s: shear law %d is not known; give SPAR_SHEAR_POWER, _LOG or _LINEAR", call, law);
     SPARI_AERO_REQUIRE(aero->session, isfinite(height) && height > 0.0, SPAR_ERR_ARGUMENT,
                        "%s: the reference height is %g; give one > 0 above the ground", call, height);
-    SPARI_AERO_REQUIRE(aero->session, isfinite(parameter), SPAR_ERR_ARGUMENT, "%s: the parameter is not finite", call);
+    SPARI_AERO_REQUIRE(aero->session, isfinite(parameter), SPAR_ERR_ARGUMENT,
+                       "%s: the parameter is not finite; give a finite number", call);
     SPARI_AERO_REQUIRE(aero->session, law != SPAR_SHEAR_POWER || parameter >= 0.0, SPAR_ERR_ARGUMENT,
                        "%s: exponent %g; give one >= 0", call, parameter);
     SPARI_AERO_REQUIRE(
@@ -374,7 +376,7 @@ int spar_aero_set_shear(spar_aero *aero, int law, const double ground[3], const 
     REQUIRE_HANDLE(aero);
     SPARI_AERO_REQUIRE(aero->session, ground && up, SPAR_ERR_ARGUMENT, "%s: ground or up is NULL", __func__);
     SPARI_AERO_REQUIRE(aero->session, spari_first_nonfinite(ground, 3) < 0, SPAR_ERR_ARGUMENT,
-                       "%s: the point on the ground has an entry that is not finite", __func__);
+                       "%s: the point on the ground has an entry that is not finite; give finite numbers", __func__);
     spari_shear made = {.law = law, .height = height, .parameter = parameter};
     double length;
     SPARI_TRY(find_direction(aero, up, made.up, &length, "the upward direction", __func__));
@@ -393,7 +395,8 @@ int spar_aero_set_tower(spar_aero *aero, const double base[3], const double top[
     REQUIRE_HANDLE(aero);
     SPARI_AERO_REQUIRE(aero->session, base && top, SPAR_ERR_ARGUMENT, "%s: base or top is NULL", __func__);
     SPARI_AERO_REQUIRE(aero->session, spari_first_nonfinite(base, 3) < 0 && spari_first_nonfinite(top, 3) < 0,
-                       SPAR_ERR_ARGUMENT, "%s: base or top has an entry that is not finite", __func__);
+                       SPAR_ERR_ARGUMENT, "%s: base or top has an entry that is not finite; give finite numbers",
+                       __func__);
     double axis[3] = {top[0] - base[0], top[1] - base[1], top[2] - base[2]};
     spari_tower made = {.base_radius = base_radius, .top_radius = top_radius};
     SPARI_TRY(find_direction(aero, axis, made.up, &made.length, "the vector from base to top", __func__));

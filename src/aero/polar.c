@@ -254,7 +254,8 @@ void spari_table_find_attached(const spari_table *table, double *zero, double *s
 int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, double *cl, double *cd, double *cm) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_AERO_REQUIRE(NULL, polar, SPAR_ERR_ARGUMENT, "%s: the polar is NULL", __func__);
-    SPARI_AERO_REQUIRE(NULL, isfinite(alpha_rad), SPAR_ERR_ARGUMENT, "%s: alpha is not finite", __func__);
+    SPARI_AERO_REQUIRE(NULL, isfinite(alpha_rad), SPAR_ERR_ARGUMENT,
+                       "%s: alpha is not finite; give a finite angle, rad", __func__);
     int64_t row = 0;
     int beyond;
     double place = spari_table_wrap(polar->table, alpha_rad, &beyond);

@@ -962,18 +962,20 @@ int spari_foundation_build(spar_member *m) {
 static int check_line_load(const spar_member *m, const char *call, int kind, int64_t n, const double *eta,
                            const double *load) {
     spar_session *s = m->session;
-    SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call, m->name);
+    SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT,
+                  "%s: member '%s' is not a beam; call this for a beam alone", call, m->name);
     SPARI_TRY(need_kind(m, call, kind));
     SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT, "%s: '%s': %lld stations; give 0 to 2^40", call,
                   m->name, (long long)n);
     SPARI_REQUIRE(s, n == 0 || (eta && load), SPAR_ERR_ARGUMENT, "%s: '%s': %s is NULL", call, m->name,
                   eta ? "load" : "eta");
     int64_t bad = spari_first_nonfinite(eta, n);
-    SPARI_REQUIRE(s, bad < 0, SPAR_ERR_ARGUMENT, "%s: '%s': eta %lld is not a finite number", call, m->name,
-                  (long long)bad);
+    SPARI_REQUIRE(s, bad < 0, SPAR_ERR_ARGUMENT, "%s: '%s': eta %lld is not a finite number; give finite numbers", call,
+                  m->name, (long long)bad);
     bad = spari_first_nonfinite(load, 6 * n);
-    SPARI_REQUIRE(s, bad < 0, SPAR_ERR_ARGUMENT, "%s: '%s': load %lld of station %lld is not a finite number", call,
-                  m->name, (long long)(bad % 6), (long long)(bad / 6));
+    SPARI_REQUIRE(s, bad < 0, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': load %lld of station %lld is not a finite number; give finite numbers", call, m->name,
+                  (long long)(bad % 6), (long long)(bad / 6));
     for (int64_t i = 0; i < n; i++) {
         SPARI_REQUIRE(s, eta[i] >= -1e-9 && eta[i] <= 1 + 1e-9, SPAR_ERR_ARGUMENT,
                       "%s: '%s': eta %lld is %g; eta runs from 0 to 1", call, m->name, (long long)i, eta[i]);

@@ -28,8 +28,8 @@ int spari_need_committed(const spar_member *member, const char *call) {
 
 int spari_need_any_beam(const spar_member *member, const char *call) {
     SPARI_TRY(spari_need_member(member, call));
-    SPARI_REQUIRE(member->session, member->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", call,
-                  member->name);
+    SPARI_REQUIRE(member->session, member->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT,
+                  "%s: member '%s' is not a beam; call this for a beam alone", call, member->name);
     return SPAR_OK;
 }
 

@@ -15,7 +15,8 @@
 static int member_create(spar_session *session, const char *call, const char *name, int kind, spar_member **out) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     SPARI_REQUIRE(session, out, SPAR_ERR_ARGUMENT, "%s: the pointer to the new member is NULL", call);
-    SPARI_REQUIRE(session, name && name[0], SPAR_ERR_ARGUMENT, "%s: a member needs a name", call);
+    SPARI_REQUIRE(session, name && name[0], SPAR_ERR_ARGUMENT,
+                  "%s: a member needs a name; give one that is unique in the session", call);
     SPARI_REQUIRE(session, !session->clock.started && !session->state.trial, SPAR_ERR_STATE,
                   "%s: '%s': the clock has started; create members before the first step", call, name);
     spar_member **end = &session->members;

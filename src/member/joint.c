@@ -41,7 +41,8 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
                         spar_member *b, int64_t node_b, spar_joint **out) {
     SPARI_REQUIRE(NULL, s, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     SPARI_REQUIRE(s, out, SPAR_ERR_ARGUMENT, "%s: the pointer to the new joint is NULL", call);
-    SPARI_REQUIRE(s, name && name[0], SPAR_ERR_ARGUMENT, "%s: a joint needs a name", call);
+    SPARI_REQUIRE(s, name && name[0], SPAR_ERR_ARGUMENT,
+                  "%s: a joint needs a name; give one that is unique in the session", call);
     SPARI_REQUIRE(s, !s->clock.started && !s->state.trial, SPAR_ERR_STATE,
                   "%s: '%s': the clock has started; create joints before the first step", call, name);
     SPARI_REQUIRE(s, a, SPAR_ERR_ARGUMENT, "%s: '%s': member a is NULL; only b can be the ground", call, name);

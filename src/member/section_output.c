@@ -200,15 +200,17 @@ int spar_beam_evaluate(const spar_member *beam, int64_t n, const double *eta, do
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     spar_session *session = beam->session;
-    SPARI_REQUIRE(session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "%s: member '%s' is not a beam", __func__,
-                  beam->name);
+    SPARI_REQUIRE(session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT,
+                  "%s: member '%s' is not a beam; call this for a beam alone", __func__, beam->name);
     SPARI_REQUIRE(session, beam->committed, SPAR_ERR_STATE,
                   "%s: member '%s' is not committed; call spar_member_commit first", __func__, beam->name);
     SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST && (eta || n == 0), SPAR_ERR_ARGUMENT,
                   "%s: '%s': %lld positions%s; give 0 to 2^40, and n values of eta", __func__, beam->name, (long long)n,
                   eta ? "" : " without eta");
-    SPARI_REQUIRE(session, !force || beam->beam->stiffness, SPAR_ERR_UNSUPPORTED,
-                  "%s: '%s' has no sections, so it has no section forces", __func__, beam->name);
+    SPARI_REQUIRE(
+        session, !force || beam->beam->stiffness, SPAR_ERR_UNSUPPORTED,
+        "%s: '%s' has no sections, so it has no section forces; call spar_beam_set_sections before the commit",
+        __func__, beam->name);
     for (int64_t i = 0; i < n; i++) {
         SPARI_REQUIRE(session, eta[i] >= -1e-9 && eta[i] <= 1 + 1e-9, SPAR_ERR_ARGUMENT,
                       "%s: '%s': eta %lld is %g; eta runs from 0 to 1", __func__, beam->name, (long long)i, eta[i]);

@@ -430,10 +430,10 @@ int spar_section_transform(const double matrix[36], double y, double z, double a
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, matrix && out, SPAR_ERR_ARGUMENT, "%s: matrix or out is NULL", __func__);
     int64_t at = spari_first_nonfinite(matrix, 36);
-    SPARI_REQUIRE(NULL, at < 0, SPAR_ERR_ARGUMENT, "%s: entry %lld of the matrix is not a finite number", __func__,
-                  (long long)at);
+    SPARI_REQUIRE(NULL, at < 0, SPAR_ERR_ARGUMENT,
+                  "%s: entry %lld of the matrix is not a finite number; give finite numbers", __func__, (long long)at);
     SPARI_REQUIRE(NULL, isfinite(y) && isfinite(z) && isfinite(angle), SPAR_ERR_ARGUMENT,
-                  "%s: y, z or angle is not a finite number", __func__);
+                  "%s: y, z or angle is not a finite number; give finite numbers", __func__);
     double T[36], made[36];
     centres(-y, -z, -y, -z, T); /* old strains from those at the new line */
     congruence(T, matrix, made);

@@ -70,7 +70,7 @@ int spar_vtk_series_add(const char *path, double time, int part, const char *fil
     char why[SPARI_MESSAGE_SIZE / 2];
     spari_file index;
     SPARI_REQUIRE(NULL, path && path[0] && file && file[0], SPAR_ERR_ARGUMENT,
-                  "%s: the path of the index or the name of the file is missing", __func__);
+                  "%s: the path of the index or the name of the file is missing; give both", __func__);
     SPARI_REQUIRE(NULL, spari_first_nonfinite(&time, 1) < 0 && part >= 0, SPAR_ERR_ARGUMENT,
                   "%s: '%s': time %g, part %d; give a finite time and a part counted from 0", __func__, file, time,
                   part);

@@ -26,7 +26,8 @@ int spari_saved_no_memory(const spar_session *s) {
 }
 
 int spari_saved_check_call(const spar_session *s, const char *call, const char *path) {
-    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress", call);
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress; call this before or after it",
+                  call);
     SPARI_REQUIRE(s, !s->state.standing, SPAR_ERR_STATE,
                   "%s: a static solution or the initial accelerations are in progress; save or load after them", call);
     SPARI_REQUIRE(s, path && path[0], SPAR_ERR_ARGUMENT, "%s: the path is empty; give the name of a file", call);

@@ -14,7 +14,8 @@ static int check_within(spar_session *s, const char *call, const double *dt, dou
     SPARI_TRY(spari_need_dt(s, call, first));
     SPARI_REQUIRE(s, spari_step_control_is_set(s), SPAR_ERR_STATE,
                   "%s: no tolerance is set; call spar_session_set_tolerance first", call);
-    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress", call);
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress; call this before or after it",
+                  call);
     SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is in progress; accept or reject it first", call);
     return SPAR_OK;

@@ -88,7 +88,7 @@ static int check_claim(const spar_fluid *fluid, const char *call, const double *
                   "%s: fluid '%s': the force is (%g, %g, %g); give finite numbers", call, name, force[0], force[1],
                   force[2]);
     SPARI_REQUIRE(s, !moment || spari_first_nonfinite(moment, 3) < 0, SPAR_ERR_ARGUMENT,
-                  "%s: fluid '%s': the moment has an entry that is not finite", call, name);
+                  "%s: fluid '%s': the moment has an entry that is not finite; give finite numbers", call, name);
     SPARI_REQUIRE(s, isfinite(rtol) && rtol > 0, SPAR_ERR_ARGUMENT,
                   "%s: fluid '%s': rtol is %g; give a number above 0, such as 1e-9", call, name, rtol);
     return SPAR_OK;

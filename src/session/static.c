@@ -42,7 +42,8 @@ static int check_member_static(const spar_member *m, const char *call, int load_
     SPARI_REQUIRE(s, load_steps >= 1 && load_steps <= SPARI_STATIC_MOST, SPAR_ERR_ARGUMENT,
                   "%s: '%s': %d load steps; give 1 to %d", call, m->name, load_steps, SPARI_STATIC_MOST);
     SPARI_REQUIRE(s, spari_fidelity_has_equilibrium(m), SPAR_ERR_UNSUPPORTED,
-                  "%s: spar does not solve '%s', which is a point or an external member", call, m->name);
+                  "%s: spar does not solve '%s', which is a point or an external member; solve a beam or a rigid body",
+                  call, m->name);
     SPARI_TRY(check_held(m, call));
     return s->clock.started ? SPAR_OK : spari_session_pushes(s, call);
 }

@@ -467,7 +467,8 @@ int spar_member_commit(spar_member *member) {
     spar_session *s = member->session;
     int status;
     if (member->committed) {
-        status = spari_fail(s, SPAR_ERR_STATE, "%s: '%s' is committed already", __func__, member->name);
+        status = spari_fail(s, SPAR_ERR_STATE, "%s: '%s' is committed already; commit a member once", __func__,
+                            member->name);
     } else {
         status = check_complete(member);
         if (status == SPAR_OK) {

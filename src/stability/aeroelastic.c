@@ -60,7 +60,8 @@ static int find_structure(spar_session *s, const coupled_ask *ask, coupled *c) {
     int64_t modes = ask->fluid.modes, n = ask->n;
     SPARI_TRY(spari_joints_place(s));
     SPARI_TRY(spari_small_motions_create(&c->motions, s, NULL));
-    SPARI_REQUIRE(s, c->motions.parts > 0, SPAR_ERR_UNSUPPORTED, "the session has no member that spar solves");
+    SPARI_REQUIRE(s, c->motions.parts > 0, SPAR_ERR_UNSUPPORTED,
+                  "the session has no member that spar solves; add one that is neither a point nor external");
     SPARI_REQUIRE(s, modes <= c->motions.size, SPAR_ERR_ARGUMENT, "%lld modes; there are %d unknowns", (long long)modes,
                   c->motions.size);
     c->reduced = (spari_reduced){.n = (int)modes, .dt = ask->fluid.run.dt, .memory = ask->fluid.memory};
@@ -180,7 +181,7 @@ static int check_coupled(spar_trial *t, const char *call, const coupled_ask *ask
                   "%s: shapes of %lld nodes; all members together have %lld", call, (long long)nodes,
                   (long long)ask->fluid.nodes);
     SPARI_REQUIRE(s, !shift || (isfinite(shift[0]) && isfinite(shift[1])), SPAR_ERR_ARGUMENT,
-                  "%s: the shift is not finite", call);
+                  "%s: the shift is not finite; give finite numbers", call);
     return SPAR_OK;
 }
 

@@ -226,7 +226,8 @@ static int find_shapes_of_period(spar_session *s, floquet *f) {
     int n = f->modes;
     SPARI_TRY(spari_joints_place(s));
     SPARI_TRY(spari_small_motions_create_loose(&f->motions, s));
-    SPARI_REQUIRE(s, f->motions.parts > 0, SPAR_ERR_UNSUPPORTED, "the session has no member that spar solves");
+    SPARI_REQUIRE(s, f->motions.parts > 0, SPAR_ERR_UNSUPPORTED,
+                  "the session has no member that spar solves; add one that is neither a point nor external");
     SPARI_REQUIRE(s, n <= f->motions.size, SPAR_ERR_ARGUMENT, "%d modes; there are %d unknowns", n, f->motions.size);
     int64_t square = (int64_t)n * n;
     f->shape =

@@ -147,9 +147,10 @@ static int find_damped_modes(spar_member *m, int64_t count, const int64_t *mode,
         }
         omega[k] = 6.283185307179586 * all[mode[k]];
         if (!(omega[k] > 0) || !isfinite(omega[k])) {
-            status =
-                spari_fail(s, SPAR_ERR_NUMERIC, "member '%s': mode %lld has the frequency %g Hz and cannot be damped",
-                           m->name, (long long)mode[k], all[mode[k]]);
+            status = spari_fail(
+                s, SPAR_ERR_NUMERIC,
+                "member '%s': mode %lld has the frequency %g Hz and cannot be damped; choose a mode that vibrates",
+                m->name, (long long)mode[k], all[mode[k]]);
         }
         spari_member_to_unique(m, 6, shapes + 6 * m->nodes * mode[k], x + 6 * u * k);
     }
@@ -185,7 +186,8 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
 
 static int check_modes(const spar_member *m, int64_t n, const int64_t *mode, const double *ratio) {
     spar_session *s = m->session;
-    SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "member '%s' is not a beam", m->name);
+    SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT, "member '%s' is not a beam; call this for a beam alone",
+                  m->name);
     SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
                   "member '%s' is not committed, so its modes are not known; call this between spar_member_commit and "
                   "the first step",

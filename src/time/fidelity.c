@@ -27,8 +27,9 @@ const spari_fidelity *spari_fidelity_of(const spar_member *m) {
 
 int spari_fidelity_check(const spar_member *m) {
     const spari_fidelity *row = table[m->fidelity];
-    SPARI_REQUIRE(m->session, m->fidelity == SPAR_FIDELITY_EXACT || (m->kind == SPARI_BEAM && !m->external),
-                  SPAR_ERR_STATE, "member '%s': only beams that spar solves can have a fidelity below exact", m->name);
+    SPARI_REQUIRE(
+        m->session, m->fidelity == SPAR_FIDELITY_EXACT || (m->kind == SPARI_BEAM && !m->external), SPAR_ERR_STATE,
+        "member '%s': only beams that spar solves can have a fidelity below exact; keep SPAR_FIDELITY_EXACT", m->name);
     SPARI_REQUIRE(m->session, (m->guess_count == 0 && !m->learned) || spari_fidelity_of(m)->solved,
                   SPAR_ERR_UNSUPPORTED,
                   "member '%s' is external or prescribed: added mass does not apply to prescribed members; remove "

@@ -296,7 +296,8 @@ int spari_record_look(spari_record *r, spar_session *s, int64_t i) {
     SPARI_TRY(look_at_goals(r, s, now));
     r->steps_done = i;
     int64_t bad = spari_first_nonfinite(now, width(r));
-    SPARI_REQUIRE(s, bad < 0, SPAR_ERR_NUMERIC, "the trial run has diverged");
+    SPARI_REQUIRE(s, bad < 0, SPAR_ERR_NUMERIC,
+                  "the trial run has diverged; start with a smaller dt, or iterate the coupling");
     if (i >= 3) {
         double to = i == r->steps ? (double)i : (double)(i - 1);
         interpolate(r, i, i == 3 ? 0 : (double)(i - 2), to);

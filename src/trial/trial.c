@@ -370,7 +370,8 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_trial_set
 }
 
 int spari_trial_check(spar_session *s, const char *call) {
-    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress", call);
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress; call this before or after it",
+                  call);
     SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is in progress; accept or reject it first", call);
     for (const spar_member *m = s->members; m; m = m->next) {

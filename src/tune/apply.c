@@ -181,7 +181,8 @@ static void confirm(spar_session *s, change *c) {
 
 static int check_apply(spar_trial *t, const char *call) {
     spar_session *s = t->session;
-    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress", call);
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress; call this before or after it",
+                  call);
     SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is in progress; accept or reject it first", call);
     SPARI_REQUIRE(s, t->advised.given, SPAR_ERR_STATE, "%s: there is no advice yet; call %s first", call,

@@ -285,7 +285,7 @@ static void test_nothing(void **state) {
         spar_member *member = NULL;
         assert_int_equal(spar_case_member_count(c), 0);
         assert_int_equal(spar_case_member(c, "wing", &member), SPAR_ERR_ARGUMENT);
-        assert_non_null(strstr(spar_case_message(), "nor any other"));
+        assert_non_null(strstr(spar_case_message(), "the case has none"));
         GOOD(spar_case_output(c, 0, 0, NULL));
         OK(s, spar_step(s, 0.1, NULL, NULL, NULL));
         spar_case_free(&c);
@@ -487,7 +487,7 @@ static void test_mistakes(void **state) {
         {"[beam a]\n", "line 1: spar_member_commit: ", "a"},
         {"[beam a]\nnodes 1\n", "line 2: spar_beam_create", "nodes"},
         {"[beam a]\naxis 0 0 0 0\naxis 1 1 0 0 5\n", "line 3: axis has 5 numbers where the first one, in line 2, has 4",
-         "make them alike"},
+         "give all the same number"},
         {"[beam a]\naxis 0 0 0 0\naxis 0 1 0 0\n", "line 2: spar_beam_set_axis", "eta"},
         {"[beam a]\naxis 0 0 0 0\naxis 1 1 0 0\nnode 0 0 0\n", "line 4: nodes and an axis (line 2)", "keep one"},
         {"[beam a]\nnode 0 0 0 1\n", "line 2: a node has 4 numbers", "qw qx qy qz"},
@@ -506,7 +506,7 @@ static void test_mistakes(void **state) {
          "use SPAR_FIDELITY_LINEAR"},
         {"[point a]\norientation 0 0 0 0\n", "line 2: spar_member_set_placement", "a"},
         {"[joint j]\n", "line 1: [joint j] has no end a", "a MEMBER NODE"},
-        {"[joint j]\na wing 0\n", "line 2: there is no member 'wing'", "nor any other"},
+        {"[joint j]\na wing 0\n", "line 2: there is no member 'wing'", "the case has none"},
         {"[point tip]\n[joint j]\na tap 0\nb ground\n", "line 3: there is no member 'tap'", "did you mean 'tip'?"},
         {"[point tip]\n[joint j]\na tip 0\nb tip\n", "line 4: b: 'tip' has 1 nodes", "first, last, or a number"},
         {"[point tip]\n[joint j]\na tip 0\nb ground\nfree q\n", "line 5: free: 'q' is not known", "rx, ry, rz"},
@@ -855,13 +855,13 @@ static void test_aero_mistakes(void **state) {
     static const struct {
         const char *text, *what;
     } wrong[] = {
-        {"[aero a]\nblades wing\n", "line 8: [aero a] wants blades MEMBER ..., and either"},
+        {"[aero a]\nblades wing\n", "line 8: [aero a] needs blades MEMBER ..., and either"},
         {"[aero a]\nblades wnig\nsection 0 1 0 p\n", "line 9: there is no member 'wnig'; did you mean 'wing'?"},
         {"[aero a]\nblades wing\nsection 0 1 0 none.txt\nsection 1 1 0 none.txt\n", "none.txt: cannot be read"},
         {"[aero a]\nblades wing\nsection 0 1 0 p 1\n", "line 10: section has 5 values"},
         {"[aero a]\nblades wing\naerodyn none.dat\n", "line 10: spar_fluid_read_aerodyn: "},
         {"[aero a]\nblades wing\nstations 3 0 1\nsection 0 1 0 p\n", "line 10: stations is about AeroDyn's files"},
-        {"[aero a]\nblades wing\nsection 0 1 0 p\naerodyn p\n", "line 8: [aero a] wants blades"},
+        {"[aero a]\nblades wing\nsection 0 1 0 p\naerodyn p\n", "line 8: [aero a] needs blades"},
         {"[aero a]\nblades wing\naerodyn \"" SPAR_SOURCE_DIR "/tests/data/aerodyn/primary.dat\"\n"
          "stations 3 0 4\nshear exp 0 0 0 0 0 1 90 .2\n",
          "line 12: "},
@@ -932,7 +932,7 @@ static void test_resume(void **state) {
         {"", "test_case_resume.000003", 0.03, 3, SPAR_OK, ""},
         {"", "test_case_resume.000003", 0.03 * (1 + 1e-12), -1, SPAR_OK, ""},
         {"[session]\nrestart test_case_resume.000003\n", "nowhere", 0.03, 3, SPAR_OK, ""},
-        {"", "nowhere", 0.03, 3, SPAR_ERR_IO, "the flow goes on from t = 0.03 s, and the structure cannot"},
+        {"", "nowhere", 0.03, 3, SPAR_ERR_IO, "the flow continues from t = 0.03 s, and the structure cannot"},
         {"", NULL, 0.03, 3, SPAR_ERR_ARGUMENT, "the flow starts at t = 0.03 s and the structure at 0"},
         {"", "test_case_resume.000003", 0.04, 3, SPAR_ERR_ARGUMENT, "from 0.03 s (step 3)"},
         {"", "test_case_resume.000003", 0.03, 4, SPAR_ERR_ARGUMENT, "from t = 0.03 s (step 4)"},

@@ -32,7 +32,7 @@ if(SPAR_BUILD_TESTS AND SPAR_MPI)
         --steps 6 --restart '${out}${what}' --out '${out}${what}_rest'")
   endforeach()
   set_tests_properties(host_code_saturne_without PROPERTIES
-    PASS_REGULAR_EXPRESSION "the flow goes on from t = 0.0075 s, and the structure cannot")
+    PASS_REGULAR_EXPRESSION "the flow continues from t = 0.0075 s, and the structure cannot")
   set_tests_properties(host_code_saturne_other PROPERTIES
     PASS_REGULAR_EXPRESSION "from t = 0.0075 s .step 3., and the structure in restart/spar from 0.015 s .step 6.")
   # groups that the mesh does not have

@@ -156,7 +156,7 @@ static int64_t place_of(const spar_case *c, int line, const char *what, const ch
         }
     }
     if (n == 0) {
-        (void)case_fail(&c->text, line, SPAR_ERR_ARGUMENT, "there is no %s '%.60s', nor any other", what, name);
+        (void)case_fail(&c->text, line, SPAR_ERR_ARGUMENT, "there is no %s '%.60s'; the case has none", what, name);
     } else {
         (void)case_fail(&c->text, line, SPAR_ERR_ARGUMENT, "there is no %s '%.60s'; did you mean '%s'?", what, name,
                         case_nearest(name, n, names));
@@ -193,7 +193,7 @@ int case_find_node(const spar_case *c, const case_line *line, int i, const spar_
     DO(c, line->number, spar_member_get_count(member, &nodes));
     if (i > line->n) {
         return case_fail(&c->text, line->number, SPAR_ERR_ARGUMENT,
-                         "%s: '%s' has %lld nodes; say which behind its name: first, last, or a number", line->label,
+                         "%s: '%s' has %lld nodes; name one of them: first, last, or a number", line->label,
                          spar_member_get_name(member), (long long)nodes);
     }
     int first = strcmp(line->word[i], "first") == 0, last = strcmp(line->word[i], "last") == 0;
@@ -327,7 +327,7 @@ int spar_case_get_word(spar_case *scene, const char *key, int i, int *n, const c
 static int check_host(const spar_case *c, const case_block *block) {
     if (case_is(block, "aero") && !c->blown) {
         return case_fail(&c->text, block->number, SPAR_ERR_ARGUMENT,
-                         "this host has no blade elements; take [aero %s] out", block->name);
+                         "this host has no blade elements; remove [aero %s]", block->name);
     }
     if (c->host && is_of_host(block) && !case_is_for(block, c->host) && case_distance(block->name, c->host) <= 2) {
         return case_fail(&c->text, block->number, SPAR_ERR_ARGUMENT,
@@ -337,7 +337,7 @@ static int check_host(const spar_case *c, const case_block *block) {
     const case_line *line =
         case_is(block, "session") && case_is_for(block, c->host) ? case_find(block, "restart") : NULL;
     return line && !c->restarts ? case_fail(&c->text, line->number, SPAR_ERR_ARGUMENT,
-                                            "this host cannot go on from a saved run; take restart out")
+                                            "this host cannot continue a saved run; remove restart")
                                 : SPAR_OK;
 }
 
@@ -350,7 +350,7 @@ static int check_keys(const spar_case *c, const case_block *block) {
         if (!block->line[i].used) {
             const char *near = case_nearest(block->line[i].word[0], c->asks, names);
             return case_fail(&c->text, block->line[i].number, SPAR_ERR_ARGUMENT,
-                             "the host has not asked for '%.60s'; did you mean '%s'? Otherwise take it out",
+                             "the host has not asked for '%.60s'; did you mean '%s'? Otherwise remove it",
                              block->line[i].word[0], near);
         }
     }

@@ -31,10 +31,10 @@ static int read_polar(const spar_case *c, const case_line *line, spar_polar **po
     status = status == SPAR_OK && !x ? case_no_memory(c) : status;
     for (int64_t i = 0; x && status == SPAR_OK && i < n; i++) {
         const case_line *row = table.block->line + i;
-        status = row->n + 1 == width
-                     ? case_numbers(&table, row, 0, width, x + 4 * (n + i))
-                     : case_fail(&table, row->number, SPAR_ERR_ARGUMENT,
-                                 "has %d numbers where the first row has %d; make them alike", row->n + 1, width);
+        status = row->n + 1 == width ? case_numbers(&table, row, 0, width, x + 4 * (n + i))
+                                     : case_fail(&table, row->number, SPAR_ERR_ARGUMENT,
+                                                 "has %d numbers where the first row has %d; give all the same number",
+                                                 row->n + 1, width);
         for (int k = 0; k < 4; k++) {
             column[k] = x + k * n;
             column[k][i] = x[4 * (n + i) + k];
@@ -95,7 +95,7 @@ static int find_files(const spar_case *c, const case_block *block, aerodyn_files
     f->line = case_find(block, "aerodyn");
     if (!f->line) {
         return axes || even ? case_fail(&c->text, (axes ? axes : even)->number, SPAR_ERR_ARGUMENT,
-                                        "%s is about AeroDyn's files; give aerodyn PRIMARY, or take it out",
+                                        "%s applies to AeroDyn's files alone; give aerodyn PRIMARY, or remove it",
                                         (axes ? axes : even)->label)
                             : SPAR_OK;
     }
@@ -131,7 +131,7 @@ static int make_fluids(const spar_case *c, const case_block *block, const aerody
     const case_line *blades = case_find(block, "blades");
     if (!blades || (rows > 0) == (f->line != NULL)) {
         return case_fail(&c->text, block->number, SPAR_ERR_ARGUMENT,
-                         "[aero %s] wants blades MEMBER ..., and either aerodyn PRIMARY or rows of section",
+                         "[aero %s] needs blades MEMBER ..., and either aerodyn PRIMARY or rows of section",
                          block->name);
     }
     air->fluid = calloc((size_t)blades->n, sizeof(spar_fluid *));

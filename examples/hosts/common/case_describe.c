@@ -122,8 +122,8 @@ static int read_rows(const case_text *text, const case_block *block, const char 
         r->line = n == 0 ? line->number : r->line;
         if (width != r->width) {
             return case_fail(text, line->number, SPAR_ERR_ARGUMENT,
-                             "%s has %d numbers where the first one, in line %d, has %d; make them alike", line->label,
-                             width, r->line, r->width);
+                             "%s has %d numbers where the first one, in line %d, has %d; give all the same number",
+                             line->label, width, r->line, r->width);
         }
         n++;
     }
@@ -163,7 +163,7 @@ static int gather(const spar_case *c, const case_block *block, const char *key, 
     int status = read_beside(c, file, &table);
     status = status == SPAR_OK ? read_rows(&table, table.block, NULL, 0, r) : status;
     if (status == SPAR_OK && r->n == 0) {
-        status = case_fail(&table, 0, SPAR_ERR_IO, "has no row of numbers");
+        status = case_fail(&table, 0, SPAR_ERR_IO, "has no row of numbers; give at least one");
     }
     r->line = file->number;
     case_text_free(&table);
@@ -280,7 +280,7 @@ static int set_fidelity(const spar_case *c, const case_line *line, spar_member *
     CASE_TRY(case_choice(&c->text, line, 1, names, &kind));
     if ((kind == SPAR_FIDELITY_MODAL) != (line->n > 1)) {
         return case_fail(&c->text, line->number, SPAR_ERR_ARGUMENT,
-                         "fidelity %s: modal has the number of its modes behind it, the others nothing", names[kind]);
+                         "fidelity %s: modal is followed by its number of modes, the others by nothing", names[kind]);
     }
     CASE_TRY(line->n > 1 ? case_whole(&c->text, line, 2, 1, INT_MAX, &modes) : SPAR_OK);
     return case_told(c, line->number, spar_member_set_fidelity(beam, kind, modes));

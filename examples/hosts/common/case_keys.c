@@ -209,7 +209,7 @@ static int check_heading(const case_text *text, int64_t at) {
         int same = kind->naming == NAME_OWN ? name_group(other) == name_group(block) : case_is(other, block->kind);
         if (same && strcmp(other->name, block->name) == 0) {
             return case_fail(text, block->number, SPAR_ERR_ARGUMENT,
-                             "[%s %s] bears the name of line %d; give it another, or put the two together", block->kind,
+                             "[%s %s] has the name of the block in line %d; rename it, or merge the two", block->kind,
                              block->name, other->number);
         }
     }

@@ -62,8 +62,7 @@ static int read_block(spar_case *c, const case_block *block) {
                          LONGEST_PATH / 2);
     }
     if (watch && !history) {
-        return case_fail(&c->text, watch->number, SPAR_ERR_ARGUMENT,
-                         "watch adds columns to the history, and there is none; give history FILE");
+        return case_fail(&c->text, watch->number, SPAR_ERR_ARGUMENT, "watch needs a history; give history FILE");
     }
     return read_watches(c, block);
 }
@@ -168,13 +167,14 @@ int spar_case_cut_history(const char *path, double t) {
     case_quiet quiet;
     FILE *file = fopen(path, "r");
     if (!file) {
-        return errno == ENOENT ? SPAR_OK : no_history(path, "check folder and rights");
+        return errno == ENOENT ? SPAR_OK : no_history(path, "check the folder and its permissions");
     }
     int status = case_quiet_begin(&quiet);
     if (status == SPAR_OK) {
         const long end = find_row_after(file, t * (1 + SAME_TIME));
         case_quiet_end(&quiet);
-        status = end >= 0 && truncate(path, end) == 0 ? SPAR_OK : no_history(path, "check folder and rights");
+        status =
+            end >= 0 && truncate(path, end) == 0 ? SPAR_OK : no_history(path, "check the folder and its permissions");
     }
     (void)fclose(file);
     return status;
@@ -186,7 +186,7 @@ static int open_history(spar_case *c, double t, int64_t step) {
     o->headed = step > 1;
     CASE_TRY(o->headed ? spar_case_cut_history(o->history_path, t * (1 - 2 * SAME_TIME)) : SPAR_OK);
     o->history = fopen(o->history_path, o->headed ? "a" : "w");
-    return o->history ? SPAR_OK : no_history(o->history_path, "check folder and rights");
+    return o->history ? SPAR_OK : no_history(o->history_path, "check the folder and its permissions");
 }
 
 static void write_heading(const case_output *o) {
@@ -321,7 +321,8 @@ int spar_case_resume(spar_case *scene, const char *path, double t, int64_t step)
     if (!file && t == 0 && step < 1) {
         return SPAR_OK;
     }
-    (void)snprintf(flow, sizeof flow, path ? "the flow goes on from t = %.10g s" : "the flow starts at t = %.10g s", t);
+    (void)snprintf(flow, sizeof flow, path ? "the flow continues from t = %.10g s" : "the flow starts at t = %.10g s",
+                   t);
     if (!file) {
         return case_fail(&scene->text, 0, SPAR_ERR_ARGUMENT, "%s and the structure at 0; give restart FILE", flow);
     }

@@ -75,7 +75,7 @@ static int read_stream(case_text *text, FILE *file) {
             break;
         }
         if (room >= MOST_BYTES) {
-            return case_fail(text, 0, SPAR_ERR_IO, "has more than %d MB; is it a text?", MOST_BYTES >> 20);
+            return case_fail(text, 0, SPAR_ERR_IO, "has more than %d MB; give a text file", MOST_BYTES >> 20);
         }
         char *more = realloc(text->bytes, room *= 2);
         if (!more) {
@@ -159,7 +159,8 @@ static int begin_block(case_text *text, char *heading, int number, case_line *li
         rest++;
     }
     if (!end || (*rest && *rest != '#')) {
-        return case_fail(text, number, SPAR_ERR_ARGUMENT, "a heading is [kind] or [kind name], and alone on its line");
+        return case_fail(text, number, SPAR_ERR_ARGUMENT,
+                         "the heading is not complete; write [kind] or [kind name], alone on its line");
     }
     *end = '\0';
     char *kind = heading + 1, *name;
@@ -188,7 +189,7 @@ static int split_line(case_text *text, char *at, int number, case_line *line, ch
     }
     line->n = (int)(word - line->word) - 1;
     line->label = label ? label : line->word[0];
-    return open ? case_fail(text, number, SPAR_ERR_ARGUMENT, "a quote is not closed on its line") : SPAR_OK;
+    return open ? case_fail(text, number, SPAR_ERR_ARGUMENT, "a quote is not closed on its line; close it") : SPAR_OK;
 }
 
 static int split_bytes(case_text *text, int headings) {
@@ -212,7 +213,7 @@ static int split_bytes(case_text *text, int headings) {
         } else if (*at && *at != '#') {
             status = text->n > 0 ? split_line(text, at, number, line, word, headings ? NULL : "a row")
                                  : case_fail(text, number, SPAR_ERR_ARGUMENT,
-                                             "stands before any heading; begin with one, such as [beam wing]");
+                                             "is before the first heading; begin with a heading, such as [beam wing]");
             word += line->n + 1;
             line++;
             text->block[text->n > 0 ? text->n - 1 : 0].n++;
