@@ -459,20 +459,21 @@ static void test_mistakes(void **state) {
     static const struct {
         const char *text, *what, *cure;
     } wrong[] = {
-        {"gravity 0 0 1\n", "line 1: stands before any heading", "[beam wing]"},
-        {"[session\n", "line 1: a heading is [kind]", "alone on its line"},
-        {"[session] gravity 0 0 1\n", "line 1: a heading is [kind]", "alone on its line"},
+        {"gravity 0 0 1\n", "line 1: is before the first heading", "[beam wing]"},
+        {"[session\n", "line 1: the heading is not complete", "alone on its line"},
+        {"[session] gravity 0 0 1\n", "line 1: the heading is not complete", "alone on its line"},
         {"[]\n", "line 1: no heading []", "did you mean"},
         {"\n[baem wing]\n", "line 2: no heading [baem]", "did you mean [beam]?"},
         {"[beam]\n", "line 1: [beam] needs a name", "[beam wing]"},
-        {"[session]\n\n[session]\n", "line 3: [session ] bears the name of line 1", "put the two together"},
-        {"[point a]\n[rigid a]\nmass 1 1 1 1 1 1\n", "line 2: [rigid a] bears the name of line 1", "another"},
+        {"[session]\n\n[session]\n", "line 3: [session ] has the name of the block in line 1", "merge the two"},
+        {"[point a]\n[rigid a]\nmass 1 1 1 1 1 1\n", "line 2: [rigid a] has the name of the block in line 1",
+         "rename it"},
         {"[session]\ngarvity 0 0 1\n", "line 2: [session] has no key 'garvity'", "did you mean 'gravity'?"},
         {"[point a]\nelements 3\n", "line 2: [point] has no key 'elements'", "did you mean"},
         {"[session]\ngravity 0 0\n", "line 2: gravity has 2 values", "give 3"},
         {"[session]\ngravity 0 0 0 0\n", "line 2: gravity has 4 values", "give 3"},
         {"[session]\ngravity 0 0 1\ngravity 0 0 1\n", "line 3: gravity is given twice", "first in line 2"},
-        {"[session]\ngravity 0 0 \"1\n", "line 2: a quote is not closed", "its line"},
+        {"[session]\ngravity 0 0 \"1\n", "line 2: a quote is not closed", "close it"},
         {"[session]\ngravity 0 0 1,5\n", "line 2: gravity: '1,5' is not a number", "write it as 1, -0.5 or 2e-3"},
         {"[session]\ngravity 0 0 nan\n", "line 2: gravity: 'nan' is not a number", "write it"},
         {"[session]\ngravity 0 0 1e999\n", "line 2: gravity: '1e999' is not a number", "write it"},
@@ -493,11 +494,11 @@ static void test_mistakes(void **state) {
         {"[beam a]\nnode 0 0 0 1\n", "line 2: a node has 4 numbers", "qw qx qy qz"},
         {"[beam a]\nsection 0 1 1 1 1 1 1 1\n", "line 2: a row of the sections has 8 numbers", "6, 21 or 36"},
         {"[beam a]\nsection 0 1 1 1 1 1 -1\n", "line 2: spar_beam_set_sections", "a"},
-        {"[beam a]\naxis_file nowhere.txt\n", "nowhere.txt: cannot be read", "check path and rights"},
+        {"[beam a]\naxis_file nowhere.txt\n", "nowhere.txt: cannot be read", "check the path and its permissions"},
         {"[beam a]\naxis 0 0 0 0\naxis_file nowhere.txt\n", "line 2: axis and axis_file (line 3) are both", "keep one"},
         {"[beam a]\nbeamdyn nowhere.inp\n", "line 2: spar_beam_read_beamdyn", "nowhere.inp"},
-        {"[beam a]\nfidelity modal\n", "line 2: fidelity modal", "number of its modes"},
-        {"[beam a]\nfidelity exact 3\n", "line 2: fidelity exact", "number of its modes"},
+        {"[beam a]\nfidelity modal\n", "line 2: fidelity modal", "its number of modes"},
+        {"[beam a]\nfidelity exact 3\n", "line 2: fidelity exact", "its number of modes"},
         {"[beam a]\nquadrature simpson 3\n", "line 2: quadrature: 'simpson' is not known", "gauss, lobatto, sections"},
         {"[point a]\nload last dead 0 0 0 0 0\n", "line 2: load has 7 values", "give 8"},
         {"[point a]\nload 1 dead 0 0 0 0 0 0\n", "line 2: load: 1", "a whole number from 0 to 0"},
@@ -514,7 +515,7 @@ static void test_mistakes(void **state) {
          "j"},
         {"[point tip]\n[line j]\na tip 0 0 0 0\nb ground 0 0 0\n", "line 2: spar_link_create", "j"},
         {"[point tip]\n[line j]\na tip 0 0 0 0\nb ground 0 0 1 1 1\n", "line 4: b has 6 values", "give 4 to 5"},
-        {"[point tip]\n[output]\nwatch tip 0\n", "line 3: watch adds columns", "give history FILE"},
+        {"[point tip]\n[output]\nwatch tip 0\n", "line 3: watch needs a history", "give history FILE"},
         {"[point tip]\n[output]\nhistory h\nwatch top 0\n", "line 4: there is no member 'top'", "'tip'"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
@@ -782,7 +783,7 @@ static spar_case *air_by_text(spar_session *s) {
                    wing_text);
     spar_case *c = read_text(s, NULL, text);
     assert_int_equal(spar_case_check(c), SPAR_ERR_ARGUMENT);
-    assert_non_null(strstr(spar_case_message(), "this host has no blade elements; take [aero air] out"));
+    assert_non_null(strstr(spar_case_message(), "this host has no blade elements; remove [aero air]"));
     GOOD(spar_case_make_aero(c, 0));
     GOOD(spar_case_check(c));
     assert_int_equal(spar_case_make_aero(c, 0), SPAR_ERR_STATE);
@@ -860,7 +861,8 @@ static void test_aero_mistakes(void **state) {
         {"[aero a]\nblades wing\nsection 0 1 0 none.txt\nsection 1 1 0 none.txt\n", "none.txt: cannot be read"},
         {"[aero a]\nblades wing\nsection 0 1 0 p 1\n", "line 10: section has 5 values"},
         {"[aero a]\nblades wing\naerodyn none.dat\n", "line 10: spar_fluid_read_aerodyn: "},
-        {"[aero a]\nblades wing\nstations 3 0 1\nsection 0 1 0 p\n", "line 10: stations is about AeroDyn's files"},
+        {"[aero a]\nblades wing\nstations 3 0 1\nsection 0 1 0 p\n",
+         "line 10: stations applies to AeroDyn's files alone"},
         {"[aero a]\nblades wing\nsection 0 1 0 p\naerodyn p\n", "line 8: [aero a] needs blades"},
         {"[aero a]\nblades wing\naerodyn \"" SPAR_SOURCE_DIR "/tests/data/aerodyn/primary.dat\"\n"
          "stations 3 0 4\nshear exp 0 0 0 0 0 1 90 .2\n",
@@ -893,7 +895,7 @@ static void test_restart(void **state) {
         spar_session *s = scene_session();
         spar_case *c = read_text(s, NULL, text);
         assert_int_equal(spar_case_check(c), k ? SPAR_ERR_ARGUMENT : SPAR_OK);
-        assert_true(!k || strstr(spar_case_message(), "cannot go on from a saved run; take restart out"));
+        assert_true(!k || strstr(spar_case_message(), "cannot continue a saved run; remove restart"));
         GOOD(spar_case_restart(c, &restarted));
         GOOD(spar_case_check(c));
         assert_int_equal(restarted, k);

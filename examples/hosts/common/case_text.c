@@ -57,9 +57,7 @@ void case_quiet_end(case_quiet *quiet) {
 /* ---- the file ---- */
 
 static int unreadable(const case_text *text, int reason) {
-    return case_fail(text, 0, SPAR_ERR_IO,
-                     "cannot be read: %s; check path and rights, the file has to be there on "
-                     "every rank",
+    return case_fail(text, 0, SPAR_ERR_IO, "cannot be read: %s; check the path and its permissions on every rank",
                      strerror(reason ? reason : EIO));
 }
 
