@@ -27,7 +27,7 @@ void spari_small_motions_free(spari_small_motions *w) {
 
 int spari_need_mass(const spar_member *m) {
     SPARI_REQUIRE(m->session, m->body && m->body->mass && (m->effects & SPAR_EFFECT_INERTIA), SPAR_ERR_UNSUPPORTED,
-                  "'%s' has no mass in spar", m->name);
+                  "'%s' has no mass in spar; give its sections mass", m->name);
     return SPAR_OK;
 }
 
