@@ -47,6 +47,9 @@ foam_test(_one "${out}_cases/one.case" --no-vorticity --refine 0.5 --steps 4 --s
 foam_test(_members "${out}_cases/members.case" --no-vorticity --refine 0.5 --steps 4 --scheme explicit --correctors 1 --set halves=1
   --against "${out}_one" --columns 7)
 
+# Two members on three patches: each flap is the mirror image of the other (../code_saturne/flaps/compare.awk).
+foam_test(_flaps flaps --no-vorticity --refine 0.5 --steps 12)
+
 # In a mesh of empty patches a pressure of 10 kPa on all sides neither twists the flag out of the plane nor ends the run, also where
 # the case file does not hold the flag in the plane.
 file(READ "${SPAR_HOST_DIR}/../cases/flag.case" text)
