@@ -316,8 +316,9 @@ SPAR_API int spar_fluid_set_motion_stations(spar_fluid *fluid, int64_t n, const 
    distance, 0 where the mesh is fixed. A node at X that the section moves to x is pulled at X + w (x - X), with
    velocity w v and acceleration w a. Two fluids whose weights add to 1 blend the motion of two members. Loads are
    not weighed. Weights set after spar_fluid_fade_motion replace the fade: lever arms rotate at full length, and the
-   volumes of the mesh are not watched. While there are weights, pulls of orientation, angular velocity and angular acceleration are
-   SPAR_ERR_UNSUPPORTED. New motion nodes remove the weights. Not for stations (SPAR_ERR_STATE). Not saved.
+   volumes of the mesh are not watched. While there are weights, pulls of orientation, angular velocity and angular
+   acceleration are SPAR_ERR_UNSUPPORTED. New motion nodes remove the weights. Not for stations (SPAR_ERR_STATE). Not
+   saved.
      n: in, number of motion nodes, 0: no weights (default)
      w[n]: in, in [0,1], NULL: none, with n = 0 */
 SPAR_API int spar_fluid_set_motion_weights(spar_fluid *fluid, int64_t n, const double *w);
