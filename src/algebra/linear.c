@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Chains of so many elements and more are cut in the middle; elements are worked on so many at a time. */
+/* LONG: chains of at least so many elements are cut in the middle. ELEMENTS: so many are processed at a time. */
 enum { LONG = 64, ELEMENTS = 16, GATHERED = 128 };
 
 /* At most this many constrained first unknowns of an element are removed from a dense matrix. */
@@ -20,14 +20,13 @@ enum { MOST_LEAD = 8 };
 
 /* All memory is allocated at the beginning: nothing in a step allocates.
 
-   The unknowns that an element has to itself, where they are many, are eliminated of its own matrix, element by
-   element, which leaves a chain of their ends with blocks of 2 overlap. Half the numbers of a band over all unknowns,
-   and elements are independent.
+   Elements with many inner unknowns: these are eliminated element by element. A chain of the elements' ends remains,
+   with blocks of 2 overlap. It has half the numbers of a band over all unknowns, and elements are independent.
 
-   A long chain is cut at the joint in its middle: its first half is this system, its second half, from the far end
-   backwards, another; both end with the joint's unknowns. Each takes out all but these, and has then in their corner
-   what it adds to their own system: (S + S') x = b + b' (burning at both ends; van der Vorst, Parallel Computing 5,
-   1987). That takes no more operations than one half after the other, and two threads can do it. */
+   A long chain is cut at the element boundary in its middle. The first half is this system. The second half, from the
+   far end backwards, is another. Both end with the unknowns of the boundary. Each half eliminates all others, which
+   leaves its part of the system of the boundary: (S + S') x = b + b' (van der Vorst, Parallel Computing 5, 1987).
+   This takes no more operations than one half after the other, and two threads can share it. */
 typedef struct linear_rows {
     double *block, *data; /* as allocated; from a cache line on */
     size_t rows, columns, step;

@@ -524,9 +524,9 @@ static int fail_singular(const spari_assembly *a) {
 }
 
 /* The published motion at the end of a step has velocities on the constraints. The scheme continues with its own
-   velocities, which are off the constraints by dt^2. With projected velocities the accelerations and the joints'
-   loads would be of first order only, because h^2 (1/2 - beta) b^n + h^2 beta b^{n+1} would have to make up for the
-   whole local error of the positions. */
+   velocities, which are off the constraints by dt^2. With projected velocities h^2 (1/2 - beta) b^n +
+   h^2 beta b^{n+1} would have to compensate the whole local error of the positions. Accelerations and loads of joints
+   would then be of first order only. */
 static int publish_all(spari_assembly *a, double dt) {
     if (a->constraints == 0) {
         a->component[0].member->row->publish(a->component[0].member);

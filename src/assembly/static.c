@@ -8,11 +8,11 @@
    moment in its plane.
 
    An assembly: if the loads stabilise a motion that no stiffness holds (a body that hangs on a hinge), the tangent is
-   singular until the joints' loads are known. Newton also goes to any equilibrium, even with a body upside down. In
-   these cases a stiffness is added to every motion (a shift), large enough that the system is that of a minimum, which
-   the count of its eigenvalues shows (Levenberg and Marquardt, with the inertia of the KKT system as in interior-point
-   methods; Nocedal and Wright, Numerical Optimization (2006), theorem 16.3). The iteration then goes downhill, and the
-   shift is 0 at its end. */
+   singular until the joints' loads are known. Newton also converges to any equilibrium, even with a body upside down.
+   In these cases a stiffness (shift) is added to every motion. It is large enough that the system is that of a minimum:
+   the number of negative eigenvalues shows this (Levenberg and Marquardt, with the inertia of the KKT system as in
+   interior-point methods; Nocedal and Wright, Numerical Optimization (2006), theorem 16.3). The iteration then goes
+   downhill, and the shift is 0 at its end. */
 #include "assembly.h"
 
 #include "../base/session.h"

@@ -208,8 +208,8 @@ static int count_blocks(spari_assembly *a, int *size) {
     return n;
 }
 
-/* A loop's constraints have their full rank in the relative coordinates of all that it goes through: they come after
-   the clusters on both of its ways up to where they meet. */
+/* The constraints of a loop closer have full rank only in the relative coordinates of the whole loop. They are
+   therefore eliminated after the clusters on both paths, up to the cluster where the paths meet. */
 static void close_loop(const spari_assembly *a, const spari_constraint *l, spari_block_pair *before, int64_t *befores) {
     int v[2] = {l->node[0], l->node[1]}, last[2] = {-1, -1};
     while (v[0] != v[1]) {

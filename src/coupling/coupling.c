@@ -204,10 +204,10 @@ static void report_added_mass(spari_coupling *c) {
 
 /* Newton's error returns as a load error, multiplied by mu in the motion norm; mu is the ratio of added mass to mass
    estimated from the loads. This error must be small compared with the last changes of the iteration, a hundredth of
-   the final one. That applies to the first solutions of a step too, because columns are differences of these and
-   serve in later steps. (With a tenth IQN-ILS takes up to 15 per cent more iterations with heavy exact fluids, with
-   a thousandth 5, tests/support/flows.h; a fluid solution costs more than a Newton iteration.) A small mu is not
-   trusted. */
+   the final one. This applies to the first solutions of a step too, because columns are differences of these and
+   serve in later steps. With a tenth, IQN-ILS takes up to 15 per cent more iterations with heavy exact fluids, with a
+   thousandth 5 (tests/support/flows.h). A fluid solution costs more than a Newton iteration. A mu below `least` is
+   raised to it. */
 double spari_coupling_share(const spar_session *s) {
     static const double part = 1e-3, least = 0.05;
     const spari_coupling *c = s->own->coupling;

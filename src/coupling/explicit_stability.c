@@ -69,8 +69,9 @@ static int is_growth(const spari_growth *g, const limit *limits, int count) {
     return 0;
 }
 
-/* The limits: of 6 10^5 steps with normally distributed random loads none counts as an instability, with an
-   instability the loads have grown by a factor of 10 to 10^4 (added mass up to 10 times the mass). */
+/* The limits were chosen by experiment. Of 6 10^5 steps with normally distributed random loads none counts as an
+   instability. When an instability is detected, the loads have grown by a factor of 10 to 10^4 (added mass up to 10
+   times the mass). */
 int spari_explicit_is_unstable(const spari_explicit_stability *is, double *factor) {
     static const double SIGNIFICANT = 0.5;
     static const int OFTEN = 5;

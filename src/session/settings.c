@@ -21,8 +21,8 @@
 /* Setter calls beside spar_session_set_option. */
 enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REPRODUCIBLE, TOLERANCE, OPTION };
 
-/* Rows with field, range, default and flags: for the arguments of a setter, in order; for an option that is a
-   number, or one of two words for 0 and 1; and for effects of a setter that is not an argument. */
+/* Rows with field, range, default and flags. REAL, WHOLE, ALONG: arguments of a setter, in order. OPTION_*: an option
+   that is a number, or one of two words for 0 and 1. STATE: state of the session that is compared across ranks. */
 #define FIELD(field) offsetof(spar_session, field)
 #define REAL(by, setter, key, field, least, most, range, initial, flags)                                               \
     {                                                                                                                  \

@@ -106,8 +106,8 @@ static int64_t size_of_saved(const spar_session *s, const spar_member *only) {
     return n;
 }
 
-/* Copies the solver data of the owner's members (of one with all that joints connect to it, or of all), to be
-   restored without an equilibrium: each with its length in front. */
+/* Copies the solver data of the owner's members, each with its length in front, to be restored if there is no
+   equilibrium. only: one member with all that joints connect to it; NULL: all members. */
 static int save_state(spar_session *s, const spar_member *only, double **saved_state) {
     double *at = *saved_state = spari_zalloc(size_of_saved(s, only), sizeof *at);
     SPARI_REQUIRE(s, at, SPAR_ERR_MEMORY, "no memory to save the state of the members");

@@ -184,9 +184,9 @@ static node_rotation rotation_since_tangent(const spari_component *p) {
                             .rotation = s->rotation}};
 }
 
-/* The reused tangent was formed when the nodes had other rotations: forces are rotated back node by node, and the
-   corrections forth, as if each node had carried its part of the tangent along. For a rigid rotation of the member this
-   is exact; for a beam that oscillates and bends it makes one tangent last some forty times longer than in fixed axes.
+/* The nodes have rotated since the reused tangent was formed. Forces are therefore rotated back node by node, and the
+   corrections forward. For a rigid rotation of the member this is exact. For a beam that oscillates and bends, one
+   tangent then lasts some forty times longer than in fixed axes.
    Returns the largest force, infinite if one is not finite. */
 static double rotate_back(const spari_component *p) {
     node_rotation t = rotation_since_tangent(p);
