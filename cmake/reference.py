@@ -323,19 +323,28 @@ def options_page(headers):
     fluids += [(k, "a finite number, s", "0", said[k]) for k in re.findall(r'FLUID_REAL\("([^"]*)"', fluid)]
     if len(setters) < 15 or len(options) < 10 or len(fluids) < 6:
         sys.exit(f"reference.py: the tables of settings are read wrongly: {len(setters)}, {len(options)}, {len(fluids)}")
-    clean = lambda text: span(re.sub(r"^.*?default[^:;]*?: |^(in|out)(, )?|^0 \(default\) \| ", "", re.sub(r"; default (?:[^;.]|\.\d)*(\.|$)", r"\1", text)).strip()).strip()
+    def clean(text, otherwise=""):
+        """What is said of a setting, less its default and its range, which have their own columns."""
+        text = re.sub(r"^[^:;]*default[^:;]*: |^(in|out)(, )?|^0 \(default\) \| ", "", text)
+        text = re.sub(r"[;,] default (?:[^;.,:]|\.\d)*", "", text)
+        text = re.sub(r",? (>= \d|in [\[(]\d,\d\])(?=[;.]|$)|^(>= \d|0 to 1|SPAR_COUPLING_\*|1 or 0 \(default\))[;,.]? ?|^0, 1 \(default\) or 2\. ", "", text.strip())
+        text = re.sub(r"^(N|m)(,? ?>= 0)?(, and)?$", r"\1", text.strip(" .;"))
+        return span(text if len(text.split()) > 1 else (otherwise + (f" ({text})" if text else "")))
+
+    first = {name: first_sentence(comment).rstrip(".") for h in headers for name, _, comment in h.calls()}
+    first["spar_session_set_coupling"] = "Coupling scheme and its stop test"
     table = lambda head, rows: head + "\n" + "|---" * head.count("|", 1) + "|\n" + "\n".join(rows)
     return "\n\n".join([
         MADE + "# Options and settings, with defaults and ranges",
         "A setting that is not made has its default. Settings of a session are made between steps, with the same values on every rank. "
         "A value out of range is refused with `SPAR_ERR_ARGUMENT`, and nothing changes.",
         "## Settings of a session by call",
-        table("| call | argument | default | range | meaning |",
-              [f"| {span(c)} | `{n}` | {d} | {span(r)} | {clean(t)} |" for c, n, r, d, t in setters]),
+        table("| call: argument | default | range | meaning |",
+              [f"| {span(c)}: `{n}` | {d} | {span(r)} | {clean(t, first[c])} |" for c, n, r, d, t in setters]),
         "## Options of a session by name",
         f"{span('spar_session_set_option')} takes a key and a value, both as text. "
         f"{span('spar_session_get_option')} answers the value.",
-        table("| key | default | range | meaning |", [f"| `{k}` | {d} | {r} | {clean(t)} |" for k, r, d, t in options]),
+        table("| key | default | range | meaning |", [f"| `{k}` | {d} | {r} | {clean(t, 'absolute part, see coupling.motion_rtol')} |" for k, r, d, t in options]),
         "## Options of a fluid by name",
         f"{span('spar_fluid_set_option')} takes a key and a value, both as text. The options of a fluid concern the nodes of one rank.",
         table("| key | default | range | meaning |", [f"| `{k}` | {d} | {r} | {clean(t)} |" for k, r, d, t in fluids]),
