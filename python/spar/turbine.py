@@ -15,6 +15,7 @@ downwind. Global axes: x downwind, y to the left of one who looks downwind, z up
 from __future__ import annotations
 
 import os
+import warnings
 from dataclasses import dataclass, field
 
 import numpy
@@ -185,6 +186,7 @@ class Turbine:
     drivetrain: tuple = (0.0, 0.0)  # N m/rad, N m s/rad; 0: rigid
     tower: Beam | None = None
     tower_base: float = 0.0  # m, height of the tower's base
+    left_out: str | None = None  # what its file has below the tower; the base is rigid instead, and build() warns
     air_density: float = 1.225
     rated_speed: float = 0.0  # rad/s
     rated_power: float = 0.0  # W
@@ -391,6 +393,9 @@ class Rotor:
         """Tower, nacelle, generator and hub, with their joints."""
         m, s = self.machine, self.session
         m.need('tower', 'nacelle', 'hub')
+        if m.left_out:
+            warnings.warn(f'{m.name}: the tower stands on a rigid base; {m.left_out} of its file is not read. Describe it yourself and '
+                          'tie the tower to it, or set Turbine.left_out to None', stacklevel=4)
         self.tower = m.tower.create(s)
         self.tower.set_placement([0, 0, m.tower_base], _UPRIGHT)
         self.tower.commit()

@@ -48,6 +48,7 @@ def read(path, stations=None):
     machine.air_density = float((data.get('environment') or {}).get('air_density', 1.225))
     if 'tower' in parts:
         machine.tower, machine.tower_base = read_tower(data)
+        machine.left_out = next((name for name in ('monopile', 'jacket', 'floating_platform') if name in parts), None)
     if not old:
         _bodies(machine, parts)
         machine.rated_speed = control.get('rated_rotor_speed', 0.0) * 2 * numpy.pi / 60
@@ -192,13 +193,13 @@ def read_tower(data):
 
 
 def _tower_of_layers(data, tower, shape):
-    """Version 1: a tube of one material, whose mass has the outfitting in it."""
-    inner = _need(tower, 'internal_structure_2d_fem', 'tower')
-    if len(inner['layers']) != 1:
-        raise ModelError(f'windIO: the tower has {len(inner["layers"])} layers; towers of one layer are read')
+    """A tube of one material, whose mass has the outfitting in it."""
+    inner = tower.get('internal_structure_2d_fem') or tower.get('structure') or {}  # version 1, 2
+    if len(inner.get('layers', [])) != 1:
+        raise ModelError(f'windIO: the tower has no matrices and {len(inner.get("layers", []))} layers; towers of one layer are read')
     layer = inner['layers'][0]
     steel = next((m for m in data.get('materials', []) if m['name'] == layer['material']), None)
-    if steel is None or not isinstance(steel['E'], float):
+    if steel is None or not isinstance(steel['E'], (float, int)):
         raise ModelError(f'windIO: {layer["material"]} of the tower is not an isotropic material of the file')
     at = numpy.asarray(shape['outer_diameter']['grid'], float)
     outer, wall = _at(shape['outer_diameter'], at, 'tower.outer_diameter'), _at(layer['thickness'], at, 'tower.thickness')

@@ -146,6 +146,25 @@ class Blade(unittest.TestCase):
         numpy.testing.assert_allclose(blade.damping, [3e-3, 1e-3, 2e-3, 6e-3, 4e-3, 5e-3])
         numpy.testing.assert_allclose(blade.twist, -10 * DEGREE)
 
+    def test_tower_of_layers(self):
+        """A windIO 2 tower of one steel layer: EA, EI and mass of a thin tube (diameter 6 m, wall 0.04 m), 7 % outfitting. A monopile
+        below it is not read, and building the whole says so."""
+        data = model()
+        data['materials'] = [{'name': 'steel', 'E': 200000000000, 'nu': 0.3, 'rho': 7800}]
+        data['components']['tower']['structure'] = {'outfitting_factor': 1.07, 'layers': [
+            {'name': 'wall', 'material': 'steel', 'thickness': constant(0.04)}]}
+        data['components']['monopile'] = {}
+        machine = windio.read(data)
+        mean, area = 5.96, numpy.pi * 5.96 * 0.04
+        for found, want in ((machine.tower.stiffness[0][4, 4], 2e11 * area * mean**2 / 8), (machine.tower.stiffness[0][0, 0], 2e11 * area),
+                            (machine.tower.mass[0][0, 0], 1.07 * 7800 * area)):
+            self.assertAlmostEqual(found, want, delta=1e-4 * want)  # (wall / diameter)^2
+        with spar.Session() as session, self.assertWarnsRegex(UserWarning, 'monopile of its file is not read'):
+            machine.build(session)
+        data['components']['tower']['structure'] = {}
+        with self.assertRaisesRegex(turbine.ModelError, 'no matrices and 0 layers'):
+            windio.read(data)
+
     def test_versions(self):
         """windIO 1 and 2 of one blade are one."""
         old, new = windio.read(old_model()), windio.read(model())
