@@ -1,8 +1,9 @@
 /* What it costs to map fluid nodes, to move them and to gather their loads.
 
-     transfer [largest n]   nodes per second over n = 10^3 .. largest (10^7) and P = 4, 6, 10, 16, beside the plain loop
-                            over stored weights (library flags; -O3 -march=native) and the time that the bytes alone
-                            would take
+     transfer [largest [smallest]]
+                            nodes per second over n = smallest (10^3) .. largest (10^7) and P = 4, 6, 10, 16, beside the
+                            plain loop over stored weights (library flags; -O3 -march=native) and the time that the
+                            bytes alone would take
      transfer single [n]    n (10^6) nodes of a host with single precision beside one with double, and what the bytes
                             of either would allow
      transfer point [n]     n (10^6) nodes on a point, a rigid body, and a prescribed and a rigid beam of ten nodes,
@@ -204,7 +205,7 @@ static void check_audit(scene *s) {
     }
 }
 
-static void table(int64_t largest) {
+static void table(int64_t largest, int64_t smallest) {
     static const int order[] = {4, 6, 10, 16};
     printf("Million nodes a second on one core; state: 33 bytes a node (39 with several elements). audited: loads in "
            "with the\n"
@@ -214,7 +215,7 @@ static void table(int64_t largest) {
            "portable loop | gain | gain | bytes |\n"
            "|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
     for (int k = 0; k < 4; k++) {
-        for (int64_t n = 1000; n <= largest; n *= 10) {
+        for (int64_t n = smallest; n <= largest; n *= 10) {
             scene s;
             make(&s, order[k], n);
             map(&s);
@@ -557,7 +558,7 @@ int main(int argc, char **argv) {
     } else if (argc > 1 && strcmp(argv[1], "single") == 0) {
         single(argc > 2 ? (int64_t)strtod(argv[2], NULL) : 1000000);
     } else {
-        table(argc > 1 ? (int64_t)strtod(argv[1], NULL) : 10000000);
+        table(argc > 1 ? (int64_t)strtod(argv[1], NULL) : 10000000, argc > 2 ? (int64_t)strtod(argv[2], NULL) : 1000);
     }
     return 0;
 }
