@@ -42,10 +42,15 @@ def git(*arguments):
 
 
 def tracked():
+    """The files of the repository, or of a released archive."""
     try:
-        return set(git("ls-files").split("\n")) - {""}
-    except (OSError, subprocess.CalledProcessError):  # a released archive
-        return {os.path.relpath(os.path.join(d, f), ROOT) for d, _, files in os.walk(ROOT) for f in files if "/build" not in d}
+        found = set(git("ls-files").split("\n")) - {""}
+    except (OSError, subprocess.CalledProcessError):
+        found = set()
+    if "CMakeLists.txt" not in found:
+        every = (os.path.relpath(os.path.join(d, f), ROOT) for d, _, files in os.walk(ROOT) for f in files)
+        found = {p for p in every if not re.match(r"build|\.git/|.*__pycache__", p)}
+    return found
 
 
 def raised(text):
