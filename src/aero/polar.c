@@ -210,6 +210,10 @@ double spari_table_lift(const spari_table *table, double place, int64_t *row) {
     return look_up(table, SPARI_CL, place, row);
 }
 
+double spari_table_lift_slope(const spari_table *table, double place, int64_t *row, double *slope) {
+    return spari_spline_at(table->fit + SPARI_CL, place, row, slope);
+}
+
 double spari_table_drag(const spari_table *table, double place, int64_t *row) {
     return look_up(table, SPARI_CD, place, row);
 }

@@ -21,6 +21,8 @@ double spari_table_wrap(const spari_table *table, double alpha, int *beyond);
 /* Coefficients at a place that spari_table_wrap gave; *row is where the search begins and where it ended, 0 at first.
  */
 double spari_table_lift(const spari_table *table, double place, int64_t *row);
+/* slope: out, the derivative of the lift coefficient */
+double spari_table_lift_slope(const spari_table *table, double place, int64_t *row, double *slope);
 double spari_table_drag(const spari_table *table, double place, int64_t *row);
 double spari_table_moment(const spari_table *table, double place, int64_t *row);
 
