@@ -380,8 +380,10 @@ int spari_shifted_factor(spari_shifted *a, double sigma) {
         double *at = NULL;
         for (int64_t e = a->begin[i]; e < a->begin[i + 1]; e++) {
             int j = a->column[e], b = a->block[j];
-            at = b == last ? at : spari_blocks_at(a->matrix, a->block[i], b, &stride);
-            last = b;
+            if (!at || b != last) {
+                at = spari_blocks_at(a->matrix, a->block[i], b, &stride);
+                last = b;
+            }
             at[(i - spari_blocks_first(a->matrix, a->block[i])) * stride + j - spari_blocks_first(a->matrix, b)] +=
                 a->k[e] + sigma * a->m[e];
         }

@@ -78,7 +78,7 @@ static int solve_modes(spari_small_motions *w, const spar_member *m, int connect
     }
     status = check_found(w, m, connected, n, available, status);
     const spari_motion_part *own = spari_small_motions_part(w, m);
-    for (int64_t k = 0; k < n && status == SPAR_OK; k++) {
+    for (int64_t k = 0; k < n && square && status == SPAR_OK; k++) {
         frequency[k] = copysign(sqrt(fabs(square[k])), square[k]) / 6.283185307179586;
         if (shapes) {
             m->row->shape(m, x + w->size * k + own->at, w->workspace, shapes + 6 * m->nodes * k);

@@ -41,43 +41,50 @@ static int add_motion_part(spari_small_motions *w, const spar_member *m) {
     return SPAR_OK;
 }
 
-/* Members by address, and for each a member that it is connected to: the root of a tree points to itself. */
+/* A member and the number of one that it is connected to; the root of a tree has its own. */
+typedef struct motion_tree {
+    const spar_member *member;
+    int to;
+} motion_tree;
+
+/* [count], by address */
 typedef struct motion_trees {
     int count;
-    const spar_member **member;
-    int *to;
+    motion_tree *of;
 } motion_trees;
 
 static int by_address(const void *a, const void *b) {
-    uintptr_t x = (uintptr_t) * (const spar_member *const *)a, y = (uintptr_t) * (const spar_member *const *)b;
+    uintptr_t x = (uintptr_t)((const motion_tree *)a)->member, y = (uintptr_t)((const motion_tree *)b)->member;
     return (x > y) - (x < y);
 }
 
 static int tree_of(motion_trees *t, const spar_member *m) {
-    const spar_member **at = bsearch(&m, t->member, (size_t)t->count, sizeof *t->member, by_address);
-    int i = (int)(at - t->member);
-    while (t->to[i] != i) {
-        i = t->to[i] = t->to[t->to[i]];
+    const motion_tree key = {m, 0}, *at = bsearch(&key, t->of, (size_t)t->count, sizeof *t->of, by_address);
+    int i = (int)(at - t->of);
+    while (t->of[i].to != i) {
+        i = t->of[i].to = t->of[t->of[i].to].to;
     }
     return i;
 }
 
-/* Connects the members that joints connect and whose motion is unknown. free_trees in any case. */
+/* Connects the members that joints connect and whose motion is unknown. The trees are freed by the caller in any case.
+ */
 static int grow_trees(motion_trees *t, const spar_session *s) {
-    t->member = spari_zalloc(s->member_count, sizeof *t->member);
-    t->to = spari_zalloc(s->member_count, sizeof *t->to);
-    if (!t->member || !t->to) {
+    t->of = spari_zalloc(s->member_count, sizeof *t->of);
+    if (!t->of) {
         return SPAR_ERR_MEMORY;
     }
     for (const spar_member *m = s->members; m; m = m->next) {
-        t->to[t->count] = t->count;
-        t->member[t->count++] = m;
+        t->of[t->count++].member = m;
     }
-    qsort(t->member, (size_t)t->count, sizeof *t->member, by_address);
+    qsort(t->of, (size_t)t->count, sizeof *t->of, by_address);
+    for (int i = 0; i < t->count; i++) {
+        t->of[i].to = i;
+    }
     for (const spar_joint *j = s->joints; j; j = j->next) {
         const spar_member *a = j->member[0], *b = j->member[1];
         if (a && b && a->row && b->row && a->row->component && b->row->component) {
-            t->to[tree_of(t, a)] = tree_of(t, b);
+            t->of[tree_of(t, a)].to = tree_of(t, b);
         }
     }
     return SPAR_OK;
@@ -106,8 +113,7 @@ static int gather_motions(spari_small_motions *w, const spar_member *first, int 
     } else {
         status = spari_fail(s, status, "no memory for eigenvalues");
     }
-    free(t.member);
-    free(t.to);
+    free(t.of);
     SPARI_TRY(status);
     int64_t most = 0;
     for (int i = 0; i < w->parts; i++) {
