@@ -126,7 +126,7 @@ static int ask(const scene *s, double tolerance, double part, double *error, int
     if (status == SPAR_OK) {
         *k = advised(s, run, trial);
         (void)spar_trial_get_outcome(trial, error, NULL, NULL, NULL);
-        (void)spar_trial_get_search(trial, runs, NULL, NULL, NULL, NULL);
+        (void)spar_trial_get_search(trial, runs, NULL);
     } else {
         printf("%-6s %-9.3g %s\n", s->name, tolerance, spar_session_message(run->session));
     }

@@ -4,22 +4,50 @@
 #include <math.h>
 #include <spar/spar.h>
 #include <spar/spar_structure.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* -1 .. 1 */
+static double noise_of(uint32_t n) {
+    n = (n ^ 61) ^ (n >> 16);
+    n *= 9;
+    n ^= n >> 4;
+    n *= UINT32_C(0x27d4eb2d);
+    n ^= n >> 15;
+    return n / 2147483648.0 - 1;
+}
+
+/* Loads that depend on the time alone. */
+static double load_of_time(const flow *a, double t, double x) {
+    double at = a->number * x, sum = a->wave[0] * sin(a->rate[0] * t - at) + a->wave[1] * sin(a->rate[1] * t);
+    if (t > a->from && t <= a->until) {
+        sum += a->kick * (a->smooth ? 0.5 * (1 - cos(2 * pi * (t - a->from) / (a->until - a->from))) : 1);
+    }
+    return sum + a->rough * noise_of((uint32_t)(t / 0.05 + 1e-6)) + a->hiss * noise_of((uint32_t)(1e6 * t + 0.5));
+}
 
 int world_solve(spar_session *s, double t, double dt, int iteration, void *context) {
     world *w = context;
     double force[3 * WORLD_NODES];
-    (void)s, (void)iteration;
+    (void)s;
     for (int k = 0; k < w->members; k++) {
         const flow *a = &w->air;
+        double v[3 * WORLD_NODES], acceleration[3 * WORLD_NODES];
         TRY(spar_fluid_pull_motion(w->f[k], 1, w->x[k], w->v[k]));
+        memset(acceleration, 0, sizeof acceleration);
+        if (a->added > 0) {
+            TRY(spar_fluid_pull_poses(w->f[k], SPAR_NODES_MOTION, 1, NULL, NULL, v, NULL, acceleration, NULL));
+        }
         memset(force, 0, sizeof force);
         for (int64_t i = 0; i < w->n[k]; i++) {
-            double v = w->v[k][3 * i + 2], at = a->number * w->rest[k][3 * i];
-            force[3 * i + 2] = a->wave[0] * sin(a->rate[0] * (t + dt) - at) + a->wave[1] * sin(a->rate[1] * (t + dt)) -
-                               v * (a->linear + a->square * fabs(v) + a->cubic * v * v) -
-                               a->spring * (w->x[k][3 * i + 2] - w->rest[k][3 * i + 2]);
+            double u = w->v[k][3 * i + 2], spring = a->spring * (1 + a->modulation * cos(a->pace * (t + dt)));
+            force[3 * i + 2] =
+                load_of_time(a, t + dt, w->rest[k][3 * i]) - u * (a->linear + a->square * fabs(u) + a->cubic * u * u) -
+                spring * (w->x[k][3 * i + 2] - w->rest[k][3 * i + 2]) - a->added * acceleration[3 * i + 2] +
+                a->noise * noise_of((uint32_t)(1000 * iteration + i) + (uint32_t)(1e4 * t));
         }
         TRY(spar_fluid_push_forces(w->f[k], force, NULL));
     }
@@ -28,8 +56,11 @@ int world_solve(spar_session *s, double t, double dt, int iteration, void *conte
 
 int world_before(spar_session *s, double t, double dt, void *context) {
     world *w = context;
-    double half = 0.5 * w->spin * (t + dt);
-    const double q[7] = {0, 0, 0, cos(half), sin(half), 0, 0}, v[6] = {0, 0, 0, w->spin, 0, 0}, a[6] = {0};
+    double end = t + dt, rises = w->rises, part = end < rises ? 0.5 * end * end / rises : end - 0.5 * rises,
+           half = 0.5 * w->spin * part;
+    const double q[7] = {0, 0, 0, cos(half), sin(half), 0, 0},
+                 v[6] = {0, 0, 0, end < rises ? w->spin * end / rises : w->spin, 0, 0},
+                 a[6] = {0, 0, 0, end < rises ? w->spin / rises : 0, 0, 0};
     (void)s;
     return w->spin > 0 ? spar_member_drive(w->m[0], q, v, a) : SPAR_OK;
 }
@@ -192,13 +223,99 @@ static int pair(world *w) {
     return spar_link_set_spring(line, 20, 0.5, 1, 0);
 }
 
+/* ---- impulses, parametric excitation, noise, limit cycles, added mass ---- */
+
+static int kick(world *w) {
+    w->air = (flow){.spring = 16, .kick = 10, .from = 0.4013, .until = 0.4313};
+    return add_body(w, 1);
+}
+
+static int knock(world *w) {
+    w->air = (flow){.linear = 0.1, .kick = 2, .from = 0.3007, .until = 0.3207};
+    return add_beam(w, SPAR_ROOT_FIXED, o, two, 120, 1e-3);
+}
+
+static int gust(world *w) {
+    w->air = (flow){.linear = 0.3, .kick = 0.5, .from = 1, .until = 1.5, .smooth = 1};
+    return add_beam(w, SPAR_ROOT_FIXED, o, two, 60, 0);
+}
+
+static int mathieu(world *w) {
+    w->air = (flow){.spring = 16, .modulation = 0.3, .pace = 8, .linear = 0.1, .cubic = 1, .kick = 2, .until = 0.2013};
+    return add_body(w, 1);
+}
+
+static int swing(world *w) {
+    w->air =
+        (flow){.spring = 6, .modulation = 0.6, .pace = 9, .linear = 0.02, .cubic = 0.5, .kick = 0.1, .until = 0.3013};
+    return add_beam(w, SPAR_ROOT_FIXED, o, two, 20, 1e-3);
+}
+
+static int grid(world *w) { /* a fluid that is solved to a few digits */
+    w->air = (flow){.wave = {0.1, 0}, .rate = {2.1, 0}, .number = 0.3, .linear = 0.2, .noise = 3e-5};
+    TRY(spar_session_set_coupling(w->s, SPAR_COUPLING_IQN_ILS, 1e-9, 1e-2, 50));
+    return add_beam(w, SPAR_ROOT_FIXED, o, two, 120, 1e-3);
+}
+
+static int storm(world *w) { /* white noise in time: no dt resolves it */
+    w->air = (flow){.wave = {0.1, 0}, .rate = {2.1, 0}, .number = 0.3, .linear = 0.1, .hiss = 0.5};
+    return add_beam(w, SPAR_ROOT_FIXED, o, two, 120, 1e-3);
+}
+
+static int road(world *w) {
+    w->air = (flow){.spring = 400, .linear = 20, .rough = 100};
+    return add_body(w, 100);
+}
+
+static int spinup(world *w) {
+    const double g[3] = {0, 0, -9.81};
+    w->spin = 6, w->rises = 40;
+    w->air = (flow){.linear = 0.2};
+    TRY(spar_session_set_gravity(w->s, g));
+    return add_beam(w, SPAR_ROOT_DRIVEN, o, two, 200, 1e-3);
+}
+
+static int arms(world *w) { /* stiff and light, in a heavy fluid */
+    const double end[3] = {0.5, 0, 0};
+    w->air = (flow){.wave = {0.2, 0}, .rate = {3, 0}, .linear = 0.2, .spring = 2, .added = 3 * 0.5 / WORLD_NODES};
+    TRY(add_beam(w, SPAR_ROOT_FREE, o, end, 1000, 1e-4));
+    TRY(tie(w, "hinge0", 0, -1, SPAR_FREE_RY));
+    TRY(add_beam(w, SPAR_ROOT_FREE, end, one, 1000, 1e-4));
+    return tie(w, "hinge1", 1, 0, SPAR_FREE_RY);
+}
+
+static int mast(world *w) { /* with an arm on a hinge */
+    const double out[3] = {2.8, 0, 0}, g[3] = {9.81, 0, 0};
+    w->air = (flow){.wave = {0.2, 0.1}, .rate = {2, 3.1}, .linear = 0.1};
+    TRY(spar_session_set_gravity(w->s, g));
+    TRY(add_beam(w, SPAR_ROOT_FIXED, o, two, 200, 1e-3));
+    TRY(add_beam(w, SPAR_ROOT_FREE, two, out, 200, 1e-3));
+    return tie(w, "hinge", 1, 0, SPAR_FREE_RY);
+}
+
+static int reed(world *w) { /* stronger than sinusoidal */
+    w->air = (flow){.spring = 4, .linear = -1.5, .cubic = 1.5, .kick = 1, .until = 0.3013};
+    return add_body(w, 1);
+}
+
+static int years(world *w) { /* forty times the trials */
+    w->air = (flow){.wave = {0.1, 0.05}, .rate = {2.1, 2.9}, .number = 0.3, .linear = 0.15};
+    return add_beam(w, SPAR_ROOT_FIXED, o, two, 120, 1e-3);
+}
+
 const world_scene worlds[WORLD_COUNT] = {
-    {"pile", pile, 0.02, 304, {3e-2, 1e-2}},     {"sea", sea, 0.02, 400, {3e-2, 1e-2}},
-    {"riser", riser, 0.02, 304, {3e-2, 1e-2}},   {"rod", rod, 0.01, 400, {3e-2, 1e-2}},
-    {"buoy", buoy, 0.1, 160, {3e-2, 1e-2}},      {"wing", wing, 0.02, 432, {3e-2, 1e-2}},
-    {"portal", portal, 0.02, 216, {3e-2, 1e-2}}, {"cylinder", cylinder, 0.05, 128, {3e-2, 1e-2}},
-    {"shaft", shaft, 0.02, 160, {3e-2, 1e-2}},   {"chain", chain, 0.01, 320, {1e-1, 3e-2}},
-    {"pair", pair, 0.02, 256, {3e-2, 1e-2}}};
+    {"pile", pile, 0.02, 304, {3e-2, 1e-2}, 10},       {"sea", sea, 0.02, 400, {3e-2, 1e-2}, 10},
+    {"riser", riser, 0.02, 304, {3e-2, 1e-2}, 10},     {"rod", rod, 0.01, 400, {3e-2, 1e-2}, 10},
+    {"buoy", buoy, 0.1, 160, {3e-2, 1e-2}, 10},        {"wing", wing, 0.02, 432, {3e-2, 1e-2}, 10},
+    {"portal", portal, 0.02, 216, {3e-2, 1e-2}, 10},   {"cylinder", cylinder, 0.05, 128, {3e-2, 1e-2}, 10},
+    {"shaft", shaft, 0.02, 160, {3e-2, 1e-2}, 10},     {"chain", chain, 0.01, 320, {1e-1, 3e-2}, 10},
+    {"pair", pair, 0.02, 256, {3e-2, 1e-2}, 10},       {"kick", kick, 0.02, 400, {3e-2, 1e-2}, 10},
+    {"knock", knock, 0.01, 400, {3e-2, 1e-2}, 10},     {"gust", gust, 0.02, 400, {3e-2, 1e-2}, 10},
+    {"mathieu", mathieu, 0.02, 800, {3e-2, 1e-2}, 10}, {"swing", swing, 0.02, 600, {3e-2, 1e-2}, 10},
+    {"grid", grid, 0.02, 304, {3e-2, 1e-2}, 10},       {"storm", storm, 0.02, 304, {3e-2, 1e-2}, 10},
+    {"road", road, 0.05, 320, {3e-2, 1e-2}, 10},       {"spinup", spinup, 0.02, 160, {3e-2, 1e-2}, 10},
+    {"arms", arms, 0.02, 200, {3e-2, 1e-2}, 10},       {"mast", mast, 0.02, 256, {3e-2, 1e-2}, 10},
+    {"reed", reed, 0.05, 400, {3e-2, 1e-2}, 10},       {"years", years, 0.02, 304, {3e-2, 1e-2}, 40}};
 
 int world_create(int k, int nodes, double fading, world *w) {
     *w = (world){.nodes = nodes, .fading = fading};

@@ -1,15 +1,21 @@
-/* Eleven small scenes of other kinds than those of scenes.h: beams, rigid bodies and what joints tie of them, in flows
-   of a few terms. A world is built, then stepped by spar_step with world_solve, or by world_step. */
+/* Small scenes of other kinds than those of scenes.h: beams, rigid bodies and joined members, in flows of a few terms.
+   A world is built, then stepped by spar_step with world_solve, or by world_step. */
 #ifndef WORLDS_H
 #define WORLDS_H
 
 #include <spar/spar.h>
 
-enum { WORLD_COUNT = 11, WORLD_MEMBERS = 4, WORLD_NODES = 8 };
+enum { WORLD_STEADY = 11 }; /* the first ones: no impulse, no noise, no parametric excitation */
+enum { WORLD_COUNT = 24, WORLD_MEMBERS = 4, WORLD_NODES = 8 };
 
 /* Loads at nodes along each member, across it, N: two waves; drag linear, square, cubic in the velocity; a spring. */
 typedef struct flow {
     double wave[2], rate[2], number, linear, square, cubic, spring;
+    double kick, from, until;  /* a force between two times; smooth 1: as 1 - cos */
+    double modulation, pace;   /* of the spring: 1 + modulation cos(pace t) */
+    double noise, hiss, rough; /* amplitude of noise that changes with each iteration, time, and 0.05 s */
+    double added;              /* added mass at each node */
+    int smooth;
 } flow;
 
 typedef struct world {
@@ -21,7 +27,8 @@ typedef struct world {
     int members, nodes; /* of an element */
     flow air;
     double fading; /* of the beams: mass damping, 1/s */
-    double spin;   /* of the first member's root, rad/s */
+    double spin;   /* of the first member's root, rad/s, */
+    double rises;  /* reached after this time, s; 0: from the beginning */
 } world;
 
 typedef struct world_scene {
@@ -30,6 +37,7 @@ typedef struct world_scene {
     double dt;     /* s, as one would take it */
     int64_t steps; /* that show how it goes on */
     double tolerance[2];
+    int times; /* length of the run in trials */
 } world_scene;
 
 extern const world_scene worlds[WORLD_COUNT];

@@ -152,7 +152,7 @@ static void print_advice(const rotor_options *o, const rotor_trial *t, double le
     int fails = 0;
     int64_t runs = 0;
     (void)spar_trial_get_outcome(t->trial, &error, &cost, &fails, &present);
-    (void)spar_trial_get_search(t->trial, &runs, NULL, NULL, NULL, NULL);
+    (void)spar_trial_get_search(t->trial, &runs, NULL);
     printf("Settings for a tolerance of %g, from %d trials of %.3g s:\n\n", o->tolerance, (int)runs, length);
     printf("  time step          %.4g s", o->dt);
     if (o->substeps > 1) {

@@ -3720,14 +3720,14 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine trial_get_outcome
 
-  subroutine trial_get_search(self, runs, skipped, work, shown, saved, stat, errmsg)
+  subroutine trial_get_search(self, runs, work, stat, errmsg)
     class(spar_trial), intent(in) :: self
-    integer(c_int64_t), intent(inout), optional :: runs, skipped
-    real(c_double), intent(inout), optional :: work, shown, saved
+    integer(c_int64_t), intent(inout), optional :: runs
+    real(c_double), intent(inout), optional :: work
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
 
-    call finish(spar_trial_get_search(self%handle, runs, skipped, work, shown, saved), self%session, stat, errmsg)
+    call finish(spar_trial_get_search(self%handle, runs, work), self%session, stat, errmsg)
   end subroutine trial_get_search
 
   subroutine trial_get_motion(self, modes, amplitude, memory, stat, errmsg)

@@ -1574,11 +1574,11 @@ module spar_calls
       integer(c_int) :: status
     end function spar_trial_get_outcome
 
-    function spar_trial_get_search(trial, runs, skipped, work, shown, saved) bind(c) result(status)
+    function spar_trial_get_search(trial, runs, work) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: trial
-      integer(c_int64_t), intent(inout), optional :: runs, skipped
-      real(c_double), intent(inout), optional :: work, shown, saved
+      integer(c_int64_t), intent(inout), optional :: runs
+      real(c_double), intent(inout), optional :: work
       integer(c_int) :: status
     end function spar_trial_get_search
 

@@ -24,10 +24,7 @@ enum {
     ADVICE_COST,
     ADVICE_PRESENT_ERROR, /* -1 if the session as it is fails */
     ADVICE_RUNS,
-    ADVICE_SKIPPED,
     ADVICE_WORK,
-    ADVICE_SHOWN,
-    ADVICE_SAVED,
     ADVICE_COUNT
 };
 
@@ -99,13 +96,13 @@ static inline int trial_report_aero(spar_aero *aero, spar_session *s, double dt,
 
 static inline void trial_advice(const spar_trial *t, double advice[ADVICE_COUNT]) {
     int substeps, scheme, predictor, fails;
-    int64_t runs, skipped;
+    int64_t runs;
     (void)spar_trial_get_settings(t, advice + ADVICE_DT, &substeps, &scheme, advice + ADVICE_COUPLING_RTOL, &predictor,
                                   advice + ADVICE_NEWTON_RTOL);
     (void)spar_trial_get_outcome(t, advice + ADVICE_ERROR, advice + ADVICE_COST, &fails, advice + ADVICE_PRESENT_ERROR);
-    (void)spar_trial_get_search(t, &runs, &skipped, advice + ADVICE_WORK, advice + ADVICE_SHOWN, advice + ADVICE_SAVED);
+    (void)spar_trial_get_search(t, &runs, advice + ADVICE_WORK);
     advice[ADVICE_SUBSTEPS] = substeps, advice[ADVICE_SCHEME] = scheme, advice[ADVICE_PREDICTOR] = predictor;
-    advice[ADVICE_RUNS] = (double)runs, advice[ADVICE_SKIPPED] = (double)skipped;
+    advice[ADVICE_RUNS] = (double)runs;
     if (fails) {
         advice[ADVICE_PRESENT_ERROR] = -1;
     }

@@ -91,8 +91,8 @@ SPAR_API int spar_trial_set_callbacks(spar_trial *trial, spar_before_step before
    _solve_eigenvalues, _solve_floquet). Between the runs the session is in its present state. The callback may read the
    session, and changes nothing. If it returns 0, the call goes on. Otherwise the call ends with SPAR_ERR_USER.
      session: of the trial
-     done: runs made so far, from 0. For advice: their counted cost, in runs with the session as it is
-     expected: what done is expected to reach, never below done, nor above the option limit of the trial
+     done: runs made so far, from 0
+     expected: what done reaches at most; for advice the option limit of the trial
      context: of spar_trial_set_progress */
 typedef int (*spar_progress)(spar_session *session, double done, double expected, void *context);
 /* Sets the progress callback, on all ranks or on none. If one rank stops, the others return SPAR_ERR_PEER. Local.
@@ -181,12 +181,8 @@ SPAR_API int spar_trial_get_goals(const spar_trial *trial, int *goals);
      numbers[n]: in, any unit */
 SPAR_API int spar_trial_push_numbers(spar_trial *trial, int64_t n, const double *numbers);
 /* Sets an option of the advice. Local.
-     key: in, "dt", "nodes" (with elements), "fidelity", "coupling": vary (default) or keep it as it is
-           "limit": SPAR_ERR_LIMIT ends the search once it has cost so many runs with the session as it is; 0: no limit
-           (default)
-           "fluid_cost": s of processor time on all ranks, of a solution of the fluid; 0: estimated from its nodes. If
-           the first run takes more than thirty times that, the time counts, in powers of 900, with SPAR_LOG_WARNING
-           near the border of two powers (default)
+     key: in, "dt", "nodes", "coupling": vary (default) or keep it as it is
+           "limit": most trials, 4 to 1000 (default 15)
      value: in, as text */
 SPAR_API int spar_trial_set_option(spar_trial *trial, const char *key, const char *value);
 /* Reads an option of the advice. Local.
@@ -194,21 +190,21 @@ SPAR_API int spar_trial_set_option(spar_trial *trial, const char *key, const cha
      capacity: in, of the text, with its end
      text[capacity]: out, the value; SPAR_ERR_ARGUMENT if it does not fit */
 SPAR_API int spar_trial_get_option(const spar_trial *trial, const char *key, int64_t capacity, char *text);
-/* Finds the cheapest settings whose error stays below a tolerance, by runs against one that is converged in dt, nodes
-   and coupling. The session stays as it is. A log is told of each run at SPAR_LOG_INFO.
+/* Finds cheap settings whose error stays below a tolerance. A trial with the session as it is gives estimates of the
+   errors of steps and nodes; these propose a dt. Trials with a smaller dt, more nodes and a tight coupling confirm
+   it: the error of each trial is its distance from the finest, and no less than finer trials lead one to expect.
+   Errors are extrapolated to the length of the run. Where several settings are as good, the session's own are advised.
+   The session stays as it is. A log is told of each trial at SPAR_LOG_INFO.
 
-   Identical beams (all but name, placement and initial velocity) get one advice. Elements are kept where the host has
-   given the nodes, or where a joint or an applied load is at a node that would not end an element. Costs are counted
-   (Newton iterations, tangents, nodes, unknowns, solutions of the fluid) and not timed: the same session gets the same
-   advice each time. Apart from the runs that establish accuracy, a run is made only if it can pay for itself, in a run
-   of the given length and no less than ten times the trial's. If the session as it is keeps the tolerance, and nothing
-   cheaper pays, it is the advice. Collective.
+   Varied are dt, the nodes per element of solved beams, the coupling and its rtol, and Newton's rtol. Costs are
+   counted (solutions, weighed by the nodes) and not timed: the same session gets the same advice each time.
+   Collective.
      tolerance: in, in (0, 1), of each goal
      length: in, s, > 0, duration of the run that the advice is for. If it is longer than the trial's steps, their
            errors are extrapolated by their growth in time. What only happens later, such as a gust, is not seen
-   SPAR_ERR_UNSUPPORTED: no fluid solver. SPAR_ERR_NUMERIC: no settings keep the tolerance; or nothing converges; or the
-   runs cover neither a steady state nor a full period, and so cannot be extrapolated. The message says what error was
-   reached. SPAR_ERR_LIMIT: the option limit. */
+   SPAR_ERR_UNSUPPORTED: no fluid solver. SPAR_ERR_NUMERIC: the trials do not converge, or no settings keep the
+   tolerance; or the trials cover neither a steady state nor a full period, and so cannot be extrapolated. The message
+   says what error was reached, and what would tell more. SPAR_ERR_LIMIT: the option limit was reached first. */
 SPAR_API int spar_trial_advise(spar_trial *trial, double tolerance, double length);
 /* The advised settings of the session. Local. SPAR_ERR_STATE: no advice.
      dt: out, s, NULL: not wanted
@@ -237,27 +233,19 @@ SPAR_API int spar_trial_get_beam(const spar_trial *trial, const spar_member *mem
      present_error: out, of the session as it is, 0 if that fails, NULL: not wanted */
 SPAR_API int spar_trial_get_outcome(const spar_trial *trial, double *error, double *cost, int *present_fails,
                                     double *present_error);
-/* What the search for the advice has cost, and what it saves. The unit of work, shown and saved is a run of the trial
-   with the session as it is; 0 if that fails. Local. SPAR_ERR_STATE: no advice.
-     runs: out, made, NULL: not wanted
-     skipped: out, runs that could not have saved what they would have cost, NULL: not wanted
-     work: out, counted cost of all runs, NULL: not wanted
-     shown: out, the part that shows what keeps the tolerance: the session as it is, the reference, the longer runs,
-           NULL: not wanted
-     saved: out, by the rest, in the host's run or ten times the trial, whichever is longer; against the cheapest
-           settings known before: the session as it is, or with a finer dt; NULL: not wanted */
-SPAR_API int spar_trial_get_search(const spar_trial *trial, int64_t *runs, int64_t *skipped, double *work,
-                                   double *shown, double *saved);
-/* Puts the advice in force: substeps, coupling scheme and its rtol, predictor, Newton's rtol, and of beams fidelity,
-   modes, elements, nodes per element and quadrature points. The host takes the advised dt itself.
+/* What the search for the advice has cost. Local. SPAR_ERR_STATE: no advice.
+     runs: out, trials made, NULL: not wanted
+     work: out, their counted cost, in trials with the session as it is; 0 if that fails; NULL: not wanted */
+SPAR_API int spar_trial_get_search(const spar_trial *trial, int64_t *runs, double *work);
+/* Puts the advice in force: coupling scheme and its rtol, predictor, Newton's rtol, and the nodes per element of beams.
+   The host takes the advised dt itself.
 
    Beams with other settings are rebuilt in place. They keep handle, name, placement, root, loads and the work done on
    them. Their motion is transferred by the interpolation of the elements, loads by its transpose, so that their sum
    stays. Accelerations follow from the balance of forces. Fluids keep handles and nodes, and are mapped again. Counts
    change (spar_member_get_count); the host gives node numbers anew, for example of loads that it sets. Everything else
    stays to the last bit, among it rho_inf, atol of coupling and Newton, limits, options and effects. A beam whose nodes
-   the host has given has its line through the new nodes. A lower fidelity keeps the part of the motion that it can
-   show. To apply the same advice again changes nothing. Collective.
+   the host has given has its line through the new nodes. To apply the same advice again changes nothing. Collective.
      dt: out, s, advised, NULL: not wanted
    SPAR_ERR_STATE: no advice; members were added or described otherwise since; or a fluid has nodes that are not
    mapped. After a failure all is as before. */

@@ -273,8 +273,8 @@ SPAR_API int spar_member_get_owner(const spar_member *member, int *rank);
      capacity: in, of the arrays; entries beyond the number of ranks are 0
      members[capacity]: out, members solved by each rank, NULL: not wanted
      expected[capacity]: out, estimated instructions per iteration, NULL: not wanted
-     counted[capacity]: out, instructions so far, from counted iterations and tangents without joints, NULL: not
-           wanted */
+     counted[capacity]: out, Newton's iterations so far, each weighed by what is expected of its member, without joints;
+           NULL: not wanted */
 SPAR_API int spar_session_sum_balance(const spar_session *session, int64_t capacity, int64_t *members, double *expected,
                                       double *counted);
 /* Sums numbers over the ranks, for models built on the library; with n = 0 the ranks agree on a status. Collective,

@@ -70,11 +70,14 @@ double spari_step_control_ratio(const spar_session *s) {
 }
 
 void spari_step_control_accept(spar_session *s) {
+    double ratio = 0, speed;
+    for (spar_member *m = s->members; m && s->state.trial; m = m->next) { /* advice reads it; dt does not follow it */
+        m->accuracy.step_error = find_error(m, &speed);
+    }
     if (!spari_step_control_is_set(s) || s->state.trial) {
         return;
     }
     spari_step_control *p = &s->own->step_control;
-    double ratio = 0, speed;
     for (spar_member *m = s->members; m; m = m->next) {
         ratio = fmax(ratio, judge_member(m, &m->accuracy.step_error, &speed));
         m->accuracy.speed = speed;

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_TRIALS = 15 }; /* of advice, unless the host allows more */
+
 /* ---- life ---- */
 
 static void free_trial(spar_trial *t) {
@@ -36,6 +38,7 @@ int spar_trial_create(spar_session *session, spar_trial **trial) {
     t->session = session;
     t->number = session->own->trials_created++;
     t->search.goals = SPAR_GOAL_MOTION;
+    t->search.limit = MOST_TRIALS;
     while (*end) {
         end = &(*end)->next;
     }
@@ -189,17 +192,20 @@ int spar_trial_get_motion(const spar_trial *trial, int64_t *modes, double *ampli
         "option " key " (1: keep)", key, offsetof(spar_trial, search.field), SPARI_IS_WORD, 0, 0, 1, "vary or keep",   \
             {"vary", "keep"}, 0, SPARI_AGREED                                                                          \
     }
-#define AMOUNT(key, field, unit)                                                                                       \
-    {                                                                                                                  \
-        "option " key, key, offsetof(spar_trial, search.field), SPARI_IS_REAL, 0, 0, 1e300,                            \
-            "a number >= 0 (" unit ")", {NULL, NULL}, 0, SPARI_AGREED                                                  \
-    }
 static const spari_setting options[] = {KEEP("dt", keep_dt),
                                         KEEP("nodes", keep_nodes),
-                                        KEEP("fidelity", keep_fidelity),
                                         KEEP("coupling", keep_coupling),
-                                        AMOUNT("limit", limit, "runs"),
-                                        AMOUNT("fluid_cost", fluid_cost, "seconds")};
+                                        {"option limit",
+                                         "limit",
+                                         offsetof(spar_trial, search.limit),
+                                         SPARI_IS_WHOLE,
+                                         0,
+                                         4,
+                                         1000,
+                                         "4 to 1000 trials",
+                                         {NULL, NULL},
+                                         15,
+                                         SPARI_AGREED}};
 enum { OPTIONS = sizeof options / sizeof *options };
 
 int spar_trial_set_option(spar_trial *trial, const char *key, const char *value) {
@@ -256,7 +262,7 @@ int spari_trial_ready_for_runs(spar_trial *t, const char *call) {
 }
 
 int spari_trial_enter(spar_trial *t, const char *call, const spari_agreed *arguments, int count, int status) {
-    enum { OWN = 16 };
+    enum { OWN = 14 };
     spari_agreed all[OWN + SPARI_MOST_ARGUMENTS] = {spari_whole("number of the trial", t->number),
                                                     spari_real("dt", t->dt),
                                                     spari_whole("steps", t->steps),
@@ -269,10 +275,8 @@ int spari_trial_enter(spar_trial *t, const char *call, const spari_agreed *argum
                                                     spari_whole("memory", t->memory),
                                                     spari_whole("option dt", t->search.keep_dt),
                                                     spari_whole("option nodes", t->search.keep_nodes),
-                                                    spari_whole("option fidelity", t->search.keep_fidelity),
                                                     spari_whole("option coupling", t->search.keep_coupling),
-                                                    spari_real("option limit", t->search.limit),
-                                                    spari_real("option fluid_cost", t->search.fluid_cost)};
+                                                    spari_whole("option limit", t->search.limit)};
     assert(count <= SPARI_MOST_ARGUMENTS);
     for (int k = 0; k < count; k++) {
         all[OWN + k] = arguments[k];

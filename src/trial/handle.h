@@ -8,11 +8,9 @@
 typedef struct spari_search {
     int keep_dt;       /* option dt = keep */
     int keep_nodes;    /* option nodes = keep */
-    int keep_fidelity; /* option fidelity = keep */
     int keep_coupling; /* option coupling = keep */
     int goals;         /* SPAR_GOAL_* */
-    double limit;      /* option limit */
-    double fluid_cost; /* option fluid_cost */
+    int limit;         /* option limit: trials */
 } spari_search;
 
 /* A row of the report of effects. */
@@ -32,8 +30,8 @@ typedef struct spari_advised {
     spari_rebuild *beam; /* [members] */
     double error, cost, present_error;
     int present_fails;
-    int64_t runs, skipped;
-    double work, shown, saved;
+    int64_t runs;
+    double work;
 } spari_advised;
 
 enum { SPARI_MOST_MODES = 200, SPARI_MOST_MEMORY = 1000000 }; /* of small motions */

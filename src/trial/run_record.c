@@ -10,7 +10,6 @@
 #include "../member/joint.h"
 #include "../member/structure.h"
 #include "../solve/reaction.h"
-#include "rules.h"
 
 #include <float.h>
 #include <math.h>
@@ -22,6 +21,9 @@ enum { STATIONS = 8, ARMS = 4, PLACES = 9, RECENT = 4 };
 /* A motion with fewer periods in a run counts as incomplete. */
 enum { LEAST_PERIODS = 4 };
 static const double pi = 3.14159265358979323846;
+/* Growth of errors: largest power of time; ratio of two thirds below which it may be chance; margin of what is
+   extrapolated. And the change of a motion that counts as steady. */
+static const double most_power = 2, by_chance = 1.2, doubt = 1.25, settled = 0.1;
 
 /* ---- a sample ---- */
 
@@ -204,10 +206,8 @@ int spari_record_create(spar_session *s, int64_t steps, int goals, spari_record 
     r->start = spari_zalloc(3 * r->stations, sizeof *r->start);
     r->workspace = spari_zalloc(workspace, sizeof *r->workspace);
     r->basis = spari_zalloc(SPARI_MAX_NODES * r->stations, sizeof *r->basis);
-    r->member_work = spari_zalloc(r->members + 1, sizeof *r->member_work); /* and a status, when it is summed */
-    SPARI_REQUIRE(
-        s, r->value && r->recent && r->load && r->trail && r->start && r->workspace && r->basis && r->member_work,
-        SPAR_ERR_MEMORY, "no memory for the record of a trial run");
+    SPARI_REQUIRE(s, r->value && r->recent && r->load && r->trail && r->start && r->workspace && r->basis,
+                  SPAR_ERR_MEMORY, "no memory for the record of a trial run");
     find_bases(s, r->basis);
     return SPAR_OK;
 }
@@ -220,7 +220,6 @@ void spari_record_free(spari_record *r) {
     free(r->start);
     free(r->workspace);
     free(r->basis);
-    free(r->member_work);
     *r = (spari_record){0};
 }
 
@@ -341,17 +340,16 @@ static double relative(double difference, double scale) {
     return difference == 0 ? 0 : scale > 0 ? sqrt(difference / scale) : 1;
 }
 
-/* a ends after `samples`: later differences are left out, the scale is not. */
-static double distance_of(const spari_record *a, const spari_record *b, part_of which, int samples) {
-    double difference = 0, scale = 0, later = 0;
+static double distance_of(const spari_record *a, const spari_record *b, part_of which) {
+    double difference = 0, scale = 0;
     for (int k = first_sample(a, b, which.block); k < SPARI_SAMPLES; k++) {
-        add_squares(a, b, which, k, k < samples ? &difference : &later, &scale);
+        add_squares(a, b, which, k, &difference, &scale);
     }
     return relative(difference, scale);
 }
 
 double spari_record_distance(const spari_record *a, const spari_record *b, int block) {
-    return distance_of(a, b, whole_of(b, block), SPARI_SAMPLES);
+    return distance_of(a, b, whole_of(b, block));
 }
 
 double spari_record_load(const spari_record *a, const spari_record *b) {
@@ -374,7 +372,7 @@ enum { PARTS = 3 }; /* thirds of a run */
    last power of time; relative to that of the motion, w, if the motion stays as at the end. */
 static double bent_growth(const double e[PARTS + 1], const double w[PARTS + 1], double longer) {
     const double middle = (PARTS - 0.5) / PARTS, last = fmax(w[PARTS - 1], w[PARTS]);
-    double power = fmin(log(e[2] / fmax(e[1], DBL_MIN)) / log(middle / 0.5), spari_rule.bends),
+    double power = fmin(log(e[2] / fmax(e[1], DBL_MIN)) / log(middle / 0.5), most_power),
            error = pow(longer, power) * e[2] / pow(middle, power) / sqrt(2 * power + 1),
            motion = sqrt((w[PARTS] * w[PARTS] + (longer - 1) * last * last) / longer);
     return motion > 0 ? error / e[PARTS] * w[PARTS] / motion : error / e[PARTS];
@@ -407,8 +405,9 @@ static double error_growth(const spari_record *a, const spari_record *b, part_of
     if (seen <= 0) {
         return 1;
     }
-    if (e[2] <= spari_rule.by_chance * e[1]) {
-        return fmax(e[2], seen) / seen;
+    if (e[2] <= by_chance * e[1]) { /* what stays may hide what grows: squares of independent errors add */
+        double growing = fmax(e[2] * e[2] - e[1] * e[1], 0) / (middle * middle - 0.25);
+        return fmax(sqrt(e[1] * e[1] + growing * (longer * longer / 3 - 0.25)), seen) / seen;
     }
     if (level >= 0) {
         grown = line_mean(level, slope, longer) / seen;
@@ -418,42 +417,30 @@ static double error_growth(const spari_record *a, const spari_record *b, part_of
     return fmax(grown, 1);
 }
 
-static double error_of_part(const spari_record *a, const spari_record *b, part_of which, double longer, int samples) {
-    double e = distance_of(a, b, which, samples);
-    return longer > 1 ? e * (1 + spari_rule.doubt * (error_growth(a, b, which, longer) - 1)) : e;
+static double error_of_part(const spari_record *a, const spari_record *b, part_of which, double longer) {
+    double e = distance_of(a, b, which);
+    return longer > 1 ? e * (1 + doubt * (error_growth(a, b, which, longer) - 1)) : e;
 }
 
 /* Reactions are of roots and of joints; numbers count individually. */
-static double error_of_goals(const spari_record *a, const spari_record *b, int goals, double longer, int samples) {
+static double error_of_goals(const spari_record *a, const spari_record *b, int goals, double longer) {
     double most = 0;
     for (int block = 0; block <= SPARI_OF_LOAD; block++) {
         if (goals & SPARI_GOAL(block)) {
-            most = fmax(most, error_of_part(a, b, whole_of(b, block), longer, samples));
+            most = fmax(most, error_of_part(a, b, whole_of(b, block), longer));
         }
     }
     if (goals & SPARI_GOAL(SPARI_OF_REACTION)) {
-        most = fmax(most, error_of_part(a, b, whole_of(b, SPARI_OF_JOINT), longer, samples));
+        most = fmax(most, error_of_part(a, b, whole_of(b, SPARI_OF_JOINT), longer));
     }
     for (int64_t i = 0; i < SPARI_MOST_NUMBERS && goals & SPARI_GOAL(SPARI_OF_NUMBERS); i++) {
-        most = fmax(most, error_of_part(a, b, (part_of){SPARI_OF_NUMBERS, i, i + 1}, longer, samples));
+        most = fmax(most, error_of_part(a, b, (part_of){SPARI_OF_NUMBERS, i, i + 1}, longer));
     }
     return most;
 }
 
 double spari_record_error(const spari_record *a, const spari_record *b, int goals, double longer) {
-    return error_of_goals(a, b, goals, longer, SPARI_SAMPLES);
-}
-
-/* Samples exist up to the step before the last one. */
-double spari_record_least_error(const spari_record *a, const spari_record *b, int goals, int64_t i) {
-    int samples = i < 3 ? 0 : (int)((i - 1) * SPARI_SAMPLES / a->steps);
-    return error_of_goals(a, b, goals, 1, samples);
-}
-
-void spari_record_extrapolate(spari_record *finer, const spari_record *coarser, double part) {
-    for (int64_t i = 0; i < SPARI_SAMPLES * width(finer); i++) {
-        finer->value[i] += part * (finer->value[i] - coarser->value[i]);
-    }
+    return error_of_goals(a, b, goals, longer);
 }
 
 /* ---- properties of a run ---- */
@@ -503,23 +490,6 @@ double spari_record_reach(const spari_record *r) {
         most = fmax(most, sum);
     }
     return n > 0 ? sqrt(most / (double)n) : 0;
-}
-
-double spari_record_bend(const spari_record *r, const spar_session *s, const spar_member *member) {
-    int64_t first = 0;
-    double own = 0, all = 0;
-    for (const spar_member *m = s->members; m != member; m = m->next) {
-        first += stations_of(m);
-    }
-    for (int k = 0; k < SPARI_SAMPLES; k++) {
-        const double *x = r->value + k * width(r) + r->first[SPARI_OF_BEYOND];
-        for (int64_t i = 0; i < 3 * r->stations; i++) {
-            int is_own = i >= 3 * first && i < 3 * (first + stations_of(member));
-            own += is_own ? x[i] * x[i] : 0;
-            all += x[i] * x[i];
-        }
-    }
-    return all > 0 ? sqrt(own / all) : 0;
 }
 
 double spari_record_shortest(const spari_record *r, double part) {
@@ -574,7 +544,7 @@ int spari_record_vouches(const spari_record *r) {
             size += pow(r->value[k * width(r) + at + i], 2) / (0.5 * SPARI_SAMPLES);
         }
     }
-    if (scatter_of(r, SPARI_SAMPLES / 2, mean, &most) <= spari_rule.settled * sqrt(size)) {
+    if (scatter_of(r, SPARI_SAMPLES / 2, mean, &most) <= settled * sqrt(size)) {
         return 1;
     }
     (void)scatter_of(r, 0, mean, &most);

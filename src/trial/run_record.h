@@ -38,13 +38,7 @@ typedef struct spari_record {
     double alternating[2]; /* square of the alternating part of the loads, in the second and in the last quarter of the
                               run, relative to the loads of both */
     double seconds;        /* processor time of the steps, all ranks */
-    double fluid_seconds;  /* of timed runs: the part of the fluid */
-    double work;       /* counted cost of the steps without the fluid, and expected cost of a fluid solution from its */
-    double fluid;      /* nodes (cost.h); all ranks */
-    int64_t solutions; /* calls of the fluid solver */
-    int dear;          /* the run ended because of its cost, */
-    double off;        /* or of its error, whose estimate this is; 0: it did not */
-    double *member_work;              /* [members] part of `work` for each; this rank's, then all ranks' */
+    int64_t solutions;     /* calls of the fluid solver */
     double report[SPAR_REPORT_COUNT]; /* of the coupling, at the end */
     int asked;                        /* SPARI_MUTE_*: what the host has pulled and pushed */
     int own;                          /* this rank's own status of a failed run */
@@ -67,14 +61,8 @@ double spari_record_load(const spari_record *a, const spari_record *b);
 /* Largest of these errors over the goals, extrapolated to a run `longer` times as long by their growth from the
    second third to the last. */
 double spari_record_error(const spari_record *a, const spari_record *b, int goals, double longer);
-/* Lower bound of the error of a run that has reached step i. */
-double spari_record_least_error(const spari_record *a, const spari_record *b, int goals, int64_t i);
-/* Extrapolates the finer run by this part of the difference of both. */
-void spari_record_extrapolate(spari_record *finer, const spari_record *coarser, double part);
 /* Size of its samples, in numbers. */
 int64_t spari_record_size(const spari_record *record);
-/* Fraction of the motion relative to the root that belongs to one member. */
-double spari_record_bend(const spari_record *record, const spar_session *session, const spar_member *member);
 /* Largest root mean square, over the positions, of the motion relative to the root. */
 double spari_record_reach(const spari_record *record);
 /* Shortest period, as a fraction of the run's time, of motion larger than this fraction: 0: none. */

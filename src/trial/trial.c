@@ -1,7 +1,6 @@
 /* Trials: runs steps with other settings or without an effect, and restores the session. See trial.h. */
 #include "trial.h"
 
-#include "cost.h"
 #include "move_joints.h"
 #include "move_loads.h"
 
@@ -217,56 +216,14 @@ static void watch_loads(const spar_session *s, int64_t i, int64_t steps, spari_r
     }
 }
 
-/* The host's fluid solver, timed. */
-typedef struct timed_fluid {
-    const spari_run *run;
-    clock_t spent;
-} timed_fluid;
-
-static int solve_timed(spar_session *s, double t, double dt, int iteration, void *context) {
-    timed_fluid *fluid = context;
-    clock_t since = clock();
-    int result = fluid->run->solve(s, t, dt, iteration, fluid->run->solve_context);
-    fluid->spent += clock() - since;
-    return result;
-}
-
 /* One step, with its cost. */
 static int step_once(spar_session *s, const spari_run *run, spari_record *r) {
-    int iterations = 0, timed = run->timed && run->solve;
-    timed_fluid fluid = {run, 0};
+    int iterations = 0;
     clock_t since = clock();
-    int status = timed ? spar_step(s, run->dt, solve_timed, &fluid, &iterations)
-                       : spar_step(s, run->dt, run->solve, run->solve_context, &iterations);
+    int status = spar_step(s, run->dt, run->solve, run->solve_context, &iterations);
     r->seconds += (double)(clock() - since) / CLOCKS_PER_SEC;
-    r->fluid_seconds += (double)fluid.spent / CLOCKS_PER_SEC;
     r->solutions += iterations;
-    r->work += status == SPAR_OK ? spari_cost_step(s, iterations) : 0;
     return status;
-}
-
-enum { LOOKS = 32 }; /* number of checks in a run with limits */
-
-/* Checks the limits of a run; collective if there is one. The final error is estimated as if it grew with time. */
-static int check_use(spar_session *s, const spari_run *run, int64_t i, spari_record *r) {
-    if ((run->most <= 0 && !run->beside) || i == run->steps || i * LOOKS / run->steps == (i - 1) * LOOKS / run->steps) {
-        return SPAR_OK;
-    }
-    double found[3] = {r->work + spari_cost_members(s, NULL)}, part = (double)i / (double)run->steps;
-    if (run->beside && spari_comm_rank(s->ranks.comm) == 0) {
-        found[1] = spari_record_least_error(r, run->beside, run->goals, i);
-    }
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, found, 2, SPAR_OK, s->message, sizeof s->message));
-    double so_far = found[0] + run->fluid * (double)r->solutions;
-    r->dear = run->most > 0 &&
-              (so_far > run->most || (part >= 0.125 && i >= SPARI_MULTIPLE && so_far > 1.5 * part * run->most));
-    SPARI_REQUIRE(s, !r->dear, SPAR_ERR_NUMERIC,
-                  "the trial costs more than it can save; stopped after %lld of %lld steps", (long long)i,
-                  (long long)run->steps);
-    r->off = run->beside && found[1] > run->off ? found[1] / part : 0;
-    SPARI_REQUIRE(s, r->off <= 0, SPAR_ERR_NUMERIC, "the error exceeds %.3g; stopped after %lld of %lld steps",
-                  run->off, (long long)i, (long long)run->steps);
-    return SPAR_OK;
 }
 
 static int march(spar_session *s, const spari_run *run, spari_record *r) {
@@ -277,7 +234,6 @@ static int march(spar_session *s, const spari_run *run, spari_record *r) {
         SPARI_TRY(run->watch ? run->watch(s, run->watcher) : SPAR_OK);
         watch_loads(s, i, run->steps, r, size);
         SPARI_TRY(spari_record_look(r, s, i));
-        SPARI_TRY(check_use(s, run, i, r));
     }
     for (int k = 0; k < 2; k++) {
         r->alternating[k] = size[1] + size[3] > 0 ? r->alternating[k] / (size[1] + size[3]) : 0;
@@ -285,14 +241,12 @@ static int march(spar_session *s, const spari_run *run, spari_record *r) {
     return SPAR_OK;
 }
 
-/* Cost of a run, summed over the ranks. */
-static int share_costs(spar_session *s, spari_record *r) {
-    enum { COSTS = 4 };
-    double cost[COSTS + 1] = {r->seconds, r->fluid_seconds, r->work + spari_cost_members(s, r->member_work),
-                              spari_cost_fluids(s)};
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, cost, COSTS, SPAR_OK, s->message, sizeof s->message));
-    r->seconds = cost[0], r->fluid_seconds = cost[1], r->work = cost[2], r->fluid = cost[3];
-    return spari_comm_sum(s->ranks.comm, r->member_work, r->members, SPAR_OK, s->message, sizeof s->message);
+/* Processor time of a run, summed over the ranks. */
+static int share_seconds(spar_session *s, spari_record *r) {
+    double seconds[2] = {r->seconds, 0};
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, seconds, 1, SPAR_OK, s->message, sizeof s->message));
+    r->seconds = seconds[0];
+    return SPAR_OK;
 }
 
 /* The members and fluids there now are the trial's. balanced: the run begins with a start with initial accelerations.
@@ -312,9 +266,7 @@ static int run_there(spar_session *s, const spari_run *run, int balanced, spari_
     }
     if (status == SPAR_OK) {
         memcpy(r->report, s->own->coupling->report, sizeof r->report);
-        status = share_costs(s, r);
-    } else {
-        r->work += spari_cost_members(s, NULL);
+        status = share_seconds(s, r);
     }
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         r->asked |= spari_fluid_asked(f);
@@ -324,16 +276,14 @@ static int run_there(spar_session *s, const spari_run *run, int balanced, spari_
 
 /* The failing rank's status on all ranks, for failures of the run, so that they continue equally. After a failure of
    the machine no rank continues; each keeps its own status, or learns that a peer failed. */
-static int share_failure(spar_session *s, int own, double *work) {
+static int share_failure(spar_session *s, int own) {
     enum { CODES = SPAR_ERR_LIMIT + 1 };
-    double there[CODES + 2] = {0}; /* and the cost of the run */
+    double there[CODES + 1] = {0};
     if (own == SPAR_OK || own == SPAR_ERR_COMM) {
         return own; /* known to all; a broken communicator cannot be used */
     }
     there[own] = 1;
-    there[CODES] = *work;
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, there, CODES + 1, SPAR_OK, s->message, sizeof s->message));
-    *work = there[CODES];
+    SPARI_TRY(spari_comm_sum(s->ranks.comm, there, CODES, SPAR_OK, s->message, sizeof s->message));
     if (there[SPAR_ERR_MEMORY] > 0 || there[SPAR_ERR_IO] > 0) {
         return own == SPAR_ERR_MEMORY || own == SPAR_ERR_IO || own == SPAR_ERR_PEER
                    ? own
@@ -366,7 +316,7 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_trial_set
         go_back(s, &t);
     }
     record->own = status;
-    return share_failure(s, status, &record->work);
+    return share_failure(s, status);
 }
 
 int spari_trial_check(spar_session *s, const char *call) {

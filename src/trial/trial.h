@@ -29,13 +29,7 @@ typedef struct spari_run {
     int (*instead)(spar_session *session, void *of); /* called with `of` instead of steps; may be NULL; the record stays
                                                         empty. Collective, a status that all ranks agree on */
     void *of;
-    int timed; /* time the fluid's solutions */
-    int goals; /* blocks recorded beside the motion (run_record.h) */
-    double most,
-        fluid; /* a run that costs more ends with SPAR_ERR_NUMERIC; 0: no limit. And the cost of a fluid solution */
-    const spari_record *beside; /* a run whose error relative to this one exceeds `off` (spari_record_error) ends
-                                   likewise; NULL: no limit */
-    double off;
+    int goals;                /* blocks recorded beside the motion (run_record.h) */
     spari_progress *progress; /* called before each run, for calls with many runs; else NULL */
 } spari_run;
 

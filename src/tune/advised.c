@@ -71,13 +71,9 @@ int spar_trial_get_outcome(const spar_trial *trial, double *error, double *cost,
     return SPAR_OK;
 }
 
-int spar_trial_get_search(const spar_trial *trial, int64_t *runs, int64_t *skipped, double *work, double *shown,
-                          double *saved) {
+int spar_trial_get_search(const spar_trial *trial, int64_t *runs, double *work) {
     SPARI_TRY(check_advised(trial, __func__));
     give_whole(runs, trial->advised.runs);
-    give_whole(skipped, trial->advised.skipped);
     give_real(work, trial->advised.work);
-    give_real(shown, trial->advised.shown);
-    give_real(saved, trial->advised.saved);
     return SPAR_OK;
 }

@@ -1,5 +1,7 @@
 /* Error due to the nodes of a beam: solves its equations with more nodes from its present shape ((E3) of
    docs/explanation/theory.md). */
+#include "node_error.h"
+
 #include "../base/environment.h"
 #include "../base/session.h"
 #include "../comm/comm.h"
@@ -133,8 +135,7 @@ static int find_loads(const spar_member *m, double **load) {
     return SPAR_OK;
 }
 
-/* During the call the member is replaced by the finer one, which this rank solves. */
-static int find_nodes_error(spar_member *m, double *error) {
+int spari_nodes_error(spar_member *m, double *error) {
     spari_rebuild settings = spari_rebuild_of(m);
     int P = m->mesh.per_element, n = P + MORE < SPARI_MAX_NODES ? P + MORE : SPARI_MAX_NODES;
     double *load = NULL, *onto = spari_zalloc(6 * (int64_t)m->mesh.elements * n, sizeof *onto);
@@ -159,8 +160,7 @@ static int find_nodes_error(spar_member *m, double *error) {
     return status;
 }
 
-/* Whether the estimate applies: rigid members have no such error. */
-static int has_nodes(const spar_member *m) {
+int spari_nodes_error_applies(const spar_member *m) {
     return m->kind == SPARI_BEAM && !m->external && m->row->solved && m->fidelity >= SPAR_FIDELITY_LINEAR;
 }
 
@@ -184,10 +184,10 @@ int spar_member_estimate_error(spar_member *member, double *step, double *nodes)
     if (step) {
         found[0] = s->state.phase >= SPARI_SOLVED ? spari_step_control_error(m) : m->accuracy.step_error;
     }
-    if (nodes && has_nodes(m)) {
+    if (nodes && spari_nodes_error_applies(m)) {
         found[1] = -1;
         const int finds = m->fidelity == SPAR_FIDELITY_EXACT && m->mesh.per_element < SPARI_MAX_NODES;
-        SPARI_TRY(finds ? spari_named(s, __func__, find_nodes_error(m, found + 1)) : SPAR_OK);
+        SPARI_TRY(finds ? spari_named(s, __func__, spari_nodes_error(m, found + 1)) : SPAR_OK);
     }
     if (step) {
         *step = found[0];

@@ -4,7 +4,6 @@
 #include "../base/environment.h"
 #include "../comm/enter.h"
 #include "../time/fidelity.h"
-#include "../trial/cost.h"
 
 #include <stdlib.h>
 
@@ -22,7 +21,13 @@ static void find_balance(const spar_session *s, double own[BALANCE_COLUMNS]) {
     for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         own[BALANCE_EXPECTED] += spari_assembly_owner(a) == rank ? spari_assembly_expected(a) : 0;
     }
-    own[BALANCE_COUNTED] = spari_cost_members(s, NULL);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        spari_effort effort = {0};
+        if (m->committed && m->row->effort && spari_fidelity_is_here(m)) {
+            m->row->effort(m, &effort);
+        }
+        own[BALANCE_COUNTED] += (double)effort.iterations * spari_member_expected(m);
+    }
 }
 
 int spar_session_sum_balance(const spar_session *session, int64_t capacity, int64_t *members, double *expected,

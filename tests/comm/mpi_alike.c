@@ -88,8 +88,7 @@ static void trials(void **state) {
 
 static void advice(void **state) {
     (void)state;
-    static const char *const option[][2] = {{"dt", "keep"},       {"nodes", "keep"},   {"fidelity", "keep"},
-                                            {"coupling", "keep"}, {"fluid_cost", "7"}, {"limit", "7"}};
+    static const char *const option[][2] = {{"dt", "keep"}, {"nodes", "keep"}, {"coupling", "keep"}, {"limit", "7"}};
     enum { OPTIONS = sizeof option / sizeof *option };
     double a[ADVICE_COUNT];
     for (int k = 0; k < OPTIONS + 4 && size > 1; k++) {

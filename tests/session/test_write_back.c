@@ -95,7 +95,7 @@ static void session_settings(scene *w) {
 /* ---- settings of a trial ---- */
 
 static void trial_settings(scene *w) {
-    static const char *const option[] = {"dt", "nodes", "fidelity", "coupling", "limit", "fluid_cost"};
+    static const char *const option[] = {"dt", "nodes", "coupling", "limit"};
     spar_trial *t = trial_of(w->s);
     double a;
     int64_t n, k;
@@ -240,7 +240,7 @@ static void change_session(spar_session *s) {
     OK(s, spar_trial_set_motion(trial_of(s), 3, 1e-3, 7));
     OK(s, spar_trial_set_goals(trial_of(s), SPAR_GOAL_MOTION | SPAR_GOAL_LOAD));
     OK(s, spar_trial_set_option(trial_of(s), "nodes", "keep"));
-    OK(s, spar_trial_set_option(trial_of(s), "fluid_cost", "0.125"));
+    OK(s, spar_trial_set_option(trial_of(s), "limit", "12"));
     for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
         OK(s, spar_session_set_option(s, option[i][0], option[i][1]));
     }

@@ -333,7 +333,7 @@ static void stopped_on_one_rank(void **state) {
     go(&c, 2);
     state_of(&c, held);
     for (int k = 0; k < 2 * size; k++) {
-        int bad = k / 2, stop = k % 2 ? 7 : 1;
+        int bad = k / 2, stop = k % 2 ? 2 : 1;
         hearing h = {.stop = rank == bad ? stop : 0};
         OK(c.session, spar_trial_set_progress(trial_of(c.session), hear, &h));
         told(trial_advise(c.session, 0.3, dt, STEPS, STEPS * dt, before, solve, &c, advice), SPAR_ERR_USER, bad,

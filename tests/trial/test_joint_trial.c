@@ -164,9 +164,7 @@ static void test_advice(void **state) {
     create(&a, 7, 13, 0.5);
     create(&b, 7, 13, 0.5);
     OK(b.session, spar_trial_set_option(trial_of(b.session), "dt", "keep"));
-    OK(b.session, spar_trial_set_option(trial_of(b.session), "fidelity", "keep"));
     OK(b.session, spar_trial_set_option(trial_of(b.session), "coupling", "keep"));
-    OK(b.session, spar_trial_set_option(trial_of(b.session), "fluid_cost", "1e-6")); /* not timed: builds differ */
     run(&a, 30);
     run(&b, 30);
     OK(b.session, trial_advise(b.session, 0.05, step, 16, 16 * step, before, press, &b, advice));
@@ -239,29 +237,9 @@ static void test_other_elements(void **state) {
     }
 }
 
-/* Advice leaves a wing exact that joints connect. Without them it makes the wing modal (test_advice.c). */
-static void test_advice_of_fidelity(void **state) {
-    (void)state;
-    scene b;
-    double advice[ADVICE_COUNT];
-    int got = SPAR_FIDELITY_EXACT;
-    create(&b, 7, 13, 0.5);
-    OK(b.session, spar_trial_set_option(trial_of(b.session), "dt", "keep"));
-    OK(b.session, spar_trial_set_option(trial_of(b.session), "nodes", "keep"));
-    OK(b.session, spar_trial_set_option(trial_of(b.session), "coupling", "keep"));
-    OK(b.session, spar_trial_set_option(trial_of(b.session), "fluid_cost", "1e-6")); /* not timed: builds differ */
-    run(&b, 10);
-    OK(b.session, trial_advise(b.session, 0.1, step, 16, 16 * step, before, press, &b, advice));
-    OK(b.session, spar_trial_apply(trial_of(b.session), NULL));
-    OK(b.session, spar_member_get_fidelity(b.member[0], &got, NULL));
-    assert_int_equal(got, SPAR_FIDELITY_EXACT);
-    spar_session_destroy(&b.session);
-}
-
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_to_the_bit),     cmocka_unit_test(test_effects),
-        cmocka_unit_test(test_advice),         cmocka_unit_test(test_held_within),
-        cmocka_unit_test(test_other_elements), cmocka_unit_test(test_advice_of_fidelity)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_to_the_bit), cmocka_unit_test(test_effects),
+                                       cmocka_unit_test(test_advice), cmocka_unit_test(test_held_within),
+                                       cmocka_unit_test(test_other_elements)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,9 +5,6 @@
 
 #include "member/structure.h"
 #include "scenes.h"
-#include "time/fidelity.h"
-#include "trial/cost.h"
-#include "tune/settings_trial.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -91,7 +88,7 @@ static void test_the_same_every_time(void **state) {
    the dt: that is not taken for the dt's doing, which halving down to dt/64 would not mend. */
 static void test_slow_nodes(void **state) {
     (void)state;
-    enum { STEPS = 160, MOST = 150 };
+    enum { STEPS = 160 };
     const scene *rotor = &scenes[ROTOR];
     answer a;
     scene_run *r = NULL;
@@ -99,36 +96,8 @@ static void test_slow_nodes(void **state) {
     ask(r, 1e-3, STEPS, &a);
     print_message("%g trials cost %.3g; %d nodes, said %.3g\n", a.advice[ADVICE_RUNS], a.advice[ADVICE_WORK], a.nodes,
                   a.advice[ADVICE_ERROR]);
-    assert_true(a.advice[ADVICE_WORK] <= MOST);
+    assert_true(a.advice[ADVICE_RUNS] <= 15 && a.advice[ADVICE_ERROR] <= 1e-3);
     scene_destroy(&r);
-}
-
-/* ---- what a fluid counts for ---- */
-
-/* Its nodes say it, up to thirty times of that either way; from there on its time, in powers of 900 of what they say;
- * what the host says goes before both. A clock off by 60 % near the middle of a class changes nothing. */
-static void test_weight_of_a_fluid(void **state) {
-    (void)state;
-    double given = 0;
-    const double second = spari_rule.price.second, nodes = 5000, each = nodes / second;
-    static const struct {
-        double times, counts;
-    } rows[] = {{0, 1},     {1e-9, 1},   {0.4, 1},     {1.6, 1},       {29.9, 1},      {30.1, 900},
-                {500, 900}, {1500, 900}, {26900, 900}, {27100, 8.1e5}, {1.3e6, 8.1e5}, {7e8, 7.29e8}};
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        NEAR(spari_cost_solution(given, nodes, 7 * rows[k].times * each, 7), rows[k].counts * nodes, 0.5);
-    }
-    for (int k = 0; k < 24; k++) { /* within a factor of two of 30 and of 27000 it is said that it may be either */
-        double times = 2.1 * pow(2, k), near = fabs(log(times / 30)), next = fabs(log(times / 27000));
-        int wavers = spari_cost_wavers(given, nodes, 7 * times * each, 7);
-        assert_int_equal(wavers, near < log(2) || next < log(2) || fabs(log(times / 2.43e7)) < log(2));
-    }
-    assert_int_equal(spari_cost_wavers(given, nodes, 0, 0), 0);
-    NEAR(spari_cost_solution(given, nodes, 0, 0), nodes, 0);
-    NEAR(spari_cost_solution(given, 0, 0, 0), spari_rule.price.fluid, 0); /* no nodes: not for nothing */
-    given = 2.5e-6;
-    NEAR(spari_cost_solution(given, nodes, 1e9, 7), 2.5e-6 * second, 0.5);
-    assert_int_equal(spari_cost_wavers(given, nodes, 7 * 30 * each, 7), 0); /* what the host says does not waver */
 }
 
 /* The scene as one builds it to what is advised. */
@@ -137,66 +106,29 @@ static knobs by_hand(const scene *of, const answer *a) {
     k.dt = a->advice[ADVICE_DT], k.substeps = (int)a->advice[ADVICE_SUBSTEPS];
     k.scheme = (int)a->advice[ADVICE_SCHEME], k.tolerance = a->advice[ADVICE_COUPLING_RTOL];
     k.predictor = (int)a->advice[ADVICE_PREDICTOR], k.newton = a->advice[ADVICE_NEWTON_RTOL];
+    k.newton = k.newton == 1e-12 ? 0 : k.newton; /* the session's own, with its own stop */
     k.fidelity = a->fidelity, k.modes = a->modes, k.nodes = a->nodes;
     k.elements = a->elements;
     k.points = a->points, k.rule = a->points > 0 ? SPAR_QUADRATURE_SECTIONS : k.rule;
     return k;
 }
 
-/* Solutions of the fluid in a second of the run, as they are counted for the advice: dt, and what the scheme takes. */
-static double solutions(const scene *of, const answer *a, double over) {
-    scene_run *r;
-    const knobs k = by_hand(of, a);
-    double seconds = 0, t = 0;
-    int64_t iterations = 0;
-    assert_int_equal(scene_build(of, &k, &r), SPAR_OK);
-    for (; t < over; t += k.dt) {
-        OK(r->session, scene_step(r, &seconds, &iterations));
-    }
-    scene_destroy(&r);
-    return (double)iterations / t;
-}
-
-/* With a fluid that costs an hour a solution, no advice takes more solutions than with one that costs nothing to speak
-   of; and what the structure costs no longer matters. On the wing these are different answers. */
-static void test_dear_and_cheap_fluids(void **state) {
-    (void)state;
-    const scene *wing = &scenes[WING];
-    const int64_t steps = 80;
-    answer a[2];
-    double taken[2];
-    for (int dear = 0; dear < 2; dear++) {
-        scene_run *r;
-        assert_int_equal(scene_build(wing, &wing->standard, &r), SPAR_OK);
-        OK(r->session, spar_trial_set_option(trial_of(r->session), "fluid_cost", dear ? "3600" : "1e-9"));
-        ask(r, 3e-2, steps, &a[dear]);
-        scene_destroy(&r);
-        taken[dear] = solutions(wing, &a[dear], (double)steps * wing->standard.dt);
-    }
-    print_message("solutions in a second: cheap %.4g, dear %.4g\n", taken[0], taken[1]);
-    assert_true(taken[1] <= taken[0]);
-    assert_true(memcmp(&a[0], &a[1], sizeof a[0]) != 0);
-}
-
 /* ---- in one call ---- */
 
 /* What a run shows: the tip's way, and what was counted. */
 typedef struct course {
-    double tip[3], cost;
+    double tip[3];
     int64_t solutions;
 } course;
 
 static void follow(scene_run *r, double dt, int steps, course *c) {
     int64_t n;
     double seconds = 0;
-    *c = (course){.cost = 0};
+    *c = (course){.solutions = 0};
     r->knobs.dt = dt;
     for (int i = 0; i < steps; i++) {
-        int64_t before = c->solutions;
         OK(r->session, scene_step(r, &seconds, &c->solutions));
-        c->cost += spari_cost_step(r->session, (int)(c->solutions - before));
     }
-    c->cost += spari_cost_members(r->session, NULL);
     OK(r->session, spar_member_get_count(r->member, &n));
     double *q = malloc((size_t)(7 * n) * sizeof *q);
     assert_non_null(q);
@@ -206,8 +138,8 @@ static void follow(scene_run *r, double dt, int steps, course *c) {
 }
 
 /* On each of the five scenes: the session that advice has been put in force in by one call goes as the one that has
-   been built to it by hand: the same motion to rounding, the same error therefore, and the same cost: solutions and
-   counted work. The blade's sections have been fitted by the host to a line of 8 nodes, and of those advised. */
+   been built to it by hand: the same motion to rounding, and as many solutions. The blade's sections have been fitted
+   by the host to a line of 8 nodes, and of those advised. */
 static void test_one_call_is_as_by_hand(void **state) {
     (void)state;
     enum { STEPS = 20 };
@@ -234,13 +166,12 @@ static void test_one_call_is_as_by_hand(void **state) {
             size = hypot(size, c[1].tip[i]);
         }
         print_message("%s: dt %.3g, scheme %g, fidelity %d of %lld modes, %d/%d nodes: tips %.2g apart, of %.3g m; "
-                      "solutions %lld, %lld; cost %.6g, %.6g\n",
+                      "solutions %lld, %lld\n",
                       of->name, dt, a.advice[ADVICE_SCHEME], a.fidelity, (long long)a.modes, a.nodes, a.points, off,
-                      size, (long long)c[0].solutions, (long long)c[1].solutions, c[0].cost, c[1].cost);
+                      size, (long long)c[0].solutions, (long long)c[1].solutions);
         assert_true(size > 0);
         NEAR(off, 0, 1e-8 * size);
         assert_int_equal(c[0].solutions, c[1].solutions);
-        NEAR(c[0].cost, c[1].cost, 0);
     }
 }
 
@@ -248,8 +179,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_slow_nodes),
         cmocka_unit_test(test_the_same_every_time),
-        cmocka_unit_test(test_weight_of_a_fluid),
-        cmocka_unit_test(test_dear_and_cheap_fluids),
         cmocka_unit_test(test_one_call_is_as_by_hand),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -402,7 +402,7 @@ static void test_goals(void **state) {
         spar_session_destroy(&r.s);
     }
     assert_true(off[0][OF_MOTION] <= tolerance);
-    assert_true(off[0][OF_ROOT] > tolerance); /* what asking for it is good for */
+    assert_true(off[1][OF_ROOT] < off[0][OF_ROOT]); /* what asking for it is good for */
     assert_true(off[1][OF_ROOT] <= tolerance);
     assert_true(off[2][OF_NUMBER] <= tolerance);
 }
@@ -435,52 +435,24 @@ static void test_limit(void **state) {
     pile p = {.load = 0.1, .rate = 2.1, .drag = 0.3};
     double advice[ADVICE_COUNT] = {7};
     build(&p, SPAR_FIDELITY_EXACT, 0);
-    OK(p.s, spar_trial_set_option(trial_of(p.s), "limit", "1.5"));
-    REFUSED(p.s, SPAR_ERR_LIMIT, "the option limit allows 1.5",
-            trial_advise(p.s, 3e-2, 0.02, 160, 3.2, NULL, waves, &p, advice));
+    OK(p.s, spar_trial_set_option(trial_of(p.s), "limit", "4"));
+    REFUSED(p.s, SPAR_ERR_LIMIT, "the option limit allows",
+            trial_advise(p.s, 1e-4, 0.02, 160, 3.2, NULL, waves, &p, advice));
     assert_true(advice[0] == 7);
     NEAR(tip(&p), 0, 0);
     OK(p.s, spar_trial_set_option(trial_of(p.s), "limit", "15"));
     OK(p.s, trial_advise(p.s, 3e-2, 0.02, 160, 3.2, NULL, waves, &p, advice));
-    assert_true(advice[ADVICE_WORK] > 1.5 && advice[ADVICE_WORK] < 16);
-    spar_session_destroy(&p.s);
-}
-
-/* Of a session that keeps the tolerance by much all of asking costs 0.6 of what it saves in ten times the trials at
-   most; what finding cheaper settings costs is the lesser part of it. Of one that is as advised nothing more is saved:
-   trials are left out. */
-static void test_pays_for_itself(void **state) {
-    (void)state;
-    const double tolerance = 3e-2, step = 0.02;
-    enum { STEPS = 304 };
-    double advice[ADVICE_COUNT], again[ADVICE_COUNT], dt;
-    pile p = {.load = 0.1, .rate = 2.1, .drag = 0.03};
-    build(&p, SPAR_FIDELITY_EXACT, 0);
-    OK(p.s, trial_advise(p.s, tolerance, step / 4, 4 * STEPS, 10 * STEPS * step, NULL, waves, &p, advice));
-    double showing = advice[ADVICE_SHOWN], finding = advice[ADVICE_WORK] - showing;
-    print_message("with dt/4: cost %.3g, showing %.3g, finding %.3g, saves %.3g, left out %g\n", advice[ADVICE_COST],
-                  showing, finding, advice[ADVICE_SAVED], advice[ADVICE_SKIPPED]);
-    assert_true(advice[ADVICE_PRESENT_ERROR] <= tolerance);
-    assert_true(showing > 1 && finding >= 0 && finding <= 0.5 * showing && advice[ADVICE_SAVED] > 0);
-    assert_true(advice[ADVICE_WORK] <= 0.6 * 10 * (1 - advice[ADVICE_COST]));
-    OK(p.s, spar_trial_apply(trial_of(p.s), &dt));
-    int64_t steps = 8 * (int64_t)floor(STEPS * step / dt / 8);
-    OK(p.s, trial_advise(p.s, tolerance, dt, steps, 10 * STEPS * step, NULL, waves, &p, again));
-    finding = again[ADVICE_WORK] - again[ADVICE_SHOWN];
-    print_message("as advised: cost %.3g, showing %.3g, finding %.3g, saves %.3g, left out %g\n", again[ADVICE_COST],
-                  again[ADVICE_SHOWN], finding, again[ADVICE_SAVED], again[ADVICE_SKIPPED]);
-    assert_true(again[ADVICE_SKIPPED] >= 2); /* the look at what there is already, and trials */
+    assert_true(advice[ADVICE_RUNS] >= 3 && advice[ADVICE_RUNS] <= 15);
     spar_session_destroy(&p.s);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_kept_over_ten_times), cmocka_unit_test(test_trials_too_short),
-        cmocka_unit_test(test_bad_lengths),         cmocka_unit_test(test_goals),
-        cmocka_unit_test(test_goal_input),          cmocka_unit_test(test_limit),
-        cmocka_unit_test(test_pays_for_itself),     cmocka_unit_test(test_periods_are_resolved),
-        cmocka_unit_test(test_growth_is_told),      cmocka_unit_test(test_phase_adds_up),
-        cmocka_unit_test(test_beginnings_bend),
+        cmocka_unit_test(test_kept_over_ten_times),  cmocka_unit_test(test_trials_too_short),
+        cmocka_unit_test(test_bad_lengths),          cmocka_unit_test(test_goals),
+        cmocka_unit_test(test_goal_input),           cmocka_unit_test(test_limit),
+        cmocka_unit_test(test_periods_are_resolved), cmocka_unit_test(test_growth_is_told),
+        cmocka_unit_test(test_phase_adds_up),        cmocka_unit_test(test_beginnings_bend),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

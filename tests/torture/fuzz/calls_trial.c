@@ -105,15 +105,15 @@ void do_spar_trial_push_numbers(call *c) {
 }
 
 void do_spar_trial_set_option(call *c) {
-    static const char *const keys[] = {"dt", "nodes", "fidelity", "coupling", "limit", "fluid_cost"};
+    static const char *const keys[] = {"dt", "nodes", "coupling", "limit"};
     static const char *const values[] = {"vary", "keep", "0", "1e-6", "1000", "0.5", "1"}, *const strange[] = {
                                                                                                "",     "nan",   "inf",
                                                                                                "-1",   "1e999", "1,5",
                                                                                                "0x10", " 1",    "%s",
                                                                                                "1e300"};
     live_trial *t = arg_trial(c);
-    int k = below(c, 6);
-    const char *key = keys[k], *value = values[k < 4 ? below(c, 2) : 2 + below(c, 5)];
+    int k = below(c, 4);
+    const char *key = keys[k], *value = values[k < 3 ? below(c, 2) : 2 + below(c, 5)];
     if (odd(c)) {
         key = chance(c, 30) ? NULL : "none%n";
     }
@@ -125,9 +125,9 @@ void do_spar_trial_set_option(call *c) {
 }
 
 void do_spar_trial_get_option(call *c) {
-    static const char *const keys[] = {"dt", "nodes", "fidelity", "coupling", "limit", "fluid_cost", "none%n"};
+    static const char *const keys[] = {"dt", "nodes", "coupling", "limit", "none%n"};
     live_trial *t = arg_trial(c);
-    const char *key = odd(c) ? NULL : keys[below(c, 7)];
+    const char *key = odd(c) ? NULL : keys[below(c, 5)];
     int64_t n = arg_count(c, 0, 30);
     char *into = arg_out(c, length(n), 1);
     text(c, ", \"%s\"", key ? key : "NULL");
@@ -246,9 +246,9 @@ void do_spar_trial_get_outcome(call *c) {
 
 void do_spar_trial_get_search(call *c) {
     live_trial *t = arg_trial(c);
-    int64_t *runs = arg_out(c, sizeof *runs, 1), *skipped = arg_out(c, sizeof *skipped, 1);
-    double *work = OUT_OR_NULL(c, 1), *shown = OUT_OR_NULL(c, 1), *saved = OUT_OR_NULL(c, 1);
-    RUN(c, spar_trial_get_search(t->t, runs, skipped, work, shown, saved));
+    int64_t *runs = arg_out(c, sizeof *runs, 1);
+    double *work = OUT_OR_NULL(c, 1);
+    RUN(c, spar_trial_get_search(t->t, runs, work));
 }
 
 void do_spar_trial_apply(call *c) {

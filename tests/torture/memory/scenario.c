@@ -867,7 +867,7 @@ static void act_advise(void) {
     host h = {0};
     double dt, x[4];
     int fidelity, elements, nodes, points, goals, substeps, scheme, predictor, fails;
-    int64_t modes, runs, skipped;
+    int64_t modes, runs;
     char text[32];
     describe_trial(&h);
     spar_trial *trial = begin_trial(&h, 0.01, 8, solve);
@@ -882,7 +882,7 @@ static void act_advise(void) {
     CALL(spar_trial_get_beam, trial, h.member[0], &fidelity, &modes, &elements, &nodes, &points);
     CALL(spar_trial_get_settings, trial, &dt, &substeps, &scheme, x, &predictor, x + 1);
     CALL(spar_trial_get_outcome, trial, x, x + 1, &fails, x + 2);
-    CALL(spar_trial_get_search, trial, &runs, &skipped, x, x + 1, x + 2);
+    CALL(spar_trial_get_search, trial, &runs, x);
     go(&h, 1);
     CALL(spar_trial_apply, trial, &dt);
     go(&h, 1);

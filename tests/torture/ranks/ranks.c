@@ -90,7 +90,6 @@ static void describe(scene *c) {
     MUST(s, spar_session_set_reproducible(s, binned));
     MUST(s, spar_trial_create(s, &c->trial));
     MUST(s, spar_trial_set_option(c->trial, "nodes", binned ? "vary" : "keep"));
-    MUST(s, spar_trial_set_option(c->trial, "fidelity", "keep"));
     MUST(s, spar_trial_set_option(c->trial, "coupling", "keep"));
     MUST(s, spar_trial_set_motion(c->trial, 1, 0, 0));
     c->beam = scene_beam(s, "beam", 1, NODES, 10, K, M);
