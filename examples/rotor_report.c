@@ -424,6 +424,16 @@ static void put_span(const rotor_report *r, FILE *file, const figures *f) {
     fputc('\n', file);
 }
 
+static void put_advice(FILE *file) {
+    fprintf(file, "\nset output 'advice.png'\nset title 'What accuracy costs' font ',15'\nset key off\n"
+                  "set xlabel 'error of the deflection'\nset ylabel 'cost of the run, as given: 1'\nset logscale xy\n"
+                  "set xrange [*:*]\nset offsets 0,0,0,0\nset xrange [] reverse\n"
+                  "stats 'advice.csv' skip 1 using 2:3 nooutput\n"
+                  "set xrange [5*STATS_max_x:STATS_min_x/5]\nset yrange [STATS_min_y/3:STATS_max_y*3]\n"
+                  "plot 'advice.csv' skip 1 using 2:3 with points pointtype 7 pointsize 2 linecolor rgb '#0b5fa5', \\\n"
+                  "  '' skip 1 using 2:3:1 with labels offset 0,1.3\n");
+}
+
 static int write_script(const rotor_report *r, const figures *f) {
     FILE *file = create(r, "plots.gp");
     if (!file) {
@@ -439,6 +449,9 @@ static int write_script(const rotor_report *r, const figures *f) {
     put_blades(r, file, "root", "Bending moment at the root", ROTOR_FLAP_MOMENT, 1e-6, "MN m");
     put_power(r, file);
     put_span(r, file, f);
+    if (isfinite(r->options->tolerance)) {
+        put_advice(file);
+    }
     return finish(file, "plots.gp");
 }
 
@@ -466,7 +479,8 @@ int rotor_report_write(const rotor_report *r) {
     printf("\n  %s/history.csv, span.csv\n", out);
     if (!r->options->no_plots) {
         if (draw(out) == 0) {
-            printf("  %s/tip.png, root.png, power.png, span.png\n", out);
+            printf("  %s/tip.png, root.png, power.png, span.png%s\n", out,
+                   isfinite(r->options->tolerance) ? ", advice.png" : "");
         } else {
             printf("  no plots: gnuplot is not there (apt-get install gnuplot-nox), then: cd %s && gnuplot plots.gp\n",
                    out);

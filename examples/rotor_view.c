@@ -188,6 +188,38 @@ static void print_advice(const rotor_options *o, const rotor_trial *t, double le
     printf("\n\n");
 }
 
+/* What accuracy costs around the advice: OUT/advice.csv has error and cost of the run as given, as advised, and as
+   advised for a tenth of the tolerance. Where that is refused, its row is left out. */
+static int write_decades(const rotor_trial *t, const rotor_options *o, double length, int show) {
+    double error[2] = {0, 0}, cost[2] = {0, 0}, present = 0, tenth = 0.1 * o->tolerance;
+    char path[1024];
+    int fails = 0;
+    (void)spar_trial_get_outcome(t->trial, error, cost, &fails, &present);
+    int found = spar_trial_advise(t->trial, tenth, fmax(o->seconds, length)) == SPAR_OK &&
+                spar_trial_get_outcome(t->trial, error + 1, cost + 1, NULL, NULL) == SPAR_OK;
+    if (!show) {
+        return SPAR_OK;
+    }
+    snprintf(path, sizeof path, "%s/advice.csv", o->out);
+    FILE *file = fopen(path, "w");
+    if (!file) {
+        fprintf(stderr, "rotor: '%s' cannot be written\n", path);
+        return SPAR_ERR_IO;
+    }
+    fprintf(file, "settings,error,cost\n");
+    if (!fails) {
+        fprintf(file, "as given,%.6g,1\n", present);
+    }
+    fprintf(file, "advised for %g,%.6g,%.6g\n", o->tolerance, error[0], cost[0]);
+    if (found) {
+        fprintf(file, "advised for %g,%.6g,%.6g\n", tenth, error[1], cost[1]);
+        printf("  a decade more      a tolerance of %g costs %.2g of what it is as given\n\n", tenth, cost[1]);
+    } else {
+        printf("  a decade more      no settings were found for a tolerance of %g\n\n", tenth);
+    }
+    return fclose(file) == 0 ? SPAR_OK : SPAR_ERR_IO;
+}
+
 int rotor_view_advice(const rotor_trial *t, rotor_options *o, int show) {
     double dt = 0;
     int64_t steps = 0;
@@ -200,5 +232,5 @@ int rotor_view_advice(const rotor_trial *t, rotor_options *o, int show) {
     if (status == SPAR_OK && show) {
         print_advice(o, t, length);
     }
-    return status;
+    return status == SPAR_OK ? write_decades(t, o, length, show) : status;
 }

@@ -98,7 +98,7 @@ static void advice(void **state) {
         if (k < OPTIONS) {
             char name[40];
             (void)snprintf(name, sizeof name, "option %s", option[k][0]);
-            OK(s, spar_trial_set_option(trial_of(s), option[k][0], last ? option[k][1] : k < 4 ? "vary" : "0.01"));
+            OK(s, spar_trial_set_option(trial_of(s), option[k][0], last ? option[k][1] : k < 3 ? "vary" : "5"));
             differs(&c, trial_advise(s, 0.1, dt, 8, 1, NULL, solve, &c, a), name);
         } else if (k == OPTIONS) {
             differs(&c, trial_advise(s, last ? 0.1 : 0.2, dt, 8, 1, NULL, solve, &c, a), "tolerance (here ");

@@ -330,6 +330,16 @@ static void test_tolerance(void **state) {
     double off = difference(&there, &advised, tips, 1, 1);
     print_message("tolerance 0.03: the tips are off by %.4f of their way, in %d steps\n", off, advised.rows - 1);
     assert_true(off < 1.5 * 0.03);
+    FILE *file = fopen("rotor_advised/advice.csv", "r"); /* a decade more accuracy has a smaller error, and costs more */
+    assert_non_null(file);
+    char line[256];
+    double error[3] = {0, 0, 0}, cost[3] = {0, 0, 0};
+    for (int row = -1; row < 3 && fgets(line, sizeof line, file); row++) {
+        assert_true(row < 0 || sscanf(strchr(line, ','), ",%lf,%lf", error + row, cost + row) == 2);
+    }
+    fclose(file);
+    assert_true(cost[0] == 1 && error[1] <= 0.03 && error[2] <= 0.003 && error[2] > 0);
+    assert_true(cost[2] > cost[1] && cost[1] > 0);
     free(advised.value);
     free(fine.value);
     free(there.value);
