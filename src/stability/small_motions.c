@@ -2,6 +2,7 @@
    frame that rotates with it, where the coefficients are constant. Parts that rotate otherwise than the rest (a rotor
    on its tower) are allowed if they are isotropic about their axis: then nothing depends on their angle. */
 #include "small_motions.h"
+#include "small_motions_joints.h"
 
 #include "../base/session.h"
 #include "../math/rotation.h"

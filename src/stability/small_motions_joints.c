@@ -1,10 +1,11 @@
 /* Joints in the small-motion equations: springs, dampers, geometric stiffness of their loads, and constraints. */
+#include "small_motions_joints.h"
+
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
 #include "../time/component.h"
 #include "../time/fidelity.h"
-#include "small_motions.h"
 
 #include <math.h>
 #include <stdlib.h>
