@@ -231,7 +231,10 @@ static int march(spar_session *s, const spari_run *run, spari_record *r) {
     for (int64_t i = 1; i <= run->steps; i++) {
         SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->before_context));
         SPARI_TRY(step_once(s, run, r));
-        SPARI_TRY(run->watch ? run->watch(s, run->watcher) : SPAR_OK);
+        if (run->watch) { /* it may lack memory on one rank alone */
+            int status = run->watch(s, run->watcher);
+            SPARI_TRY(spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message));
+        }
         watch_loads(s, i, run->steps, r, size);
         SPARI_TRY(spari_record_look(r, s, i));
     }
