@@ -190,7 +190,7 @@ static arguments good(void) {
                        .load_steps = 1,
                        .goals = SPAR_GOAL_MOTION,
                        .path = saved,
-                       .limit = "0",
+                       .limit = "15",
                        .before = before,
                        .solve = solve};
 }
