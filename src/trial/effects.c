@@ -149,7 +149,7 @@ static int add_state(spar_session *s, void *to) {
             so_far->rate = fmax(so_far->rate, spari_norm(m->now.v + 6 * i + 3));
         }
     }
-    return spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+    return status;
 }
 
 /* Terms of the whole run, relative to the largest. */
@@ -351,7 +351,7 @@ static int fill_rows(spar_session *s, const char *call, const spari_run *run, sp
     spari_record base;
     run_tally runs = {0, 1 + count_runs(s, 0, run->solve ? ~0 : 0)}; /* the first run shows the fluid's requests */
     watched.watch = add_state, watched.watcher = &seen;
-    SPARI_TRY(add_state(s, &seen));
+    SPARI_TRY(spari_comm_agree(s->ranks.comm, add_state(s, &seen), s->message, sizeof s->message));
     SPARI_TRY(spari_trial_settings_create(s, &trial_settings));
     (void)run_told(s, &watched, &trial_settings, &runs, &base);
     find_sizes(&seen, run->dt, size);
