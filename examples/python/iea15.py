@@ -113,17 +113,25 @@ def compare(machine, library, given, out):
         plot_controlled(out + '.png', runs, machine.name)
 
 
-def plot_controlled(path, runs, name):
-    """Wind, speed, pitch, power, thrust and the tower's top, with each controller."""
+def panels(name):
+    """A figure of two rows of three axes; None without matplotlib."""
     try:
         import matplotlib  # pylint: disable=import-outside-toplevel
     except ImportError:
         print('no matplotlib: no picture')
-        return
+        return None, None
     matplotlib.use('Agg')
     from matplotlib import pyplot  # pylint: disable=import-outside-toplevel
     figure, axes = pyplot.subplots(2, 3, figsize=(12, 6), constrained_layout=True)
     figure.suptitle(name)
+    return figure, axes
+
+
+def plot_controlled(path, runs, name):
+    """Wind, speed, pitch, power, thrust and the tower's top, with each controller."""
+    figure, axes = panels(name)
+    if figure is None:
+        return
     titles = ('wind, m/s', 'rotor speed, rev/min', 'pitch, degrees', 'power, MW', 'thrust, MN', "tower's top, downwind, m")
     for k, (axis, title) in enumerate(zip(axes.ravel(), titles)):
         for label, rows in runs.items():
@@ -138,15 +146,9 @@ def plot_controlled(path, runs, name):
 
 def picture(path, curve, motion, name):
     """Steady curve above, gust below."""
-    try:
-        import matplotlib  # pylint: disable=import-outside-toplevel
-    except ImportError:
-        print('no matplotlib: no picture')
+    figure, axes = panels(name)
+    if figure is None:
         return
-    matplotlib.use('Agg')
-    from matplotlib import pyplot  # pylint: disable=import-outside-toplevel
-    figure, axes = pyplot.subplots(2, 3, figsize=(12, 6), constrained_layout=True)
-    figure.suptitle(name)
     for axis, x, y, label, unit in ((axes[0, 0], curve[:, 0], curve[:, 3], 'aerodynamic power, MW', 'wind, m/s'),
                                     (axes[0, 1], curve[:, 0], curve[:, 4], 'thrust, MN', 'wind, m/s'),
                                     (axes[0, 2], curve[:, 0], curve[:, 2], 'pitch, degrees', 'wind, m/s'),

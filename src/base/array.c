@@ -55,13 +55,6 @@ void spari_fill(int64_t capacity, double *array, int64_t known, const double *va
     }
 }
 
-void spari_fill_table(int64_t rows, int64_t columns, double *to, int64_t known_rows, int64_t known_columns,
-                      const double *values) {
-    for (int64_t r = 0; to && r < rows; r++) {
-        spari_fill(columns, to + r * columns, r < known_rows ? known_columns : 0, values + r * known_columns);
-    }
-}
-
 uint64_t spari_hash_bytes(uint64_t hash, const void *data, size_t size) {
     const unsigned char *byte = data;
     for (size_t i = 0; i < size; i++) {

@@ -51,9 +51,6 @@ double *spari_copy(const double *x, int64_t n);
 
 /* Copies values[known] to a host's array[capacity] (may be NULL). Excess entries of array are set to 0. */
 void spari_fill(int64_t capacity, double *array, int64_t known, const double *values);
-/* The same for a table [known_rows][known_columns], copied to [rows][columns]. */
-void spari_fill_table(int64_t rows, int64_t columns, double *to, int64_t known_rows, int64_t known_columns,
-                      const double *values);
 
 /* Adds bytes to a hash (FNV-1a), which begins with SPARI_HASH_BEGIN. */
 #define SPARI_HASH_BEGIN UINT64_C(14695981039346656037)

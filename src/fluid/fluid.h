@@ -69,9 +69,6 @@ int spari_fluid_is_pending(const spar_fluid *fluid);
 /* After restoring: frees the fluids that the host destroyed during the trial. */
 void spari_fluid_release_gone(spar_session *session);
 
-/* Whether some of its nodes are sections. */
-int spari_fluid_has_sections(const spar_fluid *fluid);
-
 /* State for save and load, as doubles: loads, kept node forces and the host's own numbers, with the positions of
    these nodes. */
 int64_t spari_fluid_state_size(const spar_fluid *fluid);

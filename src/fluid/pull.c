@@ -622,7 +622,3 @@ int spar_fluid_get_positions(const spar_fluid *fluid, int which, double *x, doub
     }
     return SPAR_OK;
 }
-
-int spari_fluid_has_sections(const spar_fluid *fluid) {
-    return fluid->set[0].sections || fluid->set[1].sections;
-}

@@ -522,16 +522,6 @@ static int element_points(const spari_beam *beam, int elements, int e, int P, do
     return count;
 }
 
-int64_t spari_beam_points(const spar_member *m, int elements, int per_element, int points) {
-    spari_beam b = *m->beam;
-    int64_t sum = 0;
-    b.points = points > 0 ? points : b.points;
-    for (int e = 0; e < elements; e++) {
-        sum += element_points(&b, elements, e, per_element, NULL, NULL);
-    }
-    return sum;
-}
-
 /* Reference orientation at a quadrature point: from the axis description if there is one, otherwise interpolated
    from the nodes. */
 static void reference_frame(const spar_member *member, const framing *f, const double *gll, const double *bary,

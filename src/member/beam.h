@@ -50,8 +50,6 @@ enum { SPARI_MOST_POINT_MASSES = 10000 }; /* maximum number */
 void spari_pretension_at(const spari_beam *beam, double eta, double out[6]);
 /* Quadrature rule in force. */
 int spari_beam_rule(const spari_beam *beam);
-/* Number of quadrature points with other elements. points: of the rule; 0: as described. */
-int64_t spari_beam_points(const spar_member *member, int elements, int per_element, int points);
 
 /* NULL if the stiffness is symmetric (1e-6 of the diagonal) and positive definite, otherwise a text that describes
    the error. */

@@ -8,14 +8,8 @@
 
 #define SPARI_FIDELITY_ENTRY(number, name) [SPAR_FIDELITY_##number] = &spari_fidelity_##name,
 static const spari_fidelity *const table[] = {SPARI_FIDELITIES(SPARI_FIDELITY_ENTRY)};
-#define SPARI_FIDELITY_NAME(number, name) [SPAR_FIDELITY_##number] = #name,
-static const char *const row_name[] = {SPARI_FIDELITIES(SPARI_FIDELITY_NAME)};
 #define SPARI_COUNT_FIDELITY(number, name) +1
 enum { ROWS = 0 SPARI_FIDELITIES(SPARI_COUNT_FIDELITY) };
-
-const char *spari_fidelity_name(int fidelity) {
-    return row_name[fidelity];
-}
 
 const spari_fidelity *spari_fidelity_row(int fidelity) {
     return table[fidelity];

@@ -109,8 +109,6 @@ typedef struct spari_fidelity {
 SPARI_FIDELITIES(SPARI_DECLARE_FIDELITY)
 extern const spari_fidelity spari_fidelity_given; /* points and external members */
 
-/* The name of a fidelity: "exact". */
-const char *spari_fidelity_name(int fidelity);
 /* The row of an existing fidelity. */
 const spari_fidelity *spari_fidelity_row(int fidelity);
 /* The row for the description of a member. */

@@ -19,8 +19,13 @@ enum { FINEST = 64, COARSEST = 4, RESOLVES = 10, LEAST_STEPS = 16 };
 static const double foreseen = 2.5; /* a longer run, in trials, must be represented by them */
 static const double good = 0.9, aim = 0.6, of_reference = 0.25;
 
+/* Whether a has the scheme of b, and no more nodes. */
 static int of_same_kind(const spari_plan *a, const spari_plan *b) {
     return a->scheme == b->scheme && a->more <= b->more;
+}
+
+static int of_one_kind(const spari_plan *a, const spari_plan *b) {
+    return of_same_kind(a, b) && of_same_kind(b, a);
 }
 
 static int plan_is_explicit(const spari_plan *p) {
@@ -307,19 +312,13 @@ static int64_t propose(const spari_advisor *d, const spari_plan *kind) {
     int low = -1, high = -1; /* the coarsest that is good, and the finest that is not */
     for (int k = 0; k < d->count; k++) {
         const spari_tried *t = &d->tried[k];
-        int own = of_same_kind(&t->plan, kind) && of_same_kind(kind, &t->plan);
-        if (!own && !t->tight) {
+        if (!of_one_kind(&t->plan, kind) && !t->tight) {
             continue;
         }
-        if (is_good(d, k) && (low < 0 || t->plan.steps < d->tried[low].plan.steps)) {
-            low = k;
-        }
-    }
-    for (int k = 0; k < d->count; k++) {
-        const spari_tried *t = &d->tried[k];
-        int own = of_same_kind(&t->plan, kind) && of_same_kind(kind, &t->plan);
-        if ((own || t->tight) && !is_good(d, k) && (high < 0 || t->plan.steps > d->tried[high].plan.steps)) {
-            high = k;
+        if (is_good(d, k)) {
+            low = low < 0 || t->plan.steps < d->tried[low].plan.steps ? k : low;
+        } else {
+            high = high < 0 || t->plan.steps > d->tried[high].plan.steps ? k : high;
         }
     }
     if (low < 0) {
@@ -343,7 +342,7 @@ static int try_kind(spari_advisor *d, spari_plan kind, int trials, int *best) {
         for (int j = 0; j < d->count; j++) {
             const spari_tried *t = &d->tried[j];
             double by = (double)t->plan.steps / (double)steps;
-            known = known || (of_same_kind(&t->plan, &kind) && of_same_kind(&kind, &t->plan) && by > 0.93 && by < 1.1);
+            known = known || (of_one_kind(&t->plan, &kind) && by > 0.93 && by < 1.1);
         }
         if (steps <= 0 || known || (*best >= 0 && (double)steps > 0.92 * (double)d->tried[*best].plan.steps && k > 0)) {
             break;
