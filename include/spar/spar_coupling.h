@@ -354,7 +354,7 @@ SPAR_API int spar_fluid_get_layout(const spar_fluid *fluid, int which, int64_t *
 /* Methods of projection. */
 enum {
     SPAR_PROJECT_BOUNDED = 0, /* bounds on the squared distance: always the global minimum */
-    SPAR_PROJECT_RPOLY = 1    /* all roots of the derivative of the squared distance (Jenkins and Traub) */
+    SPAR_PROJECT_RPOLY = 1    /* all roots of the derivative of the squared distance; slow: a second opinion */
 };
 /* How nearest points are found by the next spar_fluid_map.
      method: in, SPAR_PROJECT_*, default bounded

@@ -2,11 +2,12 @@
    polynomial. */
 #include "projection.h"
 
+#include "../algebra/eigen.h"
 #include "../base/status.h"
 #include "../base/thread_pool.h"
-#include "../math/roots.h"
 #include "../math/rotation.h"
 #include "transfer.h"
+#include <complex.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -43,7 +44,7 @@ typedef struct segment {
     double radius;    /* scale of rounding errors: bound of all terms of r */
     double c[MODES][4];
     double dg[ROW], dc[3][ROW], g0, c0[3]; /* differences of G_i and of -2 C_i; first entries */
-    double pull[ROW], slope[MODES][3];     /* r . r' and r' in powers of s in [-1,1]: for the root finder */
+    double pull[ROW], slope[MODES][3];     /* Chebyshev coefficients of r . r' and r': for all roots */
 } segment;
 
 typedef struct ball {
@@ -184,31 +185,22 @@ static double distance_to_chord(const double a[3], const double b[3], const doub
     return spari_norm(v);
 }
 
-/* Converts Chebyshev coefficients to powers of s. This loses digits with the degree, but the coefficients of a
-   segment decay faster than the loss grows. */
-static void make_powers(segment *s) {
-    double t[3][MODES] = {{1}, {0, 1}}, r[MODES][3] = {{0}};
+/* Chebyshev coefficients of r' and r . r', by T_i T_j = (T_{i+j} + T_{|i-j|}) / 2. */
+static void make_slopes(segment *s) {
     int m = s->modes - 1;
-    for (int k = 1; k <= m; k++) {
-        const double *now = t[k % 3], *last = t[(k + 2) % 3];
-        double *next = t[(k + 1) % 3];
-        for (int j = 0; j <= k; j++) {
-            for (int i = 0; i < 3; i++) {
-                r[j][i] += s->c[k][i] * now[j];
-            }
-        }
-        for (int j = 0; j <= k + 1 && k < m; j++) {
-            next[j] = (j > 0 ? 2 * now[j - 1] : 0) - (j < k ? last[j] : 0);
+    for (int k = m; k > 0; k--) {
+        for (int i = 0; i < 3; i++) {
+            s->slope[k - 1][i] = 2 * k * s->c[k][i] + (k + 1 < m ? s->slope[k + 1][i] : 0);
         }
     }
-    for (int k = 1; k <= m; k++) {
-        for (int i = 0; i < 3; i++) {
-            s->slope[k - 1][i] = k * r[k][i];
-        }
+    for (int i = 0; i < 3; i++) {
+        s->slope[0][i] *= 0.5;
     }
     for (int k = 0; k <= m; k++) {
         for (int j = 0; j < m; j++) {
-            s->pull[k + j] += spari_dot(r[k], s->slope[j]);
+            double half = 0.5 * spari_dot(s->c[k], s->slope[j]);
+            s->pull[k + j] += half;
+            s->pull[abs(k - j)] += half;
         }
     }
 }
@@ -257,7 +249,7 @@ static void make_segment(const spari_line *line, const binomials *bin, int eleme
         s->deviation = fmax(s->deviation, distance_to_chord(s->end[0], s->end[1], p));
         s->ball = fmax(s->ball, spari_norm(p));
     }
-    make_powers(s);
+    make_slopes(s);
 }
 
 /* Whether a segment is nearly straight with its control points near it, so that it need not be split. */
@@ -634,26 +626,51 @@ static void bound(search *q, const segment *s, const double p[3]) {
     }
 }
 
-/* By all zeros of D'/2 = (r - p) . r', degree 2 m - 1, and the ends. Two close real zeros come back as a complex
-   pair with an imaginary part of the order of the root of rounding. Such pairs count as real, and Newton refines
-   them. Returns 0 if the root finder failed. */
-static int solve_by_roots(search *q, const segment *s, const double p[3]) {
-    const double near = 1e-3;
-    double c[ROW], re[ROW], im[ROW], most = 0;
-    int degree = 2 * s->modes - 3;
-    for (int k = 0; k <= degree; k++) {
-        c[k] = s->pull[k] - (k < s->modes - 1 ? spari_dot(p, s->slope[k]) : 0);
-        most = fmax(most, fabs(c[k]));
-    }
-    while (degree > 1 && fabs(c[degree]) <= DBL_EPSILON * most) {
-        degree--;
-    }
-    if (most > 0 && spari_roots(degree, c, re, im) != degree) {
+/* The zeros z [n] of the series a_0 T_0 + ... + a_n T_n, eigenvalues of its colleague matrix. Returns 0 if there is
+   no result. */
+static int solve_series(int n, const double *a, double complex *z) {
+    double *A = spari_zalloc((int64_t)n * n, sizeof *A);
+    if (!A) {
         return 0;
     }
-    for (int k = 0; k < degree && most > 0; k++) {
-        if (fabs(im[k]) <= near && fabs(re[k]) <= 1 + near) {
-            double at = fmax(-1, fmin(1, re[k]));
+    for (int k = 0; k < n; k++) { /* row k: s T_k */
+        if (k > 0) {
+            A[k * n + k - 1] = 0.5;
+        }
+        if (k + 1 < n) {
+            A[k * n + k + 1] = k == 0 ? 1 : 0.5;
+        }
+    }
+    for (int j = 0; j < n; j++) { /* T_n = -(a_0 T_0 + ... + a_{n-1} T_{n-1}) / a_n */
+        A[(n - 1) * n + j] -= (n == 1 ? 1 : 0.5) * a[j] / a[n];
+    }
+    int status = spari_eigenvalues(n, A, z);
+    free(A);
+    return status == SPAR_OK;
+}
+
+/* By all zeros of D'/2 = (r - p) . r', degree 2 m - 1, and the ends. Two close real zeros come back as a complex
+   pair with an imaginary part of the order of the root of rounding. Such pairs count as real, and Newton refines
+   them. Returns 0 if the zeros were not found. */
+static int solve_by_roots(search *q, const segment *s, const double p[3]) {
+    const double near = 1e-3;
+    double a[ROW], most = 0;
+    double complex z[DEGREE];
+    int degree = 2 * s->modes - 3;
+    for (int k = 0; k <= degree; k++) {
+        a[k] = s->pull[k] - (k < s->modes - 1 ? spari_dot(p, s->slope[k]) : 0);
+        most = fmax(most, fabs(a[k]));
+    }
+    while (degree > 0 && fabs(a[degree]) <= DBL_EPSILON * most) {
+        degree--;
+    }
+    if (degree > 0 && !solve_series(degree, a, z)) {
+        return 0;
+    }
+    for (int k = 0; k < degree; k++) {
+        double re = creal(z[k]);
+        if (fabs(cimag(z[k])) <= near && fabs(re) <= 1 + near) {
+            double at = fmax(-1, fmin(1, re));
             double found = refine_nearest(s, p, fmax(-1, at - near), fmin(1, at + near), at),
                    xi = xi_of(s, 0.5 * (1 + found));
             offer(q, s->element, xi, square_at(q, s->element, xi));
