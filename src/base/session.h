@@ -70,7 +70,6 @@ typedef struct spari_tolerance {
     double rtol;  /* relative */
 } spari_tolerance;
 
-
 /* Time and number of the accepted steps, and lengths of the last steps. */
 typedef struct spari_clock {
     double time;
@@ -102,7 +101,7 @@ enum { SPARI_MOST_WARNINGS = 32 }; /* kept; later ones go to the log alone */
 
 struct spar_session {
     char message[SPARI_MESSAGE_SIZE];
-    int64_t failures; /* messages written so far: shows whether a callback has left one */
+    int64_t failures;                    /* messages written so far: shows whether a callback has left one */
     char *warnings[SPARI_MOST_WARNINGS]; /* texts of the first warnings */
     int warning_count;
     spari_ranks ranks;
@@ -130,6 +129,7 @@ struct spar_session {
 
     struct spari_thread_pool *pool; /* spar_session_set_threads (base/thread_pool.h); NULL: the calling thread alone */
     spari_workspace workspace;      /* work space of the calling thread, for one call; its content is nobody's */
+    spari_workspace bodies;         /* the same for an element of a body (member/body.h) */
     spari_own *own;                 /* private data (exchange/session_private.h) */
 };
 

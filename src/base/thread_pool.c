@@ -47,7 +47,9 @@ struct spari_thread_pool {
     fenv_t surroundings;
 };
 
-static _Thread_local int inside; /* this thread is working on an item */
+/* This thread is working on an item of this pool, as this worker. */
+static _Thread_local const spari_thread_pool *inside;
+static _Thread_local int inside_as;
 
 static inline void rest(void) {
 #if defined(__GNUC__) && defined(__x86_64__)
@@ -57,14 +59,14 @@ static inline void rest(void) {
 
 /* Takes items until none is left, beginning with its own. */
 static void work_on(spari_thread_pool *c, int worker) {
-    inside = 1;
+    inside = c, inside_as = worker;
     for (int k = 0; k < c->threads; k++) {
         share *s = c->share + (worker + k) % c->threads;
         for (int64_t i; (i = atomic_fetch_add_explicit(&s->next, 1, memory_order_relaxed)) < s->end;) {
             c->task(c->context, i, worker);
         }
     }
-    inside = 0;
+    inside = NULL;
 }
 
 static void share_out(spari_thread_pool *c, int64_t items) {
@@ -267,4 +269,8 @@ int spari_thread_pool_reserve(spari_thread_pool *pool, int64_t doubles) {
 
 double *spari_thread_pool_workspace(const spari_thread_pool *pool, int worker, int64_t doubles) {
     return pool && doubles <= pool->kept ? spari_workspace_at(&pool->hands[worker].workspace, doubles) : NULL;
+}
+
+int spari_thread_pool_worker(const spari_thread_pool *pool) {
+    return pool && inside == pool ? inside_as : 0;
 }

@@ -42,5 +42,7 @@ int spari_thread_pool_is_free(const spari_thread_pool *pool);
 int spari_thread_pool_reserve(spari_thread_pool *pool, int64_t doubles);
 /* Workspace of a worker. NULL: that much has not been allocated. */
 double *spari_thread_pool_workspace(const spari_thread_pool *pool, int worker, int64_t doubles);
+/* The worker of the pool that the calling thread is: 0 unless it is inside an item of one of the others. */
+int spari_thread_pool_worker(const spari_thread_pool *pool);
 
 #endif

@@ -684,7 +684,8 @@ int spari_beam_build(const spar_member *member, int massive, const double mu[6],
         for (int e = 0; e < member->mesh.elements && shows_point_masses(member, massive); e++) {
             points[e] += spari_point_masses_of(member, e);
         }
-        b = spari_body_create(member->mesh.elements, member->mesh.per_element, points, 1, mu != NULL, massive);
+        b = spari_body_create(member->mesh.elements, member->mesh.per_element, points, 1, mu != NULL, massive,
+                              &member->session->bodies);
         if (b && (member->effects & SPAR_EFFECT_PRETENSION) && spari_body_set_pre(b)) {
             spari_body_free(b);
             b = NULL;

@@ -10,7 +10,10 @@
 #ifndef SPARI_BODY_H
 #define SPARI_BODY_H
 
-#include <stdint.h>
+#include "../base/thread_pool.h"
+#include "../base/workspace.h"
+
+#include <stddef.h>
 
 /* Points are processed in parallel lanes. Each point has a slot. The points of an element begin at a slot that is a
    multiple of SPARI_LANES. Their data are stored in blocks of SPARI_LANES slots, row by row, [block][row][lane].
@@ -43,11 +46,11 @@ typedef struct spari_body {
     int gyroscopic;
     double length;     /* size of the member for tolerances: arc length, or radius of gyration of a rigid body */
     double stiffest;   /* force due to rounding of positions: largest stiffness, and moments divided by this size */
-    double *lines;     /* memory of the blocks, without `pre`, and of an element's workspace */
-    int64_t workspace; /* workspace of an element, in doubles */
-    double *scratch;   /* workspace of one element, at least 6 doubles per node */
-    double *matrix;    /* [6P][6P] workspace: an element's tangent */
+    double *lines;     /* memory of the blocks, without `pre` */
     double *tally;     /* [tiles][2] workspace of sums over elements */
+    int64_t workspace; /* workspace of an element, in doubles, at least 6 for each node; an element's tangent follows */
+    spari_workspace *shared;               /* that of the calling thread, for the bodies of a session */
+    spari_workspace own;                   /* the same, of a body without a session */
     struct spari_thread_pool *const *pool; /* threads for its elements (base/thread_pool.h); NULL: one thread */
 } spari_body;
 
@@ -65,11 +68,26 @@ static inline spari_body spari_body_in_part(const spari_body *body, double facto
 int spari_body_set_drag(spari_body *body, double drag, double *position);
 /* Velocities on which mass-proportional damping acts, out [unique][6]; q NULL: at the reference. */
 void spari_body_see(const spari_body *body, const double *q, const double *v, double *out);
-/* Workspace in doubles of an element with this many points. */
-int64_t spari_body_scratch(int per_element, int points, int damped);
-/* Allocates a body with points[elements] quadrature points; elastic, damped, massive: which properties exist. NULL:
-   no memory. */
-spari_body *spari_body_create(int elements, int per_element, const int *points, int elastic, int damped, int massive);
+/* Workspace in doubles of an element with this many points, without its tangent. */
+int64_t spari_body_scratch_size(int per_element, int points, int damped);
+/* Allocates a body with points[elements] quadrature points; elastic, damped, massive: which properties exist. shared:
+   workspace that it shares with other bodies of the thread; NULL: it has its own. NULL: no memory. */
+spari_body *spari_body_create(int elements, int per_element, const int *points, int elastic, int damped, int massive,
+                              spari_workspace *shared);
+/* Size of the workspace of a thread, in doubles. */
+static inline int64_t spari_body_workspace_size(const spari_body *body) {
+    return body->workspace + 36 * (int64_t)body->per_element * body->per_element;
+}
+/* Workspace of the calling thread for one element; and there [6P][6P], for the element's tangent. */
+static inline double *spari_body_scratch(const spari_body *body) {
+    const struct spari_thread_pool *pool = body->pool ? *body->pool : NULL;
+    int worker = spari_thread_pool_worker(pool);
+    int64_t size = spari_body_workspace_size(body);
+    return worker > 0 ? spari_thread_pool_workspace(pool, worker, size) : spari_workspace_at(body->shared, size);
+}
+static inline double *spari_body_matrix(const spari_body *body) {
+    return spari_body_scratch(body) + body->workspace;
+}
 /* Call this when phi, dphi and the properties of all points are set. */
 void spari_body_complete(spari_body *body);
 void spari_body_free(spari_body *body);
@@ -81,11 +99,9 @@ enum { SPARI_BODY_TILE = 8 };
 static inline int spari_body_tiles(const spari_body *body) {
     return (body->elements + SPARI_BODY_TILE - 1) / SPARI_BODY_TILE;
 }
-/* Processes the elements [from, to) of a tile; the body has workspace of this thread. */
+/* Processes the elements [from, to) of a tile. */
 typedef void (*spari_body_work)(const spari_body *body, int tile, int from, int to, void *context);
 void spari_body_sweep(const spari_body *body, spari_body_work work, void *context);
-/* Workspace of a thread, in doubles. */
-int64_t spari_body_workspace_size(const spari_body *body);
 
 /* Copies the rows of one slot to and from contiguous numbers x[rows]. */
 static inline void spari_slot_put(double *blocks, int rows, int64_t slot, const double *x) {

@@ -27,18 +27,11 @@ static double *carve_aligned(double **workspace, int64_t n) {
 
 /* Allocates the block data in one piece. 0, or 1: no memory. */
 static int create_blocks(spari_body *body, int64_t slots, int elastic, int damped, int massive) {
-    enum { PARTS = 8 };
-    const int64_t P = body->per_element, nodes = 12 * (int64_t)body->unique;
-    const int64_t count[PARTS] = {slots * P * 2,
-                                  slots,
-                                  slots * 3,
-                                  elastic ? slots * 36 : 0,
-                                  damped ? slots * 36 : 0,
-                                  massive ? slots * 10 : 0,
-                                  36 * P * P,
-                                  body->workspace > nodes ? body->workspace : nodes};
-    double **part[PARTS] = {&body->shape, &body->weight, &body->tangent, &body->C,
-                            &body->D,     &body->mass,   &body->matrix,  &body->scratch};
+    enum { PARTS = 6 };
+    const int64_t P = body->per_element;
+    const int64_t count[PARTS] = {
+        slots * P * 2, slots, slots * 3, elastic ? slots * 36 : 0, damped ? slots * 36 : 0, massive ? slots * 10 : 0};
+    double **part[PARTS] = {&body->shape, &body->weight, &body->tangent, &body->C, &body->D, &body->mass};
     int64_t all = SPARI_LANES;
     for (int k = 0; k < PARTS; k++) {
         all += count[k] + SPARI_LANES;
@@ -53,7 +46,8 @@ static int create_blocks(spari_body *body, int64_t slots, int elastic, int dampe
     return 0;
 }
 
-spari_body *spari_body_create(int elements, int per_element, const int *points, int elastic, int damped, int massive) {
+spari_body *spari_body_create(int elements, int per_element, const int *points, int elastic, int damped, int massive,
+                              spari_workspace *shared) {
     spari_body *body = spari_zalloc(1, sizeof *body);
     if (!body) {
         return NULL;
@@ -71,7 +65,10 @@ spari_body *spari_body_create(int elements, int per_element, const int *points, 
     ok = ok && (body->phi = spari_zalloc(n * P + SPARI_LANES, sizeof *body->phi));
     ok = ok && (body->dphi = spari_zalloc(n * P + SPARI_LANES, sizeof *body->dphi));
     ok = ok && (body->position = spari_zalloc(n * 3, sizeof *body->position));
-    body->workspace = spari_body_scratch(per_element, most, damped);
+    const int64_t nodes = 12 * (int64_t)body->unique, scratch = spari_body_scratch_size(per_element, most, damped);
+    body->workspace = scratch > nodes ? scratch : nodes;
+    body->shared = shared ? shared : &body->own;
+    ok = ok && spari_workspace_reserve(body->shared, spari_body_workspace_size(body)) == 0;
     ok = ok && create_blocks(body, slots, elastic, damped, massive) == 0;
     ok = ok && (body->tally = spari_zalloc(2 * (int64_t)spari_body_tiles(body), sizeof *body->tally));
     if (!ok) {
@@ -143,19 +140,10 @@ static void sweep_tile(const spari_body *body, int tile, spari_body_work work, v
     work(body, tile, from, to < body->elements ? to : body->elements, context);
 }
 
-/* In the workspace of a worker. */
 static void sweep_item(void *context, int64_t item, int worker) {
     const body_sweep *s = context;
-    spari_body mine = *s->body;
-    if (worker > 0) {
-        mine.scratch = spari_thread_pool_workspace(*mine.pool, worker, spari_body_workspace_size(s->body));
-        mine.matrix = mine.scratch + mine.workspace;
-    }
-    sweep_tile(&mine, (int)(2 * item) + s->odd, s->work, s->context);
-}
-
-int64_t spari_body_workspace_size(const spari_body *body) {
-    return body->workspace + 36 * (int64_t)body->per_element * body->per_element;
+    (void)worker;
+    sweep_tile(s->body, (int)(2 * item) + s->odd, s->work, s->context);
 }
 
 void spari_body_sweep(const spari_body *body, spari_body_work work, void *context) {
@@ -188,5 +176,6 @@ void spari_body_free(spari_body *body) {
     free(body->pre);
     free(body->lines);
     free(body->tally);
+    spari_workspace_free(&body->own);
     free(body);
 }

@@ -14,7 +14,7 @@ typedef struct force_state {
 
 static void add_forces(const spari_body *body, int tile, int from, int to, void *context) {
     const force_state *s = context;
-    double *z = body->scratch, *g = z + ROW * SPARI_MAX_NODES, *f = g + BACK * SPARI_MAX_NODES,
+    double *z = spari_body_scratch(body), *g = z + ROW * SPARI_MAX_NODES, *f = g + BACK * SPARI_MAX_NODES,
            *back = f + SPARI_LANES * POINT_ROWS, *sum = body->tally + 2 * (int64_t)tile;
     spari_tally tally = {{0}, {0}};
     for (int e = from; e < to; e++) {
@@ -95,7 +95,7 @@ static void add_mass_energy(const spari_body *body, int64_t slot, double w, cons
 void spari_body_energy(const spari_body *body, const double *q, const double *v, double energy[4]) {
     int damped = body->C && body->D && v;
     int wanted = SPARI_PLACES | (body->C ? SPARI_SLOPES : 0) | (damped ? SPARI_RATE_SLOPES : 0);
-    double *z = body->scratch, *f = z + ROW * SPARI_MAX_NODES;
+    double *z = spari_body_scratch(body), *f = z + ROW * SPARI_MAX_NODES;
     memset(energy, 0, 4 * sizeof *energy);
     for (int e = 0; e < body->elements; e++) {
         spari_point_gather(body, e, q, v, NULL, z);

@@ -29,7 +29,7 @@ static int64_t row_of_pairs(int P) {
 }
 
 /* Of a residual, followed by that of a tangent: see spari_tangent_work. */
-int64_t spari_body_scratch(int P, int points, int damped) {
+int64_t spari_body_scratch_size(int P, int points, int damped) {
     int64_t slots = ((int64_t)points + SPARI_LANES - 1) / SPARI_LANES * SPARI_LANES;
     int64_t forces = ROW * SPARI_MAX_NODES + BACK * SPARI_MAX_NODES + SPARI_LANES * POINT_ROWS + slots * BACK_ROWS;
     int64_t matrices = slots * (damped ? WHOLE_ROWS + HALF_ROWS + MASS_ROWS : HALF_ROWS + SLOPE_BY_Q + MASS_ROWS);
@@ -62,7 +62,7 @@ static spari_pair_sums take_sums(double **workspace, int64_t stride, int elastic
 static spari_tangent_work begin_tangent(const spari_body *body, int e, const spari_regime *how, int masses, int rates) {
     int P = body->per_element, points = body->first[e + 1] - body->first[e];
     spari_tangent_work t = {.P = P, .points = points, .slots = body->slot[e + 1] - body->slot[e], .masses = masses};
-    double *workspace = body->scratch;
+    double *workspace = spari_body_scratch(body);
     t.pairs = (int64_t)P * (P + 1) / 2, t.stride = row_of_pairs(P), t.map_stride = P + SPARI_LANES;
     t.rates = rates, t.elastic = body->C != NULL, t.damped = t.elastic && body->D && rates, t.whole = how->damped;
     t.z = take_workspace(&workspace, ROW * SPARI_MAX_NODES);
@@ -79,7 +79,7 @@ static spari_tangent_work begin_tangent(const spari_body *body, int e, const spa
     t.maps = take_workspace(&workspace, 36 * t.map_stride);
     t.ends[0] = take_workspace(&workspace, 36 * t.stride);
     t.ends[1] = take_workspace(&workspace, 36 * t.stride);
-    assert(workspace - body->scratch <= spari_body_scratch(P, points, body->D != NULL));
+    assert(workspace - spari_body_scratch(body) <= spari_body_scratch_size(P, points, body->D != NULL));
     return t;
 }
 

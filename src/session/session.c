@@ -84,6 +84,7 @@ void spar_session_destroy(spar_session **session) {
     }
     spari_threads_free(s);
     spari_workspace_free(&s->workspace);
+    spari_workspace_free(&s->bodies);
     spari_comm_destroy(&s->ranks.comm);
     spari_coupling_free(&s->own->coupling);
     spari_coupling_free(&s->own->suspended);

@@ -70,10 +70,11 @@ static void rigid_free(void *solution) {
 
 static int rigid_create(spar_member *m) {
     spari_rigid_beam *b = m->solution = spari_zalloc(1, sizeof *b);
-    spari_body *body = b ? b->body = spari_body_create(1, 1, (const int[]){1}, 0, 0, 1) : NULL;
+    spari_body *body = b ? b->body = spari_body_create(1, 1, (const int[]){1}, 0, 0, 1, &m->session->bodies) : NULL;
     if (!body) {
         return SPAR_ERR_MEMORY;
     }
+    body->pool = &m->session->pool;
     body->phi[0] = body->weight[0] = 1;
     body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;
     body->length = m->body->length;
@@ -123,7 +124,7 @@ static void rigid_restart(spar_member *m) {
    moments. They contain fluid loads, dead loads, and the member's applied loads at the motion q of its nodes. */
 static void loads_on_root(const spar_member *m, const double *fluid, double left, const double *q, double *load,
                           double moments[9]) {
-    double dead[6] = {0}, dead_moments[9] = {0}, *workspace = m->body->scratch; /* the beam's own body is not in use */
+    double dead[6] = {0}, dead_moments[9] = {0}, *workspace = spari_body_scratch(m->body);
     memset(load, 0, 6 * sizeof *load);
     memset(moments, 0, 9 * sizeof *moments);
     sum_on_root(m, left > 0 ? spari_dead_before(m) : m->load.dead, dead, dead_moments);

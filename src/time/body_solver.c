@@ -110,7 +110,7 @@ void spari_solver_poison(spari_solver *s) {
     spari_poison(s->to.q, 25 * n);
     spari_poison(s->own[0].q, 25 * n);
     spari_poison(s->own[1].q, 25 * n);
-    spari_poison(s->body->matrix, block * block);
+    spari_poison(spari_body_matrix(s->body), block * block);
 }
 
 void spari_solver_begin(spari_solver *s) {
@@ -177,26 +177,27 @@ static void add_tangents(const spari_body *body, int tile, int from, int to, voi
     const spari_solver *s = state->s;
     const spar_member *m = state->member;
     const double *normal = spari_member_plane(m);
+    double *matrix = spari_body_matrix(body);
     (void)tile;
     for (int e = from; e < to; e++) {
         if (t->rotation) {
-            spari_steady_rotation_tangent(body, t->rotation, e, t->q, t->v, t->a, t->factor, body->matrix, t->mass);
+            spari_steady_rotation_tangent(body, t->rotation, e, t->q, t->v, t->a, t->factor, matrix, t->mass);
         } else {
-            spari_body_tangent(body, e, t->q, t->v, t->a, t->factor, t->cm, t->cv, t->tinv, body->matrix);
+            spari_body_tangent(body, e, t->q, t->v, t->a, t->factor, t->cm, t->cv, t->tinv, matrix);
         }
         if (spari_solver_has_applied(s, m) && t->factor != 0) {
-            spari_applied_tangent(m, e, t->q, t->factor, body->matrix);
+            spari_applied_tangent(m, e, t->q, t->factor, matrix);
         }
         if (s->offset_loads && t->factor != 0) {
-            spari_offset_loads_tangent(s->offset_loads, t->q + 3, body->matrix);
+            spari_offset_loads_tangent(s->offset_loads, t->q + 3, matrix);
         }
         if (t->tinv && m->added) { /* part of the balance of a step, not of the initial one */
-            spari_added_tangent(m, e, t->cm, t->tinv, body->matrix);
+            spari_added_tangent(m, e, t->cm, t->tinv, matrix);
         }
         if (normal) {
-            spari_plane_tangent(normal, body->per_element, body->matrix);
+            spari_plane_tangent(normal, body->per_element, matrix);
         }
-        spari_linear_add(s->linear, e, body->matrix);
+        spari_linear_add(s->linear, e, matrix);
     }
 }
 

@@ -46,7 +46,7 @@ static spari_body *random_body(int elements, int P, int points, int damped, int 
     for (int e = 0; e < elements; e++) {
         counts[e] = points;
     }
-    spari_body *b = spari_body_create(elements, P, counts, 1, damped, 1);
+    spari_body *b = spari_body_create(elements, P, counts, 1, damped, 1, NULL);
     double x[24], bary[24], gx[24], gw[24];
     spari_gll(P, x, NULL, bary);
     spari_gauss(points, gx, gw);
