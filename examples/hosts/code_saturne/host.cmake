@@ -17,6 +17,9 @@ if(SPAR_BUILD_TESTS AND SPAR_MPI)
   # several members: two flaps, each the other's mirror image, one of them with two groups of faces
   add_test(NAME host_code_saturne_flaps COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/run" flaps --refine 0.5 --ranks 2 --no-install
            --build "${PROJECT_BINARY_DIR}" --out "${PROJECT_BINARY_DIR}/tests/host_code_saturne_flaps")
+  # members that are joined: a hub with three blades. Their loads are the flow's force, their roots turn with the hub
+  add_test(NAME host_code_saturne_hub COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/run" hub --refine 0.5 --ranks 2 --no-install
+           --build "${PROJECT_BINARY_DIR}" --out "${PROJECT_BINARY_DIR}/tests/host_code_saturne_hub")
   # half of a run, and the rest of it from code_saturne's checkpoint: every digit of the whole run; without the structure's
   # file, or with that of another step, the rest is refused
   set(run sh "${CMAKE_CURRENT_LIST_DIR}/run" flag --refine 0.4 --no-install --build "${PROJECT_BINARY_DIR}")
@@ -59,7 +62,7 @@ if(SPAR_BUILD_TESTS AND SPAR_MPI)
     --refine 0.5 --steps 30 --no-install --build "${PROJECT_BINARY_DIR}" --out ${out}fold)
   set_tests_properties(host_code_saturne_fold PROPERTIES
     PASS_REGULAR_EXPRESSION "the mesh has folded at step [0-9]+.*the run has ended early.*drawn:.*only [0-9]+ of 30 steps")
-  foreach(name IN ITEMS _fold _np1 _np2 _flaps _whole _half _rest _without _other _wetted _fixed "")
+  foreach(name IN ITEMS _fold _np1 _np2 _flaps _hub _whole _half _rest _without _other _wetted _fixed "")
     spar_set_test(host_code_saturne${name} hosts 1200)
     set_tests_properties(host_code_saturne${name} PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2)
   endforeach()
