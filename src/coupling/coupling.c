@@ -353,21 +353,20 @@ int spari_coupling_solve_failed(spar_session *s, const char *call, int status) {
     return status;
 }
 
-/* Rounding error of positions divided by dt^2, in the accelerations for fluids: maximum over the members. */
+/* Rounding error of positions divided by dt^2, relative to the largest acceleration: of all members, for one that all
+   but rests has no other accelerations than rounding. */
 static double rounding_of_accelerations(const spar_session *s) {
     const double h = s->clock.dt / s->integrator.substeps;
-    double part = 0;
+    double place = 0, most = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
-        double place = 0, most = 0;
         for (int64_t i = 0; i < m->nodes && m->body && m->effects & SPAR_EFFECT_INERTIA; i++) {
             for (int k = 0; k < 3; k++) {
                 place = fmax(place, fabs(m->xr[3 * i + k] + m->after.q[7 * i + k]));
                 most = fmax(most, fabs(m->after.a[6 * i + k]));
             }
         }
-        part = most > 0 ? fmax(part, DBL_EPSILON * place / (h * h * most)) : part;
     }
-    return part;
+    return most > 0 ? DBL_EPSILON * place / (h * h * most) : 0;
 }
 
 static int not_converged(spar_session *s, const char *call) {

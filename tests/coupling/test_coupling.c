@@ -845,6 +845,21 @@ static void messages(void **state) {
     }
 }
 
+/* A body that all but rests, as the hub of a rotor does, has accelerations that are nothing but rounding. That is not
+   why the coupling of the others fails. */
+static void rest_is_not_rounding(void **state) {
+    (void)state;
+    const double ratio[2] = {100, 0};
+    pistons p;
+    pistons_create(&p, 2, ratio);
+    p.b[0] = 5, p.b[1] = 1e-20;
+    OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_IQN_ILS, 0, 1e-6, 2));
+    assert_int_equal(spar_step(p.session, 0.1, pistons_fluid, &p, NULL), SPAR_ERR_NUMERIC);
+    assert_non_null(strstr(spar_session_message(p.session), "has not converged in 2 iterations"));
+    assert_null(strstr(spar_session_message(p.session), "the rounding of positions"));
+    pistons_destroy(&p);
+}
+
 /* A first step that is rejected, or that fails, leaves the clock at rest: members may still be added. The coupling is
    then made for all of them (it kept the size of the first ones and wrote beyond it). Two bodies under a constant load:
    u = F t^2 / (2 m) in the limit; here the second is only asked to move with its own load. */
@@ -972,6 +987,7 @@ int main(void) {
         cmocka_unit_test(moments_of_parts_come_and_go),
         cmocka_unit_test(settings_are_checked),
         cmocka_unit_test(messages),
+        cmocka_unit_test(rest_is_not_rounding),
         cmocka_unit_test(members_after_a_first_step),
         cmocka_unit_test(room_for_residuals),
         cmocka_unit_test(extrapolation_has_a_reach),
