@@ -20,32 +20,27 @@ static int is_part(const spar_member *m) {
 /* ---- one assembly ---- */
 
 static void take_member(spari_assembly *a, spar_member *m) {
-    a->component[a->components++] = (spari_component){.member = m, .owner_before = m->owner};
     m->assembly = a;
+    m->component = a->components;
+    a->component[a->components++] = (spari_component){.member = m, .owner_before = m->owner};
 }
 
 /* Lists all members that are connected to the first one, in the order in which joints reach them. */
 static void gather(spari_assembly *a, spar_member *first) {
     take_member(a, first);
     for (int i = 0; i < a->components; i++) {
-        for (spar_joint *j = a->session->joints; j; j = j->next) {
-            for (int side = 0; side < 2; side++) {
-                spar_member *other = j->member[1 - side];
-                if (j->member[side] == a->component[i].member && is_part(other) && !other->assembly) {
-                    take_member(a, other);
-                }
+        const spar_member *m = a->component[i].member;
+        for (const spar_joint *j = m->joints; j; j = spari_next_joint_of(m, j)) {
+            spar_member *other = j->member[j->member[0] == m];
+            if (is_part(other) && !other->assembly) {
+                take_member(a, other);
             }
         }
     }
 }
 
 static spari_component *part_of(spari_assembly *a, const spar_member *m) {
-    for (int i = 0; i < a->components; i++) {
-        if (a->component[i].member == m) {
-            return a->component + i;
-        }
-    }
-    return NULL;
+    return m && m->assembly == a ? a->component + m->component : NULL;
 }
 
 /* Reference positions of the nodes. */

@@ -3,6 +3,7 @@
 #define SPARI_SESSION_H
 
 #include "setting.h"
+#include "names.h"
 #include "workspace.h"
 
 #include <math.h>
@@ -114,6 +115,9 @@ struct spar_session {
     int joints_stale;                  /* joints have changed since the assemblies were made */
     int member_count;
     int joint_count;
+    spar_member *last_member; /* of those lists */
+    spar_joint *last_joint;
+    spari_names member_names, joint_names;
 
     double gravity[3];
     double gravity_before[3]; /* gravity of the last accepted step */

@@ -19,19 +19,19 @@ static int member_create(spar_session *session, const char *call, const char *na
                   "%s: a member needs a name; give one that is unique in the session", call);
     SPARI_REQUIRE(session, !session->clock.started && !session->state.trial, SPAR_ERR_STATE,
                   "%s: '%s': the clock has started; create members before the first step", call, name);
-    spar_member **end = &session->members;
-    for (; *end; end = &(*end)->next) {
-        SPARI_REQUIRE(session, strcmp((*end)->name, name) != 0, SPAR_ERR_ARGUMENT,
-                      "%s: member '%s' already exists; use a unique name in the session", call, name);
-    }
     spar_member *m = spari_zalloc(1, sizeof *m);
-    size_t size = strlen(name) + 1;
-    if (!m || !(m->name = spari_zalloc((int64_t)size, 1))) {
+    char *own = strdup(name);
+    int taken = m && own ? spari_names_add(&session->member_names, own) : -1;
+    if (taken) {
         free(m);
+        free(own);
+        SPARI_REQUIRE(session, taken < 0, SPAR_ERR_ARGUMENT,
+                      "%s: member '%s' already exists; use a unique name in the session", call, name);
         return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the member", call, name);
     }
-    memcpy(m->name, name, size);
+    m->name = own;
     m->session = session;
+    m->number = session->member_count;
     m->kind = kind;
     m->mesh.elements = m->mesh.per_element = 1;
     m->nodes = 1;
@@ -40,7 +40,8 @@ static int member_create(spar_session *session, const char *call, const char *na
     m->fidelity = SPAR_FIDELITY_EXACT;
     m->placement.q[0] = 1;
     session->member_count++;
-    *end = m;
+    *(session->last_member ? &session->last_member->next : &session->members) = m;
+    session->last_member = m;
     *out = m;
     return SPAR_OK;
 }

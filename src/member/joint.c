@@ -37,6 +37,11 @@ static int check_fidelity(const spar_session *s, const char *call, const char *n
     return SPAR_OK;
 }
 
+static void add_to_member(spar_member *m, spar_joint *j) {
+    *(m->last_joint ? &m->last_joint->further[m->last_joint->member[0] != m] : &m->joints) = j;
+    m->last_joint = j;
+}
+
 static int joint_create(spar_session *s, const char *call, const char *name, spar_member *a, int64_t node_a,
                         spar_member *b, int64_t node_b, spar_joint **out) {
     SPARI_REQUIRE(NULL, s, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
@@ -56,24 +61,28 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
             "%s: '%s' connects node %lld of '%s' to itself; give two different nodes, or b = NULL for the ground", call,
             name, (long long)node_a, a->name);
     }
-    spar_joint **end = &s->joints;
-    for (; *end; end = &(*end)->next) {
-        SPARI_REQUIRE(s, strcmp((*end)->name, name) != 0, SPAR_ERR_ARGUMENT,
-                      "%s: joint '%s' already exists; use a unique name in the session", call, name);
-    }
     spar_joint *j = spari_zalloc(1, sizeof *j);
-    size_t size = strlen(name) + 1;
-    if (!j || !(j->name = spari_zalloc((int64_t)size, 1))) {
+    char *own = strdup(name);
+    int taken = j && own ? spari_names_add(&s->joint_names, own) : -1;
+    if (taken) {
         free(j);
+        free(own);
+        SPARI_REQUIRE(s, taken < 0, SPAR_ERR_ARGUMENT, "%s: joint '%s' already exists; use a unique name in the session",
+                      call, name);
         return spari_fail(s, SPAR_ERR_MEMORY, "%s: '%s': no memory for the joint", call, name);
     }
-    memcpy(j->name, name, size);
+    j->name = own;
     j->session = s;
     j->member[0] = a, j->member[1] = b;
     j->node[0] = node_a, j->node[1] = b ? node_b : 0;
     j->axes[0] = 1;
     s->joint_count++;
-    *end = j;
+    *(s->last_joint ? &s->last_joint->next : &s->joints) = j;
+    s->last_joint = j;
+    add_to_member(a, j);
+    if (b && b != a) {
+        add_to_member(b, j);
+    }
     *out = j;
     s->joints_stale = 1;
     return SPAR_OK;
@@ -366,25 +375,9 @@ int spari_member_unique(const spar_member *m, int64_t node) {
     return (int)(m->mesh.elements == 1 ? node : node - node / m->mesh.per_element);
 }
 
-const spar_joint *spari_joint_of(const spar_member *m) {
-    const spar_joint *j = m->session->joints;
-    while (j && j->member[0] != m && j->member[1] != m) {
-        j = j->next;
-    }
-    return j;
-}
-
-int64_t spari_member_number(const spar_member *member) {
-    int64_t number = 0;
-    for (const spar_member *m = member ? member->session->members : NULL; m && m != member; m = m->next) {
-        number++;
-    }
-    return member ? number : -1;
-}
-
 uint64_t spari_joint_hash(const spar_joint *j) {
-    const int64_t numbers[] = {spari_member_number(j->member[0]),
-                               spari_member_number(j->member[1]),
+    const int64_t numbers[] = {j->member[0]->number,
+                               j->member[1] ? j->member[1]->number : -1,
                                j->node[0],
                                j->node[1],
                                j->kinematics.free,

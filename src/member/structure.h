@@ -117,6 +117,8 @@ typedef struct spari_accuracy {
 struct spar_member {
     spar_session *session;
     spar_member *next; /* in order of creation, the same on every rank */
+    int64_t number;    /* in this order, in which loads and motions of all members are stacked */
+    spar_joint *joints, *last_joint; /* the joints that connect it: spari_next_joint_of (joint.h) */
     char *name;
     int kind;
     int external;
@@ -156,6 +158,7 @@ struct spar_member {
     spari_accuracy accuracy;
     void *solution;           /* solver data of its fidelity; NULL: none, or not on this rank */
     spari_assembly *assembly; /* solved as part of it; NULL: alone */
+    int component;            /* its place among the members of the assembly */
     spari_work *work;         /* NULL: not requested */
     spari_added *added;       /* NULL: no added mass; otherwise the loads above follow added_mass.h */
     spari_means *means;       /* accelerations for fluids with substeps; NULL: those of the motion */

@@ -83,6 +83,8 @@ void spar_session_destroy(spar_session **session) {
         free(s->warnings[i]);
     }
     spari_threads_free(s);
+    spari_names_free(&s->member_names);
+    spari_names_free(&s->joint_names);
     spari_workspace_free(&s->workspace);
     spari_workspace_free(&s->bodies);
     spari_comm_destroy(&s->ranks.comm);

@@ -27,7 +27,7 @@ static int check_held(const spar_member *m, const char *call) {
     SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first",
                   call, m->name);
     int loose =
-        !spari_joint_of(m) && (m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C));
+        !m->joints && (m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C));
     SPARI_REQUIRE(s, !loose || !spari_fidelity_has_equilibrium(m), SPAR_ERR_STATE,
                   "%s: '%s' is free to move as a rigid body; fix, pin or drive its root", call, m->name);
     return SPAR_OK;

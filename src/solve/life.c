@@ -480,7 +480,7 @@ int spar_member_commit(spar_member *member) {
         }
     }
     const spari_agreed must_agree[] = {
-        spari_whole("positions of it in the order of creation", spari_member_number(member)),
+        spari_whole("positions of it in the order of creation", member->number),
         spari_whole("owners of it", member->owner), spari_given("owners of it (set or not)", member->owner_given),
         spari_hash("descriptions of it", spari_member_hash(member))};
     int agreed = spari_member_enter(member, __func__, must_agree, 4, status);

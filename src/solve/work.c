@@ -203,10 +203,8 @@ int spar_joint_get_energy(const spar_joint *joint, int64_t capacity, double *ene
 
 void spari_work_restart(spar_member *m) {
     spari_work *w = m->work;
-    for (spar_joint *j = m->session->joints; j; j = j->next) {
-        if (j->member[0] == m || j->member[1] == m) {
-            memset(j->account, 0, sizeof j->account);
-        }
+    for (spar_joint *j = m->joints; j; j = spari_next_joint_of(m, j)) {
+        memset(j->account, 0, sizeof j->account);
     }
     memset(w->sum, 0, sizeof w->sum);
     w->reaction_lacks = 0;

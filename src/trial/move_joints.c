@@ -28,7 +28,7 @@ int64_t spari_joints_end_node(const spar_member *m, int64_t node, spari_mesh mes
 }
 
 int spari_joints_follow_rebuild(const spar_member *m, const spar_member *old) {
-    for (spar_joint *j = m->session->joints; j && !spari_mesh_is_equal(m->mesh, old->mesh); j = j->next) {
+    for (spar_joint *j = m->joints; j && !spari_mesh_is_equal(m->mesh, old->mesh); j = spari_next_joint_of(m, j)) {
         for (int side = 0; side < 2; side++) {
             if (j->member[side] != m) {
                 continue;
@@ -71,7 +71,7 @@ void spari_joints_drop_snapshot(spar_session *s, spari_joint_snapshot *t) {
 int spari_joints_hold_within(const spar_member *m, int elements) {
     const spari_mesh mesh = {elements, m->mesh.per_element};
     int within = 0;
-    for (const spar_joint *j = m->session->joints; j; j = j->next) {
+    for (const spar_joint *j = m->joints; j; j = spari_next_joint_of(m, j)) {
         for (int side = 0; side < 2; side++) {
             within = within || (j->member[side] == m && spari_joints_end_node(m, j->node[side], mesh) < 0);
         }
