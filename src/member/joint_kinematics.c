@@ -166,17 +166,21 @@ void spari_kinematics_motion(const spari_joint_kinematics *t, const spari_node_p
         line_motion(e, w, z, B);
         return;
     }
-    spari_rotate_back(e[1].axes, w, z);
+    double R[9]; /* columns: the axes of b */
+    spari_quat_matrix(e[1].axes, R);
+    for (int k = 0; k < 3; k++) {
+        z[k] = R[k] * w[0] + R[3 + k] * w[1] + R[6 + k] * w[2];
+    }
     spari_quat_conj(e[1].axes, back);
     spari_quat_mul(back, e[0].axes, r);
     rotations(t, r, z + 3, D);
     for (int m = 0; m < 3 && B; m++) {
-        const double none[3] = {0};
-        double axis[3] = {0}, rotation[3];
-        axis[m] = 1;
-        spari_rotate(e[1].axes, axis, axis);
+        const double none[3] = {0}, axis[3] = {R[m], R[3 + m], R[6 + m]}, *d = D + 3 * m;
+        double rotation[3];
         set_way(B[m], axis, e[0].arm, reach); /* in b's axes, which rotate: a's point moves with b */
-        spari_rotate(e[1].axes, D + 3 * m, rotation);
+        for (int k = 0; k < 3; k++) {
+            rotation[k] = R[3 * k] * d[0] + R[3 * k + 1] * d[1] + R[3 * k + 2] * d[2];
+        }
         set_row(B[3 + m], none, rotation, rotation);
     }
 }
