@@ -25,7 +25,7 @@ void spari_assembly_name(const void *assembly, char *text, int size) {
 }
 
 int spari_assembly_solve(spari_assembly *a, double cv) {
-    return a->constraints == 0 ? a->component->row->solve(a->component) : spari_system_solve(a, cv);
+    return a->constraints == 0 ? a->component->row->solve(a->component) : spari_system_solve(a, cv, 0);
 }
 
 enum { NAME = 160 };
@@ -235,7 +235,7 @@ static const char *iterate_newton(void *self, double longest, spari_iterate *it)
         return "found a singular tangent";
     }
     a->factored = 1;
-    if (spari_system_solve(a, a->component[0].scheme.cv)) {
+    if (spari_system_solve(a, a->component[0].scheme.cv, 1)) {
         return "found a singular tangent";
     }
     it->correction = correct(a, longest);
@@ -847,7 +847,7 @@ static int respond_once(spari_assembly *a, double *stacked) {
     for (int i = 0; i < a->constraints; i++) {
         memset(a->constraint[i].gap, 0, sizeof a->constraint[i].gap);
     }
-    if (spari_system_solve(a, a->component[0].scheme.cv)) {
+    if (spari_system_solve(a, a->component[0].scheme.cv, 0)) {
         return 1;
     }
     for (int i = 0; i < a->components; i++) {

@@ -6,6 +6,11 @@
 #include <stdio.h>
 #include <string.h>
 
+/* fmax without a call; x: not NaN */
+static inline double larger(double x, double y) {
+    return y > x ? y : x;
+}
+
 static const double *rotation_of_side(const spari_constraint *l, int side) {
     const spari_component *p = l->component[side];
     return p ? spari_component_rotation(p, l->joint->unique[side]) : NULL;
@@ -167,7 +172,7 @@ static void add_part(spari_assembly *a, spari_component *p) {
         }
     }
     for (int i = 0; i < m; i++) {
-        a->scale = fmax(a->scale, fabs(p->K[(m + 1) * i]));
+        a->scale = larger(a->scale, fabs(p->K[(m + 1) * i]));
     }
 }
 
@@ -232,7 +237,7 @@ static int rows_of_side(const spari_assembly *a, const spari_constraint *l, int 
 static double scale_of_constraint(spari_assembly *a, const spari_constraint *l) {
     double scale = 0;
     for (int i = 0; i < 144 && l->stiff; i++) {
-        scale = fmax(scale, fabs(l->K[i / 12][i % 12]));
+        scale = larger(scale, fabs(l->K[i / 12][i % 12]));
     }
     for (int side = 0; side < 2; side++) {
         const spari_interface *v = l->node[side] < 0 ? NULL : a->interface + l->node[side];
@@ -240,7 +245,7 @@ static double scale_of_constraint(spari_assembly *a, const spari_constraint *l) 
             int stride;
             const double *block = spari_blocks_at(a->system, v->block, v->block, &stride);
             for (int k = 0; k < 6; k++) {
-                scale = fmax(scale, fabs(block[(stride + 1) * k]));
+                scale = larger(scale, fabs(block[(stride + 1) * k]));
             }
         }
     }
@@ -506,8 +511,11 @@ static void gaps_left(const spari_assembly *a, const spari_constraint *l, double
     for (int k = 0; k < 6; k++) {
         if (spari_constraint_holds(l, k)) {
             double gap = l->gap[k];
-            for (int i = 0; i < 12; i++) {
-                gap -= l->node[i / 6] < 0 ? 0 : l->rows[k][i] * a->interface[l->node[i / 6]].gap[i % 6];
+            for (int side = 0; side < 2; side++) {
+                const double *of = l->node[side] < 0 ? NULL : a->interface[l->node[side]].gap;
+                for (int i = 0; of && i < 6; i++) {
+                    gap -= l->rows[k][6 * side + i] * of[i];
+                }
             }
             left[constrained++] = gap;
         }
@@ -579,10 +587,11 @@ static void show_motion(const spari_assembly *a, double *x) {
 static void read_multipliers(spari_constraint *l, const double *b, double *y) {
     int constrained = 0;
     for (int k = 0; k < 6; k++) {
-        l->correction[k] = spari_constraint_holds(l, k) ? l->scale * b[constrained++] : 0;
-        for (int i = 0; i < 12; i++) {
-            if (l->node[i / 6] >= 0) {
-                y[6 * l->node[i / 6] + i % 6] -= l->rows[k][i] * l->correction[k];
+        double by = l->correction[k] = spari_constraint_holds(l, k) ? l->scale * b[constrained++] : 0;
+        for (int side = 0; side < 2 && by != 0; side++) {
+            double *at = l->node[side] < 0 ? NULL : y + 6 * l->node[side];
+            for (int i = 0; at && i < 6; i++) {
+                at[i] -= l->rows[k][6 * side + i] * by;
             }
         }
     }
@@ -615,8 +624,8 @@ static void find_constraint_loads(spari_assembly *a, double *y) {
     }
 }
 
-/* Solves with the condensed residuals of the components in x. */
-static int solve_reduced(spari_assembly *a, double cv) {
+/* Solves with the condensed residuals of the components in x. loads: the corrections of the multipliers too. */
+static int solve_reduced(spari_assembly *a, double cv, int loads) {
     if (!a->standing || fabs(a->cv - cv) > 0) {
         a->standing = 0;
         if (factor_system(a, cv)) {
@@ -639,10 +648,12 @@ static int solve_reduced(spari_assembly *a, double cv) {
         return 1;
     }
     show_motion(a, a->x);
-    if (a->clusters) {
+    if (a->clusters && loads) {
         add_forces_of(a, a->x, a->y);
     }
-    find_constraint_loads(a, a->y);
+    if (loads) {
+        find_constraint_loads(a, a->y);
+    }
     for (int i = 0; i < n && gaps; i++) {
         a->x[i] += a->interface[i / 6].gap[i % 6];
     }
@@ -678,31 +689,35 @@ void spari_constraints_correct_loads(spari_assembly *a, double cut) {
     }
 }
 
-int spari_system_solve(spari_assembly *a, double cv) {
+int spari_system_solve(spari_assembly *a, double cv, int rotated) {
     /* first, because the system uses the rotations of the components */
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
-        if (spari_component_reduce(p, a->x + p->at)) {
+        if (spari_component_reduce(p, rotated, a->x + p->at)) {
             return 1;
         }
     }
-    return solve_reduced(a, cv);
+    return solve_reduced(a, cv, 1);
 }
 
-int spari_system_close_gaps(spari_assembly *a, double cv) {
+static int close_gaps(spari_assembly *a, double cv, int loads) {
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
         spari_component_clear(p);
         memset(a->x + p->at, 0, (size_t)(6 * p->condensed->ends) * sizeof *a->x);
     }
-    return solve_reduced(a, cv);
+    return solve_reduced(a, cv, loads);
+}
+
+int spari_system_close_gaps(spari_assembly *a, double cv) {
+    return close_gaps(a, cv, 1);
 }
 
 int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acceleration) {
     if (a->constraints == 0) {
         return 0;
     }
-    if (spari_system_close_gaps(a, cv)) {
+    if (close_gaps(a, cv, 0)) {
         return 1;
     }
     for (int i = 0; i < a->components; i++) {

@@ -131,8 +131,9 @@ int spari_component_make_ends(const spari_component *p);
 void spari_component_take_velocities(const spari_component *p);
 /* Saves the rates at the end, or restores them (back). */
 void spari_component_keep_rates(spari_component *p, int back);
-/* Computes the condensed residual at the ends, x [6 ends], global axes. Returns 0 or 1. */
-int spari_component_reduce(spari_component *p, double *x);
+/* Computes the condensed residual at the ends, x [6 ends], global axes. rotated: it is in the axes of the tangent, by
+   residual_size or tangent. Returns 0 or 1. */
+int spari_component_reduce(spari_component *p, int rotated, double *x);
 /* Sets the result of reduce for zero residual forces: none at the ends. */
 void spari_component_clear(spari_component *p);
 /* Computes the corrections of all unknowns from those of the ends. */

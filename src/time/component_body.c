@@ -222,10 +222,12 @@ static int nodes_serve(const spari_component *p) {
            spari_alpha_close(p->scheme.cv, s->tangent_cv);
 }
 
-int spari_component_reduce(spari_component *p, double *x) {
+int spari_component_reduce(spari_component *p, int rotated, double *x) {
     const spari_condensed *c = p->condensed;
     spari_solver *s = p->solver;
-    (void)rotate_back(p);
+    if (!rotated) {
+        (void)rotate_back(p);
+    }
     if (spari_condensed_reduce(c, s->linear, s->dx)) {
         return 1;
     }
