@@ -67,8 +67,8 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
     if (taken) {
         free(j);
         free(own);
-        SPARI_REQUIRE(s, taken < 0, SPAR_ERR_ARGUMENT, "%s: joint '%s' already exists; use a unique name in the session",
-                      call, name);
+        SPARI_REQUIRE(s, taken < 0, SPAR_ERR_ARGUMENT,
+                      "%s: joint '%s' already exists; use a unique name in the session", call, name);
         return spari_fail(s, SPAR_ERR_MEMORY, "%s: '%s': no memory for the joint", call, name);
     }
     j->name = own;

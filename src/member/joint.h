@@ -21,7 +21,7 @@ typedef struct spari_driven {
 
 struct spar_joint {
     spar_session *session;
-    spar_joint *next; /* in order of creation, the same on every rank */
+    spar_joint *next;       /* in order of creation, the same on every rank */
     spar_joint *further[2]; /* the next joint of member[0], and of member[1] if it is another one */
     char *name;
     spar_member *member[2]; /* a and b; b NULL: the ground */
