@@ -41,6 +41,12 @@ void *spari_zalloc(int64_t n, size_t size) {
     return calloc(n > 0 && size > 0 ? (size_t)n : 1, size > 0 ? size : 1);
 }
 
+void spari_free_all(size_t n, void *const *pointers) {
+    for (size_t i = 0; i < n; i++) {
+        free(pointers[i]);
+    }
+}
+
 double *spari_copy(const double *x, int64_t n) {
     double *copy = spari_zalloc(n, sizeof *copy);
     if (copy && x && n > 0) {

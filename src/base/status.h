@@ -46,6 +46,10 @@ int spari_is_count(double x);
 /* Zeroed memory for n items, to be freed with free(). Not NULL for n = 0. NULL: no memory. */
 void *spari_zalloc(int64_t n, size_t size);
 
+/* Frees all pointers given, of any type. */
+#define SPARI_FREE(...) spari_free_all(sizeof((void *[]){__VA_ARGS__}) / sizeof(void *), (void *[]){__VA_ARGS__})
+void spari_free_all(size_t n, void *const *pointers);
+
 /* Copy of x[n], or zeros if x is NULL. Free it with free(). NULL: no memory. */
 double *spari_copy(const double *x, int64_t n);
 

@@ -160,9 +160,7 @@ static void dismiss(spari_thread_pool *c) {
     for (int k = 1; k < c->threads; k++) {
         spari_workspace_free(&c->hands[k].workspace);
     }
-    free(c->hands);
-    free(c->share);
-    free(c);
+    SPARI_FREE(c->hands, c->share, c);
 }
 
 /* Signals of the process go to the host's threads. */
@@ -180,9 +178,7 @@ spari_thread_pool *spari_thread_pool_create(int threads) {
     hand *hands = spari_zalloc(threads, sizeof *hands);
     share *shares = spari_zalloc(threads, sizeof *shares);
     if (!c || !hands || !shares) {
-        free(c);
-        free(hands);
-        free(shares);
+        SPARI_FREE(c, hands, shares);
         return NULL;
     }
     c->hands = hands, c->share = shares;

@@ -192,8 +192,7 @@ static void mpi_destroy(spari_comm *comm) {
         }
         (void)MPI_Comm_free(&c->handle);
     }
-    free(c->counts);
-    free(c->offsets);
+    SPARI_FREE(c->counts, c->offsets);
 }
 
 static int upto_most(const spari_comm *comm, int64_t n) {
@@ -381,9 +380,7 @@ int spari_comm_create_fortran(int handle, spari_comm **comm, int status, char *m
     status = meet(&c, "spar_session_create_fcomm", NULL, 0, status, message, size);
     if (status != SPAR_OK || !made) {
         (void)MPI_Comm_free(&c.handle);
-        free(c.counts);
-        free(c.offsets);
-        free(made);
+        SPARI_FREE(c.counts, c.offsets, made);
         return status;
     }
     *made = c;

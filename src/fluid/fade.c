@@ -8,8 +8,7 @@
 
 void spari_fade_free(spari_fade *fade) {
     if (fade) {
-        free(fade->reach);
-        free(fade->node);
+        SPARI_FREE(fade->reach, fade->node);
         spari_nodes_free_shortened(fade->nodes);
         free(fade);
     }

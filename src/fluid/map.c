@@ -38,9 +38,7 @@ static int prepare_member(spar_fluid *fluid) {
             free(*all[i].to);
             *all[i].to = NULL;
         }
-        free(q);
-        free(fluid->modal);
-        free(fluid->reference);
+        SPARI_FREE(q, fluid->modal, fluid->reference);
         fluid->modal = fluid->reference = NULL;
         return SPAR_ERR_MEMORY;
     }
@@ -123,10 +121,7 @@ typedef struct points_found {
 } points_found;
 
 static void free_points_found(points_found *f) {
-    free(f->element);
-    free(f->xi);
-    free(f->con);
-    free(f->flags);
+    SPARI_FREE(f->element, f->xi, f->con, f->flags);
 }
 
 static int alloc_points_found(points_found *f, int64_t n) {

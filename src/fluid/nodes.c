@@ -35,8 +35,7 @@ int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid)
     spar_fluid *made = spari_zalloc(1, sizeof *made);
     char *copy = spari_zalloc((int64_t)strlen(name) + 1, 1);
     if (!made || !copy) {
-        free(made);
-        free(copy);
+        SPARI_FREE(made, copy);
         return spari_fail(session, SPAR_ERR_MEMORY, "%s: member '%s': no memory for a fluid", __func__, member->name);
     }
     strcpy(copy, name);
@@ -51,11 +50,7 @@ int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid)
 }
 
 void spari_node_set_clear(spari_node_set *set) {
-    free(set->x);
-    free(set->eta);
-    free(set->frame);
-    free(set->weight);
-    free(set->home);
+    SPARI_FREE(set->x, set->eta, set->frame, set->weight, set->home);
     spari_fade_free(set->fade);
     spari_nodes_free(set->nodes);
     *set = (spari_node_set){0};
@@ -78,14 +73,7 @@ void spari_taking_free(spari_taking *t) {
     }
     spari_history_free(t->history);
     spari_states_free(t->states);
-    free(t->load);
-    free(t->bins);
-    free(t->end_bins);
-    free(t->end);
-    free(t->positions);
-    free(t->sorted);
-    free(t->found);
-    free(t);
+    SPARI_FREE(t->load, t->bins, t->end_bins, t->end, t->positions, t->sorted, t->found, t);
 }
 
 spari_history *spari_history_create(int64_t n, int order) {
@@ -104,8 +92,7 @@ spari_history *spari_history_create(int64_t n, int order) {
 
 void spari_states_free(spari_states *t) {
     if (t) {
-        free(t->now);
-        free(t->next);
+        SPARI_FREE(t->now, t->next);
     }
     free(t);
 }
@@ -169,9 +156,7 @@ void spari_fluid_free(spar_fluid *fluid) {
     }
     spari_parts_free(fluid->parts);
     spari_fluid_drop_bins(fluid);
-    free(fluid->why);
-    free(fluid->name);
-    free(fluid);
+    SPARI_FREE(fluid->why, fluid->name, fluid);
 }
 
 void spari_fluid_forget_refusal(spar_fluid *fluid) {
@@ -333,8 +318,7 @@ static int copy_sections(const spar_fluid *fluid, int64_t n, const double *eta, 
     }
     double *copy = spari_copy(offset, 3 * n), *at = spari_copy(eta, n);
     if (!copy || !at) {
-        free(copy);
-        free(at);
+        SPARI_FREE(copy, at);
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for %lld sections", (long long)n);
     }
     *set = (spari_node_set){.pending = 1, .sections = 1, .n = n, .x = copy, .eta = at};

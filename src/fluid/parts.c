@@ -19,13 +19,9 @@ void spari_parts_free(spari_parts *p) {
         return;
     }
     for (int k = 0; k < 2; k++) {
-        free(p->sums[k][0]);
-        free(p->sums[k][1]);
-        free(p->value[k]);
-        free(p->end[k]);
+        SPARI_FREE(p->sums[k][0], p->sums[k][1], p->value[k], p->end[k]);
     }
-    free(p->mean);
-    free(p);
+    SPARI_FREE(p->mean, p);
 }
 
 int spari_parts_prepare(spar_fluid *fluid) {
@@ -56,9 +52,7 @@ static int make_sums(spari_parts *p, int kind, int64_t n) {
         }
         return SPAR_ERR_MEMORY;
     }
-    free(p->sums[kind][0]);
-    free(p->sums[kind][1]);
-    free(p->value[kind]);
+    SPARI_FREE(p->sums[kind][0], p->sums[kind][1], p->value[kind]);
     p->sums[kind][0] = made[0], p->sums[kind][1] = made[1], p->value[kind] = made[2];
     p->n[kind] = n;
     return SPAR_OK;

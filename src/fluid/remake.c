@@ -242,13 +242,7 @@ static void drop_copy(double *made, const double *was) {
 static void drop_own(spar_fluid *f, const spar_fluid *old) {
     if (f->set[0].nodes != old->set[0].nodes || f->set[1].nodes != old->set[1].nodes) {
         for (int which = 0; which < 2; which++) {
-            free(f->set[which].x);
-            free(f->set[which].eta);
-            free(f->set[which].frame);
-            free(f->set[which].weight);
-            free(f->set[which].home);
-            spari_fade_free(f->set[which].fade);
-            spari_nodes_free(f->set[which].nodes);
+            spari_node_set_clear(&f->set[which]);
         }
     }
     drop_copy(f->modal, old->modal);

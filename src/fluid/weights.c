@@ -36,8 +36,7 @@ static double *reference_positions(const spar_fluid *fluid) {
 }
 
 static void take_weights(spari_node_set *set, double *weight, double *home, spari_fade *fade) {
-    free(set->weight);
-    free(set->home);
+    SPARI_FREE(set->weight, set->home);
     spari_fade_free(set->fade);
     set->weight = weight, set->home = home, set->fade = fade;
 }
@@ -47,8 +46,7 @@ static int use_weights(spar_fluid *fluid, double *weight, spari_fade *fade, cons
     const spari_nodes *nodes = fluid->set[SPAR_NODES_MOTION].nodes;
     double *home = reference_positions(fluid);
     if (!weight || !home || (fade && nodes && spari_fade_map(fade, nodes))) {
-        free(weight);
-        free(home);
+        SPARI_FREE(weight, home);
         spari_fade_free(fade);
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the weights of %lld motion nodes",
                                   (long long)fluid->set[SPAR_NODES_MOTION].n);
@@ -124,11 +122,7 @@ static int look_at_line(const spar_fluid *fluid, double **arm, double **tangent,
     }
     *arm = whole ? x : NULL, *tangent = whole ? nearest : NULL;
     spari_line_free(line);
-    free(whole ? NULL : x);
-    free(whole ? NULL : nearest);
-    free(xi);
-    free(element);
-    free(flags);
+    SPARI_FREE(whole ? NULL : x, whole ? NULL : nearest, xi, element, flags);
     return whole ? SPAR_OK
                  : spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory to measure %lld nodes", (long long)n);
 }
@@ -157,8 +151,7 @@ int spar_fluid_fade_motion(spar_fluid *fluid, double within, double beyond, int6
         free(weight);
         weight = NULL; /* refused as no memory */
     }
-    free(arm);
-    free(tangent);
+    SPARI_FREE(arm, tangent);
     return use_weights(fluid, weight, fade, __func__);
 }
 

@@ -250,16 +250,8 @@ int spari_added_create(spar_member *m, int whole) {
 
 void spari_added_free(spari_added *d) {
     if (d) {
-        free(d->mass);
-        free(d->phi);
-        free(d->shift);
-        free(d->past[0]);
-        free(d->past[1]);
-        free(d->mean[0]);
-        free(d->mean[1]);
-        free(d->mean[2]);
-        free(d->scheme);
-        free(d->last);
+        SPARI_FREE(d->mass, d->phi, d->shift, d->past[0], d->past[1], d->mean[0], d->mean[1], d->mean[2], d->scheme,
+                   d->last);
         free_strips(&d->strips);
         free(d);
     }

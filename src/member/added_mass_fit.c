@@ -92,9 +92,7 @@ static spari_learned *create_learned(int64_t n, const double *eta) {
 
 void spari_learned_free(spari_learned *l) {
     if (l) {
-        free(l->eta);
-        free(l->head);
-        free(l);
+        SPARI_FREE(l->eta, l->head, l);
     }
 }
 

@@ -52,12 +52,7 @@ static double *has_capacity_for(const spar_member *m) {
 }
 
 static void line_free(line_load *line) {
-    free(line->first);
-    free(line->phi);
-    free(line->load);
-    free(line->workspace);
-    free(line->eta);
-    free(line->said);
+    SPARI_FREE(line->first, line->phi, line->load, line->workspace, line->eta, line->said);
     memset(line, 0, sizeof *line);
 }
 
@@ -826,8 +821,7 @@ static int line_build(const spar_member *m, int kind, int64_t n, const double *e
         }
         memcpy(line->phi + (int64_t)k * P, s[k].phi, (size_t)P * sizeof *line->phi);
     }
-    free(s);
-    free(w);
+    SPARI_FREE(s, w);
     if (!ok) {
         line_free(line);
         return spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);

@@ -14,21 +14,9 @@ void spari_beam_free(spari_beam *beam) {
     if (!beam) {
         return;
     }
-    free(beam->eta);
-    free(beam->xyz);
-    free(beam->twist);
-    free(beam->node_x);
-    free(beam->node_q);
-    free(beam->section_eta);
-    free(beam->stiffness);
-    free(beam->mass);
-    free(beam->point_mass_eta);
-    free(beam->point_mass);
-    free(beam->spring_eta);
-    free(beam->spring);
-    free(beam->pre_eta);
-    free(beam->pre);
-    free(beam);
+    SPARI_FREE(beam->eta, beam->xyz, beam->twist, beam->node_x, beam->node_q, beam->section_eta, beam->stiffness,
+               beam->mass, beam->point_mass_eta, beam->point_mass, beam->spring_eta, beam->spring, beam->pre_eta,
+               beam->pre, beam);
 }
 
 /* ---- nodes from axis points ---- */
@@ -122,8 +110,7 @@ static int fit_axis(const spar_member *member, const double *gll, const double *
         memcpy(xe + 3 * (P - 1), e == E - 1 ? beam->xyz + 3 * (n - 1) : se + 3 * (P - 1), 3 * sizeof *xe);
         bad = P > 2 && fit_element(beam, E, e, P, gll, bary, se, xe);
     }
-    free(column);
-    free(spline_x);
+    SPARI_FREE(column, spline_x);
     return bad ? no_memory_for(member, "the fit of its axis") : SPAR_OK;
 }
 
@@ -667,11 +654,7 @@ static int fill_body(const spar_member *member, int most, const double mu[6], sp
             fill_point_masses(member, &f, x, e, n, b);
         }
     }
-    free(xi);
-    free(w);
-    free(x);
-    free(q);
-    free(f.y);
+    SPARI_FREE(xi, w, x, q, f.y);
     return status;
 }
 
@@ -751,7 +734,6 @@ int spari_beam_stations(const spar_member *member, int64_t n, spari_station *s) 
         s[k].jacobian = p.jacobian;
         reference_frame(member, &f, gll, bary, x, s[k].element, s[k].xi, s[k].R);
     }
-    free(x);
-    free(f.y);
+    SPARI_FREE(x, f.y);
     return status;
 }

@@ -166,16 +166,8 @@ void spari_body_free(spari_body *body) {
     if (!body) {
         return;
     }
-    free(body->node_position);
-    free(body->seen);
-    free(body->first);
-    free(body->slot);
-    free(body->phi);
-    free(body->dphi);
-    free(body->position);
-    free(body->pre);
-    free(body->lines);
-    free(body->tally);
+    SPARI_FREE(body->node_position, body->seen, body->first, body->slot, body->phi, body->dphi, body->position,
+               body->pre, body->lines, body->tally);
     spari_workspace_free(&body->own);
     free(body);
 }

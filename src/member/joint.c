@@ -128,8 +128,7 @@ int spar_link_create(spar_session *session, const char *name, spar_member *a, in
 
 void spari_joint_free(spar_joint *j) {
     if (j) {
-        free(j->name);
-        free(j);
+        SPARI_FREE(j->name, j);
     }
 }
 

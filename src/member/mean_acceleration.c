@@ -33,8 +33,7 @@ int spari_means_keep(spar_member *m) {
 
 void spari_means_free(spari_means *k) {
     if (k) {
-        free(k->mean);
-        free(k);
+        SPARI_FREE(k->mean, k);
     }
 }
 

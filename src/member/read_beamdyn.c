@@ -32,13 +32,7 @@ typedef struct blade {
 } blade;
 
 static void blade_free(blade *b) {
-    free(b->count);
-    free(b->key);
-    free(b->eta);
-    free(b->stiffness);
-    free(b->mass);
-    free(b->line);
-    free(b->file);
+    SPARI_FREE(b->count, b->key, b->eta, b->stiffness, b->mass, b->line, b->file);
 }
 
 /* ---- the files ---- */
@@ -288,9 +282,7 @@ static int describe_blade(spar_member *m, const spari_reader *r, blade *b) {
         m->beam = status == SPAR_OK ? fresh : old;
     }
     spari_beam_free(status == SPAR_OK ? old : fresh);
-    free(a.eta);
-    free(a.xyz);
-    free(a.twist);
+    SPARI_FREE(a.eta, a.xyz, a.twist);
     return status;
 }
 

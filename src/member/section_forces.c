@@ -41,12 +41,7 @@ int spari_beyond_is_undeformed(const spar_member *m) {
 
 void spari_beyond_free(spari_beyond *b) {
     if (b) {
-        free(b->mass);
-        free(b->x);
-        free(b->spread);
-        free(b->point);
-        free(b->sum);
-        free(b);
+        SPARI_FREE(b->mass, b->x, b->spread, b->point, b->sum, b);
     }
 }
 

@@ -381,10 +381,7 @@ spari_line *spari_line_create(int elements, int per_element, const double *x) {
 
 void spari_line_free(spari_line *line) {
     if (line) {
-        free(line->c);
-        free(line->segment);
-        free(line->ball);
-        free(line);
+        SPARI_FREE(line->c, line->segment, line->ball, line);
     }
 }
 

@@ -62,14 +62,11 @@ void spari_nodes_free(spari_nodes *s) {
     if (!s) {
         return;
     }
-    free(s->xi);
-    free(s->flags);
+    SPARI_FREE(s->xi, s->flags);
     for (int i = 0; i < 3; i++) {
         free(s->con[i]);
     }
-    free(s->element);
-    free(s->place);
-    free(s);
+    SPARI_FREE(s->element, s->place, s);
 }
 
 spari_nodes *spari_nodes_shorten(const spari_nodes *from, const double *factor) {
