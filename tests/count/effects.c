@@ -68,6 +68,7 @@ void *__wrap_calloc(size_t n, size_t size);
 void *__wrap_malloc(size_t size);
 void *__real_malloc(size_t size);
 void *__wrap_realloc(void *block, size_t size);
+char *__wrap_strdup(const char *text);
 void __wrap_free(void *block);
 void __real_free(void *block);
 
@@ -97,6 +98,11 @@ void *__wrap_realloc(void *block, size_t size) {
         __wrap_free(from);
     }
     return to;
+}
+
+char *__wrap_strdup(const char *text) {
+    char *copy = __wrap_malloc(strlen(text) + 1);
+    return copy ? strcpy(copy, text) : NULL;
 }
 
 void __wrap_free(void *block) {
