@@ -47,7 +47,7 @@ struct spari_foundation {
     double *pair; /* [elements][P (P + 1) / 2][6] */
 };
 
-static double *has_capacity_for(const spar_member *m) {
+static double *tangent_workspace(const spar_member *m) {
     return spari_zalloc(28 * (int64_t)m->mesh.per_element * m->mesh.per_element, sizeof(double));
 }
 
@@ -483,34 +483,113 @@ void spari_applied_tangent(const spar_member *m, int e, const double *q, double 
     }
 }
 
+/* Gauss points of element e, piecewise between load stations. s NULL: only counts. Eta and weight of a point are
+   stored beside it. */
+static int load_points(const spar_member *m, int e, int64_t n, const double *eta, spari_station *s, double *w,
+                       double *at) {
+    double gx[SPARI_MAX_NODES + 4], gw[SPARI_MAX_NODES + 4], E = m->mesh.elements;
+    int count = 0, whole = n == 1;
+    for (int64_t i = 0; i < (whole ? 1 : n - 1); i++) {
+        double from = whole ? -1 : fmax(2 * (eta[i] * E - e) - 1, -1),
+               to = whole ? 1 : fmin(2 * (eta[i + 1] * E - e) - 1, 1);
+        if (to - from < 1e-12) {
+            continue;
+        }
+        double half = 0.5 * (to - from);
+        int points = 2 + (int)ceil(half * (m->mesh.per_element - 1) - 1e-9); /* the whole element: degree 2 P + 1 */
+        spari_gauss(points, gx, gw);
+        for (int k = 0; k < points && s; k++) {
+            s[count + k].element = e;
+            s[count + k].xi = from + half * (1 + gx[k]);
+            w[count + k] = half * gw[k];
+            double where = 0.5 * (1 + spari_member_xi(m, e, s[count + k].xi));
+            at[count + k] = whole ? 0 : (double)i + fmin(fmax((where - eta[i]) / (eta[i + 1] - eta[i]), 0), 1 - 1e-16);
+        }
+        count += points;
+    }
+    return count;
+}
+
+/* Converts stiffnesses along the section's axes, the columns of R, to the six entries of their matrix. */
+static void rotate_springs(const double R[9], double k[6]) {
+    const double own[3] = {k[0], k[1], k[2]};
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    for (int i = 0; i < 6; i++) {
+        const double *a = R + 3 * row[i], *b = R + 3 * column[i];
+        k[i] = own[0] * a[0] * b[0] + own[1] * a[1] * b[1] + own[2] * a[2] * b[2];
+    }
+}
+
+static int line_build(const spar_member *m, int kind, int64_t n, const double *eta, const double *load,
+                      line_load *line) {
+    int E = m->mesh.elements, P = m->mesh.per_element, points = 0;
+    for (int e = 0; e < E; e++) {
+        points += load_points(m, e, n, eta, NULL, NULL, NULL);
+    }
+    spari_station *s = spari_zalloc(points, sizeof *s);
+    double *w = spari_zalloc(2 * (int64_t)points, sizeof *w), *at = w + points;
+    line->first = spari_zalloc(E + 1, sizeof *line->first);
+    line->phi = spari_zalloc((int64_t)points * P, sizeof *line->phi);
+    line->load = spari_zalloc((int64_t)points * 6, sizeof *line->load);
+    line->workspace = tangent_workspace(m);
+    int ok = s && w && line->first && line->phi && line->load && line->workspace;
+    for (int e = 0; e < E && ok; e++) {
+        int k = line->first[e], count = load_points(m, e, n, eta, s + k, w + k, at + k);
+        ok = count >= 0;
+        line->first[e + 1] = k + count;
+    }
+    ok = ok && spari_beam_stations(m, points, s) == SPAR_OK;
+    for (int k = 0; k < points && ok; k++) {
+        int64_t i = (int64_t)at[k];
+        double f = at[k] - (double)i, *to = line->load + 6 * (int64_t)k;
+        for (int c = 0; c < 6; c++) {
+            to[c] = w[k] * s[k].jacobian * ((1 - f) * load[6 * i + c] + (f > 0 ? f * load[6 * (i + 1) + c] : 0));
+        }
+        if (kind == SPAR_LOAD_FOLLOWER) {
+            spari_matrix_times(s[k].R, to, to);
+            spari_matrix_times(s[k].R, to + 3, to + 3);
+        } else if (kind == SPARI_LINE_SPRINGS) {
+            rotate_springs(s[k].R, to);
+        }
+        memcpy(line->phi + (int64_t)k * P, s[k].phi, (size_t)P * sizeof *line->phi);
+    }
+    SPARI_FREE(s, w);
+    if (!ok) {
+        line_free(line);
+        return spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
+    }
+    return SPAR_OK;
+}
+
+/* The same, and keeps the stations as given. */
+static int line_set(const spar_member *m, int kind, int64_t n, const double *eta, const double *load, line_load *line) {
+    SPARI_TRY(line_build(m, kind, n, eta, load, line));
+    line->stations = n;
+    line->eta = spari_copy(eta, n);
+    line->said = spari_copy(load, 6 * n);
+    if (!line->eta || !line->said) {
+        line_free(line);
+        return spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
+    }
+    return SPAR_OK;
+}
+
 /* ---- save and load ---- */
 
-static void put_line(const spar_member *m, const line_load *line, spari_image *image) {
-    int64_t points = line->first ? line->first[m->mesh.elements] : -1;
-    spari_image_put_int(image, points);
-    for (int e = 0; e < m->mesh.elements && points >= 0; e++) {
-        spari_image_put_int(image, line->first[e + 1]);
-    }
-    spari_image_put(image, line->phi, points > 0 ? points * m->mesh.per_element : 0);
-    spari_image_put(image, line->load, points > 0 ? points * 6 : 0);
-    if (points >= 0) {
+static void put_applied(const spar_member *m, const spari_applied *a, spari_image *image) {
+    spari_image_put_int(image, a->follower != NULL);
+    spari_image_put(image, a->follower, a->follower ? 6 * m->nodes : 0);
+    for (int k = 0; k < 2; k++) {
+        const line_load *line = &a->line[k];
         spari_image_put_int(image, line->stations);
         spari_image_put(image, line->eta, line->stations);
         spari_image_put(image, line->said, 6 * line->stations);
     }
 }
 
-static void put_applied(const spar_member *m, const spari_applied *a, spari_image *image) {
-    spari_image_put_int(image, a->follower != NULL);
-    spari_image_put(image, a->follower, a->follower ? 6 * m->nodes : 0);
-    put_line(m, &a->line[0], image);
-    put_line(m, &a->line[1], image);
-}
-
 /* Words of the state, in order: whether follower loads exist; which kinds were replaced since t^n, with their dead
    loads and other loads at t^n; whether new loads exist, and these. Loads are: whether there are followers, and
-   these; for each line load its points (-1: none), first points of the elements, phi, load, and its stations with
-   eta and values. */
+   these; for each line load its stations (0: none), with eta and values. */
 void spari_applied_save(const spar_member *m, spari_image *image) {
     int64_t at = image->count;
     int changed = changes(m, RAMP_ALL) ? m->load.ramp->changed : 0;
@@ -543,47 +622,27 @@ static double *take(spari_image *image, int64_t n) {
     return x;
 }
 
-static void take_stations(spari_image *image, line_load *line) {
-    line->stations = spari_image_get_int(image);
-    image->failed |= line->stations < 1 || line->stations > SPARI_MOST;
-    if (image->failed) {
+static void take_line(const spar_member *m, spari_image *image, int kind, line_load *line) {
+    const double slack = 1e-9;
+    int64_t n = spari_image_get_int(image);
+    if (n == 0 || image->failed) {
         return;
     }
-    line->eta = take(image, line->stations);
-    line->said = image->failed ? NULL : take(image, 6 * line->stations);
-    for (int64_t i = 0; i < line->stations && !image->failed; i++) {
-        const double slack = 1e-9;
-        image->failed |= !(line->eta[i] >= (i > 0 ? line->eta[i - 1] : -slack) && line->eta[i] <= 1 + slack);
-    }
-}
-
-static void take_line(const spar_member *m, spari_image *image, line_load *line) {
-    int64_t points = spari_image_get_int(image);
-    if (points < 0 || image->failed) {
-        return;
-    }
-    line->first = spari_zalloc(m->mesh.elements + 1, sizeof *line->first);
-    image->no_memory |= !line->first;
-    image->failed |= !line->first || points > INT32_MAX;
-    for (int e = 0; e < m->mesh.elements && !image->failed; e++) {
-        int64_t next = spari_image_get_int(image);
-        image->failed |= next < line->first[e] || next > points;
-        line->first[e + 1] = (int)next;
+    image->failed = n < 0 || n > SPARI_MOST;
+    double *eta = image->failed ? NULL : take(image, n), *load = image->failed ? NULL : take(image, 6 * n);
+    for (int64_t i = 0; i < n && !image->failed; i++) {
+        image->failed = !(eta[i] >= (i > 0 ? eta[i - 1] : -slack) && eta[i] <= 1 + slack);
     }
     if (!image->failed) {
-        line->phi = take(image, points * m->mesh.per_element);
-        line->load = take(image, points * 6);
-        line->workspace = has_capacity_for(m);
-        image->no_memory |= !line->workspace;
-        image->failed |= !line->workspace;
-        take_stations(image, line);
+        image->failed = image->no_memory = line_set(m, kind, n, eta, load, line) != SPAR_OK;
     }
+    SPARI_FREE(eta, load);
 }
 
 static void take_applied(const spar_member *m, spari_image *image, spari_applied *a) {
     a->follower = spari_image_get_int(image) ? take(image, 6 * m->nodes) : NULL;
     for (int k = 0; k < 2 && !image->failed; k++) {
-        take_line(m, image, &a->line[k]);
+        take_line(m, image, k, &a->line[k]);
     }
 }
 
@@ -748,100 +807,6 @@ int spar_member_set_load(spar_member *member, int64_t node, int kind, const doub
     return SPAR_OK;
 }
 
-/* Gauss points of element e, piecewise between load stations. s NULL: only counts. Eta and weight of a point are
-   stored beside it. */
-static int load_points(const spar_member *m, int e, int64_t n, const double *eta, spari_station *s, double *w,
-                       double *at) {
-    double gx[SPARI_MAX_NODES + 4], gw[SPARI_MAX_NODES + 4], E = m->mesh.elements;
-    int count = 0, whole = n == 1;
-    for (int64_t i = 0; i < (whole ? 1 : n - 1); i++) {
-        double from = whole ? -1 : fmax(2 * (eta[i] * E - e) - 1, -1),
-               to = whole ? 1 : fmin(2 * (eta[i + 1] * E - e) - 1, 1);
-        if (to - from < 1e-12) {
-            continue;
-        }
-        double half = 0.5 * (to - from);
-        int points = 2 + (int)ceil(half * (m->mesh.per_element - 1) - 1e-9); /* the whole element: degree 2 P + 1 */
-        spari_gauss(points, gx, gw);
-        for (int k = 0; k < points && s; k++) {
-            s[count + k].element = e;
-            s[count + k].xi = from + half * (1 + gx[k]);
-            w[count + k] = half * gw[k];
-            double where = 0.5 * (1 + spari_member_xi(m, e, s[count + k].xi));
-            at[count + k] = whole ? 0 : (double)i + fmin(fmax((where - eta[i]) / (eta[i + 1] - eta[i]), 0), 1 - 1e-16);
-        }
-        count += points;
-    }
-    return count;
-}
-
-/* Converts stiffnesses along the section's axes, the columns of R, to the six entries of their matrix. */
-static void rotate_springs(const double R[9], double k[6]) {
-    const double own[3] = {k[0], k[1], k[2]};
-    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
-    for (int i = 0; i < 6; i++) {
-        const double *a = R + 3 * row[i], *b = R + 3 * column[i];
-        k[i] = own[0] * a[0] * b[0] + own[1] * a[1] * b[1] + own[2] * a[2] * b[2];
-    }
-}
-
-static int line_build(const spar_member *m, int kind, int64_t n, const double *eta, const double *load,
-                      line_load *line) {
-    int E = m->mesh.elements, P = m->mesh.per_element, points = 0;
-    for (int e = 0; e < E; e++) {
-        points += load_points(m, e, n, eta, NULL, NULL, NULL);
-    }
-    spari_station *s = spari_zalloc(points, sizeof *s);
-    double *w = spari_zalloc(2 * (int64_t)points, sizeof *w), *at = w + points;
-    line->first = spari_zalloc(E + 1, sizeof *line->first);
-    line->phi = spari_zalloc((int64_t)points * P, sizeof *line->phi);
-    line->load = spari_zalloc((int64_t)points * 6, sizeof *line->load);
-    line->workspace = has_capacity_for(m);
-    int ok = s && w && line->first && line->phi && line->load && line->workspace;
-    for (int e = 0; e < E && ok; e++) {
-        int k = line->first[e], count = load_points(m, e, n, eta, s + k, w + k, at + k);
-        ok = count >= 0;
-        line->first[e + 1] = k + count;
-    }
-    ok = ok && spari_beam_stations(m, points, s) == SPAR_OK;
-    for (int k = 0; k < points && ok; k++) {
-        int64_t i = (int64_t)at[k];
-        double f = at[k] - (double)i, now[6], *to = line->load + 6 * (int64_t)k;
-        for (int c = 0; c < 6; c++) {
-            now[c] = w[k] * s[k].jacobian * ((1 - f) * load[6 * i + c] + (f > 0 ? f * load[6 * (i + 1) + c] : 0));
-        }
-        memcpy(to, now, sizeof now);
-        for (int b = 0; b < 6 && kind == SPAR_LOAD_FOLLOWER; b += 3) {
-            for (int c = 0; c < 3; c++) {
-                to[b + c] = s[k].R[3 * c] * now[b] + s[k].R[3 * c + 1] * now[b + 1] + s[k].R[3 * c + 2] * now[b + 2];
-            }
-        }
-        if (kind == SPARI_LINE_SPRINGS) {
-            rotate_springs(s[k].R, to);
-        }
-        memcpy(line->phi + (int64_t)k * P, s[k].phi, (size_t)P * sizeof *line->phi);
-    }
-    SPARI_FREE(s, w);
-    if (!ok) {
-        line_free(line);
-        return spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
-    }
-    return SPAR_OK;
-}
-
-/* The same, and keeps the stations as given. */
-static int line_set(const spar_member *m, int kind, int64_t n, const double *eta, const double *load, line_load *line) {
-    SPARI_TRY(line_build(m, kind, n, eta, load, line));
-    line->stations = n;
-    line->eta = spari_copy(eta, n);
-    line->said = spari_copy(load, 6 * n);
-    if (!line->eta || !line->said) {
-        line_free(line);
-        return spari_fail(m->session, SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
-    }
-    return SPAR_OK;
-}
-
 /* ---- rebuild with other nodes ---- */
 
 static int rebuild_loads(const spar_member *from, const spar_member *m, const double *was, double **is) {
@@ -961,15 +926,8 @@ static int check_line_load(const spar_member *m, const char *call, int kind, int
     SPARI_TRY(need_kind(m, call, kind));
     SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT, "%s: '%s': %lld stations; give 0 to 2^40", call,
                   m->name, (long long)n);
-    SPARI_REQUIRE(s, n == 0 || (eta && load), SPAR_ERR_ARGUMENT, "%s: '%s': %s is NULL", call, m->name,
-                  eta ? "load" : "eta");
-    int64_t bad = spari_first_nonfinite(eta, n);
-    SPARI_REQUIRE(s, bad < 0, SPAR_ERR_ARGUMENT, "%s: '%s': eta %lld is not a finite number; give finite numbers", call,
-                  m->name, (long long)bad);
-    bad = spari_first_nonfinite(load, 6 * n);
-    SPARI_REQUIRE(s, bad < 0, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': load %lld of station %lld is not a finite number; give finite numbers", call, m->name,
-                  (long long)(bad % 6), (long long)(bad / 6));
+    SPARI_TRY(spari_need_finite(s, call, m->name, "eta", n, eta));
+    SPARI_TRY(spari_need_finite(s, call, m->name, "load", 6 * n, load));
     for (int64_t i = 0; i < n; i++) {
         SPARI_REQUIRE(s, eta[i] >= -1e-9 && eta[i] <= 1 + 1e-9, SPAR_ERR_ARGUMENT,
                       "%s: '%s': eta %lld is %g; eta runs from 0 to 1", call, m->name, (long long)i, eta[i]);
