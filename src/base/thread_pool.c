@@ -9,7 +9,6 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 /* Polls before a thread sleeps: about ten microseconds, the time that sleeping and waking take. */

@@ -6,7 +6,6 @@
 #include <limits.h>
 #include <mpi.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct mpi_comm {

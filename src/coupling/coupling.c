@@ -5,7 +5,6 @@
 #include "../exchange/session_private.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
-#include "../member/body.h"
 #include "../member/structure.h"
 #include "motion_norm.h"
 

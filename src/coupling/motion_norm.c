@@ -10,7 +10,6 @@
 #include "../time/fidelity.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 int spari_motion_norm_is_used(const spar_session *s) {

@@ -3,7 +3,6 @@
 #include "fluid.h"
 
 #include "../math/predictor.h"
-#include "../math/rotation.h"
 #include "state.h"
 #include <math.h>
 #include <stdarg.h>

@@ -1,6 +1,5 @@
 /* Pushes loads from the fluid's nodes to the members. */
 #include "../base/environment.h"
-#include "../comm/comm.h"
 #include "../math/predictor.h"
 #include "../math/rotation.h"
 #include "state.h"

@@ -1,7 +1,6 @@
 /* Rotations: quaternions, matrices, rotation vectors and their tangent operators. */
 #include "rotation.h"
 
-#include <float.h>
 #include <stddef.h>
 
 void spari_quat_matrix(const double q[4], double r[9]) {

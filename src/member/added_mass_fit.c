@@ -11,7 +11,6 @@
 #include "mean_acceleration.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Scalars of the state; the sums decay with time.

@@ -6,7 +6,6 @@
 #include "../math/resample.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "body.h"
 #include "check_arguments.h"
 
 #include <stdlib.h>

@@ -5,7 +5,6 @@
 #include "check_arguments.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 int spari_point_mass_element(const spar_member *member, int64_t k, double *xi) {
     double along = member->beam->point_mass_eta[k] * member->mesh.elements;

@@ -4,7 +4,6 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Momentum of a rigid section or body: m (v + w x c), J w + c x m v: M = [m I, -m c~; m c~, J]. */

@@ -4,7 +4,6 @@
    them that acts beyond a position in the element. Loads at nodes, joints and point masses act where they are. */
 #include "section_forces.h"
 
-#include "../base/session.h"
 #include "../math/rotation.h"
 #include "applied.h"
 #include "joint.h"

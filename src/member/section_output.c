@@ -4,7 +4,6 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "beam.h"
-#include "check_arguments.h"
 #include "pose.h"
 #include "section_forces.h"
 

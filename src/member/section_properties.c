@@ -6,7 +6,6 @@
 #include "../base/environment.h"
 #include "../base/status.h"
 #include "beam.h"
-#include "check_arguments.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -4,7 +4,6 @@
 #include "../comm/comm.h"
 #include "../coupling/coupling.h"
 #include "../exchange/session_private.h"
-#include "../fluid/fluid.h"
 #include "../member/added_mass.h"
 #include "../member/added_mass_fit.h"
 #include "../member/applied.h"

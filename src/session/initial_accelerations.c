@@ -6,14 +6,12 @@
 #include "../comm/enter.h"
 #include "../coupling/coupling.h"
 #include "../exchange/exchange.h"
-#include "../exchange/session_private.h"
 #include "../fluid/fluid.h"
 #include "../member/check_arguments.h"
 #include "../member/joint.h"
 #include "../solve/life.h"
 #include "../time/fidelity.h"
 
-#include <math.h>
 #include <string.h>
 
 static int check_start(spar_session *s, const char *call, double dt) {

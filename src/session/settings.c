@@ -13,9 +13,6 @@
 
 #include <assert.h>
 #include <float.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Setter calls beside spar_session_set_option. */

@@ -4,7 +4,6 @@
 #include "../base/environment.h"
 #include "../coupling/coupling.h"
 #include "../exchange/exchange.h"
-#include "../exchange/session_private.h"
 #include "../fluid/fluid.h"
 #include "../member/added_mass.h"
 #include "../member/added_mass_fit.h"
@@ -25,7 +24,6 @@
 #include "../math/predictor.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char *const phase_name[] = {"no step is in progress", "the step has begun but is not solved",

@@ -2,7 +2,6 @@
 #include "step_control.h"
 
 #include "../base/environment.h"
-#include "../comm/comm.h"
 #include "../exchange/session_private.h"
 #include "../time/step_error.h"
 

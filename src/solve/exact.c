@@ -2,7 +2,6 @@
 #include "../algebra/pencil.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
-#include "../member/beam.h"
 #include "../member/plane.h"
 #include "../time/body_solver.h"
 #include "../time/component.h"

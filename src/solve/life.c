@@ -11,14 +11,12 @@
 #include "../member/applied.h"
 #include "../member/beam.h"
 #include "../member/check_arguments.h"
-#include "../member/joint.h"
 #include "../member/mean_acceleration.h"
 #include "../member/plane.h"
 #include "../time/fidelity.h"
 #include "../time/newton_tolerance.h"
 #include "work.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,4 @@
 /* The prescribed beam: its nodes follow a prescribed root as one rigid body without mass. */
-#include "../base/session.h"
 #include "../time/fidelity.h"
 #include "reaction.h"
 #include "rigid_nodes.h"

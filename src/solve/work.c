@@ -2,7 +2,6 @@
 #include "work.h"
 #include "../base/environment.h"
 
-#include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/applied.h"
 #include "../member/check_arguments.h"

@@ -7,7 +7,6 @@
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
 #include "../base/session.h"
-#include "../member/body.h"
 #include "../member/check_arguments.h"
 #include "../time/fidelity.h"
 #include "small_motions.h"

@@ -3,7 +3,6 @@
 
 #include "../base/session.h"
 #include "../math/rotation.h"
-#include "../member/body.h"
 #include "../time/component.h"
 #include "../time/fidelity.h"
 

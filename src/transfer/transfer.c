@@ -4,7 +4,6 @@
 #include "../base/status.h"
 #include "../base/thread_pool.h"
 #include "../math/rotation.h"
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

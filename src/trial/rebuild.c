@@ -1,9 +1,7 @@
 /* Rebuilds members with other elements or fidelity for a trial, and restores them: see rebuild.h. */
 #include "rebuild.h"
 
-#include "../base/session.h"
 #include "../math/resample.h"
-#include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied.h"
 #include "../member/beam.h"

@@ -4,15 +4,12 @@
 #include "move_joints.h"
 #include "move_loads.h"
 
-#include "../base/environment.h"
 #include "../coupling/coupling.h"
 #include "../exchange/exchange.h"
 #include "../exchange/session_private.h"
 #include "../fluid/fluid.h"
-#include "../member/check_arguments.h"
 #include "../session/callbacks.h"
 #include "../session/initial_accelerations.h"
-#include "../solve/life.h"
 
 #include <math.h>
 #include <stdlib.h>

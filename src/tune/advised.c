@@ -1,5 +1,4 @@
 /* Getters of the last advice. */
-#include "../base/environment.h"
 #include "../member/structure.h"
 #include "../trial/handle.h"
 

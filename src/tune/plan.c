@@ -3,10 +3,8 @@
 
 #include "../coupling/schemes.h"
 #include "../math/basis.h"
-#include "../member/joint.h"
 #include "../time/fidelity.h"
 #include "../trial/move_joints.h"
-#include "node_error.h"
 
 #include <math.h>
 #include <stdio.h>
