@@ -54,8 +54,7 @@ void spari_accelerator_free(spari_accelerator **accelerator) {
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }
-    free(a->column);
-    free(a->order);
+    SPARI_FREE(a->column, a->order);
     spari_secants_free(a->secants);
     spari_snapshot_free(&a->before);
     free(a);

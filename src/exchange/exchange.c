@@ -97,9 +97,7 @@ int spari_session_seal(spar_session *s, int status) {
         count += m->committed ? 6 * m->nodes : 0;
     }
     if (status == SPAR_OK && (!s->own->pack || s->own->pack_count != count || !fits_blocks(s))) {
-        free(s->own->pack);
-        free(s->own->first);
-        free(s->own->motion);
+        SPARI_FREE(s->own->pack, s->own->first, s->own->motion);
         s->own->pack_count = count;
         s->own->first = NULL;
         s->own->motion = NULL;

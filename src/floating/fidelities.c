@@ -84,13 +84,10 @@ static void frame_free(void *solution) {
         free(all[k]);
     }
     for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
-        free(f->N[k]);
-        free(f->f[k]);
-        free(f->rigid[k]);
+        SPARI_FREE(f->N[k], f->f[k], f->rigid[k]);
     }
     for (int k = 0; k < 3; k++) {
-        free(f->G[k]);
-        free(f->E[k]);
+        SPARI_FREE(f->G[k], f->E[k]);
     }
     spari_linear_free(f->linear);
     spari_snapshot_free(&f->before);

@@ -96,8 +96,7 @@ static int elastic_columns(spari_frame *f, int cols, double *work) {
         cblas_dcopy(n, z + (int64_t)n * k, 1, f->basis + (int64_t)6 * cols + 6 + k, cols);
     }
     spari_pencil_free(&pencil);
-    free(square);
-    free(block);
+    SPARI_FREE(square, block);
     return status;
 }
 
@@ -124,8 +123,7 @@ static int project_matrix(const spari_frame *f, int cols, double **X) {
     int m = f->block, step = f->block - f->overlap;
     double *to = spari_zalloc((int64_t)cols * cols, sizeof *to), *half = spari_zalloc((int64_t)m * cols, sizeof *half);
     if (!to || !half) {
-        free(to);
-        free(half);
+        SPARI_FREE(to, half);
         return 1;
     }
     for (int e = 0; e < f->elements; e++) {
@@ -135,8 +133,7 @@ static int project_matrix(const spari_frame *f, int cols, double **X) {
         SPARI_BLAS(
             cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, cols, cols, m, 1, b, cols, half, cols, 1, to, cols));
     }
-    free(half);
-    free(*X);
+    SPARI_FREE(half, *X);
     *X = to;
     return 0;
 }

@@ -62,12 +62,7 @@ static void end_loading(const spar_session *s, reading *l) {
     for (int k = 0; l->assembled && k < s->joint_count; k++) {
         free(l->assembled[k]);
     }
-    free(l->solution);
-    free(l->assembled);
-    free(l->solvers);
-    free(l->fluids);
-    free(l->taker);
-    free(l->buffer);
+    SPARI_FREE(l->solution, l->assembled, l->solvers, l->fluids, l->taker, l->buffer);
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_give_up(f);
     }
@@ -157,8 +152,7 @@ static int check_file_sum(spar_session *s, reading *l) {
         }
         status = agree_to_load(s, status);
     }
-    free(part);
-    free(first);
+    SPARI_FREE(part, first);
     return status;
 }
 

@@ -93,11 +93,7 @@ void spar_session_destroy(spar_session **session) {
     if (s->own->free_trials) {
         s->own->free_trials(s->own->trials);
     }
-    free(s->own->pack);
-    free(s->own->bins);
-    free(s->own->first);
-    free(s->own->motion);
-    free(s);
+    SPARI_FREE(s->own->pack, s->own->bins, s->own->first, s->own->motion, s);
     *session = NULL;
 }
 

@@ -134,12 +134,10 @@ static int make_units(spar_session *s, int64_t most) {
     spari_unit *unit = spari_zalloc(most, sizeof *unit);
     spar_member **member = spari_zalloc(most, sizeof(spar_member *));
     if (!unit || !member) {
-        free(unit);
-        free(member);
+        SPARI_FREE(unit, member);
         return spari_fail(s, SPAR_ERR_MEMORY, "no memory for the worker threads");
     }
-    free(s->own->unit);
-    free(s->own->member);
+    SPARI_FREE(s->own->unit, s->own->member);
     s->own->unit = unit, s->own->member = member, s->own->unit_capacity = most;
     return SPAR_OK;
 }
@@ -188,8 +186,7 @@ void spari_threads_each(spar_session *s, spari_member_task task, const void *con
 
 void spari_threads_free(spar_session *s) {
     spari_thread_pool_free(s->pool);
-    free(s->own->unit);
-    free(s->own->member);
+    SPARI_FREE(s->own->unit, s->own->member);
     s->pool = NULL;
     s->own->unit = NULL, s->own->member = NULL, s->own->unit_capacity = s->own->listed = 0;
 }

@@ -477,10 +477,10 @@ int spar_member_commit(spar_member *member) {
             }
         }
     }
-    const spari_agreed must_agree[] = {
-        spari_whole("positions of it in the order of creation", member->number),
-        spari_whole("owners of it", member->owner), spari_given("owners of it (set or not)", member->owner_given),
-        spari_hash("descriptions of it", spari_member_hash(member))};
+    const spari_agreed must_agree[] = {spari_whole("positions of it in the order of creation", member->number),
+                                       spari_whole("owners of it", member->owner),
+                                       spari_given("owners of it (set or not)", member->owner_given),
+                                       spari_hash("descriptions of it", spari_member_hash(member))};
     int agreed = spari_member_enter(member, __func__, must_agree, 4, status);
     if (agreed != SPAR_OK) {
         if (status == SPAR_OK) {
@@ -504,11 +504,9 @@ void spari_member_free(spar_member *member) {
     }
     spari_member_release(member);
     spari_beam_free(member->beam);
-    free(member->guess_eta);
-    free(member->guess);
+    SPARI_FREE(member->guess_eta, member->guess);
     spari_learned_free(member->learned);
-    free(member->name);
-    free(member);
+    SPARI_FREE(member->name, member);
 }
 
 int spar_member_set_motion(spar_member *member, const double *q, const double *v, const double *a) {

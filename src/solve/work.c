@@ -21,10 +21,7 @@ struct spari_work {
 
 void spari_work_free(spari_work *work) {
     if (work) {
-        free(work->fluid);
-        free(work->load);
-        free(work->workspace);
-        free(work);
+        SPARI_FREE(work->fluid, work->load, work->workspace, work);
     }
 }
 

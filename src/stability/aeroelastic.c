@@ -50,9 +50,7 @@ typedef struct coupled {
 static void coupled_free(coupled *c) {
     spari_small_motions_free(&c->motions);
     spari_reduced_free(&c->reduced);
-    free(c->shape);
-    free(c->nodes);
-    free(c->value);
+    SPARI_FREE(c->shape, c->nodes, c->value);
 }
 
 /* The structure's part, computed on every rank. */

@@ -64,8 +64,7 @@ static int eigenvalues_of(spar_member *m, int64_t n, double complex shift, doubl
                                           shapes + 12 * m->nodes * k);
             }
         }
-        free(value);
-        free(x);
+        SPARI_FREE(value, x);
     }
     if (status == SPAR_OK && frame) {
         memcpy(frame, w.w, sizeof w.w);

@@ -46,8 +46,7 @@ typedef struct floquet {
 
 static void floquet_free(floquet *f) {
     spari_small_motions_free(&f->motions);
-    free(f->shape);
-    free(f->gram);
+    SPARI_FREE(f->shape, f->gram);
 }
 
 /* ---- states ---- */

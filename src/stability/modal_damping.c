@@ -349,8 +349,7 @@ static int fit_damping(spar_member *m, int64_t n, const int64_t *mode, const dou
         }
         *alpha = y[GROUPS] * y[GROUPS];
     }
-    free(omega);
-    free(share);
+    SPARI_FREE(omega, share);
     return status;
 }
 

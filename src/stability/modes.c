@@ -83,8 +83,7 @@ static int solve_modes(spari_small_motions *w, const spar_member *m, int connect
             m->row->shape(m, x + w->size * k + own->at, w->workspace, shapes + 6 * m->nodes * k);
         }
     }
-    free(square);
-    free(block);
+    SPARI_FREE(square, block);
     return status;
 }
 

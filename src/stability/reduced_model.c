@@ -143,8 +143,7 @@ int spari_reduced_prepare(spari_reduced *r) {
     if (status == SPAR_OK) {
         fit_response(r, find_poles(r, pole), pole, A);
     }
-    free(A);
-    free(pole);
+    SPARI_FREE(A, pole);
     return status;
 }
 
@@ -168,10 +167,7 @@ typedef struct reduced_work {
 } reduced_work;
 
 static void work_free(reduced_work *w) {
-    free(w->pole);
-    free(w->S);
-    free(w->T);
-    free(w->root);
+    SPARI_FREE(w->pole, w->S, w->T, w->root);
 }
 
 static int work_create(reduced_work *w, const spari_reduced *r) {

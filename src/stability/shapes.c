@@ -132,8 +132,7 @@ int spari_shapes_find(spari_small_motions *w, int modes, double *shape, double *
     for (int k = 0; k < count; k++) {
         rate[k] = fmax(rate[k], most > 0 ? 0.01 * most : 1);
     }
-    free(value);
-    free(workspace);
+    SPARI_FREE(value, workspace);
     SPARI_REQUIRE(w->session, status != SPAR_ERR_MEMORY, status, "no memory for %d modes", modes);
     SPARI_REQUIRE(w->session, status == SPAR_OK && count == modes, SPAR_ERR_NUMERIC,
                   "only %d of %d modes found; the others have no mass, or have not converged: request fewer", count,

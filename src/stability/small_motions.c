@@ -21,8 +21,7 @@ static const double one_turn = 1e-4;
 static const double equilibrium = 1e-3, equilibrium_noise = 1e-9;
 
 void spari_small_motions_free(spari_small_motions *w) {
-    free(w->part);
-    free(w->workspace);
+    SPARI_FREE(w->part, w->workspace);
     spari_pencil_free(&w->pencil);
 }
 

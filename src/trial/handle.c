@@ -19,8 +19,7 @@ static void free_trial(spar_trial *t) {
         spari_record_free(t->kept);
         free(t->kept);
     }
-    free(t->advised.beam);
-    free(t);
+    SPARI_FREE(t->advised.beam, t);
 }
 
 static void free_trials(spar_trial *first) {

@@ -103,9 +103,6 @@ int spari_move_loads(spar_session *s, const char *call, int any, const spari_mov
         return SPAR_OK;
     }
     int status = carry(s, call, &c);
-    free(c.first);
-    free(c.here);
-    free(c.sum);
-    free(c.value);
+    SPARI_FREE(c.first, c.here, c.sum, c.value);
     return status;
 }

@@ -98,9 +98,7 @@ int spari_member_rebuild(spar_member *m, const spari_rebuild *settings, spar_mem
 /* Frees a copy made by describe_again, except what the other member shares. */
 static void drop_description(spari_beam *beam, const spari_beam *stays) {
     if (beam != stays) {
-        free(beam->node_x);
-        free(beam->node_q);
-        free(beam);
+        SPARI_FREE(beam->node_x, beam->node_q, beam);
     }
 }
 

@@ -213,13 +213,7 @@ int spari_record_create(spar_session *s, int64_t steps, int goals, spari_record 
 }
 
 void spari_record_free(spari_record *r) {
-    free(r->value);
-    free(r->recent);
-    free(r->load);
-    free(r->trail);
-    free(r->start);
-    free(r->workspace);
-    free(r->basis);
+    SPARI_FREE(r->value, r->recent, r->load, r->trail, r->start, r->workspace, r->basis);
     *r = (spari_record){0};
 }
 

@@ -82,9 +82,7 @@ typedef struct snapshot {
 } snapshot;
 
 static void snapshot_free(const snapshot *t) {
-    free(t->members);
-    free(t->fluids);
-    free(t->carried);
+    SPARI_FREE(t->members, t->fluids, t->carried);
 }
 
 /* After a failure the session is unchanged, with nothing to restore. */
@@ -176,9 +174,7 @@ static void go_back(spar_session *s, snapshot *t) {
     }
     spari_joints_restore_snapshot(s, &t->joint_snapshot);
     spari_coupling_free(&s->own->coupling);
-    free(s->own->pack);
-    free(s->own->first);
-    free(s->own->motion);
+    SPARI_FREE(s->own->pack, s->own->first, s->own->motion);
     copy_saved(s, &t->session);
     s->own->pack = t->pack, s->own->motion = t->motion, s->own->first = t->first;
     s->own->pack_count = t->pack_count, s->own->coupling = t->coupling;

@@ -225,11 +225,7 @@ int spar_trial_apply(spar_trial *trial, double *dt) {
     } else if (begun) {
         undo(s, &c);
     }
-    free(c.pack);
-    free(c.motion);
-    free(c.first);
-    free(c.made);
-    free(c.carried);
+    SPARI_FREE(c.pack, c.motion, c.first, c.made, c.carried);
     if (status == SPAR_OK && dt) {
         *dt = advised->dt;
     }

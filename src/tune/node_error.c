@@ -48,11 +48,7 @@ static int finer_create(const spar_member *m, const double *load, finer *f) {
 }
 
 static void finer_free(finer *f) {
-    free(f->q);
-    free(f->v);
-    free(f->a);
-    free(f->begun);
-    free(f->load);
+    SPARI_FREE(f->q, f->v, f->a, f->begun, f->load);
 }
 
 /* One correction of the shape by the force residual, with cm times the mass if the root is free; *size: relative to
@@ -155,8 +151,7 @@ int spari_nodes_error(spar_member *m, double *error) {
         spari_member_restore(m, &old);
     }
     finer_free(&f);
-    free(load);
-    free(onto);
+    SPARI_FREE(load, onto);
     return status;
 }
 
