@@ -197,13 +197,10 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
     spari_nodes_put(*made, f.element, f.xi, f.con, f.flags);
     free_points_found(&f);
     free(again);
-    if (far[0] > 0 && fluid->options.far_refuse) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_MAPPING, caller,
-                                  "%lld of %lld %s nodes lie farther than %g from the line, the first is node %lld; "
-                                  "move them, increase max_distance, or accept them with the option far = take",
-                                  (long long)far[0], (long long)n, set_name[which], fluid->max_distance,
-                                  (long long)far[1]);
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, far[0] == 0 || !fluid->options.far_refuse, SPAR_ERR_MAPPING,
+                           "%lld of %lld %s nodes lie farther than %g from the line, the first is node %lld; "
+                           "move them, increase max_distance, or accept them with the option far = take",
+                           (long long)far[0], (long long)n, set_name[which], fluid->max_distance, (long long)far[1]);
     return SPAR_OK;
 }
 
@@ -293,22 +290,18 @@ int spar_fluid_map(spar_fluid *fluid) {
     return status;
 }
 
-/* The mapped set, or a refusal: *nodes NULL means an empty set. */
-int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, const spari_nodes **nodes) {
-    const spari_node_set *set = spari_fluid_set(fluid, which);
-    *nodes = set->nodes;
-    if (set->pending) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
-                                  "the %s nodes are given but not mapped; call spar_fluid_map", set_name[which]);
-    }
+int spari_fluid_check_which(const spar_fluid *fluid, int which, const char *caller) {
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, which == SPAR_NODES_MOTION || which == SPAR_NODES_FORCE, SPAR_ERR_ARGUMENT,
+                           "node set %d is not known; give SPAR_NODES_MOTION or SPAR_NODES_FORCE", which);
     return SPAR_OK;
 }
 
-int spari_fluid_check_which(const spar_fluid *fluid, int which, const char *caller) {
-    if (which != SPAR_NODES_MOTION && which != SPAR_NODES_FORCE) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
-                                  "node set %d is not known; give SPAR_NODES_MOTION or SPAR_NODES_FORCE", which);
-    }
+int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, const spari_nodes **nodes) {
+    SPARI_TRY(spari_fluid_check_which(fluid, which, caller));
+    const spari_node_set *set = spari_fluid_set(fluid, which);
+    *nodes = set->nodes;
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, !set->pending, SPAR_ERR_STATE,
+                           "the %s nodes are given but not mapped; call spar_fluid_map", set_name[which]);
     return SPAR_OK;
 }
 
@@ -333,10 +326,9 @@ int spar_fluid_get_kind(const spar_fluid *fluid, int which, int *kind) {
 
 int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int64_t *n) {
     SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
-    SPARI_FLUID_REQUIRE(fluid, n, SPAR_ERR_ARGUMENT, "the pointer to the count is NULL");
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, which, __func__, &s));
+    SPARI_FLUID_REQUIRE(fluid, n, SPAR_ERR_ARGUMENT, "the pointer to the count is NULL");
     int64_t count = 0;
     for (int64_t j = 0; s && j < s->n; j++) {
         count += (s->flags[j] & flag) != 0;
@@ -348,7 +340,6 @@ int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int6
 int spar_fluid_get_map(const spar_fluid *fluid, int which, double *eta, double *distance, int *flags) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, which, __func__, &s));
     int64_t n =
@@ -372,7 +363,6 @@ int spar_fluid_get_map(const spar_fluid *fluid, int which, double *eta, double *
 int spar_fluid_get_nearest(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, which, __func__, &s));
     for (int64_t p = 0; s && p < s->n; p++) {
@@ -395,7 +385,6 @@ int spar_fluid_get_nearest(const spar_fluid *fluid, int which, double *x_map, do
 int spar_fluid_get_basis(const spar_fluid *fluid, int which, int64_t *first_node, double *phi) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
-    SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, which, __func__, &s));
     int n = fluid->member->mesh.per_element;

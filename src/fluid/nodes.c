@@ -229,11 +229,8 @@ const char *spar_fluid_get_name(const spar_fluid *fluid) {
 /* ---- nodes from the host ---- */
 
 int spari_fluid_check_idle(const spar_fluid *fluid, const char *caller) {
-    if (fluid->member->session->state.phase != SPARI_IDLE) {
-        return spari_fluid_refuse(
-            fluid, SPAR_ERR_STATE, caller,
-            "a step is in progress; change nodes and maps after spar_step_accept or spar_step_reject");
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, fluid->member->session->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
+                           "a step is in progress; change nodes and maps after spar_step_accept or spar_step_reject");
     if (fluid->member->session->state.trial) {
         return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
                                   "a trial run is in progress; change fluids before or after it");
@@ -244,10 +241,9 @@ int spari_fluid_check_idle(const spar_fluid *fluid, const char *caller) {
 int spari_fluid_check_values(const spar_fluid *fluid, const char *caller, const char *what, const double *x, int64_t n,
                              int width) {
     int64_t bad = spari_first_nonfinite(x, n * width);
-    if (bad >= 0) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "%s %lld, component %d, is %g; give finite numbers",
-                                  what, (long long)(bad / width), (int)(bad % width), x[bad]);
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, bad < 0, SPAR_ERR_ARGUMENT,
+                           "%s %lld, component %d, is %g; give finite numbers", what, (long long)(bad / width),
+                           (int)(bad % width), x[bad]);
     return SPAR_OK;
 }
 
@@ -267,17 +263,13 @@ static void empty_set(spar_fluid *fluid, int which) {
 /* A copy of x [n], or zeros if NULL. */
 static int set_places(spar_fluid *fluid, int which, int64_t n, const double *x, const char *caller) {
     SPARI_TRY(spari_fluid_check_idle(fluid, caller));
-    if (n < 0 || n > SPARI_MOST || (n > 0 && !x)) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
-                                  "%lld nodes%s; give 0 to 2^40, and n x 3 coordinates", (long long)n,
-                                  x ? "" : " without positions");
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, n >= 0 && n <= SPARI_MOST && (n == 0 || x), SPAR_ERR_ARGUMENT,
+                           "%lld nodes%s; give 0 to 2^40, and n x 3 coordinates", (long long)n,
+                           x ? "" : " without positions");
     SPARI_TRY(
         spari_fluid_check_values(fluid, caller, which == SPAR_NODES_MOTION ? "motion node" : "force node", x, n, 3));
     double *copy = spari_copy(x, 3 * n);
-    if (!copy) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for %lld nodes", (long long)n);
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, copy, SPAR_ERR_MEMORY, "no memory for %lld nodes", (long long)n);
     empty_set(fluid, which);
     fluid->set[which] = (spari_node_set){.pending = 1, .n = n, .x = copy};
     return SPAR_OK;
@@ -299,18 +291,14 @@ int spar_fluid_set_force_nodes(spar_fluid *fluid, int64_t n, const double *x) {
 static int copy_sections(const spar_fluid *fluid, int64_t n, const double *eta, const double *offset,
                          spari_node_set *set, const char *caller) {
     SPARI_TRY(spari_fluid_check_idle(fluid, caller));
-    if (n < 0 || n > SPARI_MOST || (n > 0 && !eta)) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
-                                  "%lld sections%s; give 0 to 2^40, and n coordinates", (long long)n,
-                                  eta ? "" : " without coordinates");
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, n >= 0 && n <= SPARI_MOST && (n == 0 || eta), SPAR_ERR_ARGUMENT,
+                           "%lld sections%s; give 0 to 2^40, and n coordinates", (long long)n,
+                           eta ? "" : " without coordinates");
     for (int64_t j = 0; j < n; j++) {
-        if (!(eta[j] >= 0 && eta[j] <= 1)) {
-            return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
-                                      "section %lld: eta = %g lies outside [0,1]; give eta, which is 0 at the root "
-                                      "and 1 at the tip",
-                                      (long long)j, eta[j]);
-        }
+        SPARI_FLUID_REQUIRE_OF(fluid, caller, eta[j] >= 0 && eta[j] <= 1, SPAR_ERR_ARGUMENT,
+                               "section %lld: eta = %g lies outside [0,1]; give eta, which is 0 at the root "
+                               "and 1 at the tip",
+                               (long long)j, eta[j]);
     }
     if (offset) {
         SPARI_TRY(spari_fluid_check_values(fluid, caller, "offset of section", offset, n, 3));

@@ -13,10 +13,8 @@ double spari_fluid_time(const spar_fluid *fluid, double theta) {
 }
 
 int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *caller) {
-    if (!(theta >= 0 && theta <= 1)) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
-                                  "theta = %g lies outside [0,1]; 0 is t^n, 1 is t^{n+1}", theta);
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, theta >= 0 && theta <= 1, SPAR_ERR_ARGUMENT,
+                           "theta = %g lies outside [0,1]; 0 is t^n, 1 is t^{n+1}", theta);
     return SPAR_OK;
 }
 
@@ -109,11 +107,9 @@ static int need_states(spar_fluid *fluid, double theta, const char *caller) {
 }
 
 int spari_fluid_check_rotation(const spar_fluid *fluid, double least, const char *caller) {
-    if (least < 1e-12) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_NUMERIC, caller,
-                                  "rotations within an element cancel, so the interpolated rotation is undefined; use "
-                                  "more nodes or elements");
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, !(least < 1e-12), SPAR_ERR_NUMERIC,
+                           "rotations within an element cancel, so the interpolated rotation is undefined; use "
+                           "more nodes or elements");
     return SPAR_OK;
 }
 
@@ -299,11 +295,9 @@ static states tiles_of(const spar_fluid *fluid, int worker, int n, const double 
 /* A weighted node has no unique rotation. */
 static int check_rotations(const spar_fluid *fluid, int which, const wanted *w, const char *caller) {
     int turns = is_wanted(w->q) || is_wanted(w->matrix) || is_wanted(w->omega) || is_wanted(w->alpha);
-    if (turns && spari_fluid_set(fluid, which)->weight) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_UNSUPPORTED, caller,
-                                  "motion nodes with weights have positions, velocities and accelerations, but no "
-                                  "rotation; pull rotations from a fluid without weights");
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, !turns || !spari_fluid_set(fluid, which)->weight, SPAR_ERR_UNSUPPORTED,
+                           "motion nodes with weights have positions, velocities and accelerations, but no "
+                           "rotation; pull rotations from a fluid without weights");
     return SPAR_OK;
 }
 
@@ -366,12 +360,10 @@ static int is_direct(const pulling *p) {
 
 static int check_fold(const spar_fluid *fluid, spari_fold fold, const char *caller) {
     const spari_fade *fade = fluid->set[SPAR_NODES_MOTION].fade;
-    if (fold.jacobian <= 0) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_NUMERIC, caller,
-                                  "the mesh folds at motion node %lld: the member moves farther than the fade from %g "
-                                  "to %g m can take; give spar_fluid_fade_motion a wider range",
-                                  (long long)fold.node, fade->within, fade->beyond);
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, !(fold.jacobian <= 0), SPAR_ERR_NUMERIC,
+                           "the mesh folds at motion node %lld: the member moves farther than the fade from %g "
+                           "to %g m can take; give spar_fluid_fade_motion a wider range",
+                           (long long)fold.node, fade->within, fade->beyond);
     return SPAR_OK;
 }
 
@@ -523,12 +515,12 @@ int spar_fluid_pull_poses_f32(spar_fluid *fluid, int which, double theta, float 
 }
 
 static int check_convention(const spar_fluid *fluid, int convention, const char *caller) {
-    if (convention != SPAR_MATRIX_LOCAL_TO_GLOBAL && convention != SPAR_MATRIX_GLOBAL_TO_LOCAL) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
-                                  "matrix convention %d is not known; give SPAR_MATRIX_LOCAL_TO_GLOBAL or "
-                                  "SPAR_MATRIX_GLOBAL_TO_LOCAL",
-                                  convention);
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller,
+                           convention == SPAR_MATRIX_LOCAL_TO_GLOBAL || convention == SPAR_MATRIX_GLOBAL_TO_LOCAL,
+                           SPAR_ERR_ARGUMENT,
+                           "matrix convention %d is not known; give SPAR_MATRIX_LOCAL_TO_GLOBAL or "
+                           "SPAR_MATRIX_GLOBAL_TO_LOCAL",
+                           convention);
     return SPAR_OK;
 }
 

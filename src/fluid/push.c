@@ -14,9 +14,7 @@ static int check_forces(const spar_fluid *fluid, int has_place, int64_t *n, cons
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
     *n = s ? s->n : 0;
-    if (*n > 0 && !has_place) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller, "the pointer to the forces is NULL");
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, *n == 0 || has_place, SPAR_ERR_ARGUMENT, "the pointer to the forces is NULL");
     if (!fluid->history && s) {
         return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
                                   "node forces are not stored; request SPAR_EFFECT_FLUID_HISTORY with "
@@ -114,11 +112,9 @@ static void write_audit(spar_fluid *fluid, const spari_audit *in, int64_t n) {
 static int check_source(const spar_fluid *fluid, const char *caller, const char *what, spari_source x, int64_t n) {
     for (int64_t i = 0; i < 3 * n && (x.d || x.f); i++) {
         double value = spari_source_at(x, i / 3, (int)(i % 3));
-        if (!isfinite(value)) {
-            return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
-                                      "%s %lld, component %d, is %g; give finite numbers", what, (long long)(i / 3),
-                                      (int)(i % 3), value);
-        }
+        SPARI_FLUID_REQUIRE_OF(fluid, caller, isfinite(value), SPAR_ERR_ARGUMENT,
+                               "%s %lld, component %d, is %g; give finite numbers", what, (long long)(i / 3),
+                               (int)(i % 3), value);
     }
     return SPAR_OK;
 }
@@ -146,9 +142,8 @@ static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source fo
     const spar_member *m = fluid->member;
     int reproducible = m->session->ranks.reproducible;
     double least = HUGE_VAL;
-    if (reproducible && spari_fluid_make_bins(fluid) != SPAR_OK) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for reproducible sums of its loads");
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, !reproducible || spari_fluid_make_bins(fluid) == SPAR_OK, SPAR_ERR_MEMORY,
+                           "no memory for reproducible sums of its loads");
     if (s->n == 0) { /* the nodes are on other ranks */
         int64_t n = 6 * m->nodes;
         memset(fluid->load_new, 0, (size_t)n * sizeof *fluid->load_new);
@@ -180,10 +175,8 @@ static int gather_loads(spar_fluid *fluid, const spari_nodes *s, spari_source fo
 static int push(spar_fluid *fluid, const spari_nodes *s, spari_source force, spari_source moment, const char *caller) {
     spari_audit audit = {0};
     int audited = !fluid->options.audit_off;
-    if (s->n > 0 && !force.d && !force.f) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
-                                  "the force array is NULL though there are %lld force nodes", (long long)s->n);
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, s->n == 0 || force.d || force.f, SPAR_ERR_ARGUMENT,
+                           "the force array is NULL though there are %lld force nodes", (long long)s->n);
     fluid->asked |= SPARI_ASKED_LOADS | (moment.d || moment.f ? SPARI_ASKED_MOMENT : 0);
     if (!(fluid->member->effects & SPAR_EFFECT_FLUID_MOMENT)) {
         moment = (spari_source){0};
@@ -235,12 +228,9 @@ int spari_fluid_refused(const spar_fluid *fluid, const char **why) {
 static int push_loads(spar_fluid *fluid, spari_source force, spari_source moment, const char *caller) {
     spar_session *session = fluid->member->session;
     const spari_nodes *s = NULL;
-    if (session->state.phase == SPARI_IDLE && session->clock.started) {
-        return spari_fluid_refuse(
-            fluid, SPAR_ERR_STATE, caller,
-            "no step is in progress; loads are pushed between spar_step_begin and spar_step_accept, or "
-            "before the first step");
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, session->state.phase != SPARI_IDLE || !session->clock.started, SPAR_ERR_STATE,
+                           "no step is in progress; loads are pushed between spar_step_begin and spar_step_accept, or "
+                           "before the first step");
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
     if (!s) {
         return SPAR_OK;

@@ -133,12 +133,10 @@ static int put_by_node(const spar_fluid *fluid, const char *call, const spari_by
 
 int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
     const spari_parts *p = fluid->parts;
-    if (p && p->theta != 0 && p->theta != 1) {
-        return spari_fluid_refuse(
-            fluid, SPAR_ERR_STATE, call,
-            "a push in several parts is incomplete (spar_fluid_push_forces_at, theta = %g); save after theta = 1",
-            p->theta);
-    }
+    SPARI_FLUID_REQUIRE_OF(
+        fluid, call, !p || p->theta == 0 || p->theta == 1, SPAR_ERR_STATE,
+        "a push in several parts is incomplete (spar_fluid_push_forces_at, theta = %g); save after theta = 1",
+        p->theta);
     state_head(fluid, state);
     double *at = state + S_HEAD;
     int64_t loads = 6 * fluid->member->nodes;
@@ -190,9 +188,8 @@ static void sum_heads(spari_taking *t, int count, const double *const *heads) {
 /* Allocates nodal loads. */
 static int alloc_loads(spar_fluid *fluid, const char *call, spari_taking *t) {
     int64_t n = 12 * fluid->member->nodes;
-    if (t->head[S_PARTS] != 0 && spari_parts_prepare(fluid) != SPAR_OK) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for loads over parts of a step");
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, call, t->head[S_PARTS] == 0 || spari_parts_prepare(fluid) == SPAR_OK, SPAR_ERR_MEMORY,
+                           "no memory for loads over parts of a step");
     if (fluid->load && (fluid->member->session->ranks.reproducible || fluid->bins[0]) &&
         spari_fluid_make_bins(fluid) != SPAR_OK) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for reproducible sums of its loads");
@@ -201,9 +198,10 @@ static int alloc_loads(spar_fluid *fluid, const char *call, spari_taking *t) {
     t->bins = fluid->bins[0] ? spari_zalloc(n, sizeof *t->bins) : NULL;
     t->end = fluid->parts ? spari_zalloc(n, sizeof *t->end) : NULL;
     t->end_bins = t->bins && t->end ? spari_zalloc(n, sizeof *t->end_bins) : NULL;
-    if (!t->load || (fluid->bins[0] && !t->bins) || (fluid->parts && !t->end) || (t->bins && t->end && !t->end_bins)) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for its loads");
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, call,
+                           t->load && (t->bins || !fluid->bins[0]) && (t->end || !fluid->parts) &&
+                               (t->end_bins || !t->bins || !t->end),
+                           SPAR_ERR_MEMORY, "no memory for its loads");
     return SPAR_OK;
 }
 

@@ -13,11 +13,9 @@
 static int check_weighable(const spar_fluid *fluid, int64_t n, const char *caller) {
     const spari_node_set *set = &fluid->set[SPAR_NODES_MOTION];
     SPARI_TRY(spari_fluid_check_idle(fluid, caller));
-    if (set->sections) {
-        return spari_fluid_refuse(
-            fluid, SPAR_ERR_STATE, caller,
-            "its motion nodes are sections, which have no weights; give positions with spar_fluid_set_motion_nodes");
-    }
+    SPARI_FLUID_REQUIRE_OF(
+        fluid, caller, !set->sections, SPAR_ERR_STATE,
+        "its motion nodes are sections, which have no weights; give positions with spar_fluid_set_motion_nodes");
     if (n != set->n) {
         return spari_fluid_refuse(fluid, SPAR_ERR_ARGUMENT, caller,
                                   "%lld weights for %lld motion nodes; set the nodes first, then one weight for each",
@@ -98,11 +96,9 @@ static void unit(double x[3]) {
 static int look_at_line(const spar_fluid *fluid, double **arm, double **tangent, const char *caller) {
     const spar_member *m = fluid->member;
     int64_t n = fluid->set[SPAR_NODES_MOTION].n;
-    if (!m->committed) {
-        return spari_fluid_refuse(fluid, SPAR_ERR_STATE, caller,
-                                  "the member is not committed, so distances from its axis are not known; call "
-                                  "spar_member_commit first, or give distances");
-    }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, m->committed, SPAR_ERR_STATE,
+                           "the member is not committed, so distances from its axis are not known; call "
+                           "spar_member_commit first, or give distances");
     spari_line *line = spari_line_create(m->mesh.elements, m->mesh.per_element, m->xr);
     double *x = reference_positions(fluid), *nearest = spari_zalloc(3 * n, sizeof *nearest),
            *xi = spari_zalloc(n, sizeof *xi), point[3];

@@ -163,18 +163,14 @@ static int check_sections(const spari_reader *r, const blade *b) {
     for (int64_t i = 0; i < b->stations; i++) {
         double m, c[3], J[6];
         const char *wrong = spari_stiffness_fault(b->stiffness + 36 * i);
-        if (wrong) {
-            return spari_fail(r->session, SPAR_ERR_ARGUMENT,
-                              "%s: '%s': %s, line %d: the stiffness matrix of station %lld is %s", r->call, r->subject,
-                              r->path, b->line[i], (long long)i + 1, wrong);
-        }
+        SPARI_REQUIRE(r->session, !wrong, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': %s, line %d: the stiffness matrix of station %lld is %s", r->call, r->subject, r->path,
+                      b->line[i], (long long)i + 1, wrong);
         wrong = spari_mass_split(b->mass + 36 * i, &m, c, J);
-        if (wrong) {
-            return spari_fail(r->session, SPAR_ERR_ARGUMENT,
-                              "%s: '%s': %s, line %d: the mass matrix of station %lld is not that of a rigid section: "
-                              "%s",
-                              r->call, r->subject, r->path, b->line[i], (long long)i + 1, wrong);
-        }
+        SPARI_REQUIRE(r->session, !wrong, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': %s, line %d: the mass matrix of station %lld is not that of a rigid section: "
+                      "%s",
+                      r->call, r->subject, r->path, b->line[i], (long long)i + 1, wrong);
     }
     return SPAR_OK;
 }
