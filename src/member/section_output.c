@@ -4,78 +4,47 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "beam.h"
+#include "check_arguments.h"
+#include "point.h"
 #include "pose.h"
 #include "section_forces.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* The field at a position: u' and its rate, Q/|Q|, and derivatives of Q over |Q|: along the line (p), in time (d),
-   both (z). */
-typedef struct section_field {
-    double u[3], du[3], dud[3], N, r[4], p[4], d[4], z[4];
-} section_field;
-
-static void imaginary(const double a[4], const double b[4], double c[3]) { /* 2 Im(a* b) */
-    double conj[4], m[4];
-    spari_quat_conj(a, conj);
-    spari_quat_mul(conj, b, m);
-    for (int i = 0; i < 3; i++) {
-        c[i] = 2 * m[1 + i];
-    }
-}
-
-static void section_at(const spar_member *m, const spari_station *s, section_field *f) {
+/* Fields at a position as at a quadrature point, in the first lane of a block [POINT_ROWS]. */
+static void section_fields(const spar_member *m, const spari_station *s, double *f) {
     int P = m->mesh.per_element;
     const double *q = m->after.q + 7 * (int64_t)s->element * P, *v = m->after.v + 6 * (int64_t)s->element * P;
-    double last[4] = {0}, Q[4] = {0};
-    memset(f, 0, sizeof *f);
-    for (int l = 0; l < P; l++) {
-        double ql[4], qd[4], half[4] = {0}, sign = spari_quat_dot(q + 7 * l + 3, last) < 0 ? -1 : 1;
+    double last[4] = {0};
+    memset(f, 0, sizeof *f * POINT_ROWS * SPARI_LANES);
+    for (int l = 0; l < P; l++, q += 7, v += 6) {
+        double row[14], half[4] = {0, 0.5 * v[3], 0.5 * v[4], 0.5 * v[5]},
+                        sign = spari_quat_dot(q + 3, last) < 0 ? -1 : 1;
+        memcpy(row + U, q, 3 * sizeof *row);
+        memcpy(row + UD, v, 3 * sizeof *row);
         for (int i = 0; i < 4; i++) {
-            ql[i] = last[i] = sign * q[7 * l + 3 + i];
+            row[Q + i] = last[i] = sign * q[3 + i];
         }
-        for (int i = 0; i < 3; i++) {
-            half[1 + i] = 0.5 * v[6 * l + 3 + i];
-            f->u[i] += s->phi[l] * q[7 * l + i];
-            f->du[i] += s->dphi[l] * q[7 * l + i];
-            f->dud[i] += s->dphi[l] * v[6 * l + i];
+        spari_quat_mul(half, last, row + QD);
+        for (int i = 0; i < 14; i++) {
+            f[SPARI_LANES * i] += s->phi[l] * row[i];
+            f[SPARI_LANES * (DU + i)] += s->dphi[l] * row[i];
         }
-        spari_quat_mul(half, ql, qd);
-        for (int i = 0; i < 4; i++) {
-            Q[i] += s->phi[l] * ql[i];
-            f->p[i] += s->dphi[l] * ql[i];
-            f->d[i] += s->phi[l] * qd[i];
-            f->z[i] += s->dphi[l] * qd[i];
-        }
-    }
-    f->N = sqrt(spari_quat_dot(Q, Q));
-    for (int i = 0; i < 4; i++) {
-        f->r[i] = Q[i] / f->N;
-        f->p[i] /= f->N;
-        f->d[i] /= f->N;
-        f->z[i] /= f->N;
     }
 }
 
-/* Strains e and their rates ed, reference axes: (R^T (x0' + u') - x0', 2 Im(Q* Q')/|Q|^2) */
-static void strains(const spari_station *s, const section_field *f, double e[6], double ed[6]) {
-    double t[3], T[3], omega[3], turn[3], rate[3], a[3], b[3], along = spari_quat_dot(f->r, f->d);
+/* Strains and their rates, reference axes. */
+static void strains(const spari_station *s, point_one *p, double e[6], double ed[6]) {
+    static const double none[36 * SPARI_LANES] = {0}; /* without section forces */
+    double tangent[3 * SPARI_LANES];
     for (int i = 0; i < 3; i++) {
-        t[i] = s->t[i] + f->du[i];
+        tangent[SPARI_LANES * i] = s->t[i];
     }
-    spari_rotate_back(f->r, t, T);
-    imaginary(f->r, f->p, e + 3);
-    imaginary(f->r, f->d, omega);
-    imaginary(f->d, f->p, a);
-    imaginary(f->r, f->z, b);
-    spari_rotate_back(f->r, f->dud, rate);
-    spari_cross(T, omega, turn);
-    for (int i = 0; i < 3; i++) {
-        e[i] = T[i] - s->t[i];
-        ed[i] = rate[i] + turn[i];
-        ed[3 + i] = a[i] + b[i] - 2 * e[3 + i] * along;
-    }
+    strain_one(tangent, none, p);
+    strain_rate_one(none, p);
+    memcpy(e, p->e, sizeof p->e);
+    memcpy(ed, p->ed, sizeof p->ed);
 }
 
 /* The same of linear members: (w' - theta x x0', theta') of the deformation that their equations know. */
@@ -110,11 +79,8 @@ static void linear_strains(const spar_member *m, const spari_station *s, double 
 
 /* Converts to the section's axes: R^T of both triples. */
 static void to_local(const double R[9], const double x[6], double y[6]) {
-    for (int b = 0; b < 6; b += 3) {
-        for (int i = 0; i < 3; i++) {
-            y[b + i] = R[i] * x[b] + R[3 + i] * x[b + 1] + R[6 + i] * x[b + 2];
-        }
-    }
+    spari_matrix_times_back(R, x, y);
+    spari_matrix_times_back(R, x + 3, y + 3);
 }
 
 /* Section forces from the section alone: stiffness, damping and pretension. */
@@ -137,11 +103,11 @@ static void forces_of_strains(const spar_member *m, double eta, const double loc
 
 /* Section forces from equilibrium of the part beyond. */
 static void forces_of_balance(const spari_beyond *beyond, const spar_member *m, const spari_station *s,
-                              const section_field *f, double force[6]) {
+                              const point_one *p, double force[6]) {
     double global[6];
     spari_beyond_at(beyond, s, global);
     for (int k = 0; k < 6 && !spari_beyond_is_undeformed(m); k += 3) {
-        spari_rotate_back(f->r, global + k, global + k);
+        spari_rotate_back(p->r, global + k, global + k);
     }
     to_local(s->R, global, force);
 }
@@ -153,13 +119,14 @@ typedef struct section_request {
 
 static void section_output(const spar_member *m, const spari_station *s, double eta, const spari_beyond *beyond,
                            int64_t i, const section_request *to) {
-    section_field f;
-    double e[6], ed[6], local[6], rate[6], q0[4];
-    section_at(m, s, &f);
+    point_one p;
+    double f[POINT_ROWS * SPARI_LANES], e[6], ed[6], local[6], rate[6], q0[4];
+    section_fields(m, s, f);
+    fields_one(1, f, &p);
     if (m->frame == SPARI_FRAME_LINEAR) {
         linear_strains(m, s, e, ed);
     } else {
-        strains(s, &f, e, ed);
+        strains(s, &p, e, ed);
     }
     to_local(s->R, e, local);
     to_local(s->R, ed, rate);
@@ -169,14 +136,14 @@ static void section_output(const spar_member *m, const spari_station *s, double 
     if (to->force && !beyond) {
         forces_of_strains(m, eta, local, rate, to->force + 6 * i);
     } else if (to->force) {
-        forces_of_balance(beyond, m, s, &f, to->force + 6 * i);
+        forces_of_balance(beyond, m, s, &p, to->force + 6 * i);
     }
     for (int k = 0; k < 3 && to->x; k++) {
-        to->x[3 * i + k] = s->x[k] + f.u[k];
+        to->x[3 * i + k] = s->x[k] + f[SPARI_LANES * (U + k)];
     }
     if (to->q) {
         spari_matrix_quat(s->R, q0);
-        spari_quat_mul(f.r, q0, to->q + 4 * i);
+        spari_quat_mul(p.r, q0, to->q + 4 * i);
         spari_quat_normalise(to->q + 4 * i);
     }
 }
@@ -197,12 +164,9 @@ static int section_outputs(const spar_member *m, int64_t n, const spari_station 
 int spar_beam_evaluate(const spar_member *beam, int64_t n, const double *eta, double *strain, double *force, double *x,
                        double *q) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
+    SPARI_TRY(spari_need_any_beam(beam, __func__));
+    SPARI_TRY(spari_need_committed(beam, __func__));
     spar_session *session = beam->session;
-    SPARI_REQUIRE(session, beam->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT,
-                  "%s: member '%s' is not a beam; call this for a beam alone", __func__, beam->name);
-    SPARI_REQUIRE(session, beam->committed, SPAR_ERR_STATE,
-                  "%s: member '%s' is not committed; call spar_member_commit first", __func__, beam->name);
     SPARI_REQUIRE(session, n >= 0 && n <= SPARI_MOST && (eta || n == 0), SPAR_ERR_ARGUMENT,
                   "%s: '%s': %lld positions%s; give 0 to 2^40, and n values of eta", __func__, beam->name, (long long)n,
                   eta ? "" : " without eta");
