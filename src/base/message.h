@@ -26,4 +26,12 @@ void spari_put_message_back(const spar_session *session, const char *text);
         }                                                                                                              \
     } while (0)
 
+/* Writes a result through a pointer that may be NULL. */
+#define SPARI_GIVE(to, value)                                                                                          \
+    do {                                                                                                               \
+        if (to) {                                                                                                      \
+            *(to) = (value);                                                                                           \
+        }                                                                                                              \
+    } while (0)
+
 #endif

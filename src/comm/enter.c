@@ -38,3 +38,18 @@ int spari_enter_agreed(spar_session *s, const char *call, const spari_agreed *mu
     }
     return enter(s, call, all, n, status);
 }
+
+int(spari_agree)(spar_session *s, int status) {
+    return spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+}
+
+int spari_sum(spar_session *s, double *x, int64_t n) {
+    return spari_comm_sum(s->ranks.comm, x, n, SPAR_OK, s->message, sizeof s->message);
+}
+
+int spari_anywhere(spar_session *s, int here, int *any) {
+    double count[2] = {here, 0};
+    SPARI_TRY(spari_sum(s, count, 1));
+    *any = count[0] > 0;
+    return SPAR_OK;
+}

@@ -49,11 +49,8 @@ void spari_accelerator_free(spari_accelerator **accelerator) {
     if (!a) {
         return;
     }
-    double *all[] = {a->x, a->g,  a->image, a->change, a->response, a->v, a->w, a->iv,   a->iw,
-                     a->b, a->ib, a->lead,  a->last,   a->q,        a->r, a->p, a->alpha};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        free(all[i]);
-    }
+    SPARI_FREE(a->x, a->g, a->image, a->change, a->response, a->v, a->w, a->iv, a->iw, a->b, a->ib, a->lead, a->last,
+               a->q, a->r, a->p, a->alpha);
     SPARI_FREE(a->column, a->order);
     spari_secants_free(a->secants);
     spari_snapshot_free(&a->before);

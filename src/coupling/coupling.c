@@ -21,11 +21,8 @@ void spari_coupling_free(spari_coupling **coupling) {
     if (!c) {
         return;
     }
-    double *all[] = {c->length, c->unit,  c->x,         c->g,      c->predicted, c->motion, c->residual,
-                     c->size,   c->image, c->workspace, c->missed, c->missing,   c->shift,  c->settled};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        free(all[i]);
-    }
+    SPARI_FREE(c->length, c->unit, c->x, c->g, c->predicted, c->motion, c->residual, c->size, c->image, c->workspace,
+               c->missed, c->missing, c->shift, c->settled);
     spari_accelerator_free(&c->accelerator);
     free(c);
     *coupling = NULL;
@@ -296,9 +293,7 @@ static void cause_of(const char *message, const char *call, char *cause, size_t 
     const char *from = strncmp(message, call, name) == 0 && message[name] == ':' ? message + name + 2 : message;
     (void)snprintf(cause, size, "%.*s", (int)size - 1, from);
     char *end = strrchr(cause, ';');
-    if (end) {
-        *end = '\0';
-    }
+    SPARI_GIVE(end, '\0');
 }
 
 /* Largest force or moment of nodal loads. */
@@ -731,9 +726,7 @@ int spar_session_get_iterations(const spar_session *session, int *iterations, in
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_need_capacity(session, __func__, capacity));
     const spari_coupling *c = session->own->coupling;
-    if (iterations) {
-        *iterations = c ? c->iterations : 0;
-    }
+    SPARI_GIVE(iterations, c ? c->iterations : 0);
     spari_fill(capacity, residual, c ? c->iterations : 0, c ? c->residual : NULL);
     spari_fill(capacity, size, c ? c->iterations : 0, c ? c->size : NULL);
     return SPAR_OK;
@@ -745,12 +738,8 @@ int spar_session_get_residual(const spar_session *session, double *residual, dou
     if (session->own->coupling) {
         last_iteration(session, &last[0], &last[1]);
     }
-    if (residual) {
-        *residual = last[0];
-    }
-    if (size) {
-        *size = last[1];
-    }
+    SPARI_GIVE(residual, last[0]);
+    SPARI_GIVE(size, last[1]);
     return SPAR_OK;
 }
 

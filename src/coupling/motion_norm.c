@@ -5,7 +5,7 @@
 #include "motion_norm.h"
 
 #include "../assembly/assembly.h"
-#include "../comm/comm.h"
+#include "../comm/enter.h"
 #include "../member/structure.h"
 #include "../time/fidelity.h"
 
@@ -122,7 +122,7 @@ int spari_motion_norm(spar_session *s, const spari_norm_loads *c, double *residu
     if (singular) { /* its numbers would make the sums NaN, on every rank */
         c->image[0] = NAN;
     }
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, c->image, images, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_sum(s, c->image, images));
     double works = 0, sizes = 0, work = sum_products(c->g, response, c->x, c->n, &works),
            all = sum_products(c->g, bare, c->shift, c->n, &sizes);
     double both = c->shift ? fmax(all, sum_products(c->g, whole, NULL, c->n, &sizes)) : all;
@@ -157,7 +157,7 @@ int spari_motion_norm_images(spar_session *s, const spari_norm_loads *c, int64_t
     if (respond_assembled(s, c, count, loads, c->n, NULL, image)) {
         image[0] = NAN;
     }
-    return spari_comm_sum(s->ranks.comm, image, count * c->n, SPAR_OK, s->message, sizeof s->message);
+    return spari_sum(s, image, count * c->n);
 }
 
 /* The part of the loads x - g that member m responds to, into off, stacked. */
@@ -222,7 +222,7 @@ int spari_motion_norm_miss(spar_session *s, int64_t n, double *image, double *wo
     if (respond_to_miss(s, image, workspace)) {
         image[0] = NAN;
     }
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, image, n, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_sum(s, image, n));
     for (int64_t i = 0; i < n; i += 6) {
         double way = image[i] * image[i] + image[i + 1] * image[i + 1] + image[i + 2] * image[i + 2];
         square = isfinite(way) ? fmax(square, way) : INFINITY;

@@ -2,7 +2,7 @@
 #include "exchange.h"
 
 #include "../assembly/assembly.h"
-#include "../comm/comm.h"
+#include "../comm/enter.h"
 #include "../fluid/fluid.h"
 #include "../member/body.h"
 #include "session_private.h"
@@ -120,7 +120,7 @@ int spari_session_seal(spar_session *s, int status) {
     if (status == SPAR_OK && s->ranks.reproducible) {
         status = make_bins(s, count + 2);
     }
-    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+    status = spari_agree(s, status);
     if (status != SPAR_OK) { /* on all ranks or none: spari_session_is_sealed must agree */
         free_bins(s);
     }
@@ -177,24 +177,14 @@ int spari_session_exchange_loads(spar_session *s, int *pushed) {
         }
     }
     SPARI_TRY(s->ranks.reproducible ? sum_bins(s, s->own->pack_count, *pushes)
-                                    : spari_comm_sum(s->ranks.comm, s->own->pack, s->own->pack_count + 1, SPAR_OK,
-                                                     s->message, sizeof s->message));
-    if (pushed) {
-        *pushed = *pushes > 0;
-    }
+                                    : spari_sum(s, s->own->pack, s->own->pack_count + 1));
+    SPARI_GIVE(pushed, *pushes > 0);
     return SPAR_OK;
 }
 
 int spari_session_moved(spar_session *s, int *moved) {
-    double some[2] = {0, 0};
     *moved = 0;
-    if (!spari_joints_hold_prescribed(s)) {
-        return SPAR_OK;
-    }
-    some[0] = spari_joints_hold_moved(s);
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, some, 1, SPAR_OK, s->message, sizeof s->message));
-    *moved = some[0] > 0;
-    return SPAR_OK;
+    return spari_joints_hold_prescribed(s) ? spari_anywhere(s, spari_joints_hold_moved(s), moved) : SPAR_OK;
 }
 
 void spari_session_take_loads(const spar_session *s, const spar_member *m, double *load) {

@@ -76,13 +76,9 @@ static void frame_free(void *solution) {
     if (!f) {
         return;
     }
-    double *all[] = {f->basis,   f->A,       f->K,         f->M,       f->D,          f->sumK,        f->sumC,
-                     f->sumf,    f->begin.y, f->from.y,    f->to.y,    f->steps.load, f->steps.load0, f->steps.load1,
-                     f->r,       f->dx,      f->increment, f->stage_v, f->nodal,      f->global,      f->element,
-                     f->dense_A, f->gram,    f->pull,      f->loads,   f->elastic,    f->positions};
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
-        free(all[k]);
-    }
+    SPARI_FREE(f->basis, f->A, f->K, f->M, f->D, f->sumK, f->sumC, f->sumf, f->begin.y, f->from.y, f->to.y,
+               f->steps.load, f->steps.load0, f->steps.load1, f->r, f->dx, f->increment, f->stage_v, f->nodal,
+               f->global, f->element, f->dense_A, f->gram, f->pull, f->loads, f->elastic, f->positions);
     for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
         SPARI_FREE(f->N[k], f->f[k], f->rigid[k]);
     }

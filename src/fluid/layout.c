@@ -43,11 +43,7 @@ int spar_fluid_get_layout(const spar_fluid *fluid, int which, int64_t *node, int
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));
     const spari_layout *layout = spari_fluid_layout(fluid, which);
-    if (node) {
-        *node = layout ? layout->node : 3;
-    }
-    if (component) {
-        *component = layout ? layout->component : 1;
-    }
+    SPARI_GIVE(node, layout ? layout->node : 3);
+    SPARI_GIVE(component, layout ? layout->component : 1);
     return SPAR_OK;
 }

@@ -362,19 +362,13 @@ int spar_fluid_set_interpolation(spar_fluid *fluid, int kind) {
 
 int spar_fluid_get_projection(const spar_fluid *fluid, int *method, double *max_distance) {
     SPARI_FLUID_HANDLE(fluid);
-    if (method) {
-        *method = fluid->method;
-    }
-    if (max_distance) {
-        *max_distance = fluid->max_distance;
-    }
+    SPARI_GIVE(method, fluid->method);
+    SPARI_GIVE(max_distance, fluid->max_distance);
     return SPAR_OK;
 }
 
 int spar_fluid_get_interpolation(const spar_fluid *fluid, int *kind) {
     SPARI_FLUID_HANDLE(fluid);
-    if (kind) {
-        *kind = fluid->consistent ? SPAR_INTERPOLATE_CONSISTENT : SPAR_INTERPOLATE_NODAL;
-    }
+    SPARI_GIVE(kind, fluid->consistent ? SPAR_INTERPOLATE_CONSISTENT : SPAR_INTERPOLATE_NODAL);
     return SPAR_OK;
 }

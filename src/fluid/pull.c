@@ -487,12 +487,8 @@ int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *node) {
         }
     }
     SPARI_TRY(spari_fluid_check_rotation(fluid, least, __func__));
-    if (largest) {
-        *largest = sqrt(square);
-    }
-    if (node) {
-        *node = farthest;
-    }
+    SPARI_GIVE(largest, sqrt(square));
+    SPARI_GIVE(node, farthest);
     return SPAR_OK;
 }
 

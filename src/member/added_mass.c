@@ -78,9 +78,7 @@ int spar_member_get_added_mass(const spar_member *member, int64_t *n, int64_t ca
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_member(member, __func__));
     SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
-    if (n) {
-        *n = member->guess_count;
-    }
+    SPARI_GIVE(n, member->guess_count);
     spari_fill(capacity, eta, member->guess_count, member->guess_eta);
     spari_fill(36 * capacity, mass, 36 * member->guess_count, member->guess);
     return SPAR_OK;

@@ -117,15 +117,9 @@ int spar_member_get_learned_added_mass(const spar_member *member, int *used, dou
     SPARI_TRY(spari_need_member(member, __func__));
     SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
     const spari_learned *l = member->learned;
-    if (used) {
-        *used = l && l->head[USED] > 0;
-    }
-    if (spread) {
-        *spread = l ? spread_of(l) : 1;
-    }
-    if (n) {
-        *n = l ? l->n : 0;
-    }
+    SPARI_GIVE(used, l && l->head[USED] > 0);
+    SPARI_GIVE(spread, l ? spread_of(l) : 1);
+    SPARI_GIVE(n, l ? l->n : 0);
     spari_fill(capacity, eta, l ? l->n : 0, l ? l->eta : NULL);
     spari_fill(36 * capacity, mass, l ? 36 * l->n : 0, l ? l->mass : NULL);
     return SPAR_OK;

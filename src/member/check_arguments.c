@@ -26,6 +26,25 @@ int spari_need_committed(const spar_member *member, const char *call) {
     return SPAR_OK;
 }
 
+int spari_need_all_committed(const spar_session *s, const char *call) {
+    for (const spar_member *m = s->members; m; m = m->next) {
+        SPARI_TRY(spari_need_committed(m, call));
+    }
+    return SPAR_OK;
+}
+
+int spari_need_no_trial(const spar_session *s, const char *call) {
+    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress; call this before or after it",
+                  call);
+    return SPAR_OK;
+}
+
+int spari_need_idle(const spar_session *s, const char *call) {
+    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
+                  "%s: a step is in progress; accept or reject it first", call);
+    return SPAR_OK;
+}
+
 int spari_need_any_beam(const spar_member *member, const char *call) {
     SPARI_TRY(spari_need_member(member, call));
     SPARI_REQUIRE(member->session, member->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT,
@@ -54,9 +73,7 @@ int spari_keep_stations(const spar_member *beam, const char *call, const char *w
 int spari_give_stations(const spar_member *beam, const char *call, int width, int64_t kept, const double *kept_eta,
                         const double *kept_value, int64_t capacity, int64_t *count, double *eta, double *value) {
     SPARI_TRY(spari_need_capacity(beam->session, call, capacity));
-    if (count) {
-        *count = kept;
-    }
+    SPARI_GIVE(count, kept);
     spari_fill(capacity, eta, kept, kept_eta);
     spari_fill(width * capacity, value, width * kept, kept_value);
     return SPAR_OK;

@@ -10,6 +10,11 @@ int spari_need_member(const spar_member *member, const char *call);
 /* The member must not be committed. */
 int spari_need_open(spar_member *member, const char *call);
 int spari_need_committed(const spar_member *member, const char *call);
+/* All members must be committed. */
+int spari_need_all_committed(const spar_session *session, const char *call);
+/* No trial run, or no step, may be in progress. */
+int spari_need_no_trial(const spar_session *session, const char *call);
+int spari_need_idle(const spar_session *session, const char *call);
 /* A beam, committed or not. */
 int spari_need_any_beam(const spar_member *member, const char *call);
 /* The member must be an uncommitted beam. */

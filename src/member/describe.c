@@ -343,23 +343,17 @@ int spar_member_set_owner(spar_member *member, int rank) {
 
 /* ---- getters ---- */
 
-static void hand_int(int *to, int from) {
-    if (to) {
-        *to = from;
-    }
-}
-
 int spar_beam_get_elements(const spar_member *beam, int *elements, int *nodes_per_element) {
     SPARI_TRY(spari_need_any_beam(beam, __func__));
-    hand_int(elements, beam->mesh.elements);
-    hand_int(nodes_per_element, beam->mesh.per_element);
+    SPARI_GIVE(elements, beam->mesh.elements);
+    SPARI_GIVE(nodes_per_element, beam->mesh.per_element);
     return SPAR_OK;
 }
 
 int spar_beam_get_quadrature(const spar_member *beam, int *rule, int *points) {
     SPARI_TRY(spari_need_any_beam(beam, __func__));
-    hand_int(rule, spari_beam_rule(beam->beam));
-    hand_int(points, beam->beam->points);
+    SPARI_GIVE(rule, spari_beam_rule(beam->beam));
+    SPARI_GIVE(points, beam->beam->points);
     return SPAR_OK;
 }
 
@@ -373,9 +367,7 @@ int spar_beam_get_damping(const spar_member *beam, double mu[6]) {
 
 int spar_beam_get_mass_damping(const spar_member *beam, double *alpha) {
     SPARI_TRY(spari_need_any_beam(beam, __func__));
-    if (alpha) {
-        *alpha = beam->beam->drag;
-    }
+    SPARI_GIVE(alpha, beam->beam->drag);
     return SPAR_OK;
 }
 
@@ -404,34 +396,32 @@ const char *spar_member_get_name(const spar_member *member) {
 
 int spar_member_get_root(const spar_member *member, int *kind) {
     SPARI_TRY(spari_need_member(member, __func__));
-    hand_int(kind, member->root);
+    SPARI_GIVE(kind, member->root);
     return SPAR_OK;
 }
 
 int spar_member_get_external(const spar_member *member, int *on) {
     SPARI_TRY(spari_need_member(member, __func__));
-    hand_int(on, member->external);
+    SPARI_GIVE(on, member->external);
     return SPAR_OK;
 }
 
 int spar_member_get_effects(const spar_member *member, int *effects) {
     SPARI_TRY(spari_need_committed(member, __func__));
-    hand_int(effects, member->effects);
+    SPARI_GIVE(effects, member->effects);
     return SPAR_OK;
 }
 
 int spar_member_get_fidelity(const spar_member *member, int *kind, int64_t *modes) {
     SPARI_TRY(spari_need_member(member, __func__));
-    hand_int(kind, member->fidelity);
-    if (modes) {
-        *modes = member->modes;
-    }
+    SPARI_GIVE(kind, member->fidelity);
+    SPARI_GIVE(modes, member->modes);
     return SPAR_OK;
 }
 
 int spar_member_get_owner(const spar_member *member, int *rank) {
     SPARI_TRY(spari_need_member(member, __func__));
-    hand_int(rank, member->owner);
+    SPARI_GIVE(rank, member->owner);
     return SPAR_OK;
 }
 

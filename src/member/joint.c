@@ -241,9 +241,7 @@ int spar_spring_create(spar_session *session, const char *name, spar_member *mem
     SPARI_TRY(joint_create(session, __func__, name, member, node, NULL, 0, &j));
     j->kinematics.free = free_motions;
     take_springs(j, stiffness, damping, preload);
-    if (joint) {
-        *joint = j;
-    }
+    SPARI_GIVE(joint, j);
     return SPAR_OK;
 }
 

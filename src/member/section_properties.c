@@ -345,9 +345,7 @@ int spar_section_describe(const double stiffness[36], const double mass[36], int
     SPARI_TRY(describe(__func__, stiffness, mass, &d));
     SPARI_TRY(spari_need_capacity(NULL, __func__, capacity));
     spari_fill(capacity, property, SPAR_SECTION_COUNT, d.p);
-    if (findings) {
-        *findings = d.findings;
-    }
+    SPARI_GIVE(findings, d.findings);
     return SPAR_OK;
 }
 

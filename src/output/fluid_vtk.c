@@ -143,9 +143,6 @@ int spar_fluid_write_vtk(const spar_fluid *fluid, const char *path) {
     int status = whole ? draw(fluid, &s, session, path, __func__)
                        : spari_fail(session, SPAR_ERR_MEMORY, "%s: no memory for the %lld nodes of '%s'", __func__,
                                     (long long)s.n, spar_fluid_get_name(fluid));
-    void *all[] = {s.table, s.q, s.flags, s.line_end, s.line_point};
-    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
-        free(all[i]);
-    }
+    SPARI_FREE(s.table, s.q, s.flags, s.line_end, s.line_point);
     return status;
 }

@@ -247,11 +247,7 @@ static int write_picture(const spar_member *member, nodal *at, spar_session *ses
     if (status == SPAR_OK) {
         status = write_member(&s, at, session, path, call);
     }
-    free(work);
-    free(s.table);
-    free(s.eta);
-    free(s.node);
-    free(s.end);
+    SPARI_FREE(work, s.table, s.eta, s.node, s.end);
     return status;
 }
 

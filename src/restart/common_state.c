@@ -7,6 +7,7 @@
 #include "../member/added_mass.h"
 #include "../member/added_mass_fit.h"
 #include "../member/applied.h"
+#include "../member/check_arguments.h"
 #include "../member/joint.h"
 #include "../member/mean_acceleration.h"
 #include "../session/settings.h"
@@ -25,16 +26,11 @@ int spari_saved_no_memory(const spar_session *s) {
 }
 
 int spari_saved_check_call(const spar_session *s, const char *call, const char *path) {
-    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress; call this before or after it",
-                  call);
+    SPARI_TRY(spari_need_no_trial(s, call));
     SPARI_REQUIRE(s, !s->state.standing, SPAR_ERR_STATE,
                   "%s: a static solution or the initial accelerations are in progress; save or load after them", call);
     SPARI_REQUIRE(s, path && path[0], SPAR_ERR_ARGUMENT, "%s: the path is empty; give the name of a file", call);
-    for (const spar_member *m = s->members; m; m = m->next) {
-        SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
-                      "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
-    }
-    return SPAR_OK;
+    return spari_need_all_committed(s, call);
 }
 
 /* ---- the same code writes, checks and reads ---- */

@@ -8,6 +8,7 @@
 #include "../comm/enter.h"
 #include "../exchange/exchange.h"
 #include "../fluid/fluid.h"
+#include "../member/check_arguments.h"
 #include "../time/fidelity.h"
 #include "common_state.h"
 
@@ -68,13 +69,9 @@ static void end_loading(const spar_session *s, reading *l) {
     }
 }
 
-static int agree_to_load(spar_session *s, int status) {
-    return spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
-}
-
 /* Whether all ranks have allocated; SPAR_OK only if this one has. */
 static int agree_on_memory(spar_session *s, int have) {
-    int status = agree_to_load(s, have ? SPAR_OK : spari_saved_no_memory(s));
+    int status = spari_agree(s, have ? SPAR_OK : spari_saved_no_memory(s));
     return have ? status : SPAR_ERR_MEMORY;
 }
 
@@ -104,14 +101,14 @@ static int tell_file(spar_session *s, reading *l, told_file *told) {
     }
     free(where);
     SPARI_TRY(spari_comm_broadcast(s->ranks.comm, told, sizeof *told, s->message, sizeof s->message));
-    double blind[2] = {0, 0};
+    int blind = 0;
     if (!is_root(s)) {
         char why[sizeof l->why];
         int seen = spari_loading_open(&l->source, told->path, why, sizeof why) == SPAR_OK;
-        blind[0] = !seen || l->source.count != told->count || l->source.sum != told->sum;
+        blind = !seen || l->source.count != told->count || l->source.sum != told->sum;
     }
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, blind, 1, SPAR_OK, s->message, sizeof s->message));
-    l->shared = blind[0] == 0;
+    SPARI_TRY(spari_anywhere(s, blind, &blind));
+    l->shared = !blind;
     return SPAR_OK;
 }
 
@@ -150,7 +147,7 @@ static int check_file_sum(spar_session *s, reading *l) {
         if (status == SPAR_OK && rank == 0 && sum != l->source.sum) {
             status = tell_why(s, l, spari_loading_refuse(l->source.path, l->why, sizeof l->why));
         }
-        status = agree_to_load(s, status);
+        status = spari_agree(s, status);
     }
     SPARI_FREE(part, first);
     return status;
@@ -161,7 +158,7 @@ static int open_file(spar_session *s, reading *l, const char *path) {
     if (is_root(s)) {
         status = tell_why(s, l, spari_loading_open(&l->source, path, l->why, sizeof l->why));
     }
-    SPARI_TRY(agree_to_load(s, status));
+    SPARI_TRY(spari_agree(s, status));
     l->shared = spari_comm_size(s->ranks.comm) == 1;
     if (!l->shared) {
         SPARI_TRY(share_file(s, l));
@@ -238,14 +235,14 @@ static int send_image(spar_session *s, spari_image *image) {
     if (!is_root(s)) {
         image->word = spari_zalloc(image->count, sizeof *image->word);
     }
-    SPARI_TRY(agree_to_load(s, image->word ? SPAR_OK : spari_saved_no_memory(s)));
+    SPARI_TRY(spari_agree(s, image->word ? SPAR_OK : spari_saved_no_memory(s)));
     return spari_comm_broadcast(s->ranks.comm, image->word, 8 * image->count, s->message, sizeof s->message);
 }
 
 static int load_common(spar_session *s, reading *l) {
-    SPARI_TRY(agree_to_load(s, is_root(s) ? read_common(s, l) : SPAR_OK));
+    SPARI_TRY(spari_agree(s, is_root(s) ? read_common(s, l) : SPAR_OK));
     SPARI_TRY(send_image(s, &l->common.image));
-    return agree_to_load(s, spari_saved_check(s, &l->common));
+    return spari_agree(s, spari_saved_check(s, &l->common));
 }
 
 /* ---- index of the rest: rank 0 reads it without the states ---- */
@@ -343,13 +340,6 @@ static int read_index(spar_session *s, reading *l) {
     return SPAR_OK;
 }
 
-/* Grows the records to the next power of two with room for one more; NULL: no memory, records unchanged. */
-static void *grow_records(void *records, int64_t count, size_t size) {
-    int full = count == 0 || (count >= 8 && (count & (count - 1)) == 0);
-    int64_t capacity = count < 8 ? 8 : 2 * count;
-    return full ? realloc(records, (size_t)capacity * size) : records;
-}
-
 static const spar_member *member_at(const spar_session *s, int64_t k) {
     const spar_member *m = k < 0 ? NULL : s->members;
     for (int64_t j = 0; j < k && m; j++) {
@@ -372,11 +362,6 @@ static int note_solver(spar_session *s, reading *l, int assembly) {
     if (l->index.failed || !(assembly ? assembly_at(s, k) != NULL : member_at(s, k) != NULL)) {
         return spari_saved_broken(s);
     }
-    solver_record *more = grow_records(l->solvers, l->solver_count, sizeof *more);
-    if (!more) {
-        return spari_saved_no_memory(s);
-    }
-    l->solvers = more;
     l->solvers[l->solver_count++] = (solver_record){assembly, (int)k, at, count};
     return SPAR_OK;
 }
@@ -394,11 +379,6 @@ static int note_fluid(spar_session *s, reading *l, int rank) {
         return spari_saved_broken(s);
     }
     r.member = (int)k;
-    fluid_record *more = grow_records(l->fluids, l->fluid_count, sizeof *more);
-    if (!more) {
-        return spari_saved_no_memory(s);
-    }
-    l->fluids = more;
     l->fluids[l->fluid_count++] = r;
     return SPAR_OK;
 }
@@ -414,28 +394,26 @@ static int note_block(spar_session *s, reading *l, int rank) {
 }
 
 static int load_index(spar_session *s, reading *l) {
-    SPARI_TRY(agree_to_load(s, is_root(s) ? read_index(s, l) : SPAR_OK));
+    SPARI_TRY(spari_agree(s, is_root(s) ? read_index(s, l) : SPAR_OK));
     SPARI_TRY(send_image(s, &l->index));
-    int status = spari_image_get_int(&l->index) == 1 ? SPAR_OK : spari_saved_broken(s);
+    /* each record has at least three words in the index, a fluid's head too */
+    l->solvers = spari_zalloc(l->index.count / 3, sizeof *l->solvers);
+    l->fluids = spari_zalloc(l->index.count / (3 + SPARI_FLUID_HEAD), sizeof *l->fluids);
+    int status = l->solvers && l->fluids ? SPAR_OK : spari_saved_no_memory(s);
+    if (status == SPAR_OK && spari_image_get_int(&l->index) != 1) {
+        status = spari_saved_broken(s);
+    }
     for (int r = 0; r < l->common.ranks && status == SPAR_OK; r++) {
         status = note_block(s, l, r);
     }
-    return agree_to_load(s, status);
+    return spari_agree(s, status);
 }
 
 /* ---- distribution ---- */
 
-static int index_of(const spar_session *s, const spar_member *member) {
-    int k = 0;
-    for (const spar_member *m = s->members; m != member; m = m->next) {
-        k++;
-    }
-    return k;
-}
-
-static int is_record_of(reading *l, const fluid_record *r, const spar_session *s, const spar_fluid *f) {
+static int is_record_of(reading *l, const fluid_record *r, const spar_fluid *f) {
     l->index.at = r->name;
-    return r->member == index_of(s, spari_fluid_member(f)) && spari_image_is_text(&l->index, spar_fluid_get_name(f));
+    return r->member == spari_fluid_member(f)->number && spari_image_is_text(&l->index, spar_fluid_get_name(f));
 }
 
 static int same_key(const reading *l, const fluid_record *a, const fluid_record *b) {
@@ -473,7 +451,7 @@ static int same_fluids(const spar_session *s, reading *l) {
     const spar_fluid *f = s->fluids;
     for (int64_t i = 0; i < l->fluid_count; i++) {
         if (l->fluids[i].rank == rank) {
-            if (!f || !is_record_of(l, l->fluids + i, s, f)) {
+            if (!f || !is_record_of(l, l->fluids + i, f)) {
                 return 0;
             }
             f = spari_fluid_next(f);
@@ -491,11 +469,11 @@ static int find_takers(spar_session *s, reading *l) {
     for (int64_t i = 0; i < l->fluid_count && status == SPAR_OK; i++) {
         const fluid_record *r = l->fluids + i;
         for (const spar_fluid *f = s->fluids; f && has[r->key * ranks + rank] == 0; f = spari_fluid_next(f)) {
-            has[r->key * ranks + rank] = is_record_of(l, r, s, f);
+            has[r->key * ranks + rank] = is_record_of(l, r, f);
         }
     }
     if (status == SPAR_OK) {
-        status = spari_comm_sum(s->ranks.comm, has, l->keys * ranks, SPAR_OK, s->message, sizeof s->message);
+        status = spari_sum(s, has, l->keys * ranks);
     }
     for (int64_t i = 0; i < l->fluid_count && status == SPAR_OK; i++) {
         int *taker = l->taker + l->fluids[i].key;
@@ -516,7 +494,7 @@ static int find_takers(spar_session *s, reading *l) {
 /* Whether a fluid here reads from a record. own: number of this rank's records before. */
 static int takes(const spar_session *s, reading *l, const fluid_record *r, const spar_fluid *f, int64_t own) {
     if (!l->exact) {
-        return is_record_of(l, r, s, f);
+        return is_record_of(l, r, f);
     }
     const spar_fluid *at = r->rank == spari_comm_rank(s->ranks.comm) ? s->fluids : NULL;
     for (; at && own > 0; own--) {
@@ -565,7 +543,7 @@ static int prepare(spar_session *s, reading *l) {
     }
     l->buffer = spari_zalloc(capacity, sizeof *l->buffer);
     int status = l->buffer ? alloc_solvers(s, l) : spari_saved_no_memory(s);
-    return agree_to_load(s, status == SPAR_OK ? find_keys(s, l) : status);
+    return spari_agree(s, status == SPAR_OK ? find_keys(s, l) : status);
 }
 
 /* ---- the states ---- */
@@ -630,7 +608,7 @@ static int fetch_fluid(spar_session *s, reading *l, const fluid_record *r, int64
 
 static int load_solvers(spar_session *s, reading *l) {
     int status = fetch_solvers(s, l);
-    return agree_to_load(s, l->status != SPAR_OK ? tell_why(s, l, l->status) : status);
+    return spari_agree(s, l->status != SPAR_OK ? tell_why(s, l, l->status) : status);
 }
 
 static int take_fluids(spar_session *s, reading *l) {
@@ -643,7 +621,7 @@ static int take_fluids(spar_session *s, reading *l) {
         status = take_fluid(s, l, f, heads);
     }
     free(heads);
-    return agree_to_load(s, status);
+    return spari_agree(s, status);
 }
 
 static int fetch_fluids(spar_session *s, reading *l) {
@@ -655,28 +633,20 @@ static int fetch_fluids(spar_session *s, reading *l) {
         found = found == SPAR_OK ? status : found;
         own += l->fluids[i].rank == spari_comm_rank(s->ranks.comm);
     }
-    return agree_to_load(s, l->status != SPAR_OK ? tell_why(s, l, l->status) : found);
-}
-
-/* Whether this is true on any rank. */
-static int is_any(spar_session *s, int here, int *any) {
-    double count[2] = {here, 0};
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, count, 1, SPAR_OK, s->message, sizeof s->message));
-    *any = count[0] > 0;
-    return SPAR_OK;
+    return spari_agree(s, l->status != SPAR_OK ? tell_why(s, l, l->status) : found);
 }
 
 /* With the same number of ranks and fluids, nodes may still be distributed otherwise; only their positions tell. */
 static int load_fluids(spar_session *s, reading *l) {
     int other = 0, lost = 0, status = SPAR_OK;
-    SPARI_TRY(is_any(s, !same_fluids(s, l), &other));
+    SPARI_TRY(spari_anywhere(s, !same_fluids(s, l), &other));
     l->exact = !other;
     if (l->exact) {
         SPARI_TRY(fetch_fluids(s, l));
         for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
             lost |= spari_fluid_first_missing(f) >= 0;
         }
-        SPARI_TRY(is_any(s, lost, &other));
+        SPARI_TRY(spari_anywhere(s, lost, &other));
         if (!other) {
             return SPAR_OK;
         }
@@ -687,7 +657,7 @@ static int load_fluids(spar_session *s, reading *l) {
     for (spar_fluid *f = s->fluids; f && status == SPAR_OK; f = spari_fluid_next(f)) {
         status = spari_fluid_loaded_whole(f, l->call);
     }
-    return agree_to_load(s, status);
+    return spari_agree(s, status);
 }
 
 /* ---- putting in force ---- */
@@ -715,9 +685,7 @@ int spar_session_load(spar_session *session, const char *path) {
     spar_session *s = session;
     reading l = {.call = __func__};
     int status = spari_saved_check_call(s, __func__, path);
-    if (status == SPAR_OK && s->state.phase != SPARI_IDLE) {
-        status = spari_fail(s, SPAR_ERR_STATE, "%s: a step is in progress; accept or reject it first", __func__);
-    }
+    status = status == SPAR_OK ? spari_need_idle(s, __func__) : status;
     SPARI_TRY(spari_enter_agreed(s, __func__, NULL, 0, status));
     status = open_file(s, &l, path); /* without a file, nothing of the joints is created */
     status = status == SPAR_OK ? spari_solvers_place(s, __func__) : status;

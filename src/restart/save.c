@@ -18,14 +18,6 @@
 
 /* ---- data of one rank ---- */
 
-static int member_index(const spar_session *s, const spar_member *member) {
-    int k = 0;
-    for (const spar_member *m = s->members; m && m != member; m = m->next) {
-        k++;
-    }
-    return k;
-}
-
 /* Makes room for the n numbers of a state, preceded by their count. */
 static double *put_reserved(spari_image *image, int64_t n) {
     spari_image_put_int(image, n);
@@ -75,7 +67,7 @@ static int put_own(spari_image *image, const spar_session *s, const char *call) 
     put_assemblies(image, s);
     spari_image_put_int(image, fluids);
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_image_put_int(image, member_index(s, spari_fluid_member(f)));
+        spari_image_put_int(image, spari_fluid_member(f)->number);
         spari_image_put_text(image, spar_fluid_get_name(f));
         double *state = put_reserved(image, spari_fluid_state_size(f));
         if (state) {
@@ -89,10 +81,6 @@ static int put_own(spari_image *image, const spar_session *s, const char *call) 
 }
 
 /* ---- the file ---- */
-
-static int agree_to_save(spar_session *s, int status) {
-    return spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
-}
 
 enum { PIECE = 1 << 13 }; /* words sent through rank 0 at once */
 
@@ -118,7 +106,7 @@ static int share_parts(spar_session *s, save_plan *p, spari_image *own) {
     int ranks = spari_comm_size(s->ranks.comm);
     int64_t *first = spari_zalloc(ranks + 1, sizeof *first);
     p->part = spari_zalloc((int64_t)PART_WORDS * ranks, sizeof *p->part);
-    int status = agree_to_save(s, first && p->part ? SPAR_OK : spari_saved_no_memory(s));
+    int status = spari_agree(s, first && p->part ? SPAR_OK : spari_saved_no_memory(s));
     if (first && p->part && status == SPAR_OK) {
         double *mine = p->part + (ptrdiff_t)PART_WORDS * spari_comm_rank(s->ranks.comm);
         spari_words_to_disc(own->word, own->count);
@@ -176,10 +164,9 @@ static int is_seen_by_all(spar_session *s, save_plan *p, int *all) {
     SPARI_TRY(spari_comm_broadcast(s->ranks.comm, told, sizeof told, s->message, sizeof s->message));
     p->count = told[0];
     memcpy(&p->mark, told + 1, sizeof p->mark);
-    double blind[2] = {spari_comm_rank(s->ranks.comm) > 0 && !spari_saving_is_marked(p->temporary, p->count, p->mark),
-                       0};
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, blind, 1, SPAR_OK, s->message, sizeof s->message));
-    *all = blind[0] == 0;
+    int blind = spari_comm_rank(s->ranks.comm) > 0 && !spari_saving_is_marked(p->temporary, p->count, p->mark);
+    SPARI_TRY(spari_anywhere(s, blind, &blind));
+    *all = !blind;
     return SPAR_OK;
 }
 
@@ -208,11 +195,10 @@ static int write_own_part(spar_session *s, save_plan *p, const spari_image *own,
             spari_saving_put_part(p->temporary, part_at(p, rank, ranks), own->count, own->word, p->why, sizeof p->why);
         status = status == SPAR_OK ? SPAR_OK : spari_fail(s, status, "%s", p->why);
     }
-    SPARI_TRY(agree_to_save(s, status));
-    double lost[2] = {
-        !spari_saving_has_part(p->temporary, part_at(p, next, ranks), part_count(p, next), part_sum(p, next)), 0};
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, lost, 1, SPAR_OK, s->message, sizeof s->message));
-    *whole = lost[0] == 0;
+    SPARI_TRY(spari_agree(s, status));
+    int lost = !spari_saving_has_part(p->temporary, part_at(p, next, ranks), part_count(p, next), part_sum(p, next));
+    SPARI_TRY(spari_anywhere(s, lost, &lost));
+    *whole = !lost;
     for (int r = 1; rank == 0 && *whole && r < ranks; r++) {
         spari_saving_skip(&p->file, part_count(p, r), part_sum(p, r));
     }
@@ -266,15 +252,15 @@ static int end_file(spar_session *s, save_plan *p, int status) {
 static int write_file(spar_session *s, spari_image *own, const char *path) {
     save_plan *p = spari_zalloc(1, sizeof *p);
     int root = spari_comm_rank(s->ranks.comm) == 0;
-    int status = agree_to_save(s, p ? SPAR_OK : spari_saved_no_memory(s));
+    int status = spari_agree(s, p ? SPAR_OK : spari_saved_no_memory(s));
     status = p && status == SPAR_OK ? share_parts(s, p, own) : status;
     if (p && status == SPAR_OK) {
-        status = agree_to_save(s, root ? begin_file(s, p, own, path) : SPAR_OK);
+        status = spari_agree(s, root ? begin_file(s, p, own, path) : SPAR_OK);
         if (status == SPAR_OK && spari_comm_size(s->ranks.comm) > 1) {
             status = write_parts(s, p, own);
         }
         status = end_file(s, p, status);
-        status = agree_to_save(s, status);
+        status = spari_agree(s, status);
     }
     if (p) {
         spari_image_free(&p->common);
@@ -296,7 +282,7 @@ int spar_session_save(const spar_session *session, const char *path) {
         spari_assemblies_free(s);
     }
     status = put_own(&own, s, __func__);
-    status = agree_to_save(s, status == SPAR_OK && own.failed ? spari_saved_no_memory(s) : status);
+    status = spari_agree(s, status == SPAR_OK && own.failed ? spari_saved_no_memory(s) : status);
     status = status == SPAR_OK ? write_file(s, &own, path) : status;
     spari_image_free(&own);
     return spari_named(s, __func__, status);

@@ -14,11 +14,8 @@ static int check_within(spar_session *s, const char *call, const double *dt, dou
     SPARI_TRY(spari_need_dt(s, call, first));
     SPARI_REQUIRE(s, spari_step_control_is_set(s), SPAR_ERR_STATE,
                   "%s: no tolerance is set; call spar_session_set_tolerance first", call);
-    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress; call this before or after it",
-                  call);
-    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: a step is in progress; accept or reject it first", call);
-    return SPAR_OK;
+    SPARI_TRY(spari_need_no_trial(s, call));
+    return spari_need_idle(s, call);
 }
 
 /* Decrease of error/tolerance between two attempts as a power of dt: 2 or more for a smooth resolved motion, 1 for a
@@ -75,9 +72,7 @@ int spar_step_adaptive(spar_session *session, double *dt, spar_before_step befor
         if (done.ratio <= 1) {
             SPARI_TRY(spari_named(s, __func__, spar_step_accept(s)));
             *next = s->own->step_control.next;
-            if (dt_done) {
-                *dt_done = h;
-            }
+            SPARI_GIVE(dt_done, h);
             return SPAR_OK;
         }
         SPARI_TRY(spari_named(s, __func__, spar_step_reject(s)));

@@ -2,7 +2,7 @@
 #include "callbacks.h"
 
 #include "../base/environment.h"
-#include "../comm/comm.h"
+#include "../comm/enter.h"
 
 int spari_callback_refuse(spar_session *s, const char *call) {
     SPARI_REQUIRE(s, !s->callbacks.in_progress, SPAR_ERR_STATE,
@@ -53,7 +53,7 @@ int spari_callback_before_step(spar_session *s, spar_before_step before, double 
     } else if (result != 0) {
         status = SPAR_ERR_USER;
     }
-    return spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+    return spari_agree(s, status);
 }
 
 /* ---- how far trials are ---- */
@@ -75,7 +75,7 @@ static int ask_host(spar_session *s, const spari_progress *p, double done, doubl
                      : spari_fail(s, SPAR_ERR_USER,
                                   "%s: cancelled by the progress callback (%d) after %.3g of %.3g expected trials",
                                   p->call, result, done, expected);
-    return spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+    return spari_agree(s, status);
 }
 
 int spari_progress_tell(spar_session *s, spari_progress *p, double done, double expected) {

@@ -59,7 +59,7 @@ static int sum_over_ranks(const spar_fluid *fluid, const char *call, const doubl
     }
     status = status == SPAR_OK ? add_loads(fluid, about, call, total) : status;
     SPARI_TRY(spari_enter_agreed(s, what, must_agree, 3 + count, status));
-    return spari_named(s, call, spari_comm_sum(s->ranks.comm, total, TOTALS, SPAR_OK, s->message, sizeof s->message));
+    return spari_named(s, call, spari_sum(s, total, TOTALS));
 }
 
 int spar_fluid_sum_loads(const spar_fluid *fluid, const double point[3], double force[3], double moment[3]) {

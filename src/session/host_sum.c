@@ -32,7 +32,7 @@ int spar_session_sum(spar_session *session, int status, int64_t n, double *x) {
     const spari_agreed must_agree[] = {spari_whole("n", n)};
     int result = spari_enter_agreed(s, __func__, must_agree, 1, own);
     if (result == SPAR_OK) {
-        result = spari_comm_sum(s->ranks.comm, workspace, n, SPAR_OK, s->message, sizeof s->message);
+        result = spari_sum(s, workspace, n);
     }
     if (result == SPAR_OK && workspace && n > 0) {
         memcpy(x, workspace, (size_t)n * sizeof *x);

@@ -15,16 +15,12 @@
 #include <string.h>
 
 static int check_start(spar_session *s, const char *call, double dt) {
-    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: a step is in progress; accept or reject it first", call);
+    SPARI_TRY(spari_need_idle(s, call));
     SPARI_REQUIRE(s, s->clock.step == 0, SPAR_ERR_STATE,
                   "%s: the clock is at t = %g; compute initial accelerations before the first step", call,
                   s->clock.time);
     SPARI_TRY(spari_need_dt(s, call, dt));
-    for (const spar_member *m = s->members; m; m = m->next) {
-        SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
-                      "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
-    }
+    SPARI_TRY(spari_need_all_committed(s, call));
     return spari_session_pushes(s, call);
 }
 

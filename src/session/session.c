@@ -107,15 +107,9 @@ int spar_session_set_log(spar_session *session, spar_log log, void *context) {
 int spar_session_get_time(const spar_session *session, double *t, int64_t *step, int *iteration) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    if (t) {
-        *t = session->clock.time;
-    }
-    if (step) {
-        *step = session->clock.step;
-    }
-    if (iteration) {
-        *iteration = session->state.iteration;
-    }
+    SPARI_GIVE(t, session->clock.time);
+    SPARI_GIVE(step, session->clock.step);
+    SPARI_GIVE(iteration, session->state.iteration);
     return SPAR_OK;
 }
 

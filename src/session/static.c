@@ -24,10 +24,8 @@
 /* Whether the member has a unique equilibrium that spar can solve. */
 static int check_held(const spar_member *m, const char *call) {
     spar_session *s = m->session;
-    SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first",
-                  call, m->name);
-    int loose =
-        !m->joints && (m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C));
+    SPARI_TRY(spari_need_committed(m, call));
+    int loose = !m->joints && (m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C));
     SPARI_REQUIRE(s, !loose || !spari_fidelity_has_equilibrium(m), SPAR_ERR_STATE,
                   "%s: '%s' is free to move as a rigid body; fix, pin or drive its root", call, m->name);
     return SPAR_OK;
@@ -35,8 +33,7 @@ static int check_held(const spar_member *m, const char *call) {
 
 static int check_member_static(const spar_member *m, const char *call, int load_steps) {
     spar_session *s = m->session;
-    SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: member '%s' is not committed; call spar_member_commit first",
-                  call, m->name);
+    SPARI_TRY(spari_need_committed(m, call));
     SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: '%s': a step is in progress; accept or reject it first", call, m->name);
     SPARI_REQUIRE(s, load_steps >= 1 && load_steps <= SPARI_STATIC_MOST, SPAR_ERR_ARGUMENT,
@@ -225,8 +222,7 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
 /* ---- all members, with the fluid ---- */
 
 static int check_session_static(spar_session *s, const char *call, int load_steps) {
-    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: a step is in progress; accept or reject it first", call);
+    SPARI_TRY(spari_need_idle(s, call));
     SPARI_REQUIRE(s, load_steps >= 1 && load_steps <= SPARI_STATIC_MOST, SPAR_ERR_ARGUMENT,
                   "%s: %d load steps; give 1 to %d", call, load_steps, SPARI_STATIC_MOST);
     for (const spar_member *m = s->members; m; m = m->next) {
@@ -457,9 +453,7 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
     }
     status = begin_static(s);
     status = status == SPAR_OK ? find_equilibrium(s, __func__, load_steps, solve, context) : status;
-    if (iterations) {
-        *iterations = s->state.iteration;
-    }
+    SPARI_GIVE(iterations, s->state.iteration);
     if (status == SPAR_OK) {
         commit_all(s);
         spari_coupling_keep(s);

@@ -48,10 +48,7 @@ static int check_begin(spar_session *s, const char *call, double dt, int uneven)
     SPARI_TRY(spari_need_dt(s, call, dt));
     SPARI_REQUIRE(s, isfinite(s->clock.time + dt), SPAR_ERR_ARGUMENT,
                   "%s: the clock is at %g s and cannot advance by %g s; give a smaller dt", call, s->clock.time, dt);
-    for (const spar_member *m = s->members; m; m = m->next) {
-        SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
-                      "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
-    }
+    SPARI_TRY(spari_need_all_committed(s, call));
     const int mean = s->integrator.substeps > 1 || uneven;
     for (spar_member *m = s->members; m && mean; m = m->next) {
         SPARI_TRY(spari_named(s, call, spari_means_make(m)));
@@ -449,9 +446,7 @@ int spari_step_run(spar_session *s, const char *call, spar_fluid_solver solve, v
 /* Performs a begun step to its end. */
 static int run_begun(spar_session *s, const char *call, spar_fluid_solver solve, void *context, int *iterations) {
     int status = spari_step_run(s, call, solve, context);
-    if (iterations) {
-        *iterations = s->state.iteration;
-    }
+    SPARI_GIVE(iterations, s->state.iteration);
     SPARI_TRY(status);
     status = spar_step_accept(s);
     if (status == SPAR_ERR_COMM) {

@@ -114,17 +114,9 @@ int spar_session_get_step_control(const spar_session *session, double *ratio, do
     SPARI_REQUIRE(s, judged || p->next > 0, SPAR_ERR_STATE,
                   "%s: no step has been solved since the tolerance was set; make one first", __func__);
     const double now = judged ? spari_step_control_ratio(s) : p->last;
-    if (ratio) {
-        *ratio = now;
-    }
-    if (next_dt) {
-        *next_dt = !judged ? p->next : spari_step_error_is_known(s) ? propose_dt(s, now) : s->clock.dt;
-    }
-    if (reject) {
-        *reject = judged && now > 1;
-    }
-    if (rejected) {
-        *rejected = p->rejected;
-    }
+    SPARI_GIVE(ratio, now);
+    SPARI_GIVE(next_dt, !judged ? p->next : spari_step_error_is_known(s) ? propose_dt(s, now) : s->clock.dt);
+    SPARI_GIVE(reject, judged && now > 1);
+    SPARI_GIVE(rejected, p->rejected);
     return SPAR_OK;
 }

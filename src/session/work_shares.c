@@ -230,8 +230,6 @@ int spar_session_set_threads(spar_session *session, int threads) {
 
 int spar_session_get_threads(const spar_session *session, int *threads) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
-    if (threads) {
-        *threads = spari_thread_pool_threads(session->pool);
-    }
+    SPARI_GIVE(threads, spari_thread_pool_threads(session->pool));
     return SPAR_OK;
 }

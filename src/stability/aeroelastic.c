@@ -124,7 +124,7 @@ static void hand_eigenvalues(const coupled_ask *ask, const coupled *c) {
 static int solve_coupled(spar_session *s, const char *call, coupled_ask *ask, double frame[3]) {
     coupled c = {.shape = NULL};
     int status = find_structure(s, ask, &c);
-    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+    status = spari_agree(s, status);
     if (status == SPAR_OK) {
         ask->fluid.motions = &c.motions;
         ask->fluid.shape = c.nodes;
@@ -133,7 +133,7 @@ static int solve_coupled(spar_session *s, const char *call, coupled_ask *ask, do
     }
     if (status == SPAR_OK) {
         status = find_eigenvalues(s, ask, &c);
-        status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+        status = spari_agree(s, status);
     }
     if (status == SPAR_OK) {
         hand_eigenvalues(ask, &c);
@@ -198,12 +198,6 @@ int spar_trial_solve_eigenvalues(spar_trial *trial, int64_t n, const double shif
     ask.fluid.nodes = spari_shapes_nodes(s);
     const spari_agreed arguments[] = {spari_whole("n", n)};
     SPARI_TRY(spari_trial_enter(trial, __func__, arguments, 1, check_coupled(trial, __func__, &ask, nodes, shift)));
-    char message[SPARI_MESSAGE_SIZE];
-    memcpy(message, s->message, sizeof message);
-    int status = spari_named(s, __func__, spari_progress_ends(&progress, solve_coupled(s, __func__, &ask, frame)));
-    if (status == SPAR_OK) {
-        memcpy(s->message, message, sizeof message);
-    }
-    spari_trial_leave(trial);
-    return status;
+    int status = solve_coupled(s, __func__, &ask, frame);
+    return spari_trial_leave(trial, __func__, spari_progress_ends(&progress, status));
 }

@@ -44,11 +44,6 @@ typedef struct floquet {
     double size, drift;  /* with its sign; out: how far from the beginning it ends */
 } floquet;
 
-static void floquet_free(floquet *f) {
-    spari_small_motions_free(&f->motions);
-    SPARI_FREE(f->shape, f->gram);
-}
-
 /* ---- states ---- */
 
 static void keep_motion(const spar_session *s, double *base) {
@@ -283,7 +278,7 @@ static int find_multipliers(spar_session *s, floquet *f, int64_t n, double *eige
 static int solve_floquet(spar_session *s, floquet *f, int64_t n, double *eigenvalue) {
     int status = find_shapes_of_period(s, f);
     status = status == SPAR_OK ? weigh_shapes(s, f) : status;
-    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+    status = spari_agree(s, status);
     spari_trial_settings trial_settings = {.member = NULL};
     status = status == SPAR_OK ? spari_trial_settings_create(s, &trial_settings) : status;
     if (status == SPAR_OK) {
@@ -292,7 +287,7 @@ static int solve_floquet(spar_session *s, floquet *f, int64_t n, double *eigenva
     }
     if (status == SPAR_OK) {
         status = find_multipliers(s, f, n, eigenvalue);
-        status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+        status = spari_agree(s, status);
     }
     return status;
 }
@@ -325,14 +320,8 @@ int spar_trial_solve_floquet(spar_trial *trial, int64_t n, double *eigenvalue) {
     f.nodes = spari_shapes_nodes(s);
     const spari_agreed arguments[] = {spari_whole("n", n)};
     SPARI_TRY(spari_trial_enter(trial, __func__, arguments, 1, check_floquet(trial, &f, n, eigenvalue)));
-    char message[SPARI_MESSAGE_SIZE];
-    memcpy(message, s->message, sizeof message);
     int status = solve_floquet(s, &f, n, eigenvalue);
-    floquet_free(&f);
-    status = spari_named(s, __func__, spari_progress_ends(&progress, status));
-    if (status == SPAR_OK) {
-        memcpy(s->message, message, sizeof message);
-    }
-    spari_trial_leave(trial);
-    return status;
+    spari_small_motions_free(&f.motions);
+    SPARI_FREE(f.shape, f.gram);
+    return spari_trial_leave(trial, __func__, spari_progress_ends(&progress, status));
 }

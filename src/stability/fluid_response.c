@@ -292,7 +292,7 @@ int spari_fluid_response_find(spar_session *s, const char *call, const spari_res
     double *workspace = spari_zalloc(13 * ask->nodes + 3 * n + 2 * response->count * n, sizeof *workspace);
     int status =
         response->load && workspace ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the fluid's response");
-    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+    status = spari_agree(s, status);
     spari_trial_settings trial_settings = {.member = NULL};
     status = status == SPAR_OK ? spari_trial_settings_create(s, &trial_settings) : status;
     if (status == SPAR_OK) {

@@ -11,7 +11,7 @@ static int keep_record(spar_trial *t, spari_record *record) {
     spar_session *s = t->session;
     spari_record *kept = spari_zalloc(1, sizeof *kept);
     int status = kept ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the record of a trial run");
-    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+    status = spari_agree(s, status);
     if (status != SPAR_OK) {
         free(kept);
         return status;
@@ -69,9 +69,7 @@ int spar_trial_run(spar_trial *trial, int compare) {
     SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
     const spari_agreed arguments[] = {spari_whole("compare", compare != 0)};
     SPARI_TRY(spari_trial_enter(trial, __func__, arguments, 1, check_comparison(trial, __func__, compare)));
-    int status = spari_named(trial->session, __func__, run_once(trial, compare));
-    spari_trial_leave(trial);
-    return status;
+    return spari_trial_leave(trial, __func__, run_once(trial, compare));
 }
 
 static int check_result(const spar_trial *trial, const char *call) {
@@ -82,25 +80,15 @@ static int check_result(const spar_trial *trial, const char *call) {
 
 int spar_trial_get_errors(const spar_trial *trial, double *motion, double *reaction, double *load) {
     SPARI_TRY(check_result(trial, __func__));
-    if (motion) {
-        *motion = trial->motion;
-    }
-    if (reaction) {
-        *reaction = trial->reaction;
-    }
-    if (load) {
-        *load = trial->load;
-    }
+    SPARI_GIVE(motion, trial->motion);
+    SPARI_GIVE(reaction, trial->reaction);
+    SPARI_GIVE(load, trial->load);
     return SPAR_OK;
 }
 
 int spar_trial_get_cost(const spar_trial *trial, double *seconds, int64_t *evaluations) {
     SPARI_TRY(check_result(trial, __func__));
-    if (seconds) {
-        *seconds = trial->seconds;
-    }
-    if (evaluations) {
-        *evaluations = trial->evaluations;
-    }
+    SPARI_GIVE(seconds, trial->seconds);
+    SPARI_GIVE(evaluations, trial->evaluations);
     return SPAR_OK;
 }

@@ -322,7 +322,7 @@ static int asked_anywhere(spar_session *s, int *asked) {
     for (int k = 0; k < BITS; k++) {
         bit[k] = *asked >> k & 1;
     }
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, bit, BITS, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_sum(s, bit, BITS));
     *asked = 0;
     for (int k = 0; k < BITS; k++) {
         *asked |= bit[k] > 0 ? 1 << k : 0;
@@ -351,7 +351,7 @@ static int fill_rows(spar_session *s, const char *call, const spari_run *run, sp
     spari_record base;
     run_tally runs = {0, 1 + count_runs(s, 0, run->solve ? ~0 : 0)}; /* the first run shows the fluid's requests */
     watched.watch = add_state, watched.watcher = &seen;
-    SPARI_TRY(spari_comm_agree(s->ranks.comm, add_state(s, &seen), s->message, sizeof s->message));
+    SPARI_TRY(spari_agree(s, add_state(s, &seen)));
     SPARI_TRY(spari_trial_settings_create(s, &trial_settings));
     (void)run_told(s, &watched, &trial_settings, &runs, &base);
     find_sizes(&seen, run->dt, size);
@@ -374,16 +374,12 @@ int spar_trial_report_effects(spar_trial *trial) {
     spari_progress progress = spari_trial_progress(trial, __func__);
     spari_run run = spari_trial_run_of(trial, &progress);
     run.goals = SPARI_GOAL(SPARI_OF_REACTION);
-    char message[SPARI_MESSAGE_SIZE];
-    memcpy(message, s->message, sizeof message);
-    int status = spari_named(s, __func__, spari_progress_ends(&progress, fill_rows(s, __func__, &run, made)));
+    int status = spari_progress_ends(&progress, fill_rows(s, __func__, &run, made));
     if (status == SPAR_OK) {
-        spari_put_message_back(s, message);
         memcpy(trial->effect, made, sizeof made);
         trial->reported = 1;
     }
-    spari_trial_leave(trial);
-    return status;
+    return spari_trial_leave(trial, __func__, status);
 }
 
 int spar_trial_get_effect(const spar_trial *trial, int row, int *in_force, int *fails, double *size, double *motion,
@@ -394,19 +390,11 @@ int spar_trial_get_effect(const spar_trial *trial, int row, int *in_force, int *
     SPARI_REQUIRE(trial->session, trial->reported, SPAR_ERR_STATE,
                   "%s: there is no report; call spar_trial_report_effects first", __func__);
     const spari_effect *e = trial->effect + row;
-    int *const flags[] = {in_force, fails};
-    const int flag[] = {e->in_force, e->fails};
-    double *const figures[] = {size, motion, reaction, share};
-    const double figure[] = {e->size, e->motion, e->reaction, e->share};
-    for (int k = 0; k < 2; k++) {
-        if (flags[k]) {
-            *flags[k] = flag[k];
-        }
-    }
-    for (int k = 0; k < 4; k++) {
-        if (figures[k]) {
-            *figures[k] = figure[k];
-        }
-    }
+    SPARI_GIVE(in_force, e->in_force);
+    SPARI_GIVE(fails, e->fails);
+    SPARI_GIVE(size, e->size);
+    SPARI_GIVE(motion, e->motion);
+    SPARI_GIVE(reaction, e->reaction);
+    SPARI_GIVE(share, e->share);
     return SPAR_OK;
 }

@@ -95,12 +95,8 @@ int spar_trial_set_steps(spar_trial *trial, double dt, int64_t steps) {
 
 int spar_trial_get_steps(const spar_trial *trial, double *dt, int64_t *steps) {
     SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
-    if (dt) {
-        *dt = trial->dt;
-    }
-    if (steps) {
-        *steps = trial->steps;
-    }
+    SPARI_GIVE(dt, trial->dt);
+    SPARI_GIVE(steps, trial->steps);
     return SPAR_OK;
 }
 
@@ -132,9 +128,7 @@ int spar_trial_set_goals(spar_trial *trial, int goals) {
 
 int spar_trial_get_goals(const spar_trial *trial, int *goals) {
     SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
-    if (goals) {
-        *goals = trial->search.goals;
-    }
+    SPARI_GIVE(goals, trial->search.goals);
     return SPAR_OK;
 }
 
@@ -172,15 +166,9 @@ int spar_trial_set_motion(spar_trial *trial, int64_t modes, double amplitude, in
 
 int spar_trial_get_motion(const spar_trial *trial, int64_t *modes, double *amplitude, int64_t *memory) {
     SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
-    if (modes) {
-        *modes = trial->modes;
-    }
-    if (amplitude) {
-        *amplitude = trial->amplitude;
-    }
-    if (memory) {
-        *memory = trial->memory;
-    }
+    SPARI_GIVE(modes, trial->modes);
+    SPARI_GIVE(amplitude, trial->amplitude);
+    SPARI_GIVE(memory, trial->memory);
     return SPAR_OK;
 }
 
@@ -282,12 +270,18 @@ int spari_trial_enter(spar_trial *t, const char *call, const spari_agreed *argum
     }
     SPARI_TRY(spari_enter_agreed(t->session, call, all, OWN + count, status));
     t->running = 1;
+    memcpy(t->message, t->session->message, sizeof t->message);
     return SPAR_OK;
 }
 
-void spari_trial_leave(spar_trial *t) {
+int spari_trial_leave(spar_trial *t, const char *call, int status) {
+    if (status == SPAR_OK) {
+        spari_put_message_back(t->session, t->message);
+    }
+    status = spari_named(t->session, call, status);
     t->running = 0;
     if (t->gone) {
         spar_trial_destroy(&t);
     }
+    return status;
 }

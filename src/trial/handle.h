@@ -53,6 +53,7 @@ struct spar_trial {
     double amplitude;
     int64_t memory;
     double numbers[SPARI_MOST_NUMBERS]; /* of the host, this rank's; 0: not pushed */
+    char message[SPARI_MESSAGE_SIZE];   /* of the session, before the call under way */
     int running;                        /* a collective call is under way; */
     int gone;                           /* in which the host has destroyed the trial */
     int ran;                            /* there are results of spar_trial_run */
@@ -74,9 +75,10 @@ int spari_trial_ready(spar_trial *trial, const char *call);
 int spari_trial_ready_for_runs(spar_trial *trial, const char *call);
 /* Enters a collective call, with the status of its checks: compares the settings of the trial and further arguments
    (at most SPARI_MOST_ARGUMENTS) across the ranks. If it succeeds, the trial is running until spari_trial_leave, which
-   is called in any case after that, and is the last use of the trial: the host may have destroyed it meanwhile. */
+   is called in any case after that, and is the last use of the trial: the host may have destroyed it meanwhile.
+   leave: returns the status of the call. After a success the session has the message that it had before. */
 enum { SPARI_MOST_ARGUMENTS = 4 };
 int spari_trial_enter(spar_trial *trial, const char *call, const spari_agreed *arguments, int count, int status);
-void spari_trial_leave(spar_trial *trial);
+int spari_trial_leave(spar_trial *trial, const char *call, int status);
 
 #endif

@@ -2,7 +2,7 @@
 #include "run_record.h"
 
 #include "../base/session.h"
-#include "../comm/comm.h"
+#include "../comm/enter.h"
 #include "../math/basis.h"
 #include "../math/resample.h"
 #include "../math/rotation.h"
@@ -272,12 +272,12 @@ static int look_at_goals(const spari_record *r, spar_session *s, double *now) {
     }
     if (r->goals & SPARI_GOAL(SPARI_OF_SECTION)) {
         status = look_at_sections(s, now + r->first[SPARI_OF_SECTION]);
-        status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+        status = spari_agree(s, status);
     }
     if (r->goals & SPARI_GOAL(SPARI_OF_NUMBERS) && status == SPAR_OK) {
         double sum[SPARI_MOST_NUMBERS + 1];
         memcpy(sum, r->numbers, SPARI_MOST_NUMBERS * sizeof *sum);
-        status = spari_comm_sum(s->ranks.comm, sum, SPARI_MOST_NUMBERS, SPAR_OK, s->message, sizeof s->message);
+        status = spari_sum(s, sum, SPARI_MOST_NUMBERS);
         memcpy(now + r->first[SPARI_OF_NUMBERS], sum, SPARI_MOST_NUMBERS * sizeof *sum);
     }
     return status;

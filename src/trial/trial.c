@@ -8,6 +8,7 @@
 #include "../exchange/exchange.h"
 #include "../exchange/session_private.h"
 #include "../fluid/fluid.h"
+#include "../member/check_arguments.h"
 #include "../session/callbacks.h"
 #include "../session/initial_accelerations.h"
 
@@ -26,7 +27,7 @@ int spari_trial_settings_create(spar_session *s, spari_trial_settings *trial_set
         *r = spari_rebuild_of(m);
     }
     int status = r ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for a trial run");
-    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+    status = spari_agree(s, status);
     if (status != SPAR_OK) {
         spari_trial_settings_free(trial_settings);
     }
@@ -115,14 +116,6 @@ static int snapshot_create(spar_session *s, snapshot *t) {
     return SPAR_OK;
 }
 
-static const spar_member *member_before(const spar_session *s, const snapshot *t, const spar_member *member) {
-    int k = 0;
-    for (const spar_member *m = s->members; m && m != member; m = m->next) {
-        k++;
-    }
-    return t->members + k;
-}
-
 static int make_anew(spar_session *s, snapshot *t, const spari_trial_settings *trial_settings) {
     spari_settings_vary(s, trial_settings->setting);
     s->state.past = s->state.past < s->coupling.predictor ? s->state.past : s->coupling.predictor;
@@ -135,7 +128,7 @@ static int make_anew(spar_session *s, snapshot *t, const spari_trial_settings *t
         }
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), t->fluids_made++) {
-        int status = spari_fluid_rebuild(f, member_before(s, t, spari_fluid_member(f)), t->fluids + t->fluids_made);
+        int status = spari_fluid_rebuild(f, t->members + spari_fluid_member(f)->number, t->fluids + t->fluids_made);
         if (status != SPAR_OK) {
             t->fluids_made += t->fluids[t->fluids_made] != NULL;
             return status;
@@ -151,10 +144,10 @@ static int carry_loads(spar_session *s, const snapshot *t) {
     int64_t count = 0;
     int any = 0, k = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
-        any = any || !spari_mesh_is_equal(m->mesh, member_before(s, t, m)->mesh);
+        any = any || !spari_mesh_is_equal(m->mesh, t->members[m->number].mesh);
     }
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f), k++) {
-        const spar_member *before = member_before(s, t, spari_fluid_member(f));
+        const spar_member *before = t->members + spari_fluid_member(f)->number;
         if (!spari_mesh_is_equal(before->mesh, spari_fluid_member(f)->mesh)) {
             t->carried[count++] = (spari_moved_loads){f, t->fluids[k], before};
         }
@@ -226,7 +219,7 @@ static int march(spar_session *s, const spari_run *run, spari_record *r) {
         SPARI_TRY(step_once(s, run, r));
         if (run->watch) { /* it may lack memory on one rank alone */
             int status = run->watch(s, run->watcher);
-            SPARI_TRY(spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message));
+            SPARI_TRY(spari_agree(s, status));
         }
         watch_loads(s, i, run->steps, r, size);
         SPARI_TRY(spari_record_look(r, s, i));
@@ -240,7 +233,7 @@ static int march(spar_session *s, const spari_run *run, spari_record *r) {
 /* Processor time of a run, summed over the ranks. */
 static int share_seconds(spar_session *s, spari_record *r) {
     double seconds[2] = {r->seconds, 0};
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, seconds, 1, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_sum(s, seconds, 1));
     r->seconds = seconds[0];
     return SPAR_OK;
 }
@@ -279,7 +272,7 @@ static int share_failure(spar_session *s, int own) {
         return own; /* known to all; a broken communicator cannot be used */
     }
     there[own] = 1;
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, there, CODES, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_sum(s, there, CODES));
     if (there[SPAR_ERR_MEMORY] > 0 || there[SPAR_ERR_IO] > 0) {
         return own == SPAR_ERR_MEMORY || own == SPAR_ERR_IO || own == SPAR_ERR_PEER
                    ? own
@@ -299,7 +292,7 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_trial_set
     *record = (spari_record){0};
     int status = snapshot_create(s, &t), away = status == SPAR_OK;
     status = away ? make_anew(s, &t, trial_settings) : status;
-    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+    status = spari_agree(s, status);
     status = status == SPAR_OK ? carry_loads(s, &t) : status;
     status = status == SPAR_OK && s->joints ? spari_assemblies_make(s, "a trial run") : status;
     if (status == SPAR_OK && run->instead) {
@@ -316,15 +309,9 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_trial_set
 }
 
 int spari_trial_check(spar_session *s, const char *call) {
-    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress; call this before or after it",
-                  call);
-    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: a step is in progress; accept or reject it first", call);
-    for (const spar_member *m = s->members; m; m = m->next) {
-        SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE,
-                      "%s: member '%s' is not committed; call spar_member_commit first", call, m->name);
-    }
-    return SPAR_OK;
+    SPARI_TRY(spari_need_no_trial(s, call));
+    SPARI_TRY(spari_need_idle(s, call));
+    return spari_need_all_committed(s, call);
 }
 
 int spari_trial_check_steps(spar_session *s, const char *call, double dt, int64_t steps) {

@@ -3,7 +3,7 @@
 #ifndef SPARI_TRIAL_H
 #define SPARI_TRIAL_H
 
-#include "../comm/comm.h"
+#include "../comm/enter.h"
 #include "../exchange/session_private.h"
 #include "../fluid/fluid.h"
 #include "../session/callbacks.h"

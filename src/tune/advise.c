@@ -94,8 +94,7 @@ static int try_session_as_it_is(spari_advisor *d) {
         found[0] = o.step / reach, found[1] = o.nodes / reach;
         found[2] = 3 * o.late / reach, found[3] = r->report[SPAR_REPORT_ADDED_MASS];
     }
-    SPARI_TRY(
-        spari_comm_sum(d->session->ranks.comm, found, 4, SPAR_OK, d->session->message, sizeof d->session->message));
+    SPARI_TRY(spari_sum(d->session, found, 4));
     d->step_error = found[0], d->node_error = found[1], d->drift = found[2], d->mass = found[3];
     d->estimated = p.steps;
     d->chain[d->links++] = i;
@@ -257,7 +256,7 @@ static int judge_chain(spari_advisor *d) {
         said[1] = d->longer > foreseen ? spari_record_vouches(r) : 1;
         said[2] = spari_record_swells(r);
     }
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, said, 3, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_sum(s, said, 3));
     d->shortest = said[0];
     int found = d->reference_error <= 0.5 * d->tolerance;
     SPARI_REQUIRE(s, found || d->count < d->most, SPAR_ERR_LIMIT,
@@ -493,18 +492,15 @@ static int find_advice(spar_trial *t, double tolerance, double length) {
                        .most = t->search.limit,
                        .present = spari_plan_present(s, t->steps),
                        .progress = spari_trial_progress(t, SPARI_ADVISE)};
-    char message[SPARI_MESSAGE_SIZE];
     int best = -1;
     d.run = spari_trial_run_of(t, &d.progress);
     d.run.goals = t->search.goals;
-    memcpy(message, s->message, sizeof message);
     spari_rebuild *beam = spari_zalloc(s->member_count, sizeof *beam);
     d.tried = spari_zalloc(d.most, sizeof *d.tried);
     int status = beam && d.tried ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "%s: no memory", SPARI_ADVISE);
-    status = spari_comm_agree(s->ranks.comm, status, s->message, sizeof s->message);
+    status = spari_agree(s, status);
     status = status == SPAR_OK ? spari_progress_ends(&d.progress, find_settings(&d, &best)) : status;
     if (status == SPAR_OK) {
-        memcpy(s->message, message, sizeof message); /* a failure in a trial is no failure of the session */
         hand_over(&d, best, beam, &t->advised);
     } else {
         free(beam);
@@ -521,7 +517,5 @@ int spar_trial_advise(spar_trial *trial, double tolerance, double length) {
     SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", SPARI_ADVISE);
     const spari_agreed arguments[] = {spari_real("tolerance", tolerance), spari_real("length", length)};
     SPARI_TRY(spari_trial_enter(trial, SPARI_ADVISE, arguments, 2, check_request(trial, tolerance, length)));
-    int status = spari_named(trial->session, SPARI_ADVISE, find_advice(trial, tolerance, length));
-    spari_trial_leave(trial);
-    return status;
+    return spari_trial_leave(trial, SPARI_ADVISE, find_advice(trial, tolerance, length));
 }

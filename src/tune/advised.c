@@ -9,33 +9,15 @@ static int check_advised(const spar_trial *trial, const char *call) {
     return SPAR_OK;
 }
 
-static void give_int(int *to, int x) {
-    if (to) {
-        *to = x;
-    }
-}
-
-static void give_whole(int64_t *to, int64_t x) {
-    if (to) {
-        *to = x;
-    }
-}
-
-static void give_real(double *to, double x) {
-    if (to) {
-        *to = x;
-    }
-}
-
 int spar_trial_get_settings(const spar_trial *trial, double *dt, int *substeps, int *scheme, double *coupling_rtol,
                             int *predictor, double *newton_rtol) {
     SPARI_TRY(check_advised(trial, __func__));
-    give_real(dt, trial->advised.dt);
-    give_int(substeps, trial->advised.substeps);
-    give_int(scheme, trial->advised.scheme);
-    give_real(coupling_rtol, trial->advised.coupling_rtol);
-    give_int(predictor, trial->advised.predictor);
-    give_real(newton_rtol, trial->advised.newton_rtol);
+    SPARI_GIVE(dt, trial->advised.dt);
+    SPARI_GIVE(substeps, trial->advised.substeps);
+    SPARI_GIVE(scheme, trial->advised.scheme);
+    SPARI_GIVE(coupling_rtol, trial->advised.coupling_rtol);
+    SPARI_GIVE(predictor, trial->advised.predictor);
+    SPARI_GIVE(newton_rtol, trial->advised.newton_rtol);
     return SPAR_OK;
 }
 
@@ -45,34 +27,31 @@ int spar_trial_get_beam(const spar_trial *trial, const spar_member *member, int 
     SPARI_REQUIRE(trial->session, member && member->session == trial->session, SPAR_ERR_ARGUMENT,
                   "%s: the member is %s; give a member of the trial's session", __func__,
                   member ? "of another session" : "NULL");
-    int64_t k = 0;
-    for (const spar_member *m = trial->session->members; m != member; m = m->next) {
-        k++;
-    }
+    const int64_t k = member->number;
     SPARI_REQUIRE(trial->session, k < trial->advised.members, SPAR_ERR_STATE,
                   "%s: '%s' was created after the advice; call spar_trial_advise again", __func__, member->name);
     const spari_rebuild *a = trial->advised.beam + k;
-    give_int(fidelity, a->fidelity);
-    give_whole(modes, a->modes);
-    give_int(elements, a->elements);
-    give_int(nodes_per_element, a->per_element);
-    give_int(points, a->points);
+    SPARI_GIVE(fidelity, a->fidelity);
+    SPARI_GIVE(modes, a->modes);
+    SPARI_GIVE(elements, a->elements);
+    SPARI_GIVE(nodes_per_element, a->per_element);
+    SPARI_GIVE(points, a->points);
     return SPAR_OK;
 }
 
 int spar_trial_get_outcome(const spar_trial *trial, double *error, double *cost, int *present_fails,
                            double *present_error) {
     SPARI_TRY(check_advised(trial, __func__));
-    give_real(error, trial->advised.error);
-    give_real(cost, trial->advised.cost);
-    give_int(present_fails, trial->advised.present_fails);
-    give_real(present_error, trial->advised.present_error);
+    SPARI_GIVE(error, trial->advised.error);
+    SPARI_GIVE(cost, trial->advised.cost);
+    SPARI_GIVE(present_fails, trial->advised.present_fails);
+    SPARI_GIVE(present_error, trial->advised.present_error);
     return SPAR_OK;
 }
 
 int spar_trial_get_search(const spar_trial *trial, int64_t *runs, double *work) {
     SPARI_TRY(check_advised(trial, __func__));
-    give_whole(runs, trial->advised.runs);
-    give_real(work, trial->advised.work);
+    SPARI_GIVE(runs, trial->advised.runs);
+    SPARI_GIVE(work, trial->advised.work);
     return SPAR_OK;
 }

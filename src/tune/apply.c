@@ -9,6 +9,7 @@
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"
 #include "../member/beam.h"
+#include "../member/check_arguments.h"
 #include "../member/joint.h"
 #include "../member/mean_acceleration.h"
 #include "../solve/work.h"
@@ -181,10 +182,8 @@ static void confirm(spar_session *s, change *c) {
 
 static int check_apply(spar_trial *t, const char *call) {
     spar_session *s = t->session;
-    SPARI_REQUIRE(s, !s->state.trial, SPAR_ERR_STATE, "%s: a trial run is in progress; call this before or after it",
-                  call);
-    SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
-                  "%s: a step is in progress; accept or reject it first", call);
+    SPARI_TRY(spari_need_no_trial(s, call));
+    SPARI_TRY(spari_need_idle(s, call));
     SPARI_REQUIRE(s, t->advised.given, SPAR_ERR_STATE, "%s: there is no advice yet; call %s first", call,
                   "spar_trial_advise");
     SPARI_REQUIRE(s, t->advised.of == spari_advised_of(s), SPAR_ERR_STATE,
@@ -229,7 +228,5 @@ int spar_trial_apply(spar_trial *trial, double *dt) {
     if (status == SPAR_OK && dt) {
         *dt = advised->dt;
     }
-    status = spari_named(s, __func__, status);
-    spari_trial_leave(trial);
-    return status;
+    return spari_trial_leave(trial, __func__, status);
 }

@@ -8,6 +8,7 @@
 #include "../math/basis.h"
 #include "../math/resample.h"
 #include "../member/body.h"
+#include "../member/check_arguments.h"
 #include "../member/plane.h"
 #include "../session/step_control.h"
 #include "../time/fidelity.h"
@@ -161,12 +162,10 @@ int spari_nodes_error_applies(const spar_member *m) {
 
 int spar_member_estimate_error(spar_member *member, double *step, double *nodes) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, member, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
+    SPARI_TRY(spari_need_committed(member, __func__));
     spar_member *m = member;
     spar_session *s = m->session;
     double found[2] = {0, 0};
-    SPARI_REQUIRE(s, m->committed, SPAR_ERR_STATE, "%s: '%s' is not committed; call spar_member_commit first", __func__,
-                  m->name);
     SPARI_REQUIRE(
         s, !step || spari_step_control_is_set(s), SPAR_ERR_STATE,
         "%s: step errors are not recorded; call spar_session_set_tolerance first, or request the error of the nodes",
@@ -184,11 +183,7 @@ int spar_member_estimate_error(spar_member *member, double *step, double *nodes)
         const int finds = m->fidelity == SPAR_FIDELITY_EXACT && m->mesh.per_element < SPARI_MAX_NODES;
         SPARI_TRY(finds ? spari_named(s, __func__, spari_nodes_error(m, found + 1)) : SPAR_OK);
     }
-    if (step) {
-        *step = found[0];
-    }
-    if (nodes) {
-        *nodes = found[1];
-    }
+    SPARI_GIVE(step, found[0]);
+    SPARI_GIVE(nodes, found[1]);
     return SPAR_OK;
 }

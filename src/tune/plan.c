@@ -131,7 +131,7 @@ int spari_plan_distance(spari_advisor *d, int a, int b, double *error) {
         return SPAR_OK;
     }
     found[0] = spari_comm_rank(s->ranks.comm) == 0 ? spari_record_error(x, y, d->search->goals, d->longer) : 0;
-    SPARI_TRY(spari_comm_sum(s->ranks.comm, found, 1, SPAR_OK, s->message, sizeof s->message));
+    SPARI_TRY(spari_sum(s, found, 1));
     *error = found[0];
     return SPAR_OK;
 }

@@ -45,9 +45,7 @@ int spar_session_sum_balance(const spar_session *session, int64_t capacity, int6
     status = spari_enter(s, __func__, status);
     if (status == SPAR_OK && all) {
         find_balance(s, all + BALANCE_COLUMNS * spari_comm_rank(s->ranks.comm));
-        status = spari_named(
-            s, __func__,
-            spari_comm_sum(s->ranks.comm, all, BALANCE_COLUMNS * ranks, SPAR_OK, s->message, sizeof s->message));
+        status = spari_named(s, __func__, spari_sum(s, all, BALANCE_COLUMNS * ranks));
     }
     for (int64_t r = 0; r < capacity && status == SPAR_OK && all; r++) {
         const double *of = r < ranks ? all + BALANCE_COLUMNS * r : NULL;
