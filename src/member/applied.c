@@ -7,6 +7,7 @@
 #include "../math/rotation.h"
 #include "beam.h"
 #include "check_arguments.h"
+#include "tangent.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +20,6 @@ typedef struct line_load {
     int *first;         /* [elements + 1] */
     double *phi;        /* [points][P] */
     double *load;       /* [points][6] times weight and Jacobian; global axes, at the reference if it follows */
-    double *workspace;  /* [7 P][4 P] workspace of the tangent */
     int64_t stations;   /* stations as given, for a rebuild with other nodes */
     double *eta, *said; /* [stations], [stations][6] */
 } line_load;
@@ -46,12 +46,8 @@ struct spari_foundation {
     double *pair; /* [elements][P (P + 1) / 2][6] */
 };
 
-static double *tangent_workspace(const spar_member *m) {
-    return spari_zalloc(28 * (int64_t)m->mesh.per_element * m->mesh.per_element, sizeof(double));
-}
-
 static void line_free(line_load *line) {
-    SPARI_FREE(line->first, line->phi, line->load, line->workspace, line->eta, line->said);
+    SPARI_FREE(line->first, line->phi, line->load, line->eta, line->said);
     memset(line, 0, sizeof *line);
 }
 
@@ -114,15 +110,15 @@ static void element_field(const spar_member *m, const double *q, double z[][4]) 
 
 /* Q/|Q| at a point; returns |Q|. */
 static double point_rotation(int P, const double *phi, double z[][4], double r[4]) {
-    double Q[4] = {0};
+    double sum[4] = {0};
     for (int l = 0; l < P; l++) {
         for (int i = 0; i < 4; i++) {
-            Q[i] += phi[l] * z[l][i];
+            sum[i] += phi[l] * z[l][i];
         }
     }
-    double N = sqrt(spari_quat_dot(Q, Q));
+    double N = sqrt(spari_quat_dot(sum, sum));
     for (int i = 0; i < 4; i++) {
-        r[i] = Q[i] / N;
+        r[i] = sum[i] / N;
     }
     return N;
 }
@@ -366,83 +362,56 @@ static void point_tangent(const double *load, int follows, const double r[4], do
     }
 }
 
-/* Change of 1/2 Im(g q*) with q: -1/4 (s I + w~), (s, w) = g q*. */
+/* The forces of the load turn with its nodes. */
 SPARI_APART static void turned_forces_tangent(const spar_member *m, const line_load *line, int follows, int e,
                                               double z[][4], double factor, double *S) {
     int P = m->mesh.per_element, stride = 6 * P;
     double g[7 * SPARI_MAX_NODES] = {0};
     line_forces(m, line, follows, e, 1, z, g);
     for (int l = 0; l < P; l++) {
-        double c[4], p[4];
-        spari_quat_conj(z[l], c);
-        spari_quat_mul(g + 7 * l + 3, c, p);
-        add_skew(S, stride, 6 * l + 3, 6 * l + 3, 0.25 * factor, p + 1);
-        for (int i = 0; i < 3; i++) {
-            S[stride * (6 * l + 3 + i) + 6 * l + 3 + i] += 0.25 * factor * p[0];
-        }
+        spari_turned_force(-factor, g + 7 * l + 3, z[l], S + (stride + 1) * (6 * l + 3), stride);
     }
 }
 
-/* B [P][7][4 P] -> S: maps rows and columns of nodal quaternions by dq = E dtheta */
-static void project_nodes(int P, const double *B, double E[][4][3], double factor, double *S) {
-    int stride = 6 * P;
-    for (int i = 0; i < P; i++) {
-        for (int j = 0; j < P; j++) {
-            double XE[7][3];
-            for (int r = 0; r < 7; r++) {
-                const double *x = B + ((int64_t)(7 * i + r) * P + j) * 4;
-                for (int c = 0; c < 3; c++) {
-                    XE[r][c] = x[0] * E[j][0][c] + x[1] * E[j][1][c] + x[2] * E[j][2][c] + x[3] * E[j][3][c];
-                }
+/* Block S of nodes i and j -= w (force, E_i^T 4-vector) for the derivatives Y (7 x 3) with respect to node j. */
+static void add_block(double w, double Y[7][3], double Ei[4][3], int stride, double *S) {
+    for (int c = 0; c < 3; c++) {
+        for (int r = 0; r < 3; r++) {
+            double turn = 0;
+            for (int k = 0; k < 4; k++) {
+                turn += Ei[k][r] * Y[3 + k][c];
             }
-            for (int c = 0; c < 3; c++) {
-                for (int r = 0; r < 3; r++) {
-                    double turn = 0;
-                    for (int k = 0; k < 4; k++) {
-                        turn += E[i][k][r] * XE[3 + k][c];
-                    }
-                    S[stride * (6 * i + r) + 6 * j + 3 + c] -= factor * XE[r][c];
-                    S[stride * (6 * i + 3 + r) + 6 * j + 3 + c] -= factor * turn;
-                }
-            }
+            S[stride * r + 3 + c] -= w * Y[r][c];
+            S[stride * (3 + r) + 3 + c] -= w * turn;
         }
     }
 }
 
 SPARI_APART static void line_tangent(const spar_member *m, const line_load *line, int follows, int e, double z[][4],
                                      double factor, double *S) {
-    int P = m->mesh.per_element;
-    double *B = line->workspace, E[SPARI_MAX_NODES][4][3];
+    int P = m->mesh.per_element, stride = 6 * P;
+    double E[SPARI_MAX_NODES][4][3];
     if (!line->first || factor == 0) {
         return;
     }
-    memset(B, 0, (size_t)(28 * P * P) * sizeof *B);
+    for (int l = 0; l < P; l++) {
+        spari_half_turns(z[l], E[l]);
+    }
     for (int k = line->first[e]; k < line->first[e + 1]; k++) {
         const double *phi = line->phi + (int64_t)k * P;
-        double r[4], X[7][4], N = point_rotation(P, phi, z, r);
+        double r[4], X[7][4], Y[7][3], N = point_rotation(P, phi, z, r);
         point_tangent(line->load + 6 * (int64_t)k, follows, r, N, X);
-        for (int i = 0; i < P; i++) {
-            for (int row = 0; row < 7; row++) {
-                for (int j = 0; j < P; j++) {
-                    double w = phi[i] * phi[j], *b = B + ((int64_t)(7 * i + row) * P + j) * 4;
-                    for (int c = 0; c < 4; c++) {
-                        b[c] += w * X[row][c];
-                    }
-                }
+        for (int j = 0; j < P; j++) {
+            for (int i = 0; i < 21; i++) {
+                const double *x = X[i / 3];
+                int c = i % 3;
+                Y[i / 3][c] = x[0] * E[j][0][c] + x[1] * E[j][1][c] + x[2] * E[j][2][c] + x[3] * E[j][3][c];
+            }
+            for (int i = 0; i < P; i++) {
+                add_block(factor * phi[i] * phi[j], Y, E[i], stride, S + 6 * (stride * i + j));
             }
         }
     }
-    for (int l = 0; l < P; l++) {
-        for (int j = 0; j < 3; j++) {
-            double half[3] = {0}, dq[4];
-            half[j] = 0.5;
-            pure_times(half, z[l], dq);
-            for (int i = 0; i < 4; i++) {
-                E[l][i][j] = dq[i];
-            }
-        }
-    }
-    project_nodes(P, B, E, factor, S);
     turned_forces_tangent(m, line, follows, e, z, factor, S);
 }
 
@@ -530,8 +499,7 @@ static int line_build(const spar_member *m, int kind, int64_t n, const double *e
     line->first = spari_zalloc(E + 1, sizeof *line->first);
     line->phi = spari_zalloc((int64_t)points * P, sizeof *line->phi);
     line->load = spari_zalloc((int64_t)points * 6, sizeof *line->load);
-    line->workspace = tangent_workspace(m);
-    int ok = s && w && line->first && line->phi && line->load && line->workspace;
+    int ok = s && w && line->first && line->phi && line->load;
     for (int e = 0; e < E && ok; e++) {
         int k = line->first[e], count = load_points(m, e, n, eta, s + k, w + k, at + k);
         ok = count >= 0;

@@ -102,8 +102,7 @@ static void sum_matrix(const spari_body *body, const spari_tangent_work *t, cons
     }
 }
 
-/* The columns 1/2 e_j q, e_j the imaginary units. */
-static void half_turns(const double *q, double h[4][3]) {
+void spari_half_turns(const double *q, double h[4][3]) {
     const double c[4][3] = {{-q[1], -q[2], -q[3]}, {q[0], q[3], -q[2]}, {-q[3], q[0], q[1]}, {q[2], -q[1], q[0]}};
     for (int i = 0; i < 12; i++) {
         h[i / 3][i % 3] = 0.5 * c[i / 3][i % 3];
@@ -135,8 +134,8 @@ static void node_maps(const double *z, int node, const double *v, const double *
     for (int i = 0; i < 4; i++) {
         rate[i] = z[SPARI_MAX_NODES * (QD + i) + node];
     }
-    half_turns(rotation, E);
-    half_turns(rate, by_rate);
+    spari_half_turns(rotation, E);
+    spari_half_turns(rate, by_rate);
     add_maps(cv, E, T, v ? v + 3 : NULL, E, F);
     add_maps(cm, E, T, a ? a + 3 : NULL, E, H);
     add_maps(cv, by_rate, T, v ? v + 3 : NULL, F, H);
@@ -160,15 +159,14 @@ static void put_maps(const spari_body *body, int e, const double *v, const doubl
     }
 }
 
-/* The nodal moment 1/2 Im(g q*) of constant g changes with q by -1/4 (s I + w~), (s, w) = g q*. */
-static void add_turned_force(const double *g, const double *q, double *S, int64_t stride) {
+void spari_turned_force(double factor, const double *g, const double *q, double *S, int64_t stride) {
     double c[4], p[4], w[3][3];
     spari_quat_conj(q, c);
     spari_quat_mul(g, c, p);
     spari_skew(p + 1, *w);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
-            S[stride * i + j] -= 0.25 * ((i == j ? p[0] : 0) + w[i][j]);
+            S[stride * i + j] -= 0.25 * factor * ((i == j ? p[0] : 0) + w[i][j]);
         }
     }
 }
@@ -183,7 +181,7 @@ static void add_turned_forces(const spari_body *body, int e, const spari_tangent
         for (int i = 0; i < 4; i++) {
             g[i] = t->g[SPARI_MAX_NODES * (3 + i) + l];
         }
-        add_turned_force(g, q, S + (stride + 1) * (6 * l + 3), stride);
+        spari_turned_force(1, g, q, S + (stride + 1) * (6 * l + 3), stride);
     }
 }
 
