@@ -184,18 +184,8 @@ DIRECT(consistent_single, 1, SPARI_UPTO_RATE, 1)
    need whole lines. */
 TARGET static double NAME(move_to)(const spari_nodes *s, int64_t first, int count, const double *c, int consistent,
                                    int single, void *x, void *v, int past) {
-    switch (4 * !!single + 2 * !!v + (consistent && v)) {
-    case 0:
-        return NAME(direct_places)(s, first, count, c, x, v, past);
-    case 2:
-        return NAME(direct_nodal)(s, first, count, c, x, v, past);
-    case 3:
-        return NAME(direct_consistent)(s, first, count, c, x, v, past);
-    case 4:
-        return NAME(direct_places_single)(s, first, count, c, x, v, past);
-    case 6:
-        return NAME(direct_nodal_single)(s, first, count, c, x, v, past);
-    default:
-        return NAME(direct_consistent_single)(s, first, count, c, x, v, past);
-    }
+    static double (*const direct[2][3])(const spari_nodes *, int64_t, int, const double *, void *, void *, int) = {
+        {NAME(direct_places), NAME(direct_nodal), NAME(direct_consistent)},
+        {NAME(direct_places_single), NAME(direct_nodal_single), NAME(direct_consistent_single)}};
+    return direct[!!single][v ? 1 + !!consistent : 0](s, first, count, c, x, v, past);
 }

@@ -737,25 +737,21 @@ TARGET static double NAME(motion)(const spari_nodes *s, int64_t first, int count
     if (s->per_element == 1) {
         return NAME(motion_carried)(s, first, count, c, what, buf);
     }
-    switch (2 * what + !!consistent) {
-    case 2 * SPARI_UPTO_POSITION:
-    case 2 * SPARI_UPTO_POSITION + 1:
-        return NAME(run_places)(s, first, count, c, buf, at);
-    case 2 * SPARI_UPTO_RATE:
-        return NAME(run_nodal_rates)(s, first, count, c, buf, at);
-    case 2 * SPARI_UPTO_RATE + 1:
-        return NAME(run_consistent_rates)(s, first, count, c, buf, at);
-    case 2 * (SPARI_UPTO_POSITION | SPARI_POSES):
-    case 2 * (SPARI_UPTO_POSITION | SPARI_POSES) + 1:
-        return NAME(run_poses)(s, first, count, c, buf, at);
-    case 2 * (SPARI_UPTO_RATE | SPARI_POSES):
-        return NAME(run_nodal_rates_poses)(s, first, count, c, buf, at);
-    case 2 * (SPARI_UPTO_RATE | SPARI_POSES) + 1:
-        return NAME(run_consistent_rates_poses)(s, first, count, c, buf, at);
-    default:
-        return consistent ? NAME(run_consistent_all)(s, first, count, c, buf, at)
-                          : NAME(run_nodal_all)(s, first, count, c, buf, at);
-    }
+    static double (*const run[2][SPARI_POSES + SPARI_UPTO])(const spari_nodes *, int64_t, int, const double *,
+                                                            double(*)[SPARI_ROW], int) = {
+        {[SPARI_UPTO_POSITION] = NAME(run_places),
+         [SPARI_UPTO_RATE] = NAME(run_nodal_rates),
+         [SPARI_UPTO_POSITION | SPARI_POSES] = NAME(run_poses),
+         [SPARI_UPTO_RATE | SPARI_POSES] = NAME(run_nodal_rates_poses),
+         [SPARI_UPTO_ACCEL] = NAME(run_nodal_all),
+         [SPARI_UPTO_ACCEL | SPARI_POSES] = NAME(run_nodal_all)},
+        {[SPARI_UPTO_POSITION] = NAME(run_places),
+         [SPARI_UPTO_RATE] = NAME(run_consistent_rates),
+         [SPARI_UPTO_POSITION | SPARI_POSES] = NAME(run_poses),
+         [SPARI_UPTO_RATE | SPARI_POSES] = NAME(run_consistent_rates_poses),
+         [SPARI_UPTO_ACCEL] = NAME(run_consistent_all),
+         [SPARI_UPTO_ACCEL | SPARI_POSES] = NAME(run_consistent_all)}};
+    return run[!!consistent][what](s, first, count, c, buf, at);
 }
 
 #include "kernel_direct.h"
@@ -1168,24 +1164,12 @@ TARGET static double NAME(loads)(const spari_nodes *s, int64_t first, int count,
     if (s->per_element == 1) {
         return NAME(loads_carried)(s, first, count, c, has_moment, f, audited, modal, sums, tops);
     }
-    switch (4 * !!has_moment + 2 * !!audited + !!consistent) {
-    case 0:
-        return NAME(gather_nodal)(s, first, count, c, f, work, modal, sums, tops);
-    case 1:
-        return NAME(gather_consistent)(s, first, count, c, f, work, modal, sums, tops);
-    case 2:
-        return NAME(gather_nodal_audited)(s, first, count, c, f, work, modal, sums, tops);
-    case 3:
-        return NAME(gather_consistent_audited)(s, first, count, c, f, work, modal, sums, tops);
-    case 4:
-        return NAME(gather_nodal_moment)(s, first, count, c, f, work, modal, sums, tops);
-    case 5:
-        return NAME(gather_consistent_moment)(s, first, count, c, f, work, modal, sums, tops);
-    case 6:
-        return NAME(gather_nodal_moment_audited)(s, first, count, c, f, work, modal, sums, tops);
-    default:
-        return NAME(gather_consistent_moment_audited)(s, first, count, c, f, work, modal, sums, tops);
-    }
+    static double (*const sum[2][2][2])(const spari_nodes *, int64_t, int, const double *, const tile_loads *,
+                                        double(*)[SPARI_ROW], double *, double *, double *) = {
+        {{NAME(gather_nodal), NAME(gather_consistent)}, {NAME(gather_nodal_audited), NAME(gather_consistent_audited)}},
+        {{NAME(gather_nodal_moment), NAME(gather_consistent_moment)},
+         {NAME(gather_nodal_moment_audited), NAME(gather_consistent_moment_audited)}}};
+    return sum[!!has_moment][!!audited][!!consistent](s, first, count, c, f, work, modal, sums, tops);
 }
 
 #include "kernel_bins.h"
