@@ -47,21 +47,11 @@ typedef struct coupled {
     double complex *value, *x;
 } coupled;
 
-static void coupled_free(coupled *c) {
-    spari_small_motions_free(&c->motions);
-    spari_reduced_free(&c->reduced);
-    SPARI_FREE(c->shape, c->nodes, c->value);
-}
-
 /* The structure's part, computed on every rank. */
 static int find_structure(spar_session *s, const coupled_ask *ask, coupled *c) {
     int64_t modes = ask->fluid.modes, n = ask->n;
     SPARI_TRY(spari_joints_place(s));
     SPARI_TRY(spari_small_motions_create(&c->motions, s, NULL));
-    SPARI_REQUIRE(s, c->motions.parts > 0, SPAR_ERR_UNSUPPORTED,
-                  "the session has no member that spar solves; add one that is neither a point nor external");
-    SPARI_REQUIRE(s, modes <= c->motions.size, SPAR_ERR_ARGUMENT, "%lld modes; there are %d unknowns", (long long)modes,
-                  c->motions.size);
     c->reduced = (spari_reduced){.n = (int)modes, .dt = ask->fluid.run.dt, .memory = ask->fluid.memory};
     c->shape = spari_zalloc((modes + 1) * c->motions.size + modes, sizeof *c->shape);
     c->nodes = spari_zalloc(6 * modes * ask->fluid.nodes, sizeof *c->nodes);
@@ -141,7 +131,9 @@ static int solve_coupled(spar_session *s, const char *call, coupled_ask *ask, do
             memcpy(frame, c.motions.w, sizeof c.motions.w);
         }
     }
-    coupled_free(&c);
+    spari_small_motions_free(&c.motions);
+    spari_reduced_free(&c.reduced);
+    SPARI_FREE(c.shape, c.nodes, c.value);
     return status;
 }
 

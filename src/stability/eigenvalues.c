@@ -12,8 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-int spari_small_motions_solve(spari_small_motions *w, int n, double complex shift, double complex *value,
-                              double complex *x) {
+/* The n eigenvalues nearest to the shift (see pencil.h), and x [n][size], with unit x^H M x. */
+static int solve_small_motions(spari_small_motions *w, int n, double complex shift, double complex *value,
+                               double complex *x) {
     int found = 0, status = spari_spectrum(&w->pencil, n, shift, SPARI_SPECTRUM_CHOICE, &found, value, x);
     const char *name = w->part[0].member->name;
     SPARI_REQUIRE(w->session, status != SPAR_ERR_MEMORY, status, "'%s': no memory for %d eigenvalues", name, n);
@@ -28,8 +29,9 @@ int spari_small_motions_solve(spari_small_motions *w, int n, double complex shif
     return SPAR_OK;
 }
 
-void spari_small_motions_shape(const spari_small_motions *w, const spari_motion_part *p, const double complex *x,
-                               double *nodes) {
+/* Converts a vector x of all unknowns to the motion of a member's nodes [nodes][6][2]. */
+static void shape_of_vector(const spari_small_motions *w, const spari_motion_part *p, const double complex *x,
+                            double *nodes) {
     const spar_member *m = p->member;
     double *part = w->workspace, *workspace = part + p->size, *motion = workspace + 6 * m->body->unique;
     for (int side = 0; side < 2; side++) {
@@ -54,14 +56,13 @@ static int eigenvalues_of(spar_member *m, int64_t n, double complex shift, doubl
     }
     if (status == SPAR_OK && n > 0) {
         double complex *value = spari_zalloc(n, sizeof *value), *x = spari_zalloc(n * w.size, sizeof *x);
-        status = value && x ? spari_small_motions_solve(&w, (int)n, shift, value, x)
+        status = value && x ? solve_small_motions(&w, (int)n, shift, value, x)
                             : spari_fail(s, SPAR_ERR_MEMORY, "'%s': no memory for eigenvalues", m->name);
         for (int64_t k = 0; k < n && status == SPAR_OK; k++) {
             eigenvalue[2 * k] = creal(value[k]);
             eigenvalue[2 * k + 1] = cimag(value[k]);
             if (shapes) {
-                spari_small_motions_shape(&w, spari_small_motions_part(&w, m), x + w.size * k,
-                                          shapes + 12 * m->nodes * k);
+                shape_of_vector(&w, spari_small_motions_part(&w, m), x + w.size * k, shapes + 12 * m->nodes * k);
             }
         }
         SPARI_FREE(value, x);

@@ -20,7 +20,6 @@
 #include <string.h>
 
 static const double usual_amplitude = 1e-4;
-enum { NODE = 13 };
 /* Maximum difference of the state after a period: displacement relative to the member's length, rotation, and both
    for velocities times a radian of the period. */
 static const double periodic = 1e-3;
@@ -46,21 +45,12 @@ typedef struct floquet {
 
 /* ---- states ---- */
 
-static void keep_motion(const spar_session *s, double *base) {
-    for (const spar_member *m = s->members; m; m = m->next) {
-        for (int64_t i = 0; i < m->nodes; i++, base += NODE) {
-            memcpy(base, m->now.q + 7 * i, 7 * sizeof *base);
-            memcpy(base + 7, m->now.v + 6 * i, 6 * sizeof *base);
-        }
-    }
-}
-
 /* Displaces all parts along the shape, and changes their velocities along it, in axes that rotate with each part. */
 static void displace(spar_session *s, const floquet *f, double way, double speed) {
     const double *shape = f->shape + 6 * f->nodes * f->mode, *base = f->base;
     for (spar_member *m = s->members; m; m = m->next) {
         const double *own = base + 10;
-        for (int64_t i = 0; i < m->nodes; i++, shape += 6, base += NODE) {
+        for (int64_t i = 0; i < m->nodes; i++, shape += 6, base += SPARI_NODE_MOTION) {
             double rotation[3], p[4], along[3], *q = m->now.q + 7 * i, *v = m->now.v + 6 * i;
             for (int k = 0; k < 3; k++) {
                 rotation[k] = way * shape[3 + k];
@@ -110,7 +100,7 @@ static void look_at_state(const spar_session *s, floquet *f, double *row) {
     f->drift = 0;
     for (const spar_member *m = s->members; m; m = m->next) {
         const double *own = base + 10, length = spari_member_length(m);
-        for (int64_t i = 0; i < m->nodes; i++, base += NODE, at += 6) {
+        for (int64_t i = 0; i < m->nodes; i++, base += SPARI_NODE_MOTION, at += 6) {
             double x[12];
             look_at_change(base, own, m->now.q + 7 * i, m->now.v + 6 * i, x);
             for (int k = 0; k < n; k++) {
@@ -146,7 +136,7 @@ static int run_period(spar_session *s, void *self) {
         SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->before_context));
         SPARI_TRY(spar_step(s, run->dt, run->solve, run->solve_context, &iterations));
         if (i == 0 && f->mode < 0) {
-            keep_motion(s, f->base);
+            spari_shapes_keep_motion(s, f->base);
         }
         if (i == 0 || i == f->steps) {
             look_at_state(s, f, f->change + 2 * f->modes * (i > 0));
@@ -220,20 +210,17 @@ static int find_shapes_of_period(spar_session *s, floquet *f) {
     int n = f->modes;
     SPARI_TRY(spari_joints_place(s));
     SPARI_TRY(spari_small_motions_create_loose(&f->motions, s));
-    SPARI_REQUIRE(s, f->motions.parts > 0, SPAR_ERR_UNSUPPORTED,
-                  "the session has no member that spar solves; add one that is neither a point nor external");
-    SPARI_REQUIRE(s, n <= f->motions.size, SPAR_ERR_ARGUMENT, "%d modes; there are %d unknowns", n, f->motions.size);
     int64_t square = (int64_t)n * n;
-    f->shape =
-        spari_zalloc(6 * n * f->nodes + 2 * n + NODE * f->nodes + (int64_t)n * f->motions.size, sizeof *f->shape);
+    f->shape = spari_zalloc(6 * n * f->nodes + 2 * n + SPARI_NODE_MOTION * f->nodes + (int64_t)n * f->motions.size,
+                            sizeof *f->shape);
     f->gram = spari_zalloc(9 * square + 4 * n, sizeof *f->gram);
     SPARI_REQUIRE(s, f->shape && f->gram, SPAR_ERR_MEMORY, "no memory for %d modes", n);
     f->Y[0] = f->gram + square, f->Y[1] = f->Y[0] + 4 * square, f->change = f->Y[1] + 4 * square;
     f->rate = f->shape + 6 * n * f->nodes, f->unit = f->rate + n, f->base = f->unit + n;
-    double *x = f->base + NODE * f->nodes;
+    double *x = f->base + SPARI_NODE_MOTION * f->nodes;
     SPARI_TRY(spari_shapes_find(&f->motions, n, x, f->rate));
     spari_shapes_show(&f->motions, n, x, f->shape);
-    keep_motion(s, f->base);
+    spari_shapes_keep_motion(s, f->base);
     return SPAR_OK;
 }
 
@@ -241,18 +228,16 @@ static int find_shapes_of_period(spar_session *s, floquet *f) {
 static int weigh_shapes(spar_session *s, floquet *f) {
     for (int i = 0; i < f->modes; i++) {
         const double *a = f->shape + 6 * f->nodes * i;
-        double most = 0;
+        f->unit[i] = spari_shapes_unit(s, a);
         for (const spar_member *m = s->members; m; m = m->next) {
             double length = spari_member_length(m);
             for (int64_t k = 0; k < m->nodes; k++, a += 6) {
-                most = fmax(most, fmax(spari_norm(a) / length, spari_norm(a + 3)));
                 for (int j = 0; j <= i; j++) {
                     const double *b = a + 6 * f->nodes * (j - i);
                     f->gram[f->modes * i + j] += product_at(length, a, b);
                 }
             }
         }
-        f->unit[i] = most > 0 ? 1 / most : 1;
     }
     SPARI_REQUIRE(s, spari_cholesky(f->modes, f->gram) == 0, SPAR_ERR_NUMERIC,
                   "the mode shapes are linearly dependent; request fewer modes");

@@ -4,6 +4,7 @@
 #include "../math/rotation.h"
 #include "../session/callbacks.h"
 #include "../session/prescribed_step.h"
+#include "shapes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -124,7 +125,7 @@ static void place_members(spar_session *s, const response_trial *of, double t, r
         for (int k = 0; k < 3; k++) {
             seen[k] = own[k] - w->w[k];
         }
-        for (int64_t i = 0; i < m->nodes; i++, base += 13, shape += 6) {
+        for (int64_t i = 0; i < m->nodes; i++, base += SPARI_NODE_MOTION, shape += 6) {
             double *q = to->q + 7 * i, *v = to->v + 6 * i, *a = to->a + 6 * i;
             move_steadily(base, own, t, q, v, a);
             if (part) {
@@ -209,23 +210,11 @@ static void take_trials(const spari_response_query *ask, const response_trial *o
     }
 }
 
-/* Amplitude of the shape that moves its nodes by one member length, or one radian. */
-static double unit_of(const spar_session *s, const spari_response_query *ask, int mode) {
-    const double *shape = ask->shape + 6 * ask->nodes * mode;
-    double most = 0;
-    for (const spar_member *m = s->members; m; m = m->next) {
-        for (int64_t i = 0; i < m->nodes; i++, shape += 6) {
-            most = fmax(most, fmax(spari_norm(shape) / spari_member_length(m), spari_norm(shape + 3)));
-        }
-    }
-    return most > 0 ? 1 / most : 1;
-}
-
 /* Both trials of a mode and kind. room [2][count][modes], scale [modes]. */
 static int try_mode(spar_session *s, response_trial *of, const spari_trial_settings *trial_settings,
                     const double *in_use, double *workspace, double *to) {
     const spari_response_query *ask = of->ask;
-    double size = ask->amplitude * unit_of(s, ask, of->mode);
+    double size = ask->amplitude * spari_shapes_unit(s, ask->shape + 6 * ask->nodes * of->mode);
     double unit = ask->memory > 0 || of->kind == 0 ? size : size * pow(ask->rate[of->mode], of->kind);
     spari_run run = ask->run;
     run.instead = move_there;
@@ -243,25 +232,16 @@ static int try_mode(spar_session *s, response_trial *of, const spari_trial_setti
     return SPAR_OK;
 }
 
-static void keep_base(const spar_session *s, double *base) {
-    for (const spar_member *m = s->members; m; m = m->next) {
-        for (int64_t i = 0; i < m->nodes; i++, base += 13) {
-            memcpy(base, m->after.q + 7 * i, 7 * sizeof *base);
-            memcpy(base + 7, m->after.v + 6 * i, 6 * sizeof *base);
-        }
-    }
-}
-
 static int run_trials(spar_session *s, const char *call, const spari_response_query *ask,
                       const spari_trial_settings *trial_settings, spari_fluid_response *response, double *workspace) {
     int n = ask->modes;
-    double *base = workspace, *in_use = base + 13 * ask->nodes, *scale = in_use + n, *left = scale + n,
+    double *base = workspace, *in_use = base + SPARI_NODE_MOTION * ask->nodes, *scale = in_use + n, *left = scale + n,
            *both = left + n;
     response_trial of = {.ask = ask, .call = call, .base = base, .response = response, .scale = scale, .left = left};
     double worst = 0;
     int kinds = ask->memory > 0 ? 1 : 3;
     of.all = 2 * kinds * n;
-    keep_base(s, base);
+    spari_shapes_keep_motion(s, base);
     see_loads(s, ask, 0, in_use, scale);
     for (of.mode = 0; of.mode < n; of.mode++) {
         for (of.kind = 0; of.kind < kinds; of.kind++) {
@@ -289,7 +269,8 @@ int spari_fluid_response_find(spar_session *s, const char *call, const spari_res
         response->x[k] = at.x, response->v[k] = at.v / ask->run.dt, response->a[k] = at.a / (ask->run.dt * ask->run.dt);
     }
     response->load = spari_zalloc(response->count * n * n, sizeof *response->load);
-    double *workspace = spari_zalloc(13 * ask->nodes + 3 * n + 2 * response->count * n, sizeof *workspace);
+    double *workspace =
+        spari_zalloc(SPARI_NODE_MOTION * ask->nodes + 3 * n + 2 * response->count * n, sizeof *workspace);
     int status =
         response->load && workspace ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the fluid's response");
     status = spari_agree(s, status);

@@ -166,10 +166,6 @@ typedef struct reduced_work {
     reduced_root *root;                /* [N] */
 } reduced_work;
 
-static void work_free(reduced_work *w) {
-    SPARI_FREE(w->pole, w->S, w->T, w->root);
-}
-
 static int work_create(reduced_work *w, const spari_reduced *r) {
     int64_t n = r->n;
     *w = (reduced_work){.n = r->n, .pole = spari_zalloc(r->tail.order, sizeof *w->pole)};
@@ -403,6 +399,6 @@ int spari_reduced_solve(const spari_reduced *r, int n, double complex shift, int
         value[k] = w.root[k].s;
         give_root(r, w.root + k, x + (int64_t)r->n * k);
     }
-    work_free(&w);
+    SPARI_FREE(w.pole, w.S, w.T, w.root);
     return status;
 }

@@ -2,6 +2,7 @@
 #include "shapes.h"
 
 #include "../base/session.h"
+#include "../math/rotation.h"
 #include "../time/fidelity.h"
 
 #include <math.h>
@@ -116,9 +117,29 @@ static int search_shapes(const spari_small_motions *w, int modes, double more, d
     return status;
 }
 
+double spari_shapes_unit(const spar_session *s, const double *shape) {
+    double most = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        for (int64_t i = 0; i < m->nodes; i++, shape += 6) {
+            most = fmax(most, fmax(spari_norm(shape) / spari_member_length(m), spari_norm(shape + 3)));
+        }
+    }
+    return most > 0 ? 1 / most : 1;
+}
+
+void spari_shapes_keep_motion(const spar_session *s, double *motion) {
+    for (const spar_member *m = s->members; m; m = m->next) {
+        for (int64_t i = 0; i < m->nodes; i++, motion += SPARI_NODE_MOTION) {
+            memcpy(motion, m->now.q + 7 * i, 7 * sizeof *motion);
+            memcpy(motion + 7, m->now.v + 6 * i, 6 * sizeof *motion);
+        }
+    }
+}
+
 int spari_shapes_find(spari_small_motions *w, int modes, double *shape, double *rate) {
     int64_t n = w->size;
     int count = 0;
+    SPARI_REQUIRE(w->session, modes <= n, SPAR_ERR_ARGUMENT, "%d modes; there are %d unknowns", modes, w->size);
     double complex *value = spari_zalloc(2 * modes * (n + 1), sizeof *value);
     double *workspace = spari_zalloc(2 * n, sizeof *workspace), most = 0;
     int status = value && workspace ? SPAR_OK : SPAR_ERR_MEMORY;

@@ -9,6 +9,11 @@ int64_t spari_shapes_nodes(const spar_session *session);
 /* K, C or M (kind 0, 1, 2) times x. */
 void spari_shapes_times(const spari_pencil *pencil, int kind, const double *x, double *y);
 double spari_shapes_product(int n, const double *a, const double *b);
+/* Amplitude of a shape [nodes][6] that moves its nodes by one length of their member, or one radian. */
+double spari_shapes_unit(const spar_session *session, const double *shape);
+/* The motion of all nodes between steps, motion [nodes][13]: displacement, quaternion, velocity, angular velocity. */
+enum { SPARI_NODE_MOTION = 13 };
+void spari_shapes_keep_motion(const spar_session *session, double *motion);
 /* The lowest shapes [modes][size], of unit mass, and their rates [modes], > 0; a status and a message. */
 int spari_shapes_find(spari_small_motions *motions, int modes, double *shape, double *rate);
 /* Converts shapes to motion of the nodes of all members [modes][nodes][6]; members that spar does not solve are at

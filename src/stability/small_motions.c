@@ -115,6 +115,8 @@ static int gather_motions(spari_small_motions *w, const spar_member *first, int 
     }
     free(t.of);
     SPARI_TRY(status);
+    SPARI_REQUIRE(s, w->parts > 0, SPAR_ERR_UNSUPPORTED,
+                  "the session has no member that spar solves; add one that is neither a point nor external");
     int64_t most = 0;
     for (int i = 0; i < w->parts; i++) {
         const spar_member *m = w->part[i].member;
@@ -129,11 +131,6 @@ static int gather_motions(spari_small_motions *w, const spar_member *first, int 
 }
 
 /* ---- frame of reference ---- */
-
-static double apart_by(const double a[3], const double b[3]) {
-    double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return spari_norm(d);
-}
 
 /* x := derivative of vectors that rotate with s */
 static void rotate_vectors(int n, const double s[3], const double *x, double *y) {
@@ -178,7 +175,8 @@ static int check_same(const spari_small_motions *w, const spari_motion_part *p, 
     return SPAR_OK;
 }
 
-static int fill_motions(spari_small_motions *w) {
+/* joints: those to add; NULL: none. */
+static int fill_motions(spari_small_motions *w, const spar_joint *joints) {
     spar_session *s = w->session;
     int constraints = 0;
     spari_pencil_free(&w->pencil);
@@ -187,15 +185,17 @@ static int fill_motions(spari_small_motions *w) {
         const spari_motion_part *p = w->part + i;
         int64_t first = w->pencil.entries;
         w->pencil.base = p->at;
-        int status = p->member->row->linearise(p->member, w->loose ? p->own : w->w, &w->pencil);
+        const spari_fidelity *row = p->member->row;
+        int status = w->modes ? row->problem(p->member, &w->pencil)
+                              : row->linearise(p->member, w->loose ? p->own : w->w, &w->pencil);
         SPARI_REQUIRE(s, status != SPAR_ERR_UNSUPPORTED, status,
                       "'%s' is linear in the frame of its root, which rotates relative to the parts it is connected "
                       "to; use SPAR_FIDELITY_EXACT",
                       p->member->name);
         SPARI_REQUIRE(s, status == SPAR_OK, status, "'%s': no memory for eigenvalues", p->member->name);
-        SPARI_TRY(w->loose ? SPAR_OK : check_same(w, p, first));
+        SPARI_TRY(w->loose || w->modes ? SPAR_OK : check_same(w, p, first));
     }
-    for (const spar_joint *j = s->joints; j; j = j->next) {
+    for (const spar_joint *j = joints; j; j = j->next) {
         SPARI_TRY(spari_small_motions_add_joint(w, j, &constraints));
     }
     w->pencil.constraints = constraints;
@@ -208,14 +208,14 @@ static int fill_motions(spari_small_motions *w) {
 static int find_frame(spari_small_motions *w) {
     int same = 1;
     for (int i = 1; i < w->parts; i++) {
-        const double *a = w->part[0].own, *b = w->part[i].own;
-        same = same && apart_by(a, b) <= one_turn * fmax(spari_norm(a), spari_norm(b));
+        const double *a = w->part[0].own, *b = w->part[i].own, apart[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+        same = same && spari_norm(apart) <= one_turn * fmax(spari_norm(a), spari_norm(b));
     }
     if (same && w->parts > 0 && spari_norm(w->part[0].own) > 0) {
         char message[SPARI_MESSAGE_SIZE];
         memcpy(w->w, w->part[0].own, sizeof w->w);
         (void)spari_messages_redirect(message); /* a frame that does not fit is no failure */
-        int status = fill_motions(w);
+        int status = fill_motions(w, w->session->joints);
         (void)spari_messages_redirect(NULL);
         if (status != SPAR_ERR_UNSUPPORTED) {
             SPARI_REQUIRE(w->session, status == SPAR_OK, status, "%s", message);
@@ -223,7 +223,7 @@ static int find_frame(spari_small_motions *w) {
         }
     }
     memset(w->w, 0, sizeof w->w);
-    return fill_motions(w);
+    return fill_motions(w, w->session->joints);
 }
 
 static int check_motions(const spari_small_motions *w) {
@@ -248,9 +248,6 @@ static int check_motions(const spari_small_motions *w) {
 int spari_small_motions_create(spari_small_motions *w, spar_session *s, const spar_member *first) {
     *w = (spari_small_motions){.session = s};
     SPARI_TRY(gather_motions(w, first, 1));
-    if (w->parts == 0) {
-        return SPAR_OK;
-    }
     SPARI_TRY(find_frame(w));
     return check_motions(w);
 }
@@ -258,25 +255,11 @@ int spari_small_motions_create(spari_small_motions *w, spar_session *s, const sp
 int spari_small_motions_create_loose(spari_small_motions *w, spar_session *s) {
     *w = (spari_small_motions){.session = s, .loose = 1};
     SPARI_TRY(gather_motions(w, NULL, 1));
-    return w->parts > 0 ? fill_motions(w) : SPAR_OK;
+    return fill_motions(w, s->joints);
 }
 
 int spari_small_motions_create_modes(spari_small_motions *w, const spar_member *first, int connected) {
-    spar_session *s = first->session;
-    int constraints = 0;
-    *w = (spari_small_motions){.session = s, .modes = 1};
+    *w = (spari_small_motions){.session = first->session, .modes = 1};
     SPARI_TRY(gather_motions(w, first, connected));
-    SPARI_REQUIRE(s, spari_pencil_create(&w->pencil, w->size) == SPAR_OK, SPAR_ERR_MEMORY, "no memory for modes");
-    for (int i = 0; i < w->parts; i++) {
-        const spari_motion_part *p = w->part + i;
-        w->pencil.base = p->at;
-        int status = p->member->row->problem(p->member, &w->pencil);
-        SPARI_REQUIRE(s, status == SPAR_OK, status, "'%s': no memory for modes", p->member->name);
-    }
-    for (const spar_joint *j = connected ? s->joints : NULL; j; j = j->next) {
-        SPARI_TRY(spari_small_motions_add_joint(w, j, &constraints));
-    }
-    w->pencil.constraints = constraints;
-    SPARI_REQUIRE(s, !w->pencil.full, SPAR_ERR_MEMORY, "no memory for modes");
-    return SPAR_OK;
+    return fill_motions(w, connected ? w->session->joints : NULL);
 }

@@ -17,11 +17,5 @@ int spari_small_motions_create_loose(spari_small_motions *motions, spar_session 
    to the member; otherwise without joints. */
 int spari_small_motions_create_modes(spari_small_motions *motions, const spar_member *first, int connected);
 void spari_small_motions_free(spari_small_motions *motions);
-/* The n eigenvalues nearest to the shift (see pencil.h), and x [n][size], with unit x^H M x; a status and a message. */
-int spari_small_motions_solve(spari_small_motions *motions, int n, double complex shift, double complex *value,
-                              double complex *x);
-/* Converts a vector x of all unknowns to the motion of a member's nodes [nodes][6][2]. */
-void spari_small_motions_shape(const spari_small_motions *motions, const spari_motion_part *part,
-                               const double complex *x, double *nodes);
 
 #endif
