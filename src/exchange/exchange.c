@@ -65,7 +65,7 @@ static int64_t block_of_rank(const spar_session *s, int rank) {
 
 /* Whether members or joints were added since the blocks were laid out. */
 static int fits_blocks(const spar_session *s) {
-    const int64_t *first = s->own->first;
+    const int64_t *first = s->own->exchange.first;
     int fits = 1;
     for (int r = 0; r < spari_comm_size(s->ranks.comm) && first; r++) {
         fits = fits && first[r + 1] - first[r] == block_of_rank(s, r);
@@ -92,28 +92,26 @@ static int make_bins(spar_session *s, int64_t count) {
 
 int spari_session_seal(spar_session *s, int status) {
     int ranks = spari_comm_size(s->ranks.comm);
+    spari_exchange *x = &s->own->exchange;
     int64_t count = 0;
     for (spar_member *m = s->members; m; m = m->next) {
         count += m->committed ? 6 * m->nodes : 0;
     }
-    if (status == SPAR_OK && (!s->own->pack || s->own->pack_count != count || !fits_blocks(s))) {
-        SPARI_FREE(s->own->pack, s->own->first, s->own->motion);
-        s->own->pack_count = count;
-        s->own->first = NULL;
-        s->own->motion = NULL;
-        s->own->pack = spari_zalloc(count + 2, sizeof *s->own->pack);
-        int ok = s->own->pack != NULL;
+    if (status == SPAR_OK && (!x->pack || x->pack_count != count || !fits_blocks(s))) {
+        SPARI_FREE(x->pack, x->first, x->motion);
+        *x = (spari_exchange){.pack = spari_zalloc(count + 2, sizeof *x->pack), .pack_count = count};
+        int ok = x->pack != NULL;
         if (ok && ranks > 1) {
-            s->own->first = spari_zalloc(ranks + 1, sizeof *s->own->first);
-            ok = s->own->first != NULL;
+            x->first = spari_zalloc(ranks + 1, sizeof *x->first);
+            ok = x->first != NULL;
             for (int r = 0; r < ranks && ok; r++) {
-                s->own->first[r + 1] = s->own->first[r] + block_of_rank(s, r);
+                x->first[r + 1] = x->first[r] + block_of_rank(s, r);
             }
-            ok = ok && (s->own->motion = spari_zalloc(s->own->first[ranks], sizeof *s->own->motion));
+            ok = ok && (x->motion = spari_zalloc(x->first[ranks], sizeof *x->motion));
         }
         if (!ok) {
-            free(s->own->pack);
-            s->own->pack = NULL;
+            free(x->pack);
+            x->pack = NULL;
             status = spari_fail(s, SPAR_ERR_MEMORY, "no memory for the exchange between ranks");
         }
     }
@@ -128,7 +126,7 @@ int spari_session_seal(spar_session *s, int status) {
 }
 
 int spari_session_is_sealed(const spar_session *s) {
-    return !s->ranks.reproducible || s->own->bins_capacity >= s->own->pack_count + 2;
+    return !s->ranks.reproducible || s->own->bins_capacity >= s->own->exchange.pack_count + 2;
 }
 
 /* ---- loads ---- */
@@ -154,15 +152,15 @@ static int sum_bins(spar_session *s, int64_t count, double pushes) {
     spari_bins_add(bins + count, pushes);
     SPARI_TRY(spari_comm_sum_bins(s->ranks.comm, bins, count + 1, SPAR_OK, s->message, sizeof s->message));
     for (int64_t i = 0; i < count; i++) {
-        s->own->pack[i] = 0.5 * spari_bins_value(bins + i);
+        s->own->exchange.pack[i] = 0.5 * spari_bins_value(bins + i);
     }
-    s->own->pack[count] = spari_bins_value(bins + count);
+    s->own->exchange.pack[count] = spari_bins_value(bins + count);
     return SPAR_OK;
 }
 
 int spari_session_exchange_loads(spar_session *s, int *pushed) {
-    double *pushes = s->own->pack + s->own->pack_count;
-    memset(s->own->pack, 0, (size_t)(s->own->pack_count + 2) * sizeof *s->own->pack);
+    double *pushes = s->own->exchange.pack + s->own->exchange.pack_count;
+    memset(s->own->exchange.pack, 0, (size_t)(s->own->exchange.pack_count + 2) * sizeof *s->own->exchange.pack);
     int64_t at = 0;
     for (spar_member *m = s->members; m; m = m->next) {
         m->load.pack_at = at;
@@ -171,13 +169,13 @@ int spari_session_exchange_loads(spar_session *s, int *pushed) {
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         if (spari_fluid_member(f)->committed) {
             if (!s->ranks.reproducible) {
-                spari_fluid_add_loads(f, s->own->pack + spari_fluid_member(f)->load.pack_at);
+                spari_fluid_add_loads(f, s->own->exchange.pack + spari_fluid_member(f)->load.pack_at);
             }
             *pushes += spari_fluid_has_loads(f);
         }
     }
-    SPARI_TRY(s->ranks.reproducible ? sum_bins(s, s->own->pack_count, *pushes)
-                                    : spari_sum(s, s->own->pack, s->own->pack_count + 1));
+    SPARI_TRY(s->ranks.reproducible ? sum_bins(s, s->own->exchange.pack_count, *pushes)
+                                    : spari_sum(s, s->own->exchange.pack, s->own->exchange.pack_count + 1));
     SPARI_GIVE(pushed, *pushes > 0);
     return SPAR_OK;
 }
@@ -188,7 +186,7 @@ int spari_session_moved(spar_session *s, int *moved) {
 }
 
 void spari_session_take_loads(const spar_session *s, const spar_member *m, double *load) {
-    memcpy(load, s->own->pack + m->load.pack_at, (size_t)(6 * m->nodes) * sizeof *load);
+    memcpy(load, s->own->exchange.pack + m->load.pack_at, (size_t)(6 * m->nodes) * sizeof *load);
     spari_joints_on_external(m, load);
 }
 
@@ -223,12 +221,13 @@ int spari_session_share_motion(spar_session *s, int status) {
         return status;
     }
     if (status == SPAR_OK) {
-        pack_own(s, rank, s->own->motion + s->own->first[rank]);
+        pack_own(s, rank, s->own->exchange.motion + s->own->exchange.first[rank]);
     }
-    SPARI_TRY(spari_comm_share(s->ranks.comm, s->own->motion, s->own->first, status, s->message, sizeof s->message));
+    SPARI_TRY(spari_comm_share(s->ranks.comm, s->own->exchange.motion, s->own->exchange.first, status, s->message,
+                               sizeof s->message));
     for (int r = 0; r < ranks; r++) {
         if (r != rank) {
-            unpack_peer(s, r, s->own->motion + s->own->first[r]);
+            unpack_peer(s, r, s->own->exchange.motion + s->own->exchange.first[r]);
         }
     }
     return SPAR_OK;

@@ -16,14 +16,19 @@ typedef struct spari_step_control {
     int64_t rejected;
 } spari_step_control;
 
-struct spari_own {
+/* Memory for the exchange between ranks, which spari_session_seal makes for the members as they are. */
+typedef struct spari_exchange {
     double *pack; /* loads of all members, stacked, for the sum over ranks: [6 * nodes of all members], number of fluids
                      that push, status */
     int64_t pack_count;
+    int64_t *first; /* several ranks: begin of the block of each rank's members in `motion` */
+    double *motion; /* several ranks: motion of all solved members, by owner */
+} spari_exchange;
+
+struct spari_own {
+    spari_exchange exchange;
     spari_bins *bins; /* reproducible sums of the same numbers, in their order; capacity bins_capacity */
     int64_t bins_capacity;
-    int64_t *first;          /* several ranks: begin of the block of each rank's members in `motion` */
-    double *motion;          /* several ranks: motion of all solved members, by owner */
     struct spari_unit *unit; /* items of the threads (session/work_shares.h); NULL: none, capacity unit_capacity */
     int64_t unit_capacity;
     spar_member **member; /* all members, for a step with several threads, `listed` of them; same capacity */

@@ -93,7 +93,7 @@ void spar_session_destroy(spar_session **session) {
     if (s->own->free_trials) {
         s->own->free_trials(s->own->trials);
     }
-    SPARI_FREE(s->own->pack, s->own->bins, s->own->first, s->own->motion, s);
+    SPARI_FREE(s->own->exchange.pack, s->own->bins, s->own->exchange.first, s->own->exchange.motion, s);
     *session = NULL;
 }
 

@@ -179,20 +179,13 @@ int spar_trial_get_motion(const spar_trial *trial, int64_t *modes, double *ampli
         "option " key " (1: keep)", key, offsetof(spar_trial, search.field), SPARI_IS_WORD, 0, 0, 1, "vary or keep",   \
             {"vary", "keep"}, 0, SPARI_AGREED                                                                          \
     }
-static const spari_setting options[] = {KEEP("dt", keep_dt),
-                                        KEEP("nodes", keep_nodes),
-                                        KEEP("coupling", keep_coupling),
-                                        {"option limit",
-                                         "limit",
-                                         offsetof(spar_trial, search.limit),
-                                         SPARI_IS_WHOLE,
-                                         0,
-                                         4,
-                                         1000,
-                                         "4 to 1000 trials",
-                                         {NULL, NULL},
-                                         15,
-                                         SPARI_AGREED}};
+#define LIMIT(least, most, range)                                                                                      \
+    {                                                                                                                  \
+        "option limit", "limit", offsetof(spar_trial, search.limit), SPARI_IS_WHOLE, 0, least, most, range,            \
+            {NULL, NULL}, MOST_TRIALS, SPARI_AGREED                                                                    \
+    }
+static const spari_setting options[] = {KEEP("dt", keep_dt), KEEP("nodes", keep_nodes), KEEP("coupling", keep_coupling),
+                                        LIMIT(4, 1000, "4 to 1000 trials")};
 enum { OPTIONS = sizeof options / sizeof *options };
 
 int spar_trial_set_option(spar_trial *trial, const char *key, const char *value) {

@@ -20,7 +20,8 @@ int spari_joints_save_snapshot(spar_session *s, spari_joint_snapshot *t) {
     return SPAR_OK;
 }
 
-int64_t spari_joints_end_node(const spar_member *m, int64_t node, spari_mesh mesh) {
+/* Node of a mesh that coincides with a node of the member, as the end of an element in both; -1: none. */
+static int64_t end_node(const spar_member *m, int64_t node, spari_mesh mesh) {
     int64_t k = node % m->mesh.per_element;
     return k > 0 && k < m->mesh.per_element - 1
                ? -1
@@ -33,7 +34,7 @@ int spari_joints_follow_rebuild(const spar_member *m, const spar_member *old) {
             if (j->member[side] != m) {
                 continue;
             }
-            int64_t node = spari_joints_end_node(old, j->node[side], m->mesh);
+            int64_t node = end_node(old, j->node[side], m->mesh);
             SPARI_REQUIRE(m->session, node >= 0, SPAR_ERR_STATE,
                           "joint '%s' constrains node %lld of '%s', which lies within an element, now or after the "
                           "change: the nodes of the member cannot change; connect joints at element boundaries",
@@ -73,7 +74,7 @@ int spari_joints_hold_within(const spar_member *m, int elements) {
     int within = 0;
     for (const spar_joint *j = m->joints; j; j = spari_next_joint_of(m, j)) {
         for (int side = 0; side < 2; side++) {
-            within = within || (j->member[side] == m && spari_joints_end_node(m, j->node[side], mesh) < 0);
+            within = within || (j->member[side] == m && end_node(m, j->node[side], mesh) < 0);
         }
     }
     return within;

@@ -19,8 +19,6 @@ int spari_joints_follow_rebuild(const spar_member *member, const spar_member *ol
 /* Restores the copies, after the members have been restored; or keeps the present state. */
 void spari_joints_restore_snapshot(spar_session *session, spari_joint_snapshot *joint_snapshot);
 void spari_joints_drop_snapshot(spar_session *session, spari_joint_snapshot *joint_snapshot);
-/* Node of a mesh that coincides with a node of the member, as the end of an element in both; -1: none. */
-int64_t spari_joints_end_node(const spar_member *member, int64_t node, spari_mesh mesh);
 /* Whether a joint is at a node inside an element, or would be with this many elements. */
 int spari_joints_hold_within(const spar_member *member, int elements);
 

@@ -217,10 +217,6 @@ void spari_record_free(spari_record *r) {
     *r = (spari_record){0};
 }
 
-int64_t spari_record_size(const spari_record *r) {
-    return SPARI_SAMPLES * width(r);
-}
-
 /* ---- sampling ---- */
 
 static double *recent(const spari_record *r, int64_t i) {
@@ -417,7 +413,7 @@ static double error_of_part(const spari_record *a, const spari_record *b, part_o
 }
 
 /* Reactions are of roots and of joints; numbers count individually. */
-static double error_of_goals(const spari_record *a, const spari_record *b, int goals, double longer) {
+double spari_record_error(const spari_record *a, const spari_record *b, int goals, double longer) {
     double most = 0;
     for (int block = 0; block <= SPARI_OF_LOAD; block++) {
         if (goals & SPARI_GOAL(block)) {
@@ -431,10 +427,6 @@ static double error_of_goals(const spari_record *a, const spari_record *b, int g
         most = fmax(most, error_of_part(a, b, (part_of){SPARI_OF_NUMBERS, i, i + 1}, longer));
     }
     return most;
-}
-
-double spari_record_error(const spari_record *a, const spari_record *b, int goals, double longer) {
-    return error_of_goals(a, b, goals, longer);
 }
 
 /* ---- properties of a run ---- */

@@ -61,8 +61,6 @@ double spari_record_load(const spari_record *a, const spari_record *b);
 /* Largest of these errors over the goals, extrapolated to a run `longer` times as long by their growth from the
    second third to the last. */
 double spari_record_error(const spari_record *a, const spari_record *b, int goals, double longer);
-/* Size of its samples, in numbers. */
-int64_t spari_record_size(const spari_record *record);
 /* Largest root mean square, over the positions, of the motion relative to the root. */
 double spari_record_reach(const spari_record *record);
 /* Shortest period, as a fraction of the run's time, of motion larger than this fraction: 0: none. */

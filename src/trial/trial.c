@@ -70,9 +70,8 @@ static void copy_saved(spar_session *to, const spar_session *from) {
 }
 
 typedef struct snapshot {
-    spar_session session;  /* the saved fields of it */
-    double *pack, *motion; /* private data of the session that are saved meanwhile */
-    int64_t pack_count, *first;
+    spar_session session;    /* the saved fields of it */
+    spari_exchange exchange; /* private data of the session that are saved meanwhile */
     spari_coupling *coupling;
     spar_member *members;                /* [member_count] old members; */
     int made;                            /* number of those rebuilt */
@@ -90,10 +89,7 @@ static void snapshot_free(const snapshot *t) {
 static int snapshot_create(spar_session *s, snapshot *t) {
     spari_own *own = s->own;
     *t = (snapshot){.session = {.settings = s->settings, .setting_count = s->setting_count},
-                    .pack = own->pack,
-                    .motion = own->motion,
-                    .pack_count = own->pack_count,
-                    .first = own->first,
+                    .exchange = own->exchange,
                     .coupling = own->coupling};
     copy_saved(&t->session, s);
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
@@ -110,8 +106,7 @@ static int snapshot_create(spar_session *s, snapshot *t) {
     }
     own->coupling = NULL;
     s->coupling.stale = 1;
-    own->pack = own->motion = NULL;
-    own->first = NULL;
+    own->exchange = (spari_exchange){0};
     s->callbacks.log = NULL;
     return SPAR_OK;
 }
@@ -167,10 +162,9 @@ static void go_back(spar_session *s, snapshot *t) {
     }
     spari_joints_restore_snapshot(s, &t->joint_snapshot);
     spari_coupling_free(&s->own->coupling);
-    SPARI_FREE(s->own->pack, s->own->first, s->own->motion);
+    SPARI_FREE(s->own->exchange.pack, s->own->exchange.first, s->own->exchange.motion);
     copy_saved(s, &t->session);
-    s->own->pack = t->pack, s->own->motion = t->motion, s->own->first = t->first;
-    s->own->pack_count = t->pack_count, s->own->coupling = t->coupling;
+    s->own->exchange = t->exchange, s->own->coupling = t->coupling;
     snapshot_free(t);
     spari_fluid_release_gone(s);
 }
@@ -230,14 +224,6 @@ static int march(spar_session *s, const spari_run *run, spari_record *r) {
     return SPAR_OK;
 }
 
-/* Processor time of a run, summed over the ranks. */
-static int share_seconds(spar_session *s, spari_record *r) {
-    double seconds[2] = {r->seconds, 0};
-    SPARI_TRY(spari_sum(s, seconds, 1));
-    r->seconds = seconds[0];
-    return SPAR_OK;
-}
-
 /* The members and fluids there now are the trial's. balanced: the run begins with a start with initial accelerations.
  */
 static int run_there(spar_session *s, const spari_run *run, int balanced, spari_record *r) {
@@ -254,8 +240,10 @@ static int run_there(spar_session *s, const spari_run *run, int balanced, spari_
         status = march(s, run, r);
     }
     if (status == SPAR_OK) {
+        double seconds[2] = {r->seconds, 0};
         memcpy(r->report, s->own->coupling->report, sizeof r->report);
-        status = share_seconds(s, r);
+        status = spari_sum(s, seconds, 1);
+        r->seconds = seconds[0];
     }
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         r->asked |= spari_fluid_asked(f);

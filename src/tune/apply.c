@@ -41,9 +41,8 @@ typedef struct anew {
 typedef struct change {
     double before[SPARI_MOST_VARIED]; /* old settings */
     int past;
-    double *pack, *motion; /* exchange memory of the ranks, likewise */
-    int64_t pack_count, *first;
-    anew *made; /* [count] in order */
+    spari_exchange exchange; /* likewise */
+    anew *made;              /* [count] in order */
     int64_t count;
     spari_moved_loads *carried;          /* [count] room for the fluids with other nodes */
     spari_joint_snapshot joint_snapshot; /* of the members; copied if a connected one is rebuilt */
@@ -137,45 +136,18 @@ static int carry_change(spar_session *s, const change *c, const char *call) {
     return spari_move_loads(s, call, any, c->carried, count);
 }
 
-static void detach_exchange(spari_own *own, change *c) {
-    c->pack = own->pack, c->motion = own->motion, c->first = own->first, c->pack_count = own->pack_count;
-    own->pack = own->motion = NULL;
-    own->first = NULL;
-}
-
-static void swap_exchange(spari_own *own, change *c) {
-    double *pack = own->pack, *motion = own->motion;
-    int64_t *first = own->first, count = own->pack_count;
-    own->pack = c->pack, own->motion = c->motion, own->first = c->first, own->pack_count = c->pack_count;
-    c->pack = pack, c->motion = motion, c->first = first, c->pack_count = count;
-}
-
-/* The message of the failure stays. */
-static void undo(spar_session *s, change *c) {
+/* Keeps what has been made, or restores what was. */
+static void end_made(const change *c, int keep) {
     for (int64_t k = c->count - 1; k >= 0; k--) {
         anew *a = &c->made[k];
         if (a->fluid) {
-            spari_fluid_restore(a->fluid, a->fluid_was);
+            (keep ? spari_fluid_adopt : spari_fluid_restore)(a->fluid, a->fluid_was);
+        } else if (keep) {
+            spari_member_adopt(a->member, &a->was);
         } else {
             spari_member_restore(a->member, &a->was);
         }
     }
-    spari_joints_restore_snapshot(s, &c->joint_snapshot);
-    swap_exchange(s->own, c);
-    put_settings(s, c->before, c->past);
-}
-
-static void confirm(spar_session *s, change *c) {
-    for (int64_t k = c->count - 1; k >= 0; k--) {
-        anew *a = &c->made[k];
-        if (a->fluid) {
-            spari_fluid_adopt(a->fluid, a->fluid_was);
-        } else {
-            spari_member_adopt(a->member, &a->was);
-        }
-    }
-    spari_joints_drop_snapshot(s, &c->joint_snapshot);
-    s->coupling.stale = 1;
 }
 
 /* ---- public call ---- */
@@ -205,7 +177,8 @@ int spar_trial_apply(spar_trial *trial, double *dt) {
     SPARI_TRY(spari_trial_enter(trial, __func__, NULL, 0, check_apply(trial, __func__)));
     int status = change_create(s, &c), begun = status == SPAR_OK;
     if (begun) {
-        detach_exchange(s->own, &c);
+        c.exchange = s->own->exchange;
+        s->own->exchange = (spari_exchange){0}; /* made anew by the seal below */
         (void)spari_settings_varied(s, c.before);
         c.past = s->state.past;
         put_settings(s, advised->setting, s->state.past);
@@ -218,15 +191,22 @@ int spar_trial_apply(spar_trial *trial, double *dt) {
     }
     status = spari_session_seal(s, status);
     status = status == SPAR_OK ? carry_change(s, &c, __func__) : status;
+    spari_exchange unused = c.exchange;
     if (status == SPAR_OK) {
-        confirm(s, &c);
+        end_made(&c, 1);
+        spari_joints_drop_snapshot(s, &c.joint_snapshot);
+        s->coupling.stale = 1;
         advised->of = spari_advised_of(s);
-    } else if (begun) {
-        undo(s, &c);
+    } else if (begun) { /* the message of the failure stays */
+        end_made(&c, 0);
+        spari_joints_restore_snapshot(s, &c.joint_snapshot);
+        put_settings(s, c.before, c.past);
+        unused = s->own->exchange;
+        s->own->exchange = c.exchange;
     }
-    SPARI_FREE(c.pack, c.motion, c.first, c.made, c.carried);
-    if (status == SPAR_OK && dt) {
-        *dt = advised->dt;
+    SPARI_FREE(unused.pack, unused.motion, unused.first, c.made, c.carried);
+    if (status == SPAR_OK) {
+        SPARI_GIVE(dt, advised->dt);
     }
     return spari_trial_leave(trial, __func__, status);
 }

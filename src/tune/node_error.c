@@ -35,21 +35,15 @@ typedef struct finer {
 
 static int finer_create(const spar_member *m, const double *load, finer *f) {
     int64_t n = m->body->unique;
-    *f = (finer){spari_zalloc(7 * n, sizeof(double)), spari_zalloc(6 * n, sizeof(double)),
-                 spari_zalloc(6 * n, sizeof(double)), spari_zalloc(7 * n, sizeof(double)),
-                 spari_zalloc(6 * n, sizeof(double))};
-    SPARI_REQUIRE(m->session, f->q && f->v && f->a && f->begun && f->load, SPAR_ERR_MEMORY,
-                  "no memory for the finer nodes of '%s'", m->name);
+    f->q = spari_zalloc(32 * n, sizeof(double));
+    SPARI_REQUIRE(m->session, f->q, SPAR_ERR_MEMORY, "no memory for the finer nodes of '%s'", m->name);
+    f->v = f->q + 7 * n, f->a = f->v + 6 * n, f->load = f->a + 6 * n, f->begun = f->load + 6 * n;
     spari_member_to_unique(m, 7, m->now.q, f->q);
     spari_member_to_unique(m, 6, m->now.v, f->v);
     spari_member_to_unique(m, 6, m->now.a, f->a);
     spari_member_gather(m, load, f->load);
     memcpy(f->begun, f->q, (size_t)(7 * n) * sizeof *f->q);
     return SPAR_OK;
-}
-
-static void finer_free(finer *f) {
-    SPARI_FREE(f->q, f->v, f->a, f->begun, f->load);
 }
 
 /* One correction of the shape by the force residual, with cm times the mass if the root is free; *size: relative to
@@ -151,8 +145,7 @@ int spari_nodes_error(spar_member *m, double *error) {
         *error = status == SPAR_OK ? distance(m, &f) : 0;
         spari_member_restore(m, &old);
     }
-    finer_free(&f);
-    SPARI_FREE(load, onto);
+    SPARI_FREE(f.q, load, onto);
     return status;
 }
 

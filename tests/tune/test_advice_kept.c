@@ -283,7 +283,7 @@ static void test_beginnings_bend(void **state) {
     OK(p.s, spari_record_create(p.s, STEPS, GOALS, &a));
     OK(p.s, spari_record_create(p.s, STEPS, GOALS, &b));
     for (int turns = 0; turns < 2; turns++) {
-        int64_t all = spari_record_size(&b), each = all / SPARI_SAMPLES;
+        int64_t each = b.first[SPARI_BLOCKS], all = SPARI_SAMPLES * each;
         for (int64_t i = 0; i < all; i++) {
             double t = ((double)(i / each) + 1) / SPARI_SAMPLES;
             b.value[i] = turns ? sin(8 * pi * t) : t;
