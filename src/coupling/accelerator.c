@@ -393,7 +393,3 @@ int spari_accelerator_added_mass(const spari_accelerator *a, double *mean, doubl
     *spread = enough ? *spread : 0;
     return enough;
 }
-
-double spari_accelerator_scatter(const spari_accelerator *a) {
-    return a->memory.scatter;
-}

@@ -158,7 +158,7 @@ static int is_memory(const spari_accelerator *a, const double *state) {
     return sound && (a->secants || (m.contradiction == 0 && m.rho == 0));
 }
 
-int spari_accelerator_is_state(const spari_accelerator *a, const double *state, int64_t count) {
+static int is_accelerator_state(const spari_accelerator *a, const double *state, int64_t count) {
     if (count < HEAD || !spari_is_count(state[1]) || !spari_is_count(state[2]) || !whole_below(state[3], INT_MAX) ||
         !whole_below(state[4], INT_MAX) || state[0] != (double)a->n || !whole_below(state[13], a->slots + 1.0) ||
         !whole_below(state[14], (a->slots > 0 ? a->set.columns : 0) + 1.0)) {
@@ -184,7 +184,7 @@ int spari_accelerator_is_state(const spari_accelerator *a, const double *state, 
 }
 
 int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count) {
-    if (!spari_accelerator_is_state(a, state, count)) {
+    if (!is_accelerator_state(a, state, count)) {
         return 0;
     }
     int occupied = (int)state[13], used = (int)state[14];

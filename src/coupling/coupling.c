@@ -534,12 +534,6 @@ static void tell_alternation(const spar_session *s) {
                ratio_of_growth(s->state.order, z * exp(spread)) - ratio, s->state.order, stable_ratio[s->state.order]);
 }
 
-/* Whether the step has loads of one evaluation of the fluid: explicit, or accepted before the coupling has converged.
- */
-static int is_explicit(const spar_session *s) {
-    return !s->own->coupling->accelerator || (s->state.iteration == 1 && s->state.iterating);
-}
-
 /* Compares the predicted loads with the pushed loads, and with the comparison of the step before. */
 static spari_predicted_step see_prediction(const spar_session *s) {
     spari_coupling *c = s->own->coupling;
@@ -635,14 +629,6 @@ int spari_coupling_check(spar_session *s, const char *call, int *done) {
 
 /* ---- report of an accepted step ---- */
 
-/* The difference of the predicted from the final loads is the error of the coupling, of order dt^(order + 1). */
-static void estimate_error(spar_session *s) {
-    spari_coupling *c = s->own->coupling;
-    double change, size;
-    load_norms(s, c->accelerator ? c->predicted : NULL, &change, &size);
-    c->report[SPAR_REPORT_ERROR] = size > 0 ? change / size : 0;
-}
-
 /* Work of the fluid over the step minus work on the structure, [J]; *whole: of all loads, each counted positive. */
 static double work_defect(const spar_session *s, double *whole) {
     double defect = 0, d[6];
@@ -688,17 +674,21 @@ void spari_coupling_accept(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     c->in_row = c->unconverged ? c->in_row + 1 : 0;
     c->unconverged = 0;
-    if (s->state.phase == SPARI_CHECKED && is_explicit(s)) {
+    const int checked = s->state.phase == SPARI_CHECKED;
+    /* a step with loads of one evaluation of the fluid: explicit, or accepted before the coupling has converged */
+    if (checked && (!c->accelerator || (s->state.iteration == 1 && s->state.iterating))) {
         accept_explicit(s);
     } else {
         forget_explicit(c);
     }
-    if (s->state.phase == SPARI_CHECKED) {
-        estimate_error(s);
+    if (checked) { /* predicted minus final loads are the error of the coupling, of order dt^(order + 1) */
+        double change, size;
+        load_norms(s, c->accelerator ? c->predicted : NULL, &change, &size);
+        c->report[SPAR_REPORT_ERROR] = size > 0 ? change / size : 0;
         watch(s);
     }
     if (c->accelerator) {
-        int ended = s->state.phase == SPARI_CHECKED && spari_accelerator_contradicted(c->accelerator);
+        int ended = checked && spari_accelerator_contradicted(c->accelerator);
         if (ended) {
             stack(s);
         }

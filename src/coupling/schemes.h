@@ -97,14 +97,11 @@ int spari_accelerator_imaged(const spari_accelerator *accelerator);
 /* Mean and standard deviation of this ratio over the differences of this step and, decaying, of earlier ones,
    weighted by the roots of their lengths. Returns 0, and zeros, if there are too few. */
 int spari_accelerator_added_mass(const spari_accelerator *a, double *mean, double *spread);
-/* Contradiction of the fluid's results relative to their change: 0 for an exact function, 1 for noise. */
-double spari_accelerator_scatter(const spari_accelerator *a);
 
 /* State as doubles, for save and load into an accelerator with the same n and settings. */
 int64_t spari_accelerator_state_size(const spari_accelerator *a);
 void spari_accelerator_save(const spari_accelerator *a, double *state);
-/* Whether `count` doubles are a valid state; load returns the same, and changes nothing if not. */
-int spari_accelerator_is_state(const spari_accelerator *a, const double *state, int64_t count);
+/* Returns whether `count` doubles are a valid state, and changes nothing if not. */
 int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count);
 
 #endif

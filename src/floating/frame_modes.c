@@ -57,15 +57,6 @@ static int orthonormalise(spari_frame *f, int cols, int from, int end, double *w
     return 0;
 }
 
-/* W [6 - constrained][6 nodes - 6]: images of the rigid motions that the root leaves free, over the nodes beside it. */
-static void rigid_images(const spari_frame *f, int cols, double *work, double *W) {
-    int n = 6 * f->nodes - 6;
-    for (int k = f->constrained; k < 6; k++) {
-        image_of(f, cols, k, work, work + 6 * f->nodes);
-        memcpy(W + (int64_t)n * (k - f->constrained), work + 6 * f->nodes + 6, (size_t)n * sizeof *W);
-    }
-}
-
 /* The lowest modes relative to the root, as the columns after the rigid ones: K z = lambda (M - M R R^T M) z over the
    nodes beside the root. R are the orthonormal rigid motions that the root leaves free; their inertia is not that of
    the deformation. K is not singular here even for a free beam, because rigid motions are separate columns. */
@@ -78,8 +69,12 @@ static int elastic_columns(spari_frame *f, int cols, double *work) {
     if (status != SPAR_OK || !square || !block) {
         status = SPAR_ERR_MEMORY;
     } else {
+        /* images of the rigid motions that the root leaves free [6 - constrained][n] */
         double *W = z + (int64_t)n * wanted;
-        rigid_images(f, cols, work, W);
+        for (int k = f->constrained; k < 6; k++) {
+            image_of(f, cols, k, work, work + 6 * f->nodes);
+            memcpy(W + (int64_t)n * (k - f->constrained), work + 6 * f->nodes + 6, (size_t)n * sizeof *W);
+        }
         for (int e = 0; e < f->elements; e++) {
             int64_t at = (int64_t)f->block * f->block * e;
             spari_pencil_add_symmetric(&pencil, e * step - 6, f->block, f->K + at, f->M + at);

@@ -74,10 +74,9 @@ static void put_int64(encoder *s, int64_t value) {
 
 /* An array begins with its size in bytes, in the same base64 text as the numbers. */
 static void begin_array(encoder *s, const char *type, const char *name, int components, int64_t tuples, size_t item) {
-    int64_t bytes = tuples * components * (int64_t)item;
     fprintf(s->file, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"binary\">", type, name,
             components);
-    put_int64(s, bytes);
+    put_int64(s, tuples * components * (int64_t)item);
 }
 
 static void end_array(encoder *s) {
@@ -138,12 +137,6 @@ static void put_count(encoder *s, int64_t first, int64_t n) {
     }
 }
 
-static void put_line_numbers(encoder *s, const spari_vtk_picture *p) {
-    for (int64_t i = 0; i < count_line_points(p); i++) {
-        put_int64(s, p->line_point ? p->line_point[i] : i);
-    }
-}
-
 static void put_poly_cells(encoder *s, const spari_vtk_picture *p) {
     fputs("<Verts>\n", s->file);
     begin_array(s, "Int64", "connectivity", 1, p->verts, 8);
@@ -154,7 +147,9 @@ static void put_poly_cells(encoder *s, const spari_vtk_picture *p) {
     end_array(s);
     fputs("</Verts>\n<Lines>\n", s->file);
     begin_array(s, "Int64", "connectivity", 1, count_line_points(p), 8);
-    put_line_numbers(s, p);
+    for (int64_t i = 0; i < count_line_points(p); i++) {
+        put_int64(s, p->line_point ? p->line_point[i] : i);
+    }
     end_array(s);
     begin_array(s, "Int64", "offsets", 1, p->lines, 8);
     put_bytes(s, p->line_end, (size_t)p->lines * sizeof *p->line_end);
@@ -232,11 +227,6 @@ static void put_picture(FILE *file, const spari_vtk_picture *p, int grid) {
 
 /* ---- the file ---- */
 
-static int ends_with(const char *text, const char *end) {
-    size_t n = strlen(text), k = strlen(end);
-    return n >= k && strcmp(text + n - k, end) == 0;
-}
-
 int spari_vtk_write(spar_session *session, const char *call, const char *path, const spari_vtk_picture *picture) {
     char why[SPARI_MESSAGE_SIZE / 2];
     spari_file file;
@@ -244,7 +234,8 @@ int spari_vtk_write(spar_session *session, const char *call, const char *path, c
                   call, path ? "empty" : "NULL");
     int status = spari_file_begin(&file, path, ".part", why, sizeof why);
     if (status == SPAR_OK) {
-        put_picture(file.stream, picture, ends_with(path, ".vtu"));
+        size_t n = strlen(path);
+        put_picture(file.stream, picture, n >= 4 && strcmp(path + n - 4, ".vtu") == 0);
         status = spari_file_end(&file, 0, why, sizeof why);
     }
     SPARI_REQUIRE(session, status == SPAR_OK, status, "%s: %s", call, why);

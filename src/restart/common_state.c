@@ -77,17 +77,9 @@ static void pass_numbers(passage *t, double *words, int64_t n) {
     }
 }
 
-/* Data of step-size control. */
-static void pass_step_control(passage *t, spari_step_control *p) {
-    pass_numbers(t, &p->ratio, 1);
-    pass_numbers(t, &p->last, 1);
-    pass_numbers(t, &p->next, 1);
-    pass_numbers(t, &p->cut, 1);
-    pass(t, &p->rejected, 1);
-}
-
 static void pass_clock(passage *t, spar_session *s) {
     int phase = (int)s->state.phase;
+    spari_step_control *p = &s->own->step_control;
     pass(t, &s->clock.time, 1);
     pass(t, &s->clock.rest, 1);
     pass(t, &s->clock.dt, 1);
@@ -103,7 +95,11 @@ static void pass_clock(passage *t, spar_session *s) {
     pass_int(t, &s->clock.started);
     pass_int(t, &phase);
     pass(t, s->gravity_before, 3);
-    pass_step_control(t, &s->own->step_control);
+    pass_numbers(t, &p->ratio, 1);
+    pass_numbers(t, &p->last, 1);
+    pass_numbers(t, &p->next, 1);
+    pass_numbers(t, &p->cut, 1);
+    pass(t, &p->rejected, 1);
     if (t->mode == READ) {
         s->state.phase = (spari_phase)phase;
         s->state.past = s->state.past < s->coupling.predictor ? s->state.past : s->coupling.predictor;
@@ -167,19 +163,29 @@ static void pass_added(passage *t, spar_member *m) {
     }
 }
 
+/* A flag, 0 or 1: as it is in the file, when one is read. */
+static int pass_flag(passage *t, int here) {
+    double flag = here;
+    const double *in_file = (const double *)(const void *)(t->image->word + t->image->at);
+    pass(t, &flag, 1);
+    if (t->mode == CHECK && !t->image->failed) {
+        flag = *in_file;
+        t->image->failed = flag != 0 && flag != 1;
+    }
+    return flag != 0;
+}
+
 /* Mean accelerations, with substeps or changes of dt: in the file if they existed, read if they exist here. */
 static void pass_means(passage *t, spar_member *m) {
     spari_means none = {0}, *k = m->means ? m->means : &none;
-    double head[4] = {k->has[0], k->has[1], k->dt, m->means != NULL};
-    const double *in_file = (const double *)(const void *)(t->image->word + t->image->at);
-    pass(t, head, 4);
-    if (t->mode == CHECK && !t->image->failed) {
-        memcpy(head, in_file, sizeof head);
-        t->image->failed = (head[0] != 0 && head[0] != 1) || (head[1] != 0 && head[1] != 1) || !isfinite(head[2]) ||
-                           (head[3] != 0 && head[3] != 1);
-        t->image->no_memory |= head[3] != 0 && spari_means_make(m) != SPAR_OK;
+    int has[2];
+    has[0] = pass_flag(t, k->has[0]);
+    has[1] = pass_flag(t, k->has[1]);
+    pass_numbers(t, &k->dt, 1);
+    if (pass_flag(t, m->means != NULL) && t->mode == CHECK && !t->image->failed) {
+        t->image->no_memory |= spari_means_make(m) != SPAR_OK;
     }
-    if (head[0] != 0 || head[1] != 0) {
+    if (has[0] || has[1]) {
         if (t->mode == CHECK) {
             pass_numbers(t, NULL, 18 * m->nodes);
         } else {
@@ -187,30 +193,23 @@ static void pass_means(passage *t, spar_member *m) {
         }
     }
     if (t->mode == READ) {
-        k->has[0] = head[0] != 0, k->has[1] = head[1] != 0;
-        k->dt = head[2];
+        memcpy(k->has, has, sizeof has);
     }
 }
 
 /* Initial accelerations of the first step after consistent initial conditions: in the file if there are any. */
 static void pass_begun(passage *t, spar_member *m) {
-    double has = m->initial.acceleration != NULL;
-    const double *in_file = (const double *)(const void *)(t->image->word + t->image->at);
-    pass(t, &has, 1);
-    if (t->mode == CHECK && !t->image->failed) {
-        has = *in_file;
-        t->image->failed = has != 0 && has != 1;
-    }
-    if (t->mode == CHECK && has != 0 && !m->initial.acceleration_next) {
+    int has = pass_flag(t, m->initial.acceleration != NULL);
+    if (t->mode == CHECK && has && !m->initial.acceleration_next) {
         m->initial.acceleration_next = spari_zalloc(6 * m->nodes, sizeof *m->initial.acceleration_next);
         t->image->no_memory |= !m->initial.acceleration_next;
     }
     if (t->mode == READ) {
         free(m->initial.acceleration);
-        m->initial.acceleration = has != 0 ? m->initial.acceleration_next : NULL;
-        m->initial.acceleration_next = has != 0 ? NULL : m->initial.acceleration_next;
+        m->initial.acceleration = has ? m->initial.acceleration_next : NULL;
+        m->initial.acceleration_next = has ? NULL : m->initial.acceleration_next;
     }
-    if (has != 0) {
+    if (has) {
         pass_numbers(t, t->mode == CHECK ? NULL : m->initial.acceleration, 6 * m->nodes);
     }
 }
@@ -220,20 +219,15 @@ static void pass_cuts(passage *t, spar_member *m) {
     enum { WORDS = sizeof m->state.cuts.given_up / sizeof(double) };
     const spar_session *s = m->session;
     const int under_way = s->state.phase != SPARI_IDLE && m->state.cuts.begun == s->clock.begun;
-    double has = 0;
+    int any = 0;
     for (size_t i = 0; i < sizeof m->state.cuts.given_up / sizeof *m->state.cuts.given_up && under_way; i++) {
-        has = has != 0 || m->state.cuts.given_up[i] != 0;
+        any = any || m->state.cuts.given_up[i] != 0;
     }
-    const double *in_file = (const double *)(const void *)(t->image->word + t->image->at);
-    pass(t, &has, 1);
-    if (t->mode == CHECK && !t->image->failed) {
-        has = *in_file;
-        t->image->failed = has != 0 && has != 1;
-    }
+    int has = pass_flag(t, any);
     if (t->mode == READ) {
         m->state.cuts = (spari_cuts){.begun = s->clock.begun};
     }
-    if (has != 0) {
+    if (has) {
         pass(t, m->state.cuts.given_up, WORDS);
     }
 }
@@ -429,13 +423,6 @@ static int compare_session(spar_session *s, spari_saved *l) {
     return l->image.failed || l->ranks < 1 ? spari_saved_broken(s) : SPAR_OK;
 }
 
-/* End of the next count words, if there are as many. */
-static int find_end(const spari_image *image, int64_t count, int64_t *end) {
-    int there = !image->failed && count >= 0 && count <= image->count - image->at;
-    *end = there ? image->at + count : image->at;
-    return there;
-}
-
 static int is_within(int64_t x, int64_t least, int64_t most) {
     return x >= least && x <= most;
 }
@@ -463,13 +450,14 @@ static int check_clock(spar_session *s, spari_saved *l) {
 
 /* Creates a coupling from the data that fit the present settings. */
 static int check_coupling(spar_session *s, spari_saved *l) {
-    int64_t count = spari_image_get_int(&l->image), end;
+    int64_t count = spari_image_get_int(&l->image);
     if (count == 0 && !l->image.failed) {
         return SPAR_OK;
     }
-    if (!find_end(&l->image, count, &end)) {
+    if (l->image.failed || count < 0 || count > l->image.count - l->image.at) {
         return spari_saved_broken(s);
     }
+    const int64_t end = l->image.at + count;
     double settings[SPARI_MOST_OF_COUPLING];
     int own = spari_settings_of_coupling(s, settings);
     const uint64_t *saved = spari_image_get(&l->image, own);

@@ -92,7 +92,8 @@ typedef struct told_file {
     char path[4096];
 } told_file;
 
-static int tell_file(spar_session *s, reading *l, told_file *told) {
+/* Whether all ranks see the same file as rank 0. */
+static int share_file(spar_session *s, reading *l, told_file *told) {
     char *where = is_root(s) ? realpath(l->source.path, NULL) : NULL;
     if (where && strlen(where) < sizeof told->path) {
         memcpy(told->path, where, strlen(where) + 1);
@@ -110,15 +111,6 @@ static int tell_file(spar_session *s, reading *l, told_file *told) {
     SPARI_TRY(spari_anywhere(s, blind, &blind));
     l->shared = !blind;
     return SPAR_OK;
-}
-
-/* Whether all ranks see the same file as rank 0. */
-static int share_file(spar_session *s, reading *l) {
-    told_file *told = spari_zalloc(1, sizeof *told);
-    int status = agree_on_memory(s, told != NULL);
-    status = status == SPAR_OK ? tell_file(s, l, told) : status;
-    free(told);
-    return status;
 }
 
 /* Check sum of the file: a part of it on each rank, or all of it on rank 0. */
@@ -161,9 +153,12 @@ static int open_file(spar_session *s, reading *l, const char *path) {
     SPARI_TRY(spari_agree(s, status));
     l->shared = spari_comm_size(s->ranks.comm) == 1;
     if (!l->shared) {
-        SPARI_TRY(share_file(s, l));
+        told_file *told = spari_zalloc(1, sizeof *told);
+        status = agree_on_memory(s, told != NULL);
+        status = status == SPAR_OK ? share_file(s, l, told) : status;
+        free(told);
     }
-    return check_file_sum(s, l);
+    return status == SPAR_OK ? check_file_sum(s, l) : status;
 }
 
 /* Words that cannot be read are zeros; the failure is reported after all ranks have received. */

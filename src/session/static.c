@@ -88,68 +88,44 @@ static void copy_loads(const spar_member *m, const double *from, double *to) {
     memcpy(to, from, (size_t)(6 * m->nodes) * sizeof *to);
 }
 
-static int is_of(const spar_member *only, const spari_assembly *a) {
-    return !only || only->assembly == a;
-}
-
-static int64_t size_of_saved(const spar_session *s, const spar_member *only) {
+/* Saves or loads the solver data of the owner's members, each with its length in front, to be restored if there is no
+   equilibrium. Returns the length of all. only: one member with all that joints connect to it; NULL: all members. */
+enum { COUNT, SAVE, LOAD };
+static int64_t pass_state(spar_session *s, const spar_member *only, int mode, double *at) {
     int64_t n = 0;
-    for (const spar_member *m = s->members; m; m = m->next) {
-        n += is_with(only, m) ? 1 + spari_fidelity_state_size(m) : 0;
+    for (spar_member *m = s->members; m; m = m->next) {
+        int64_t size = !is_with(only, m) ? -1 : mode == LOAD ? (int64_t)at[n] : spari_fidelity_state_size(m);
+        if (size > 0 && mode == SAVE) {
+            m->row->save(m, at + n + 1);
+        } else if (size > 0 && mode == LOAD) {
+            m->row->load(m, at + n + 1);
+        }
+        if (size >= 0 && mode == SAVE) {
+            at[n] = (double)size;
+        }
+        n += 1 + size;
     }
-    for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
-        n += is_of(only, a) ? 1 + spari_assembly_state_size(a) : 0;
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        int with = !only || only->assembly == a;
+        int64_t size = !with ? -1 : mode == LOAD ? (int64_t)at[n] : spari_assembly_state_size(a);
+        if (size > 0 && mode == SAVE) {
+            spari_assembly_save(a, at + n + 1);
+        } else if (size > 0 && mode == LOAD) {
+            spari_assembly_load(a, at + n + 1);
+        }
+        if (size >= 0 && mode == SAVE) {
+            at[n] = (double)size;
+        }
+        n += 1 + size;
     }
     return n;
 }
 
-/* Copies the solver data of the owner's members, each with its length in front, to be restored if there is no
-   equilibrium. only: one member with all that joints connect to it; NULL: all members. */
 static int save_state(spar_session *s, const spar_member *only, double **saved_state) {
-    double *at = *saved_state = spari_zalloc(size_of_saved(s, only), sizeof *at);
-    SPARI_REQUIRE(s, at, SPAR_ERR_MEMORY, "no memory to save the state of the members");
-    for (const spar_member *m = s->members; m; m = m->next) {
-        if (!is_with(only, m)) {
-            continue;
-        }
-        *at = (double)spari_fidelity_state_size(m);
-        if (*at > 0) {
-            m->row->save(m, at + 1);
-        }
-        at += 1 + (int64_t)*at;
-    }
-    for (const spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
-        if (!is_of(only, a)) {
-            continue;
-        }
-        *at = (double)spari_assembly_state_size(a);
-        if (*at > 0) {
-            spari_assembly_save(a, at + 1);
-        }
-        at += 1 + (int64_t)*at;
-    }
+    *saved_state = spari_zalloc(pass_state(s, only, COUNT, NULL), sizeof **saved_state);
+    SPARI_REQUIRE(s, *saved_state, SPAR_ERR_MEMORY, "no memory to save the state of the members");
+    (void)pass_state(s, only, SAVE, *saved_state);
     return SPAR_OK;
-}
-
-static void put_back(spar_session *s, const spar_member *only, const double *saved_state) {
-    for (spar_member *m = s->members; m; m = m->next) {
-        if (!is_with(only, m)) {
-            continue;
-        }
-        if (*saved_state > 0) {
-            m->row->load(m, saved_state + 1);
-        }
-        saved_state += 1 + (int64_t)*saved_state;
-    }
-    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
-        if (!is_of(only, a)) {
-            continue;
-        }
-        if (*saved_state > 0) {
-            spari_assembly_load(a, saved_state + 1);
-        }
-        saved_state += 1 + (int64_t)*saved_state;
-    }
 }
 
 /* Makes the motion `after`, under `fluid` loads, the state at t^n. */
@@ -173,25 +149,28 @@ static int find_member_equilibrium(spar_member *m, int load_steps) {
     return spari_session_share_motion(s, solve_member_static(m, pushed, load_steps, 0));
 }
 
-/* Accepts the equilibrium as the state at t^n, or restores everything. */
-static void end_member_static(spar_member *member, int status, const double *saved_state) {
-    for (spar_member *m = member->session->members; m; m = m->next) {
-        if (!is_with(member, m)) {
-            continue;
-        }
-        if (status == SPAR_OK) {
-            commit_member(m, m->load.pushed);
-        } else {
+/* Restores everything. only: as in pass_state. */
+static void discard_static(spar_session *s, const spar_member *only, double *saved_state) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        if (is_with(only, m)) {
             spari_member_reject(m);
             copy_loads(m, m->load.before, m->load.pushed);
         }
     }
-    if (status != SPAR_OK) {
-        put_back(member->session, member, saved_state);
-        for (spari_assembly *a = member->session->assemblies; a; a = spari_assembly_next(a)) {
-            spari_assembly_discard(a);
+    (void)pass_state(s, only, LOAD, saved_state);
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        spari_assembly_discard(a);
+    }
+}
+
+/* Accepts the equilibrium as the state at t^n. */
+static void commit_with(spar_member *member) {
+    for (spar_member *m = member->session->members; m; m = m->next) {
+        if (is_with(member, m)) {
+            commit_member(m, m->load.pushed);
         }
-    } else if (member->assembly) {
+    }
+    if (member->assembly) {
         spari_assembly_commit_state(member->assembly);
     }
 }
@@ -213,7 +192,11 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
             }
         }
         status = find_member_equilibrium(member, load_steps);
-        end_member_static(member, status, saved_state);
+        if (status == SPAR_OK) {
+            commit_with(member);
+        } else {
+            discard_static(s, member, saved_state);
+        }
     }
     free(saved_state);
     return spari_named(s, __func__, status);
@@ -254,12 +237,6 @@ static int begin_static(spar_session *s) {
     return SPAR_OK;
 }
 
-static void end_static(spar_session *s) {
-    s->state.phase = SPARI_IDLE;
-    s->clock.started = s->clock.step > 0;
-    s->state.standing = 0;
-}
-
 static void commit_all(spar_session *s) {
     for (spar_member *m = s->members; m; m = m->next) {
         copy_loads(m, m->load.pushed, m->load.history[0]);
@@ -274,20 +251,6 @@ static void commit_all(spar_session *s) {
         spari_fluid_commit_state(f);
     }
     s->state.past = 0; /* the past is no basis for extrapolation */
-}
-
-static void discard_static(spar_session *s, const double *saved_state) {
-    for (spar_member *m = s->members; m; m = m->next) {
-        spari_member_reject(m);
-        copy_loads(m, m->load.before, m->load.pushed);
-    }
-    put_back(s, NULL, saved_state);
-    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
-        spari_assembly_discard(a);
-    }
-    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_reject(f);
-    }
 }
 
 /* Solves the shapes under the loads in use. */
@@ -458,10 +421,15 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
         commit_all(s);
         spari_coupling_keep(s);
     } else {
-        discard_static(s, saved_state);
+        discard_static(s, NULL, saved_state);
+        for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+            spari_fluid_reject(f);
+        }
         spari_coupling_resume(s);
     }
-    end_static(s);
+    s->state.phase = SPARI_IDLE;
+    s->clock.started = s->clock.step > 0;
+    s->state.standing = 0;
     free(saved_state);
     return spari_named(s, __func__, status);
 }

@@ -331,33 +331,24 @@ static int make_node_arrays(spar_member *m) {
 }
 
 void spari_member_release(spar_member *m) {
+    spar_member built;
+    spari_member_detach(m, &built);
     for (int k = 0; k < SPARI_NODAL_COUNT; k++) {
-        free(*spari_nodal_array(m, k));
-        *spari_nodal_array(m, k) = NULL;
+        free(*spari_nodal_array(&built, k));
     }
-    forget_begun(m);
-    free(m->initial.acceleration_next);
-    m->initial.acceleration_next = NULL;
-    spari_work_free(m->work);
-    m->work = NULL;
-    spari_added_free(m->added);
-    m->added = NULL;
-    spari_means_free(m->means);
-    m->means = NULL;
-    spari_applied_free(m->load.applied);
-    spari_applied_free(m->load.applied_next);
-    spari_ramp_free(m->load.ramp);
-    spari_ramp_free(m->load.ramp_next);
-    m->load.applied = m->load.applied_next = NULL;
-    m->load.ramp = m->load.ramp_next = NULL;
-    spari_foundation_free(m->load.foundation);
-    m->load.foundation = NULL;
-    if (m->solution) {
-        m->row->free(m->solution);
+    SPARI_FREE(built.initial.acceleration, built.initial.acceleration_next);
+    spari_work_free(built.work);
+    spari_added_free(built.added);
+    spari_means_free(built.means);
+    spari_applied_free(built.load.applied);
+    spari_applied_free(built.load.applied_next);
+    spari_ramp_free(built.load.ramp);
+    spari_ramp_free(built.load.ramp_next);
+    spari_foundation_free(built.load.foundation);
+    if (built.solution) {
+        built.row->free(built.solution);
     }
-    m->solution = NULL;
-    spari_body_free(m->body);
-    m->body = NULL;
+    spari_body_free(built.body);
 }
 
 int spari_member_move(spar_member *m, int owner, void **before) {

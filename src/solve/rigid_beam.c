@@ -254,59 +254,60 @@ static int64_t rigid_unknowns(const spar_member *m) {
     return 6 - spari_member_constrained(m);
 }
 
-static int rigid_problem(const spar_member *m, spari_pencil *to) {
-    const spari_rigid_beam *b = m->solution;
-    double *load = spari_zalloc(6 * m->nodes, sizeof *load), sum[6] = {0}, v[6], a[6], S[36], mass[36];
-    spari_offset_loads moments = {0};
+/* What modes and small motions of the state start from: the loads on the root, sum [6] and first moments, and its
+   steady rotation. */
+typedef struct rigid_state {
+    double sum[6], v[6], a[6];
+    spari_offset_loads moments;
     spari_steady_rotation rotation;
+    int rotating;
+} rigid_state;
+
+static int rigid_state_of(const spar_member *m, rigid_state *at) {
+    const spari_rigid_beam *b = m->solution;
+    double *load = spari_zalloc(6 * m->nodes, sizeof *load);
+    *at = (rigid_state){.rotating = 0};
     if (!load) {
         return SPAR_ERR_MEMORY;
     }
     int status = spar_member_get_loads(m, load);
-    sum_on_root(m, load, sum, moments.Z);
+    sum_on_root(m, load, at->sum, at->moments.Z);
     free(load);
-    SPARI_TRY(status);
-    int rotating = spari_steady_rotation_of(m, m->after.v, m->after.a, &rotation),
-        constrained = spari_member_constrained(m);
+    at->rotating = spari_steady_rotation_of(m, m->after.v, m->after.a, &at->rotation);
     for (int k = 0; k < 3; k++) {
-        v[k] = rotation.v0[k], v[3 + k] = rotation.w[k];
-        a[k] = rotation.a0[k], a[3 + k] = 0;
+        at->v[k] = at->rotation.v0[k], at->v[3 + k] = at->rotation.w[k];
+        at->a[k] = at->rotation.a0[k];
     }
     memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    spari_steady_rotation_tangent(b->body, rotating ? &rotation : NULL, 0, m->after.q, v, a, 1, S, mass);
-    spari_offset_loads_tangent(&moments, m->after.q + 3, S);
-    spari_pencil_add_symmetric(to, -constrained, 6, S, mass);
+    return status;
+}
+
+static int rigid_problem(const spar_member *m, spari_pencil *to) {
+    const spari_rigid_beam *b = m->solution;
+    double S[36], mass[36];
+    rigid_state at;
+    SPARI_TRY(rigid_state_of(m, &at));
+    spari_steady_rotation_tangent(b->body, at.rotating ? &at.rotation : NULL, 0, m->after.q, at.v, at.a, 1, S, mass);
+    spari_offset_loads_tangent(&at.moments, m->after.q + 3, S);
+    spari_pencil_add_symmetric(to, -spari_member_constrained(m), 6, S, mass);
     return SPAR_OK;
 }
 
 static int rigid_linearise(const spar_member *m, const double w[3], spari_pencil *to) {
     const spari_rigid_beam *b = m->solution;
-    double *load = spari_zalloc(6 * m->nodes, sizeof *load), sum[6] = {0}, v[6], a[6], K[36], C[36], M[36], r[6];
-    spari_offset_loads moments = {0};
-    spari_steady_rotation rotation;
-    if (!load) {
-        return SPAR_ERR_MEMORY;
-    }
-    int status = spar_member_get_loads(m, load), constrained = spari_member_constrained(m);
-    sum_on_root(m, load, sum, moments.Z);
-    free(load);
-    SPARI_TRY(status);
-    int rotating = spari_steady_rotation_of(m, m->after.v, m->after.a, &rotation) || spari_norm(w) > 0;
-    for (int k = 0; k < 3; k++) {
-        v[k] = rotation.v0[k], v[3 + k] = rotation.w[k];
-        a[k] = rotation.a0[k], a[3 + k] = 0;
-    }
-    memcpy(b->body->gravity, m->body->gravity, sizeof b->body->gravity);
-    spari_steady_rotation_pencil(b->body, w, rotation.w, 0, m->after.q, rotating ? v : NULL, rotating ? a : NULL, K, C,
-                                 M);
-    spari_offset_loads_tangent(&moments, m->after.q + 3, K);
+    double K[36], C[36], M[36], r[6];
+    rigid_state at;
+    SPARI_TRY(rigid_state_of(m, &at));
+    const int constrained = spari_member_constrained(m), rotating = at.rotating || spari_norm(w) > 0;
+    const double *v = rotating ? at.v : NULL, *a = rotating ? at.a : NULL;
+    spari_steady_rotation_pencil(b->body, w, at.rotation.w, 0, m->after.q, v, a, K, C, M);
+    spari_offset_loads_tangent(&at.moments, m->after.q + 3, K);
     spari_pencil_add(to, -constrained, 6, 6, K, C, M);
-    to->scale =
-        fmax(to->scale, spari_body_residual(b->body, m->after.q, rotating ? v : NULL, rotating ? a : NULL, 1, r, NULL));
-    spari_offset_loads_residual(&moments, m->after.q + 3, r + 3);
+    to->scale = fmax(to->scale, spari_body_residual(b->body, m->after.q, v, a, 1, r, NULL));
+    spari_offset_loads_residual(&at.moments, m->after.q + 3, r + 3);
     for (int k = 0; k < 6; k++) {
-        r[k] -= sum[k];
-        to->scale = fmax(to->scale, fabs(sum[k]));
+        r[k] -= at.sum[k];
+        to->scale = fmax(to->scale, fabs(at.sum[k]));
     }
     spari_pencil_set_forces(to, -constrained, 6, r);
     return SPAR_OK;
