@@ -57,9 +57,8 @@ int spar_step_adaptive(spar_session *session, double *dt, spar_before_step befor
                        void *context, double *dt_done) {
     SPARI_GUARD_ENVIRONMENT;
     enum { TRIES = 12, STUCK = 7 };
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_TRY(spari_callback_refuse(session, __func__));
     spar_session *s = session;
-    SPARI_TRY(spari_callback_refuse(s, __func__));
     double none = 0, *next = dt ? dt : &none, h = *next;
     const spari_agreed must_agree[] = {spari_real("dt", h), spari_given("before", before != NULL)};
     SPARI_TRY(spari_enter_agreed(s, __func__, must_agree, 2, check_within(s, __func__, dt, h)));

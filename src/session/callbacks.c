@@ -5,6 +5,7 @@
 #include "../comm/enter.h"
 
 int spari_callback_refuse(spar_session *s, const char *call) {
+    SPARI_REQUIRE(NULL, s, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     SPARI_REQUIRE(s, !s->callbacks.in_progress, SPAR_ERR_STATE,
                   "%s: %s is in progress and has called this fluid solver; only pull and push in the solver, or make "
                   "the step with spar_step_begin, spar_step_solve, spar_step_check, spar_step_accept",

@@ -6,7 +6,8 @@
 
 /* ---- the fluid solver, in a call that goes on with what it has pushed: spar_step, or a static solution ---- */
 
-/* Refuses, while it runs, a call that would end or move on what is under way, which belongs to the call that runs it.
+/* Refuses, while it runs, a call that would end or move on what is under way, which belongs to the call that runs it;
+   and a session that is NULL.
    Before the ranks meet: the others are not in this call. Local. */
 int spari_callback_refuse(spar_session *session, const char *call);
 /* Calls the solver for the step of dt from t^n; solve may be NULL. SPAR_ERR_COMM: the solver made a collective call

@@ -400,9 +400,8 @@ static int find_equilibrium(spar_session *s, const char *call, int load_steps, s
 int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_solver solve, void *context,
                               int *iterations) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_TRY(spari_callback_refuse(session, __func__));
     spar_session *s = session;
-    SPARI_TRY(spari_callback_refuse(s, __func__));
     const spari_agreed must_agree[] = {spari_whole("load_steps", load_steps),
                                        spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
     SPARI_TRY(spari_enter_agreed(s, __func__, must_agree, 2, check_session_static(s, __func__, load_steps)));

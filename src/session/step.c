@@ -122,9 +122,8 @@ static int begin_loads(spar_session *s) {
 
 int spar_step_begin(spar_session *session, double dt) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_TRY(spari_callback_refuse(session, __func__));
     spar_session *s = session;
-    SPARI_TRY(spari_callback_refuse(s, __func__));
     int anew = !spari_coupling_fits(s), uneven = is_uneven(s, dt);
     const spari_agreed must_agree[] = {spari_real("dt", dt), spari_whole("calls that set the coupling", anew),
                                        spari_hash("springs, loads or drives of joints", spari_joints_setting(s))};
@@ -168,7 +167,6 @@ int spar_step_begin(spar_session *session, double dt) {
 
 int spar_step_begin_initial(spar_session *session, double dt) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_callback_refuse(session, __func__));
     return spari_start_begin(session, __func__, dt);
 }
@@ -198,9 +196,8 @@ static void reject_joints(spar_session *s) {
 
 int spar_step_solve(spar_session *session) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_TRY(spari_callback_refuse(session, __func__));
     spar_session *s = session;
-    SPARI_TRY(spari_callback_refuse(s, __func__));
     int status = s->state.phase == SPARI_IDLE ? wrong_phase(s, __func__, "call spar_step_begin first") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
     if (s->state.standing) {
@@ -266,7 +263,6 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
 
 int spar_step_check(spar_session *session, int *done) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_callback_refuse(session, __func__));
     return check_iteration(session, __func__, SPAR_OK, done);
 }
@@ -320,9 +316,8 @@ static void learn_added(spar_session *s) {
 
 int spar_step_accept(spar_session *session) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_TRY(spari_callback_refuse(session, __func__));
     spar_session *s = session;
-    SPARI_TRY(spari_callback_refuse(s, __func__));
     int status = SPAR_OK;
     if (s->state.phase != SPARI_CHECKED && s->state.phase != SPARI_SOLVED) {
         status = wrong_phase(s, __func__, "begin and solve a step first");
@@ -393,9 +388,8 @@ static void reject(spar_session *s) {
 
 int spar_step_reject(spar_session *session) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
+    SPARI_TRY(spari_callback_refuse(session, __func__));
     spar_session *s = session;
-    SPARI_TRY(spari_callback_refuse(s, __func__));
     int status = s->state.phase == SPARI_IDLE ? wrong_phase(s, __func__, "no step is in progress to reject") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
     reject(s);
@@ -457,7 +451,7 @@ static int run_begun(spar_session *s, const char *call, spar_fluid_solver solve,
 
 int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *context, int *iterations) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_TRY(session ? spari_callback_refuse(session, __func__) : SPAR_OK);
+    SPARI_TRY(spari_callback_refuse(session, __func__));
     SPARI_TRY(spar_step_begin(session, dt));
     return run_begun(session, __func__, solve, context, iterations);
 }
@@ -465,7 +459,6 @@ int spar_step(spar_session *session, double dt, spar_fluid_solver solve, void *c
 int spar_session_solve_initial(spar_session *session, double dt, spar_fluid_solver solve, void *context,
                                int *iterations) {
     SPARI_GUARD_ENVIRONMENT;
-    SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_TRY(spari_callback_refuse(session, __func__));
     SPARI_TRY(spari_start_begin(session, __func__, dt));
     return run_begun(session, __func__, solve, context, iterations);

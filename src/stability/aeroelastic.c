@@ -153,20 +153,13 @@ static int check_memory(spar_session *s, const char *call) {
 static int check_coupled(spar_trial *t, const char *call, const coupled_ask *ask, int64_t nodes,
                          const double shift[2]) {
     spar_session *s = t->session;
-    SPARI_TRY(spari_trial_ready(t, call));
-    SPARI_REQUIRE(s, t->modes > 0, SPAR_ERR_STATE,
-                  "%s: the number of modes is not set; call spar_trial_set_motion first", call);
-    SPARI_TRY(s->clock.started ? SPAR_OK : spari_session_pushes(s, call));
+    SPARI_TRY(spari_shapes_ready(t, call, ask->n, "eigenvalues", ask->eigenvalue));
     SPARI_REQUIRE(
         s, t->solve, SPAR_ERR_UNSUPPORTED,
         "%s: the trial has no fluid solver; give spar_trial_set_callbacks the solver passed to spar_step, or use "
         "spar_member_solve_eigenvalues",
         call);
     SPARI_TRY(t->memory == 0 ? check_memory(s, call) : SPAR_OK);
-    SPARI_REQUIRE(s, ask->n >= 0 && ask->n <= 2 * t->modes, SPAR_ERR_ARGUMENT,
-                  "%s: %lld eigenvalues of %lld modes; give at most two per mode", call, (long long)ask->n,
-                  (long long)t->modes);
-    SPARI_REQUIRE(s, ask->eigenvalue || ask->n == 0, SPAR_ERR_ARGUMENT, "%s: eigenvalue is NULL", call);
     SPARI_REQUIRE(s, !ask->shapes || nodes == ask->fluid.nodes, SPAR_ERR_ARGUMENT,
                   "%s: shapes of %lld nodes; all members together have %lld", call, (long long)nodes,
                   (long long)ask->fluid.nodes);

@@ -25,7 +25,6 @@ static const double usual_amplitude = 1e-4;
 static const double periodic = 1e-3;
 
 typedef struct floquet {
-    const char *call;
     spari_run run; /* dt, callbacks, progress */
     int64_t steps; /* per period */
     int64_t nodes; /* of all members */
@@ -277,19 +276,10 @@ static int solve_floquet(spar_session *s, floquet *f, int64_t n, double *eigenva
     return status;
 }
 
-static int check_floquet(spar_trial *t, const floquet *f, int64_t n, const double *eigenvalue) {
-    const char *call = f->call;
-    spar_session *s = t->session;
-    SPARI_TRY(spari_trial_ready(t, call));
-    SPARI_REQUIRE(s, t->modes > 0, SPAR_ERR_STATE,
-                  "%s: the number of modes is not set; call spar_trial_set_motion first", call);
-    SPARI_TRY(s->clock.started ? SPAR_OK : spari_session_pushes(s, call));
-    SPARI_REQUIRE(s, isfinite(t->dt * (double)t->steps), SPAR_ERR_ARGUMENT,
+static int check_floquet(spar_trial *t, const char *call, int64_t n, const double *eigenvalue) {
+    SPARI_TRY(spari_shapes_ready(t, call, n, "multipliers", eigenvalue));
+    SPARI_REQUIRE(t->session, isfinite(t->dt * (double)t->steps), SPAR_ERR_ARGUMENT,
                   "%s: the period of %lld steps is not finite; give fewer or shorter steps", call, (long long)t->steps);
-    SPARI_REQUIRE(s, n >= 0 && n <= 2 * t->modes, SPAR_ERR_ARGUMENT,
-                  "%s: %lld multipliers of %lld modes; give at most two per mode", call, (long long)n,
-                  (long long)t->modes);
-    SPARI_REQUIRE(s, eigenvalue || n == 0, SPAR_ERR_ARGUMENT, "%s: eigenvalue is NULL", call);
     return SPAR_OK;
 }
 
@@ -298,13 +288,13 @@ int spar_trial_solve_floquet(spar_trial *trial, int64_t n, double *eigenvalue) {
     SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
     spar_session *s = trial->session;
     spari_progress progress = spari_trial_progress(trial, __func__);
-    floquet f = {.call = __func__, .steps = trial->steps, .modes = (int)trial->modes};
+    floquet f = {.steps = trial->steps, .modes = (int)trial->modes};
     f.run = spari_trial_run_of(trial, &progress);
     f.run.steps = SPARI_MULTIPLE;
     f.amplitude = trial->amplitude == 0 ? usual_amplitude : trial->amplitude;
     f.nodes = spari_shapes_nodes(s);
     const spari_agreed arguments[] = {spari_whole("n", n)};
-    SPARI_TRY(spari_trial_enter(trial, __func__, arguments, 1, check_floquet(trial, &f, n, eigenvalue)));
+    SPARI_TRY(spari_trial_enter(trial, __func__, arguments, 1, check_floquet(trial, __func__, n, eigenvalue)));
     int status = solve_floquet(s, &f, n, eigenvalue);
     spari_small_motions_free(&f.motions);
     SPARI_FREE(f.shape, f.gram);

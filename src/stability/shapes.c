@@ -2,12 +2,26 @@
 #include "shapes.h"
 
 #include "../base/session.h"
+#include "../exchange/exchange.h"
 #include "../math/rotation.h"
 #include "../time/fidelity.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+int spari_shapes_ready(spar_trial *t, const char *call, int64_t n, const char *what, const double *out) {
+    spar_session *s = t->session;
+    SPARI_TRY(spari_trial_ready(t, call));
+    SPARI_REQUIRE(s, t->modes > 0, SPAR_ERR_STATE,
+                  "%s: the number of modes is not set; call spar_trial_set_motion first", call);
+    SPARI_TRY(s->clock.started ? SPAR_OK : spari_session_pushes(s, call));
+    SPARI_REQUIRE(s, n >= 0 && n <= 2 * t->modes, SPAR_ERR_ARGUMENT,
+                  "%s: %lld %s of %lld modes; give at most two per mode", call, (long long)n, what,
+                  (long long)t->modes);
+    SPARI_REQUIRE(s, out || n == 0, SPAR_ERR_ARGUMENT, "%s: eigenvalue is NULL", call);
+    return SPAR_OK;
+}
 
 int64_t spari_shapes_nodes(const spar_session *s) {
     int64_t nodes = 0;

@@ -2,7 +2,11 @@
 #ifndef SPARI_SHAPES_H
 #define SPARI_SHAPES_H
 
+#include "../trial/handle.h"
 #include "small_motions.h"
+
+/* Whether the trial can be analysed in its modes, for n results (`what`) into `out`. Local. */
+int spari_shapes_ready(spar_trial *trial, const char *call, int64_t n, const char *what, const double *out);
 
 /* Nodes of the committed members, at which shapes are given. */
 int64_t spari_shapes_nodes(const spar_session *session);
