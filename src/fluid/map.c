@@ -205,7 +205,7 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
 }
 
 /* Replaces the history by one for n nodes. */
-int spari_fluid_renew_history(spar_fluid *fluid, int64_t n) {
+static int renew_history(spar_fluid *fluid, int64_t n) {
     spari_history *h = spari_history_create(n, fluid->member->session->coupling.predictor);
     if (!h) {
         return SPAR_ERR_MEMORY;
@@ -228,7 +228,7 @@ static int renew_by_node(spar_fluid *fluid, int64_t n) {
     spari_states *made = fluid->states ? spari_states_create(n, fluid->states->width) : NULL;
     int status = fluid->states && !made ? SPAR_ERR_MEMORY : SPAR_OK;
     if (status == SPAR_OK && keeps_forces(fluid)) {
-        status = spari_fluid_renew_history(fluid, n);
+        status = renew_history(fluid, n);
     }
     if (status != SPAR_OK || !made) {
         spari_states_free(made);

@@ -245,7 +245,4 @@ void spari_parts_keep(spari_parts *parts, double theta);
 void spari_parts_begin(spar_fluid *fluid);
 void spari_parts_accept(spar_fluid *fluid);
 
-/* Keeps node forces for n nodes from now on, beginning with zeros. */
-int spari_fluid_renew_history(spar_fluid *fluid, int64_t n);
-
 #endif

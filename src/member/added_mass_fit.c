@@ -261,13 +261,11 @@ int spari_learned_create(spar_member *m) {
 /* own [6] := R^T x, with the section's rotation at t^n */
 static void to_section(const spar_member *m, int64_t e, const double *phi, const double R[9], const double x[6],
                        double own[6]) {
-    double rotation[4], back[6];
+    double rotation[4];
     spari_added_rotation(m, e, phi, rotation);
-    spari_rotate_back(rotation, x, back);
-    spari_rotate_back(rotation, x + 3, back + 3);
-    for (int i = 0; i < 6; i++) {
-        const double *b = back + i / 3 * 3;
-        own[i] = R[i % 3] * b[0] + R[3 + i % 3] * b[1] + R[6 + i % 3] * b[2];
+    for (int i = 0; i < 6; i += 3) {
+        spari_rotate_back(rotation, x + i, own + i);
+        spari_matrix_times_back(R, own + i, own + i);
     }
 }
 
