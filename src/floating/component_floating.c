@@ -16,7 +16,7 @@ static void attach_frame(spari_component *p) {
     p->frame = p->member->solution;
     p->body = p->member->body;
     p->steps = &p->frame->steps;
-    p->trace = &p->frame->trace;
+    p->trace = &p->frame->tangent.trace;
 }
 
 static spari_rates deformation_rates(const spari_frame *f, const spari_frame_state *s) {
@@ -115,8 +115,8 @@ static int tangent_of_frame(spari_component *p) {
 
 static int frame_serves(const spari_component *p) {
     const spari_frame *f = p->frame;
-    return f->factored && spari_alpha_close(p->scheme.cm, f->tangent_cm) &&
-           spari_alpha_close(p->scheme.cv, f->tangent_cv);
+    return f->tangent.factored != 0 && spari_alpha_close(p->scheme.cm, f->tangent.cm) &&
+           spari_alpha_close(p->scheme.cv, f->tangent.cv);
 }
 
 static int solve_frame(spari_component *p) {
@@ -154,8 +154,8 @@ static double advance_frame(spari_component *p, double longest, double *motion) 
     const spar_member *m = p->member;
     const int is_linear = !m->load.applied && (!m->added || p->scheme.still); /* no force depends on the motion */
     *motion = 0;
-    if (is_linear && f->tangent_cm == p->scheme.cm && f->tangent_cv == p->scheme.cv &&
-        memcmp(f->tangent_rates, f->rates, sizeof f->rates) == 0) {
+    if (is_linear && f->tangent.cm == p->scheme.cm && f->tangent.cv == p->scheme.cv &&
+        memcmp(f->tangent.rates, f->rates, sizeof f->rates) == 0) {
         correct_frame(p, 1); /* one correction with their own tangent solves the equations */
         return 0;
     }
@@ -237,7 +237,7 @@ static void end_start_of_frame(spari_component *p) {
     spari_frame *f = p->frame;
     memcpy(f->to.b, f->to.a, (size_t)f->n * sizeof *f->to.b);
     memcpy(f->begin.y, f->to.y, (size_t)(4 * f->n) * sizeof *f->to.y);
-    f->factored = 0;
+    f->tangent.factored = 0;
     f->steps.started = 1;
 }
 
@@ -294,13 +294,15 @@ static void keep_positions_of_frame(spari_component *p, int back) {
 
 static void discard_static_of_frame(spari_component *p) {
     begin_at_start_of_step(p->frame);
-    p->frame->factored = p->frame->resting = 0;
+    p->frame->tangent.factored = 0;
+    p->frame->resting = 0;
 }
 
 static void end_static_of_frame(spari_component *p) {
     keep_positions_of_frame(p, 1);
     rotate_root(p, 1);
-    p->frame->factored = p->frame->resting = 0;
+    p->frame->tangent.factored = 0;
+    p->frame->resting = 0;
     p->member->row->publish(p->member);
 }
 

@@ -94,7 +94,7 @@ int spari_frame_tangent(spari_frame *f, double cm, double cv) {
     const double *K = f->sumK ? f->sumK : f->K, *C = f->sumC, *M = f->M,
                  *A = f->steps.started ? f->A : NULL; /* at t^0 the added mass does not count */
     spari_frame_keep_factors(f);
-    f->factored = 0;
+    f->tangent.factored = 0;
     spari_linear_zero(f->linear);
     for (int e = 0; e < f->elements; e++) {
         for (int64_t i = 0, at = mm * e; i < mm; i++, at++) {
@@ -109,8 +109,8 @@ int spari_frame_tangent(spari_frame *f, double cm, double cv) {
     if (spari_linear_factor(f->linear)) {
         return 1;
     }
-    f->factored = 1;
-    f->tangent_cm = cm, f->tangent_cv = cv;
-    memcpy(f->tangent_rates, f->rates, sizeof f->tangent_rates);
+    f->tangent.factored = 1;
+    f->tangent.cm = cm, f->tangent.cv = cv;
+    memcpy(f->tangent.rates, f->rates, sizeof f->tangent.rates);
     return 0;
 }

@@ -38,6 +38,13 @@ typedef struct spari_frame_state {
     spari_pose root;
 } spari_frame_state;
 
+/* The tangent in use, in doubles as it is saved. */
+typedef struct spari_frame_tangent_state {
+    double factored, cm, cv; /* factored: 0 or 1 */
+    spari_trace trace;       /* of Newton; strict: its rate is not used */
+    double rates[6];
+} spari_frame_tangent_state;
+
 typedef struct spari_frame {
     int nodes;                    /* unique nodes */
     int constrained;              /* so many of the root's six unknowns, the first ones, are zero */
@@ -59,15 +66,9 @@ typedef struct spari_frame {
     int combined;
     double *sumK, *sumC, *sumf;
     spari_linear *linear;
-    int factored;
-    double tangent_cm, tangent_cv, tangent_rates[6];
-    spari_trace trace; /* of Newton; strict: its rate is not used */
-    struct {
-        int factored;
-        double cm, cv, rates[6];
-        spari_trace trace;
-    } begun;               /* the same at the beginning of the step, */
-    spari_snapshot before; /* and the factors */
+    spari_frame_tangent_state tangent;
+    spari_frame_tangent_state begun; /* the same at the beginning of the step, */
+    spari_snapshot before;           /* and the factors */
     spari_frame_state begin, from, to;
     spari_steps steps;
     double *r, *dx, *increment;       /* [max(n, 6 nodes)]; so are the loads of the steps */

@@ -198,7 +198,7 @@ void spari_frame_remass(spar_member *m) {
                                    1, f->A, cols));
         }
     }
-    f->factored = 0;
+    f->tangent.factored = 0;
 }
 
 /* ---- about a state ---- */

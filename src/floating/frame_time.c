@@ -306,7 +306,7 @@ int spari_frame_effective_load(spar_member *m, double *load) {
 
 /* Saves the factors before they are overwritten. */
 void spari_frame_keep_factors(spari_frame *f) {
-    double *to = f->begun.factored ? spari_snapshot_take(&f->before, spari_linear_state_size(f->linear)) : NULL;
+    double *to = f->begun.factored != 0 ? spari_snapshot_take(&f->before, spari_linear_state_size(f->linear)) : NULL;
     if (to) {
         spari_linear_save(f->linear, to);
     }
@@ -314,10 +314,7 @@ void spari_frame_keep_factors(spari_frame *f) {
 
 void spari_frame_begin(spar_member *m) {
     spari_frame *f = m->solution;
-    f->begun.factored = f->factored;
-    f->begun.cm = f->tangent_cm, f->begun.cv = f->tangent_cv;
-    f->begun.trace = f->trace;
-    memcpy(f->begun.rates, f->tangent_rates, sizeof f->tangent_rates);
+    f->begun = f->tangent;
     spari_snapshot_open(&f->before, 1);
 }
 
@@ -326,10 +323,8 @@ void spari_frame_reject(spar_member *m) {
     if (!f->before.open) {
         return;
     }
-    f->factored = f->begun.factored && f->before.saved >= 0;
-    f->tangent_cm = f->begun.cm, f->tangent_cv = f->begun.cv;
-    f->trace = f->begun.trace;
-    memcpy(f->tangent_rates, f->begun.rates, sizeof f->tangent_rates);
+    f->tangent = f->begun;
+    f->tangent.factored = f->begun.factored != 0 && f->before.saved >= 0;
     if (f->before.saved > 0) {
         spari_linear_load(f->linear, f->before.data);
     }
@@ -361,7 +356,7 @@ enum {
     STATE_HEAD = 12,
     STATE_ROTATION = STATE_HEAD,
     STATE_BEGUN = STATE_ROTATION + 12,
-    STATE_ENDS = STATE_BEGUN + 11,
+    STATE_ENDS = STATE_BEGUN + sizeof(spari_frame_tangent_state) / sizeof(double),
     STATE_ROOT = sizeof(spari_pose) / sizeof(double)
 };
 
@@ -373,28 +368,36 @@ static int64_t ends_size(const spari_frame *f) {
 /* After these come the data of the beginning of the step, and the factors if there are any. */
 int64_t spari_frame_state_size(const spar_member *m) {
     const spari_frame *f = m->solution;
-    return ends_size(f) + spari_snapshot_size(&f->before) + (f->factored ? spari_linear_state_size(f->linear) : 0);
+    return ends_size(f) + spari_snapshot_size(&f->before) +
+           (f->tangent.factored != 0 ? spari_linear_state_size(f->linear) : 0);
 }
 
 void spari_frame_save(const spar_member *m, double *state) {
     const spari_frame *f = m->solution;
-    const double head[STATE_HEAD] =
-        {f->n,          f->factored,   f->tangent_cm,    f->tangent_cv,       f->steps.started,  f->combined,
-         f->trace.rate, f->trace.left, f->steps.begin.h, f->steps.begin.even, f->steps.solved.h, f->steps.solved.even},
-                 begun[] = {f->begun.factored, f->begun.cm, f->begun.cv, f->begun.trace.rate, f->begun.trace.left};
+    const double head[STATE_HEAD] = {f->n,
+                                     f->tangent.factored,
+                                     f->tangent.cm,
+                                     f->tangent.cv,
+                                     f->steps.started,
+                                     f->combined,
+                                     f->tangent.trace.rate,
+                                     f->tangent.trace.left,
+                                     f->steps.begin.h,
+                                     f->steps.begin.even,
+                                     f->steps.solved.h,
+                                     f->steps.solved.even};
     const spari_frame_state *const ends[2] = {&f->begin, &f->to};
     memcpy(state, head, sizeof head);
     memcpy(state + STATE_ROTATION, f->rates, sizeof f->rates);
-    memcpy(state + STATE_ROTATION + 6, f->tangent_rates, sizeof f->tangent_rates);
-    memcpy(state + STATE_BEGUN, begun, sizeof begun);
-    memcpy(state + STATE_BEGUN + 5, f->begun.rates, sizeof f->begun.rates);
+    memcpy(state + STATE_ROTATION + 6, f->tangent.rates, sizeof f->tangent.rates);
+    memcpy(state + STATE_BEGUN, &f->begun, sizeof f->begun);
     double *at = state + STATE_ENDS;
     for (int k = 0; k < 2; k++, at += STATE_ROOT + 4 * (int64_t)f->n) {
         memcpy(at, &ends[k]->root, sizeof ends[k]->root);
         memcpy(at + STATE_ROOT, ends[k]->y, (size_t)(4 * f->n) * sizeof *state);
     }
     spari_snapshot_save(&f->before, at);
-    if (f->factored) {
+    if (f->tangent.factored != 0) {
         spari_linear_save(f->linear, at + spari_snapshot_size(&f->before));
     }
 }
@@ -417,28 +420,25 @@ int spari_frame_is_state(const spar_member *m, const double *state, int64_t coun
 void spari_frame_load(spar_member *m, const double *state) {
     spari_frame *f = m->solution;
     spari_frame_state *const ends[2] = {&f->begin, &f->to};
-    f->factored = state[1] != 0;
-    f->tangent_cm = state[2], f->tangent_cv = state[3];
+    f->tangent.factored = state[1] != 0;
+    f->tangent.cm = state[2], f->tangent.cv = state[3];
     f->steps.started = state[4] != 0;
     f->combined = 0;
     if (state[5] != 0) {
         spari_frame_combine(f, state + STATE_ROTATION);
     }
-    f->trace = (spari_trace){state[6], state[7]};
+    f->tangent.trace = (spari_trace){state[6], state[7]};
     f->steps.begin = (spari_pattern){state[8], (int)state[9]};
     f->steps.solved = (spari_pattern){state[10], (int)state[11]};
-    memcpy(f->tangent_rates, state + STATE_ROTATION + 6, sizeof f->tangent_rates);
-    const double *begun = state + STATE_BEGUN, *at = state + STATE_ENDS;
-    f->begun.factored = begun[0] != 0;
-    f->begun.cm = begun[1], f->begun.cv = begun[2];
-    f->begun.trace = (spari_trace){begun[3], begun[4]};
-    memcpy(f->begun.rates, begun + 5, sizeof f->begun.rates);
+    memcpy(f->tangent.rates, state + STATE_ROTATION + 6, sizeof f->tangent.rates);
+    memcpy(&f->begun, state + STATE_BEGUN, sizeof f->begun);
+    const double *at = state + STATE_ENDS;
     for (int k = 0; k < 2; k++, at += STATE_ROOT + 4 * (int64_t)f->n) {
         memcpy(&ends[k]->root, at, sizeof ends[k]->root);
         memcpy(ends[k]->y, at + STATE_ROOT, (size_t)(4 * f->n) * sizeof *state);
     }
-    spari_snapshot_load(&f->before, at, f->factored);
-    if (f->factored) {
+    spari_snapshot_load(&f->before, at, f->tangent.factored != 0);
+    if (f->tangent.factored != 0) {
         spari_linear_load(f->linear, at + SPARI_SNAPSHOT_HEAD + (int64_t)at[2]);
     }
 }

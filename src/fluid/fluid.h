@@ -35,6 +35,12 @@ void spari_fluid_commit_state(spar_fluid *fluid);
 void spari_fluid_free(spar_fluid *fluid);
 spar_fluid *spari_fluid_next(const spar_fluid *fluid); /* in the session's list */
 spar_member *spari_fluid_member(const spar_fluid *fluid);
+/* Calls `with` for each fluid of the session. */
+static inline void spari_fluids_each(const spar_session *session, void (*with)(spar_fluid *fluid)) {
+    for (spar_fluid *f = session->fluids; f; f = spari_fluid_next(f)) {
+        with(f);
+    }
+}
 
 /* Contributions of a fluid that a trial can switch off. Velocities and section poses are then those of a fluid at
    rest in the reference configuration, nodes are at their t^{n+1} positions, and node forces between steps are zero. */
@@ -44,9 +50,9 @@ enum {
     SPARI_MUTE_HALF_STEP = 4,
     SPARI_MUTE_HISTORY = 8,
     SPARI_ASKED_POSITIONS = 128, /* informative only: positions or orientations have been pulled */
-    SPARI_ASKED_LOADS = 32, /* informative only: loads have been pushed, possibly zero; */
-    SPARI_HAD_LOADS = 64,   /* informative only: the same at the beginning of the step, restored by reject */
-    SPARI_ASKED_MOMENT = 16 /* informative only: there are moments; SPAR_EFFECT_FLUID_MOMENT switches them off */
+    SPARI_ASKED_LOADS = 32,      /* informative only: loads have been pushed, possibly zero; */
+    SPARI_HAD_LOADS = 64,        /* informative only: the same at the beginning of the step, restored by reject */
+    SPARI_ASKED_MOMENT = 16      /* informative only: there are moments; SPAR_EFFECT_FLUID_MOMENT switches them off */
 };
 void spari_fluid_mute(spar_fluid *fluid, int mute);
 /* Which of these the host has pulled or pushed since the fluid was created, or created anew. */

@@ -111,4 +111,11 @@ int spari_joints_hold_prescribed(const spar_session *session);
 int spari_joints_hold_moved(const spar_session *session);
 void spari_joint_free(spar_joint *joint);
 
+/* Calls `with` for each joint of the session. */
+static inline void spari_joints_each(const spar_session *session, void (*with)(spar_joint *joint)) {
+    for (spar_joint *j = session->joints; j; j = j->next) {
+        with(j);
+    }
+}
+
 #endif

@@ -64,9 +64,7 @@ static void end_loading(const spar_session *s, reading *l) {
         free(l->assembled[k]);
     }
     SPARI_FREE(l->solution, l->assembled, l->solvers, l->fluids, l->taker, l->buffer);
-    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_give_up(f);
-    }
+    spari_fluids_each(s, spari_fluid_give_up);
 }
 
 /* Whether all ranks have allocated; SPAR_OK only if this one has. */
@@ -669,9 +667,7 @@ static void put_in_force(spar_session *s, reading *l) {
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a), k++) {
         spari_assembly_load(a, l->assembled[k]);
     }
-    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_load(f);
-    }
+    spari_fluids_each(s, spari_fluid_load);
 }
 
 int spar_session_load(spar_session *session, const char *path) {

@@ -60,9 +60,7 @@ int spari_start_begin(spar_session *s, const char *call, double dt) {
 /* From the same state every time. */
 static int balance_members(spar_session *s) {
     int status = SPAR_OK;
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        spari_joint_reject(j);
-    }
+    spari_joints_each(s, spari_joint_reject);
     for (spar_member *m = s->members; m; m = m->next) {
         copy_start_loads(m, m->load.used, m->load.history[0]);
         spari_member_again(m);
@@ -116,12 +114,8 @@ void spari_start_accept(spar_session *s) {
         copy_start_loads(m, m->load.pushed, m->load.before);
         spari_member_end_start(m, 1);
     }
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        spari_joint_end_start(j);
-    }
-    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_commit_state(f);
-    }
+    spari_joints_each(s, spari_joint_end_start);
+    spari_fluids_each(s, spari_fluid_commit_state);
     spari_coupling_keep(s);
     s->state.past = 0;
     end_start(s);
@@ -133,12 +127,8 @@ void spari_start_reject(spar_session *s) {
         copy_start_loads(m, m->load.before, m->load.history[0]);
         spari_member_end_start(m, 0);
     }
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        spari_joint_reject(j);
-    }
-    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_reject(f);
-    }
+    spari_joints_each(s, spari_joint_reject);
+    spari_fluids_each(s, spari_fluid_reject);
     spari_coupling_resume(s);
     end_start(s);
 }

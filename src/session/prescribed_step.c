@@ -16,9 +16,7 @@ static void end_forced(spar_session *s, double dt) {
         memcpy(m->now.a, m->after.a, (size_t)m->nodes * 6 * sizeof(double));
         m->state.motion_given = m->state.drive_given = 0;
     }
-    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_accept(f);
-    }
+    spari_fluids_each(s, spari_fluid_accept);
     spari_clock_tick(&s->clock, dt);
     s->clock.step++;
     s->clock.dt_last[1] = s->clock.dt_last[0];

@@ -247,9 +247,7 @@ static void commit_all(spar_session *s) {
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         spari_assembly_commit_state(a);
     }
-    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_commit_state(f);
-    }
+    spari_fluids_each(s, spari_fluid_commit_state);
     s->state.past = 0; /* the past is no basis for extrapolation */
 }
 
@@ -421,9 +419,7 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
         spari_coupling_keep(s);
     } else {
         discard_static(s, NULL, saved_state);
-        for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-            spari_fluid_reject(f);
-        }
+        spari_fluids_each(s, spari_fluid_reject);
         spari_coupling_resume(s);
     }
     s->state.phase = SPARI_IDLE;

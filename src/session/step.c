@@ -146,9 +146,7 @@ int spar_step_begin(spar_session *session, double dt) {
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         spari_assembly_begin(a);
     }
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        spari_joint_hold(j);
-    }
+    spari_joints_each(s, spari_joint_hold);
     for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         spari_fluid_begin(f, order, dt, s->clock.dt_last);
     }
@@ -186,9 +184,7 @@ static void solved_member(spar_member *m, const void *unused) {
 }
 
 static void reject_joints(spar_session *s) {
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        spari_joint_reject(j);
-    }
+    spari_joints_each(s, spari_joint_reject);
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         spari_assembly_reject(a);
     }
@@ -335,21 +331,15 @@ int spar_step_accept(spar_session *session) {
         return SPAR_OK;
     }
     spari_coupling_accept(s);
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        spari_work_of_joint(j);
-    }
+    spari_joints_each(s, spari_work_of_joint);
     spari_threads_each(s, shift_history, s);
     spari_step_control_accept(s);
     spari_threads_each(s, accept_member, NULL);
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         spari_assembly_accept(a);
     }
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        spari_joint_accept(j);
-    }
-    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_accept(f);
-    }
+    spari_joints_each(s, spari_joint_accept);
+    spari_fluids_each(s, spari_fluid_accept);
     learn_added(s);
     s->state.past = s->state.past < s->coupling.predictor ? s->state.past + 1 : s->coupling.predictor;
     spari_clock_tick(&s->clock, s->clock.dt);
@@ -378,9 +368,7 @@ static void reject(spar_session *s) {
                (size_t)(6 * m->nodes) * sizeof(double));
     }
     reject_joints(s);
-    for (spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
-        spari_fluid_reject(f);
-    }
+    spari_fluids_each(s, spari_fluid_reject);
     s->state.phase = SPARI_IDLE;
     s->clock.started = s->clock.step > 0;
     s->state.past = s->state.past > 0 ? s->state.past : 0;
