@@ -55,6 +55,12 @@ double *spari_copy(const double *x, int64_t n) {
     return copy;
 }
 
+void spari_give(double *array, const double *values, int64_t n) {
+    if (array && n > 0) {
+        memcpy(array, values, (size_t)n * sizeof *array);
+    }
+}
+
 void spari_fill(int64_t capacity, double *array, int64_t known, const double *values) {
     for (int64_t i = 0; array && i < capacity; i++) {
         array[i] = i < known ? values[i] : 0;

@@ -53,6 +53,8 @@ void spari_free_all(size_t n, void *const *pointers);
 /* Copy of x[n], or zeros if x is NULL. Free it with free(). NULL: no memory. */
 double *spari_copy(const double *x, int64_t n);
 
+/* Copies values[n] to a host's array, which may be NULL. */
+void spari_give(double *array, const double *values, int64_t n);
 /* Copies values[known] to a host's array[capacity] (may be NULL). Excess entries of array are set to 0. */
 void spari_fill(int64_t capacity, double *array, int64_t known, const double *values);
 

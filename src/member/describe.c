@@ -359,9 +359,7 @@ int spar_beam_get_quadrature(const spar_member *beam, int *rule, int *points) {
 
 int spar_beam_get_damping(const spar_member *beam, double mu[6]) {
     SPARI_TRY(spari_need_any_beam(beam, __func__));
-    if (mu) {
-        memcpy(mu, beam->beam->mu, sizeof beam->beam->mu);
-    }
+    spari_give(mu, beam->beam->mu, 6);
     return SPAR_OK;
 }
 
@@ -373,12 +371,8 @@ int spar_beam_get_mass_damping(const spar_member *beam, double *alpha) {
 
 int spar_member_get_placement(const spar_member *member, double x[3], double q[4]) {
     SPARI_TRY(spari_need_member(member, __func__));
-    if (x) {
-        memcpy(x, member->placement.x, sizeof member->placement.x);
-    }
-    if (q) {
-        memcpy(q, member->placement.q, sizeof member->placement.q);
-    }
+    spari_give(x, member->placement.x, 3);
+    spari_give(q, member->placement.q, 4);
     return SPAR_OK;
 }
 

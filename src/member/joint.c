@@ -331,16 +331,10 @@ int spar_joint_set_load(spar_joint *joint, const double load[6]) {
 
 /* ---- getters ---- */
 
-static void give_six(double *to, const double from[6]) {
-    if (to) {
-        memcpy(to, from, 6 * sizeof *to);
-    }
-}
-
 int spar_joint_get_motion(const spar_joint *joint, double motion[6], double rate[6], double acceleration[6]) {
     SPARI_TRY(need_joint(joint, __func__));
-    give_six(motion, joint->after.z);
-    give_six(rate, joint->after.rate);
+    spari_give(motion, joint->after.z, 6);
+    spari_give(rate, joint->after.rate, 6);
     if (acceleration) {
         spari_joint_acceleration(joint, acceleration);
     }
@@ -349,7 +343,7 @@ int spar_joint_get_motion(const spar_joint *joint, double motion[6], double rate
 
 int spar_joint_get_load(const spar_joint *joint, double load[6]) {
     SPARI_TRY(need_joint(joint, __func__));
-    give_six(load, joint->after.load);
+    spari_give(load, joint->after.load, 6);
     return SPAR_OK;
 }
 

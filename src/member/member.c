@@ -46,26 +46,20 @@ int spar_member_get_count(const spar_member *member, int64_t *nodes) {
 }
 
 /* copies n doubles if they are wanted */
-static void give(double *to, const double *from, int64_t n) {
-    if (to) {
-        memcpy(to, from, (size_t)n * sizeof *to);
-    }
-}
-
 int spar_member_get_reference(const spar_member *member, double *x, double *q) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_committed(member, __func__));
-    give(x, member->xr, 3 * member->nodes);
-    give(q, member->qr, 4 * member->nodes);
+    spari_give(x, member->xr, 3 * member->nodes);
+    spari_give(q, member->qr, 4 * member->nodes);
     return SPAR_OK;
 }
 
 int spar_member_get_motion(const spar_member *member, double *q, double *v, double *a) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_committed(member, __func__));
-    give(q, member->after.q, 7 * member->nodes);
-    give(v, member->after.v, 6 * member->nodes);
-    give(a, member->after.a, 6 * member->nodes);
+    spari_give(q, member->after.q, 7 * member->nodes);
+    spari_give(v, member->after.v, 6 * member->nodes);
+    spari_give(a, member->after.a, 6 * member->nodes);
     return SPAR_OK;
 }
 

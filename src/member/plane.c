@@ -28,9 +28,7 @@ int spar_beam_set_plane(spar_member *beam, const double normal[3]) {
 
 int spar_beam_get_plane(const spar_member *beam, double normal[3]) {
     SPARI_TRY(spari_need_any_beam(beam, __func__));
-    if (normal) {
-        memcpy(normal, beam->beam->normal, sizeof beam->beam->normal);
-    }
+    spari_give(normal, beam->beam->normal, 3);
     return SPAR_OK;
 }
 

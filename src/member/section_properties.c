@@ -137,12 +137,8 @@ int spar_section_build(int64_t n, const double *property, double *stiffness, dou
                       "%s: the inertia is lost in rounding; the mass centre must not be so far from the line",
                       __func__);
     }
-    if (stiffness) {
-        memcpy(stiffness, K, sizeof K);
-    }
-    if (mass) {
-        memcpy(mass, M, sizeof M);
-    }
+    spari_give(stiffness, K, 36);
+    spari_give(mass, M, 36);
     return SPAR_OK;
 }
 

@@ -68,12 +68,8 @@ int spar_fluid_sum_loads(const spar_fluid *fluid, const double point[3], double 
     SPARI_TRY(spari_callback_refuse(spari_fluid_member(fluid)->session, __func__));
     double total[TOTALS + 1];
     SPARI_TRY(sum_over_ranks(fluid, __func__, point, NULL, 0, SPAR_OK, total));
-    if (force) {
-        memcpy(force, total, 3 * sizeof *force);
-    }
-    if (moment) {
-        memcpy(moment, total + TOTAL_MOMENT, 3 * sizeof *moment);
-    }
+    spari_give(force, total, 3);
+    spari_give(moment, total + TOTAL_MOMENT, 3);
     return SPAR_OK;
 }
 

@@ -127,9 +127,7 @@ static int solve_coupled(spar_session *s, const char *call, coupled_ask *ask, do
     }
     if (status == SPAR_OK) {
         hand_eigenvalues(ask, &c);
-        if (frame) {
-            memcpy(frame, c.motions.w, sizeof c.motions.w);
-        }
+        spari_give(frame, c.motions.w, 3);
     }
     spari_small_motions_free(&c.motions);
     spari_reduced_free(&c.reduced);

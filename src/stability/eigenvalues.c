@@ -67,8 +67,8 @@ static int eigenvalues_of(spar_member *m, int64_t n, double complex shift, doubl
         }
         SPARI_FREE(value, x);
     }
-    if (status == SPAR_OK && frame) {
-        memcpy(frame, w.w, sizeof w.w);
+    if (status == SPAR_OK) {
+        spari_give(frame, w.w, 3);
     }
     spari_small_motions_free(&w);
     return status;

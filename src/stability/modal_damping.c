@@ -250,9 +250,7 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
         return spari_named(beam->session, __func__, status);
     }
     put_damping_in_force(beam, found, body);
-    if (mu) {
-        memcpy(mu, found, sizeof found);
-    }
+    spari_give(mu, found, 6);
     return SPAR_OK;
 }
 
@@ -384,9 +382,7 @@ int spar_beam_fit_damping(spar_member *beam, int64_t n, const int64_t *mode, con
         return spari_named(beam->session, __func__, status);
     }
     put_damping_in_force(beam, mu, body);
-    if (achieved) {
-        memcpy(achieved, found, (size_t)n * sizeof *found);
-    }
+    spari_give(achieved, found, n);
     free(found);
     return SPAR_OK;
 }
