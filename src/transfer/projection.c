@@ -413,7 +413,7 @@ typedef struct search {
     int element;        /* element of the nearest point; -1: none yet */
     double xi;
     int ambiguous;
-    int method;
+    int method, no_memory;
 } search;
 
 /* Distances within 2e-13 of the line's size count as equal: rounding decides between them, so xi is used instead. */
@@ -623,12 +623,11 @@ static void bound(search *q, const segment *s, const double p[3]) {
     }
 }
 
-/* The zeros z [n] of the series a_0 T_0 + ... + a_n T_n, eigenvalues of its colleague matrix. Returns 0 if there is
-   no result. */
+/* The zeros z [n] of the series a_0 T_0 + ... + a_n T_n, eigenvalues of its colleague matrix. Returns a status. */
 static int solve_series(int n, const double *a, double complex *z) {
     double *A = spari_zalloc((int64_t)n * n, sizeof *A);
     if (!A) {
-        return 0;
+        return SPAR_ERR_MEMORY;
     }
     for (int k = 0; k < n; k++) { /* row k: s T_k */
         if (k > 0) {
@@ -643,7 +642,7 @@ static int solve_series(int n, const double *a, double complex *z) {
     }
     int status = spari_eigenvalues(n, A, z);
     free(A);
-    return status == SPAR_OK;
+    return status;
 }
 
 /* By all zeros of D'/2 = (r - p) . r', degree 2 m - 1, and the ends. Two close real zeros come back as a complex
@@ -661,7 +660,9 @@ static int solve_by_roots(search *q, const segment *s, const double p[3]) {
     while (degree > 0 && fabs(a[degree]) <= DBL_EPSILON * most) {
         degree--;
     }
-    if (degree > 0 && !solve_series(degree, a, z)) {
+    int status = degree > 0 ? solve_series(degree, a, z) : SPAR_OK;
+    q->no_memory |= status == SPAR_ERR_MEMORY;
+    if (status != SPAR_OK) {
         return 0;
     }
     for (int k = 0; k < degree; k++) {
@@ -754,6 +755,7 @@ typedef struct points {
     double *xi, *nearest;
     uint8_t *flags;
     struct part *stacks; /* per thread */
+    char *no_memory;     /* likewise: whether the search of all roots had none */
 } points;
 
 enum { SLAB = 1024 }; /* points per item; the first of an item has no neighbour */
@@ -783,16 +785,22 @@ static void project_item(void *context, int64_t item, int worker) {
         p->flags[j] = (uint8_t)((q.ambiguous ? SPAR_MAP_AMBIGUOUS : 0) | (is_beyond(&q) ? SPAR_MAP_END : 0));
         spari_line_point(line, q.element, q.xi, p->nearest + 3 * j, NULL);
     }
+    p->no_memory[worker] |= (char)q.no_memory;
 }
 
 int spari_line_project(const spari_line *line, spari_thread_pool *pool, int method, int64_t n, const double *x,
                        int *element, double *xi, double *nearest, uint8_t *flags) {
-    points p = {line, method, n, x, element, xi, nearest, flags, NULL};
-    p.stacks = spari_zalloc((int64_t)spari_thread_pool_threads(pool) * (DEPTH + 1), sizeof *p.stacks);
-    if (!p.stacks) {
-        return SPAR_ERR_MEMORY;
+    points p = {line, method, n, x, element, xi, nearest, flags, NULL, NULL};
+    const int threads = spari_thread_pool_threads(pool);
+    p.stacks = spari_zalloc((int64_t)threads * (DEPTH + 1), sizeof *p.stacks);
+    p.no_memory = spari_zalloc(threads, 1);
+    int whole = p.stacks && p.no_memory;
+    if (whole) {
+        spari_thread_pool_run(pool, (n + SLAB - 1) / SLAB, project_item, &p);
     }
-    spari_thread_pool_run(pool, (n + SLAB - 1) / SLAB, project_item, &p);
-    free(p.stacks);
-    return SPAR_OK;
+    for (int k = 0; k < threads && whole; k++) {
+        whole = !p.no_memory[k];
+    }
+    SPARI_FREE(p.stacks, p.no_memory);
+    return whole ? SPAR_OK : SPAR_ERR_MEMORY;
 }
