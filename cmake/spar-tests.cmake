@@ -148,5 +148,6 @@ include("${PROJECT_SOURCE_DIR}/tests/rooms.cmake")
 # What the short form of tests/sanitize builds
 get_property(spar_short_targets DIRECTORY PROPERTY BUILDSYSTEM_TARGETS)
 list(FILTER spar_short_targets INCLUDE REGEX "^(test_.*|torture_.*|twins|fuzz)$")
-list(REMOVE_ITEM spar_short_targets test_rotor test_turbine test_error_scenes test_advice_kept test_advice_findings)
+list(REMOVE_ITEM spar_short_targets test_rotor test_turbine test_trial test_learned_mass_life test_floquet
+     test_error_scenes test_advice_kept test_advice_findings)
 add_custom_target(spar_short DEPENDS ${spar_short_targets})
