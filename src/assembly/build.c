@@ -30,7 +30,8 @@ static void gather(spari_assembly *a, spar_member *first) {
     take_member(a, first);
     for (int i = 0; i < a->components; i++) {
         const spar_member *m = a->component[i].member;
-        for (const spar_joint *j = m->joints; j; j = spari_next_joint_of(m, j)) {
+        for (int n = 0; n < m->joint_count; n++) {
+            const spar_joint *j = m->joints[n];
             spar_member *other = j->member[j->member[0] == m];
             if (is_part(other) && !other->assembly) {
                 take_member(a, other);

@@ -36,9 +36,18 @@ static int check_fidelity(const spar_session *s, const char *call, const char *n
     return SPAR_OK;
 }
 
-static void add_to_member(spar_member *m, spar_joint *j) {
-    *(m->last_joint ? &m->last_joint->further[m->last_joint->member[0] != m] : &m->joints) = j;
-    m->last_joint = j;
+/* Makes room for another joint of a member; NULL: the ground. 0, or 1: no memory. */
+static int reserve_joint(spar_member *m) {
+    if (!m || m->joint_count < m->joint_capacity) {
+        return 0;
+    }
+    int capacity = 2 * m->joint_capacity + 2;
+    spar_joint **more = realloc(m->joints, (size_t)capacity * sizeof *more);
+    if (!more) {
+        return 1;
+    }
+    m->joints = more, m->joint_capacity = capacity;
+    return 0;
 }
 
 static int joint_create(spar_session *s, const char *call, const char *name, spar_member *a, int64_t node_a,
@@ -62,7 +71,7 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
     }
     spar_joint *j = spari_zalloc(1, sizeof *j);
     char *own = strdup(name);
-    int taken = j && own ? spari_names_add(&s->joint_names, own) : -1;
+    int taken = j && own && !reserve_joint(a) && !reserve_joint(b) ? spari_names_add(&s->joint_names, own) : -1;
     if (taken) {
         free(j);
         free(own);
@@ -78,9 +87,9 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
     s->joint_count++;
     *(s->last_joint ? &s->last_joint->next : &s->joints) = j;
     s->last_joint = j;
-    add_to_member(a, j);
+    a->joints[a->joint_count++] = j;
     if (b && b != a) {
-        add_to_member(b, j);
+        b->joints[b->joint_count++] = j;
     }
     *out = j;
     s->joints_stale = 1;

@@ -21,8 +21,7 @@ typedef struct spari_driven {
 
 struct spar_joint {
     spar_session *session;
-    spar_joint *next;       /* in order of creation, the same on every rank */
-    spar_joint *further[2]; /* the next joint of member[0], and of member[1] if it is another one */
+    spar_joint *next; /* in order of creation, the same on every rank */
     char *name;
     spar_member *member[2]; /* a and b; b NULL: the ground */
     int64_t node[2];
@@ -52,10 +51,6 @@ struct spar_joint {
 
 /* Unique node of a node in the host's numbering. */
 int spari_member_unique(const spar_member *member, int64_t node);
-/* The joint after j among those that connect the member, in order of creation; the first one is m->joints. */
-static inline spar_joint *spari_next_joint_of(const spar_member *m, const spar_joint *j) {
-    return j->further[j->member[0] != m];
-}
 /* The description as one number: all that is said of it before the first step. */
 uint64_t spari_joint_hash(const spar_joint *joint);
 /* Hash of what may change at any time: springs, load, drive. And that of all joints, which the ranks compare before

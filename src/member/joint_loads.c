@@ -21,7 +21,8 @@ void spari_joint_poses(const spar_joint *j, spari_node_pose pose[2]) {
 }
 
 void spari_joints_on(const spar_member *m, int64_t node, double load[6]) {
-    for (const spar_joint *j = m->joints; j; j = spari_next_joint_of(m, j)) {
+    for (int n = 0; n < m->joint_count; n++) {
+        const spar_joint *j = m->joints[n];
         for (int side = 0; side < 2; side++) {
             if (!j->placed || j->member[side] != m || j->seat[side] != node) {
                 continue;
@@ -39,7 +40,7 @@ void spari_joints_on(const spar_member *m, int64_t node, double load[6]) {
 }
 
 void spari_joints_on_external(const spar_member *m, double *load) {
-    for (int64_t i = 0; m->external && m->joints && i < m->nodes; i++) {
+    for (int64_t i = 0; m->external && m->joint_count > 0 && i < m->nodes; i++) {
         spari_joints_on(m, i, load + 6 * i);
     }
 }

@@ -116,9 +116,10 @@ typedef struct spari_accuracy {
 
 struct spar_member {
     spar_session *session;
-    spar_member *next; /* in order of creation, the same on every rank */
-    int64_t number;    /* in this order, in which loads and motions of all members are stacked */
-    spar_joint *joints, *last_joint; /* the joints that connect it: spari_next_joint_of (joint.h) */
+    spar_member *next;   /* in order of creation, the same on every rank */
+    int64_t number;      /* in this order, in which loads and motions of all members are stacked */
+    spar_joint **joints; /* [joint_count] those that connect it, in order of creation */
+    int joint_count, joint_capacity;
     char *name;
     int kind;
     int external;

@@ -25,7 +25,8 @@
 static int check_held(const spar_member *m, const char *call) {
     spar_session *s = m->session;
     SPARI_TRY(spari_need_committed(m, call));
-    int loose = !m->joints && (m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C));
+    int loose =
+        m->joint_count == 0 && (m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C));
     SPARI_REQUIRE(s, !loose || !spari_fidelity_has_equilibrium(m), SPAR_ERR_STATE,
                   "%s: '%s' is free to move as a rigid body; fix, pin or drive its root", call, m->name);
     return SPAR_OK;

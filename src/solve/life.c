@@ -497,7 +497,7 @@ void spari_member_free(spar_member *member) {
     spari_beam_free(member->beam);
     SPARI_FREE(member->guess_eta, member->guess);
     spari_learned_free(member->learned);
-    SPARI_FREE(member->name, member);
+    SPARI_FREE(member->joints, member->name, member);
 }
 
 int spar_member_set_motion(spar_member *member, const double *q, const double *v, const double *a) {

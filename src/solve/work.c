@@ -199,8 +199,8 @@ int spar_joint_get_energy(const spar_joint *joint, int64_t capacity, double *ene
 
 void spari_work_restart(spar_member *m) {
     spari_work *w = m->work;
-    for (spar_joint *j = m->joints; j; j = spari_next_joint_of(m, j)) {
-        memset(j->account, 0, sizeof j->account);
+    for (int k = 0; k < m->joint_count; k++) {
+        memset(m->joints[k]->account, 0, sizeof m->joints[k]->account);
     }
     memset(w->sum, 0, sizeof w->sum);
     w->reaction_lacks = 0;

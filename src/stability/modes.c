@@ -104,7 +104,7 @@ int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz
     SPARI_REQUIRE(s, n >= 0, SPAR_ERR_ARGUMENT, "%s: '%s': %lld modes", __func__, member->name, (long long)n);
     SPARI_REQUIRE(s, frequency_hz || n == 0, SPAR_ERR_ARGUMENT, "%s: '%s': frequency_hz is NULL", __func__,
                   member->name);
-    int connected = member->joints != NULL;
+    int connected = member->joint_count > 0;
     int status = connected ? spari_joints_place(s) : SPAR_OK;
     status = status == SPAR_OK ? spari_modes(member, connected, n, frequency_hz, shapes) : status;
     return spari_named(s, __func__, status);

@@ -26,7 +26,8 @@ spari_component spari_component_of(spar_member *m) {
    how many there are. */
 static int find_joint_nodes(const spar_member *m, int *node) {
     int n = 0;
-    for (const spar_joint *j = m->joints; j; j = spari_next_joint_of(m, j)) {
+    for (int k = 0; k < m->joint_count; k++) {
+        const spar_joint *j = m->joints[k];
         for (int side = 0; side < 2; side++) {
             if (j->member[side] != m) {
                 continue;
@@ -56,11 +57,7 @@ static void attach_nodes(spari_component *p) {
 
 int spari_component_make_ends(const spari_component *p) {
     spari_solver *s = p->member->row->solver(p->member);
-    int64_t joints = 0;
-    for (const spar_joint *j = p->member->joints; j; j = spari_next_joint_of(p->member, j)) {
-        joints++;
-    }
-    int *node = spari_zalloc(2 * joints + 1, sizeof *node);
+    int *node = spari_zalloc(2 * p->member->joint_count + 1, sizeof *node);
     spari_condensed_free(s->condensed);
     s->condensed = node ? spari_condensed_create(find_joint_nodes(p->member, node), node, 6 * s->n) : NULL;
     free(node);

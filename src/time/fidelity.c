@@ -41,7 +41,7 @@ int spari_fidelity_check(const spar_member *m) {
                   "member '%s' is linear in the frame of a driven root, which moves relative to its foundation "
                   "(spar_beam_set_foundation); use SPAR_FIDELITY_EXACT, or fix the root",
                   m->name);
-    const spar_joint *joint = row->frame == SPARI_FRAME_LINEAR ? m->joints : NULL;
+    const spar_joint *joint = row->frame == SPARI_FRAME_LINEAR && m->joint_count > 0 ? m->joints[0] : NULL;
     SPARI_REQUIRE(m->session, !joint, SPAR_ERR_UNSUPPORTED,
                   "member '%s' is a linear or modal beam, which joint '%s' cannot connect; use SPAR_FIDELITY_EXACT "
                   "(spar_member_set_fidelity), which costs about as much with joints",

@@ -29,7 +29,8 @@ static int64_t end_node(const spar_member *m, int64_t node, spari_mesh mesh) {
 }
 
 int spari_joints_follow_rebuild(const spar_member *m, const spar_member *old) {
-    for (spar_joint *j = m->joints; j && !spari_mesh_is_equal(m->mesh, old->mesh); j = spari_next_joint_of(m, j)) {
+    for (int k = 0; k < m->joint_count && !spari_mesh_is_equal(m->mesh, old->mesh); k++) {
+        spar_joint *j = m->joints[k];
         for (int side = 0; side < 2; side++) {
             if (j->member[side] != m) {
                 continue;
@@ -72,7 +73,8 @@ void spari_joints_drop_snapshot(spar_session *s, spari_joint_snapshot *t) {
 int spari_joints_hold_within(const spar_member *m, int elements) {
     const spari_mesh mesh = {elements, m->mesh.per_element};
     int within = 0;
-    for (const spar_joint *j = m->joints; j; j = spari_next_joint_of(m, j)) {
+    for (int k = 0; k < m->joint_count; k++) {
+        const spar_joint *j = m->joints[k];
         for (int side = 0; side < 2; side++) {
             within = within || (j->member[side] == m && end_node(m, j->node[side], mesh) < 0);
         }

@@ -73,13 +73,13 @@ static int rebuild_members(spar_session *s, const spari_rebuild *to, change *c) 
     int joints_moved = 0; /* members that are tied begin anew together: whether one of them has to */
     const spari_rebuild *each = to;
     for (const spar_member *m = s->members; m && s->joints; m = m->next, each++) {
-        joints_moved = joints_moved || (!is_as_advised(m, each) && m->joints);
+        joints_moved = joints_moved || (!is_as_advised(m, each) && m->joint_count > 0);
     }
     if (joints_moved) {
         SPARI_TRY(spari_joints_save_snapshot(s, &c->joint_snapshot));
     }
     for (spar_member *m = s->members; m; m = m->next, to++) {
-        if (is_as_advised(m, to) && !(joints_moved && m->joints)) {
+        if (is_as_advised(m, to) && !(joints_moved && m->joint_count > 0)) {
             SPARI_REQUIRE(s, spari_history_keep(m->load.history, 6 * m->nodes, s->coupling.predictor) == SPAR_OK,
                           SPAR_ERR_MEMORY, "no memory for the loads of '%s'", m->name);
             SPARI_TRY(spari_means_keep(m));
