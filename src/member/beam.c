@@ -668,15 +668,12 @@ int spari_beam_build(const spar_member *member, int massive, const double mu[6],
             points[e] += spari_point_masses_of(member, e);
         }
         b = spari_body_create(member->mesh.elements, member->mesh.per_element, points, 1, mu != NULL, massive,
-                              &member->session->bodies);
+                              &member->session->bodies, &member->session->pool);
         if (b && (member->effects & SPAR_EFFECT_PRETENSION) && spari_body_set_pre(b)) {
             spari_body_free(b);
             b = NULL;
         }
         status = b ? fill_body(member, most, mu, b) : no_memory_for(member, "its quadrature points");
-        if (b) {
-            b->pool = &member->session->pool;
-        }
     }
     free(points);
     if (status != SPAR_OK) {

@@ -48,10 +48,9 @@ typedef struct spari_body {
     double stiffest;   /* force due to rounding of positions: largest stiffness, and moments divided by this size */
     double *lines;     /* memory of the blocks, without `pre` */
     double *tally;     /* [tiles][2] workspace of sums over elements */
-    int64_t workspace; /* workspace of an element, in doubles, at least 6 for each node; an element's tangent follows */
-    spari_workspace *shared;               /* that of the calling thread, for the bodies of a session */
-    spari_workspace own;                   /* the same, of a body without a session */
-    struct spari_thread_pool *const *pool; /* threads for its elements (base/thread_pool.h); NULL: one thread */
+    int64_t workspace; /* doubles of an element, at least 6 for each node of the body; its tangent stands behind */
+    spari_workspace *shared;               /* workspace of the calling thread, */
+    struct spari_thread_pool *const *pool; /* and threads for its elements (base/thread_pool.h); NULL: one thread */
 } spari_body;
 
 /* Allocates zero section forces of the reference. Returns 0, or 1 if there is no memory. */
@@ -71,9 +70,10 @@ void spari_body_see(const spari_body *body, const double *q, const double *v, do
 /* Workspace in doubles of an element with this many points, without its tangent. */
 int64_t spari_body_scratch_size(int per_element, int points, int damped);
 /* Allocates a body with points[elements] quadrature points; elastic, damped, massive: which properties exist. shared:
-   workspace that it shares with other bodies of the thread; NULL: it has its own. NULL: no memory. */
+   workspace of the calling thread, for all bodies of a session. pool: its threads, with workspace of their own; NULL:
+   none. Returns NULL if there is no memory. */
 spari_body *spari_body_create(int elements, int per_element, const int *points, int elastic, int damped, int massive,
-                              spari_workspace *shared);
+                              spari_workspace *shared, struct spari_thread_pool *const *pool);
 /* Size of the workspace of a thread, in doubles. */
 static inline int64_t spari_body_workspace_size(const spari_body *body) {
     return body->workspace + 36 * (int64_t)body->per_element * body->per_element;

@@ -47,7 +47,7 @@ static int create_blocks(spari_body *body, int64_t slots, int elastic, int dampe
 }
 
 spari_body *spari_body_create(int elements, int per_element, const int *points, int elastic, int damped, int massive,
-                              spari_workspace *shared) {
+                              spari_workspace *shared, spari_thread_pool *const *pool) {
     spari_body *body = spari_zalloc(1, sizeof *body);
     if (!body) {
         return NULL;
@@ -67,8 +67,8 @@ spari_body *spari_body_create(int elements, int per_element, const int *points, 
     ok = ok && (body->position = spari_zalloc(n * 3, sizeof *body->position));
     const int64_t nodes = 12 * (int64_t)body->unique, scratch = spari_body_scratch_size(per_element, most, damped);
     body->workspace = scratch > nodes ? scratch : nodes;
-    body->shared = shared ? shared : &body->own;
-    ok = ok && spari_workspace_reserve(body->shared, spari_body_workspace_size(body)) == 0;
+    body->shared = shared, body->pool = pool;
+    ok = ok && spari_workspace_reserve(shared, spari_body_workspace_size(body)) == 0;
     ok = ok && create_blocks(body, slots, elastic, damped, massive) == 0;
     ok = ok && (body->tally = spari_zalloc(2 * (int64_t)spari_body_tiles(body), sizeof *body->tally));
     if (!ok) {
@@ -168,6 +168,5 @@ void spari_body_free(spari_body *body) {
     }
     SPARI_FREE(body->node_position, body->seen, body->first, body->slot, body->phi, body->dphi, body->position,
                body->pre, body->lines, body->tally);
-    spari_workspace_free(&body->own);
     free(body);
 }

@@ -78,9 +78,9 @@ void spari_mass_rotate(const double R[9], const double M[36], double out[10]) {
 
 int spari_rigid_build(spar_member *member, spari_body **body) {
     double R[9], m[10];
-    spari_body *b = spari_body_create(1, 1, (const int[]){1}, 0, 0, 1, &member->session->bodies);
+    spari_body *b =
+        spari_body_create(1, 1, (const int[]){1}, 0, 0, 1, &member->session->bodies, &member->session->pool);
     SPARI_REQUIRE(member->session, b, SPAR_ERR_MEMORY, "member '%s': no memory for the rigid body", member->name);
-    b->pool = &member->session->pool;
     b->phi[0] = b->weight[0] = 1;
     spari_quat_matrix(member->qr, R);
     spari_mass_rotate(R, member->mass, m);

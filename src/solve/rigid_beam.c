@@ -70,11 +70,14 @@ static void rigid_free(void *solution) {
 
 static int rigid_create(spar_member *m) {
     spari_rigid_beam *b = m->solution = spari_zalloc(1, sizeof *b);
-    spari_body *body = b ? b->body = spari_body_create(1, 1, (const int[]){1}, 0, 0, 1, &m->session->bodies) : NULL;
+    if (!b) {
+        return SPAR_ERR_MEMORY;
+    }
+    spari_body *body = b->body =
+        spari_body_create(1, 1, (const int[]){1}, 0, 0, 1, &m->session->bodies, &m->session->pool);
     if (!body) {
         return SPAR_ERR_MEMORY;
     }
-    body->pool = &m->session->pool;
     body->phi[0] = body->weight[0] = 1;
     body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;
     body->length = m->body->length;

@@ -39,6 +39,8 @@ static void random_spd(int n, double *a) {
     }
 }
 
+static spari_workspace workspace; /* of all bodies */
+
 /* elements of Jacobian 1.1 on the x axis (straight), or with random tangents at the points, random section properties
  */
 static spari_body *random_body(int elements, int P, int points, int damped, int straight) {
@@ -46,7 +48,7 @@ static spari_body *random_body(int elements, int P, int points, int damped, int 
     for (int e = 0; e < elements; e++) {
         counts[e] = points;
     }
-    spari_body *b = spari_body_create(elements, P, counts, 1, damped, 1, NULL);
+    spari_body *b = spari_body_create(elements, P, counts, 1, damped, 1, &workspace, NULL);
     double x[24], bary[24], gx[24], gw[24];
     spari_gll(P, x, NULL, bary);
     spari_gauss(points, gx, gw);
