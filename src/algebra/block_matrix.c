@@ -33,51 +33,40 @@ struct spari_blocks {
 
 /* ---- one dense block ---- */
 
-static int factor_block(int n, double *A, int stride, int *pivot) {
+static int factor_block(int n, double *A, int *pivot) {
     for (int k = 0; k < n; k++) {
         int best = k;
         for (int i = k + 1; i < n; i++) {
-            best = fabs(A[i * stride + k]) > fabs(A[best * stride + k]) ? i : best;
+            best = fabs(A[i * n + k]) > fabs(A[best * n + k]) ? i : best;
         }
         pivot[k] = best;
         for (int j = 0; j < n && best != k; j++) {
-            double kept = A[k * stride + j];
-            A[k * stride + j] = A[best * stride + j];
-            A[best * stride + j] = kept;
+            double kept = A[k * n + j];
+            A[k * n + j] = A[best * n + j];
+            A[best * n + j] = kept;
         }
-        double p = A[k * stride + k];
+        double p = A[k * n + k];
         if (!(fabs(p) > 0) || !isfinite(p)) {
             return 1;
         }
         for (int i = k + 1; i < n; i++) {
-            double f = A[i * stride + k] /= p;
+            double f = A[i * n + k] /= p;
             for (int j = k + 1; j < n && f != 0; j++) {
-                A[i * stride + j] -= f * A[k * stride + j];
+                A[i * n + j] -= f * A[k * n + j];
             }
         }
     }
     return 0;
 }
 
-/* Most blocks have six rows or the same number plus three or five: loops of known length are several times faster.
-   Every number is summed in the same order. */
+/* Calls f with a known length n where that is common: six unknowns, alone or with the multipliers of a joint, or those
+   of a joint that closes a loop. Such loops are several times faster, and sum in the same order. */
 #define WITH_LENGTH(f, n, ...)                                                                                         \
-    switch (n) {                                                                                                       \
-    case 3:                                                                                                            \
-        f(3, __VA_ARGS__);                                                                                             \
-        break;                                                                                                         \
-    case 6:                                                                                                            \
-        f(6, __VA_ARGS__);                                                                                             \
-        break;                                                                                                         \
-    case 9:                                                                                                            \
-        f(9, __VA_ARGS__);                                                                                             \
-        break;                                                                                                         \
-    case 11:                                                                                                           \
-        f(11, __VA_ARGS__);                                                                                            \
-        break;                                                                                                         \
-    default:                                                                                                           \
-        f(n, __VA_ARGS__);                                                                                             \
-    }
+    ((n) == 3    ? f(3, __VA_ARGS__)                                                                                   \
+     : (n) == 6  ? f(6, __VA_ARGS__)                                                                                   \
+     : (n) == 9  ? f(9, __VA_ARGS__)                                                                                   \
+     : (n) == 11 ? f(11, __VA_ARGS__)                                                                                  \
+                 : f(n, __VA_ARGS__))
 
 /* y [m] -= A [m][k] x [k] */
 static inline void less_rows_of(int k, int m, const double *A, int stride, const double *x, double *y) {
@@ -91,7 +80,7 @@ static inline void less_rows_of(int k, int m, const double *A, int stride, const
 }
 
 static void less_rows(int m, int k, const double *A, int stride, const double *x, double *y) {
-    WITH_LENGTH(less_rows_of, k, m, A, stride, x, y)
+    WITH_LENGTH(less_rows_of, k, m, A, stride, x, y);
 }
 
 static inline void solve_one_of(int n, const double *A, const int *pivot, double *x) {
@@ -116,10 +105,10 @@ static inline void solve_one_of(int n, const double *A, const int *pivot, double
 }
 
 static void solve_one(int n, const double *A, const int *pivot, double *x) {
-    WITH_LENGTH(solve_one_of, n, A, pivot, x)
+    WITH_LENGTH(solve_one_of, n, A, pivot, x);
 }
 
-static void solve_block(int n, const double *A, int stride, const int *pivot, int count, double *x, int x_stride) {
+static void solve_block(int n, const double *A, const int *pivot, int count, double *x, int x_stride) {
     for (int k = 0; k < n; k++) {
         double *row = x + k * x_stride, *other = x + pivot[k] * x_stride;
         for (int c = 0; c < count && pivot[k] != k; c++) {
@@ -129,16 +118,16 @@ static void solve_block(int n, const double *A, int stride, const int *pivot, in
     }
     for (int k = 0; k < n; k++) {
         for (int i = k + 1; i < n; i++) {
-            double f = A[i * stride + k];
+            double f = A[i * n + k];
             for (int c = 0; c < count && f != 0; c++) {
                 x[i * x_stride + c] -= f * x[k * x_stride + c];
             }
         }
     }
     for (int k = n - 1; k >= 0; k--) {
-        double *row = x + k * x_stride, p = 1 / A[k * stride + k];
+        double *row = x + k * x_stride, p = 1 / A[k * n + k];
         for (int i = k + 1; i < n; i++) {
-            double f = A[k * stride + i];
+            double f = A[k * n + i];
             for (int c = 0; c < count && f != 0; c++) {
                 row[c] -= f * x[i * x_stride + c];
             }
@@ -467,7 +456,7 @@ static inline void less_product_of(int n, int m, int k, const double *A, int sa,
 }
 
 static void less_product(int m, int n, int k, const double *A, int sa, const double *B, int sb, double *C, int sc) {
-    WITH_LENGTH(less_product_of, n, m, k, A, sa, B, sb, C, sc)
+    WITH_LENGTH(less_product_of, n, m, k, A, sa, B, sb, C, sc);
 }
 
 /* Updates the later blocks with L D^-1 U of a factored panel; U then holds D^-1 U. */
@@ -506,7 +495,7 @@ int spari_blocks_factor(spari_blocks *m) {
         if (m->watched && panel->size <= SPARI_INERTIA) {
             m->negative += spari_inertia_negative(panel->size, panel->D, panel->size);
         }
-        if (factor_block(panel->size, panel->D, panel->size, panel->pivot)) {
+        if (factor_block(panel->size, panel->D, panel->pivot)) {
             m->least = 0;
             return 1;
         }
@@ -514,7 +503,7 @@ int spari_blocks_factor(spari_blocks *m) {
             m->least = fmin(m->least, fabs(panel->D[k * panel->size + k]));
         }
         if (panel->rows > 0) {
-            solve_block(panel->size, panel->D, panel->size, panel->pivot, panel->rows, panel->U, panel->rows);
+            solve_block(panel->size, panel->D, panel->pivot, panel->rows, panel->U, panel->rows);
             update_later(m, panel);
         }
     }
