@@ -5,6 +5,7 @@
 #include "cs_prototypes.h"
 #include "fvm_selector.h"
 #include "spar_saturne.h"
+#include <math.h>
 #include <spar/spar_mpi.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -151,6 +152,17 @@ void saturne_steps(cs_domain_t *domain) {
     if (cs_glob_ale != CS_ALE_NONE) {
         set_precision(CS_F_(mesh_u), precision);
     }
+}
+
+void saturne_centre(void) {
+    cs_var_cal_opt_t scheme;
+    cs_field_get_key_struct(CS_F_(vel), cs_field_key_id("var_cal_opt"), &scheme);
+    scheme.blencv = 1, scheme.ischcv = 1, scheme.isstpc = 1;
+    cs_field_set_key_struct(CS_F_(vel), cs_field_key_id("var_cal_opt"), &scheme);
+}
+
+double saturne_ramp(double t, double over) {
+    return t < over ? 0.5 * (1 - cos(acos(-1.) * t / over)) : 1;
 }
 
 /* ---- the clock ---- */

@@ -99,6 +99,10 @@ void saturne_wall_forces(cs_lnum_t n, const cs_lnum_t *faces, double *force);
 
 /* Puts dt, steps and precision in force, in cs_user_parameters. */
 void saturne_steps(cs_domain_t *domain);
+/* Centred differences for the velocity, likewise; without the slope test, which switches, so that loads jump. */
+void saturne_centre(void);
+/* From 0 at t = 0 smoothly to 1 at t = over, s. */
+double saturne_ramp(double t, double over);
 
 /* Processor time that goes to spar: between begin and end, of this rank. */
 void saturne_clock_begin(void);

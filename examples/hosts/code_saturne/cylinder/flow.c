@@ -9,13 +9,10 @@
 static const double speed = 1, viscosity = 1. / 150;
 
 void cs_user_parameters(cs_domain_t *domain) {
-    cs_var_cal_opt_t scheme;
     cs_fluid_properties_t *fluid = cs_get_glob_fluid_properties();
     saturne_steps(domain);
     fluid->ro0 = 1, fluid->viscl0 = viscosity, fluid->p0 = 0;
-    cs_field_get_key_struct(CS_F_(vel), cs_field_key_id("var_cal_opt"), &scheme);
-    scheme.blencv = 1, scheme.ischcv = 1, scheme.isstpc = 1; /* centred, no slope test */
-    cs_field_set_key_struct(CS_F_(vel), cs_field_key_id("var_cal_opt"), &scheme);
+    saturne_centre();
 }
 
 /* The mesh, where code_saturne moves it, is stiff near the cylinder, where its cells are small at the start. A run that

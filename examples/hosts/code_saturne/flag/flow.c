@@ -9,13 +9,10 @@
 #include <math.h>
 
 void cs_user_parameters(cs_domain_t *domain) {
-    cs_var_cal_opt_t scheme;
     cs_fluid_properties_t *fluid = cs_get_glob_fluid_properties();
     saturne_steps(domain);
     fluid->ro0 = 1000, fluid->viscl0 = 1, fluid->p0 = 0;
-    cs_field_get_key_struct(CS_F_(vel), cs_field_key_id("var_cal_opt"), &scheme);
-    scheme.blencv = 1, scheme.ischcv = 1, scheme.isstpc = 1; /* centred, no slope test */
-    cs_field_set_key_struct(CS_F_(vel), cs_field_key_id("var_cal_opt"), &scheme);
+    saturne_centre();
 }
 
 static const double ramp_time = 2; /* s */
@@ -28,8 +25,7 @@ static double shake(double y, double t) {
 
 /* m/s along it */
 static double inflow(double y, double t) {
-    const double height = 0.41, mean = saturne_number("speed", NULL),
-                 ramp = t < ramp_time ? 0.5 * (1 - cos(acos(-1.) * t / ramp_time)) : 1;
+    const double height = 0.41, mean = saturne_number("speed", NULL), ramp = saturne_ramp(t, ramp_time);
     return ramp * 6 * mean * y * (height - y) / (height * height);
 }
 

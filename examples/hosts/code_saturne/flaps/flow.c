@@ -4,7 +4,6 @@
 #include "cs_headers.h"
 #include "cs_prototypes.h"
 #include "spar_saturne.h"
-#include <math.h>
 
 void cs_user_parameters(cs_domain_t *domain) {
     cs_fluid_properties_t *fluid = cs_get_glob_fluid_properties();
@@ -14,7 +13,7 @@ void cs_user_parameters(cs_domain_t *domain) {
 
 void cs_user_boundary_conditions(SATURNE_CONDITIONS(bc_type)) {
     const cs_lnum_t faces = cs_glob_mesh->n_b_faces;
-    const double t = cs_glob_time_step->t_cur, ramp = t < 0.5 ? 0.5 * (1 - cos(acos(-1.) * t / 0.5)) : 1;
+    const double ramp = saturne_ramp(cs_glob_time_step->t_cur, 0.5);
     SATURNE_UNUSED_CONDITIONS;
     saturne_mark("flaps flow", "1", CS_INLET, bc_type);
     saturne_mark("flaps flow", "2", CS_OUTLET, bc_type);

@@ -4,21 +4,17 @@
 #include "cs_headers.h"
 #include "cs_prototypes.h"
 #include "spar_saturne.h"
-#include <math.h>
 
 void cs_user_parameters(cs_domain_t *domain) {
-    cs_var_cal_opt_t scheme;
     cs_fluid_properties_t *fluid = cs_get_glob_fluid_properties();
     saturne_steps(domain);
     fluid->ro0 = 1, fluid->viscl0 = 0.01, fluid->p0 = 0;
-    cs_field_get_key_struct(CS_F_(vel), cs_field_key_id("var_cal_opt"), &scheme);
-    scheme.blencv = 1, scheme.ischcv = 1, scheme.isstpc = 1; /* centred: the slope test switches, and loads jump */
-    cs_field_set_key_struct(CS_F_(vel), cs_field_key_id("var_cal_opt"), &scheme);
+    saturne_centre();
 }
 
 void cs_user_boundary_conditions(SATURNE_CONDITIONS(bc_type)) {
     const cs_lnum_t faces = cs_glob_mesh->n_b_faces;
-    const double t = cs_glob_time_step->t_cur, ramp = t < 0.5 ? 0.5 * (1 - cos(acos(-1.) * t / 0.5)) : 1;
+    const double ramp = saturne_ramp(cs_glob_time_step->t_cur, 0.5);
     SATURNE_UNUSED_CONDITIONS;
     saturne_mark("hub flow", "1", CS_INLET, bc_type);
     saturne_mark("hub flow", "2", CS_OUTLET, bc_type);
