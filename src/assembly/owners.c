@@ -11,9 +11,9 @@
 
 /* ---- estimated cost ---- */
 
-/* Costs in instructions, rounded from callgrind's counts (docs/evidence/performance.md, benchmarks/assemblies.c). Only their
-   ratios matter. An iteration of Newton costs a sum over: nodes with six unknowns, quadrature points, nodes that a
-   point depends on, entries of the rows of the band. A linear or modal member: nodes, entries of its matrices.
+/* Costs in instructions, rounded from callgrind's counts (docs/evidence/performance.md, benchmarks/assemblies.c).
+   Only their ratios matter. An iteration of Newton costs a sum over: nodes with six unknowns, quadrature points, nodes
+   that a point depends on, entries of the rows of the band. A linear or modal member: nodes, entries of its matrices.
    Others: a rigid body; a joint, with the condensed bodies that it connects. Newton takes several iterations where a
    linear member takes one solution. */
 static const double NODE = 2500, POINT = 390, POINT_NODE = 11, ENTRY = 0.87, FRAME_NODE = 3200, FRAME_ENTRY = 2.75,

@@ -86,8 +86,10 @@ void spari_system_name_free(spari_assembly *a, char *text, int size);
 void spari_system_keep_joint_tangents(spari_assembly *a);
 /* Solves for the corrections of the components, and of the multipliers (`correction`), that remove the components'
    residuals and the constraints' gaps. The constraints are those of the present positions; the reused tangents of
-   the components follow their nodes. cv: as for the tangents. rotated: as for spari_component_reduce. Returns 0 or 1.
- */
+   the components follow their nodes.
+     cv: as for the tangents
+     rotated: as for spari_component_reduce
+   Returns 0 or 1. */
 int spari_system_solve(spari_assembly *a, double cv, int rotated);
 /* The same for the gaps alone, without forces. */
 int spari_system_close_gaps(spari_assembly *a, double cv);

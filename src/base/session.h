@@ -2,8 +2,8 @@
 #ifndef SPARI_SESSION_H
 #define SPARI_SESSION_H
 
-#include "setting.h"
 #include "names.h"
+#include "setting.h"
 #include "workspace.h"
 
 #include <math.h>

@@ -293,7 +293,9 @@ static void cause_of(const char *message, const char *call, char *cause, size_t 
     const char *from = strncmp(message, call, name) == 0 && message[name] == ':' ? message + name + 2 : message;
     (void)snprintf(cause, size, "%.*s", (int)size - 1, from);
     char *end = strrchr(cause, ';');
-    SPARI_GIVE(end, '\0');
+    if (end) {
+        *end = '\0';
+    }
 }
 
 /* Largest force or moment of nodal loads. */

@@ -501,9 +501,8 @@ static int line_build(const spar_member *m, int kind, int64_t n, const double *e
     line->load = spari_zalloc((int64_t)points * 6, sizeof *line->load);
     int ok = s && w && line->first && line->phi && line->load;
     for (int e = 0; e < E && ok; e++) {
-        int k = line->first[e], count = load_points(m, e, n, eta, s + k, w + k, at + k);
-        ok = count >= 0;
-        line->first[e + 1] = k + count;
+        int k = line->first[e];
+        line->first[e + 1] = k + load_points(m, e, n, eta, s + k, w + k, at + k);
     }
     ok = ok && spari_beam_stations(m, points, s) == SPAR_OK;
     for (int k = 0; k < points && ok; k++) {

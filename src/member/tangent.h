@@ -55,9 +55,8 @@ typedef struct spari_tangent_work {
 
 /* The columns 1/2 e_j q, e_j the imaginary units. */
 void spari_half_turns(const double *q, double h[4][3]);
-/* S (3 x 3, rows of `stride`) += factor times the change of the nodal moment 1/2 Im(g q*) of constant g with q: -1/4 (s
-   I
-   + w~), (s, w) = g q*. */
+/* S (3 x 3, rows of `stride`) += factor times the change with q of the nodal moment 1/2 Im(g q*), g constant. It is
+   -1/4 (s I + w~), with (s, w) = g q*. */
 void spari_turned_force(double factor, const double *g, const double *q, double *S, int64_t stride);
 
 /* Matrices of all points of element e, and their force terms, as spari_lanes_forces. */
