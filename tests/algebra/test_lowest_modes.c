@@ -10,6 +10,7 @@
 #include "algebra/shifted.h"
 #include "spar/spar.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -201,7 +202,9 @@ static void dense_eigenvalues(double *C, double *D, double *mu) {
     free(half);
 }
 
-static void check_residual(const scene *s, const double *T, double square, const double *x) {
+/* The operator's largest eigenvalue is 1 / lowest. Its rounding errors, relative to that, become errors of K x by
+   square / lowest; the factor: sums over ALL terms (observed: up to 1100). */
+static void check_residual(const scene *s, const double *T, double lowest, double square, const double *x) {
     double most = 0, left = 0;
     for (int c = 0; c < LEFT; c++) {
         double sum = 0;
@@ -213,7 +216,7 @@ static void check_residual(const scene *s, const double *T, double square, const
         }
         left = fmax(left, fabs(sum));
     }
-    assert_true(left <= 1e-8 * most);
+    assert_true(left <= (1e-11 + 4096 * DBL_EPSILON * square / lowest) * most);
 }
 
 static void test_random(void **state) {
@@ -240,7 +243,7 @@ static void test_random(void **state) {
         assert_int_equal(available, LEFT);
         for (int k = 0; k < n; k++) {
             assert_true(fabs(square[k] - mu[k]) <= 1e-9 * mu[n - 1] + 1e-9);
-            check_residual(&s, T, square[k], x + ALL * k);
+            check_residual(&s, T, mu[0], square[k], x + ALL * k);
         }
         check_orthonormal(&s, n, x);
         assert_int_equal(solve(&s, n, same, again, &available), SPAR_OK);
