@@ -38,7 +38,7 @@ spar_packages() {
     fi
     say "installing packages:$missing"
     # shellcheck disable=SC2086
-    { $as_root apt-get -o Acquire::Retries=3 update -qq &&
+    { { [ -n "${spar_lists_new:-}" ] || $as_root apt-get -o Acquire::Retries=3 update -qq; } && spar_lists_new=1 &&
         DEBIAN_FRONTEND=noninteractive $as_root apt-get -o Acquire::Retries=3 -o Dpkg::Use-Pty=0 install -y -qq --no-install-recommends $missing; } >/dev/null
 }
 
