@@ -151,9 +151,22 @@ include("${PROJECT_SOURCE_DIR}/tests/count/count.cmake" OPTIONAL)
 include("${PROJECT_SOURCE_DIR}/tests/torture/torture.cmake")
 include("${PROJECT_SOURCE_DIR}/tests/rooms.cmake")
 
-# What the short form of tests/sanitize builds
+# The short form of tests/sanitize: the tests with the label short, and the target that builds their programs. It has the unit tests
+# and the torture without those below, which take longest and use memory as others do: test_transfer, test_body and test_nodes run
+# the kernels of every width that the processor has; torture_fuzz_fresh plays what torture_fuzz does, in a tenth of the calls;
+# torture_threads has sessions of several threads.
+set(spar_not_short test_rotor test_turbine test_trial test_learned_mass test_learned_mass_life test_floquet test_error_scenes
+  test_advice_kept test_advice_findings test_transfer_scalar test_transfer_wide test_body_scalar test_body_wide test_nodes_scalar
+  test_nodes_wide test_assembly test_coupling test_added_mass test_explicit_stability test_idle_loads test_linear_beams test_pace test_threads
+  torture_traps torture_upward torture_ftz torture_comma torture_twins torture_memory_np2 torture_fuzz)
+get_property(tests DIRECTORY PROPERTY TESTS)
+foreach(test IN LISTS tests)
+  get_test_property(${test} LABELS labels)
+  if(test MATCHES "^(test|torture)_" AND labels MATCHES "^(unit|torture)$" AND NOT test IN_LIST spar_not_short)
+    set_tests_properties(${test} PROPERTIES LABELS "${labels};short")
+  endif()
+endforeach()
 get_property(spar_short_targets DIRECTORY PROPERTY BUILDSYSTEM_TARGETS)
 list(FILTER spar_short_targets INCLUDE REGEX "^(test_.*|torture_.*|twins|fuzz)$")
-list(REMOVE_ITEM spar_short_targets test_rotor test_turbine test_trial test_learned_mass_life test_floquet
-     test_error_scenes test_advice_kept test_advice_findings)
+list(REMOVE_ITEM spar_short_targets ${spar_not_short})
 add_custom_target(spar_short DEPENDS ${spar_short_targets})

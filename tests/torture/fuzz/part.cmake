@@ -12,3 +12,4 @@ add_test(NAME torture_fuzz_fresh COMMAND fuzz --calls 10000 --seed ${spar_tortur
 foreach(name IN ITEMS torture_fuzz_complete torture_fuzz_shrinks torture_fuzz torture_fuzz_fresh)
   spar_set_test(${name} torture 120)
 endforeach()
+set_tests_properties(torture_fuzz PROPERTIES PROCESSORS 2)
