@@ -199,18 +199,18 @@ static void report_added_mass(spari_coupling *c) {
 }
 
 /* Newton's error returns as a load error, multiplied by mu in the motion norm; mu is the ratio of added mass to mass
-   estimated from the loads. This error must be small compared with the last changes of the iteration, a hundredth of
-   the final one. This applies to the first solutions of a step too, because columns are differences of these and
-   serve in later steps. With a tenth, IQN-ILS takes up to 15 per cent more iterations with heavy exact fluids, with a
-   thousandth 5 (tests/support/flows.h). A fluid solution costs more than a Newton iteration. A mu below `least` is
-   raised to it. */
+   estimated from the loads, 1 without an estimate. This error must be small compared with the last changes of the
+   iteration, a hundredth of the final one. This applies to the first solutions of a step too, because columns are
+   differences of these and serve in later steps. With a tenth, IQN-ILS takes up to 15 per cent more iterations with
+   heavy exact fluids, with a thousandth 5 (tests/support/flows.h). A fluid solution costs more than a Newton
+   iteration. A mu below `least` is raised to it. */
 double spari_coupling_share(const spar_session *s) {
     static const double part = 1e-3, least = 0.05;
     const spari_coupling *c = s->own->coupling;
     if (!c->accelerator || c->idle) {
         return INFINITY;
     }
-    double mu = c->report[SPAR_REPORT_ADDED_MASS], goal = s->coupling.rtol;
+    double mu = spari_accelerator_typical_ratio(c->accelerator), goal = s->coupling.rtol;
     if (spari_coupling_wants_motion(s)) {
         goal = fmin(goal, s->coupling.motion_rtol);
     }
