@@ -8,10 +8,12 @@
      windows  four-bar linkages in a row: upright bars of 1 m on hinges whose axes are parallel, which begin to fall;
               three constraints of each loop are redundant
 
-   assemblies KIND MEMBERS [STEPS, default 10]   CSV: members, seconds of the first step, microseconds a member and step
+   assemblies KIND MEMBERS [STEPS, default 10 [DT [FILE]]]
+                                                 CSV: members, seconds of the first step, microseconds a member and step
                                                  of the next ones, memory in kB a member; processor time. The difference
                                                  of two such runs under `valgrind --tool=callgrind` is the cost of the
-                                                 steps between (benchmarks/run-joints).
+                                                 steps between (benchmarks/run-joints). FILE: a line for each member at
+                                                 the end, displacement and rotation of its last node.
    assemblies modes MEMBERS                      the 20 lowest modes of a jacket: seconds */
 #include <math.h>
 #include <spar/spar.h>
@@ -25,6 +27,8 @@
 
 enum { NODES = 5, TIP = NODES - 1, BAY = 12, MODES = 20 };
 static const double identity[4] = {1, 0, 0, 0};
+static spar_member **built; /* all members, in the order of their creation */
+static int count;
 
 static double now(void) {
     struct timespec t;
@@ -54,6 +58,15 @@ static spar_joint *join(spar_session *s, spar_member *b, int node, spar_member *
     return j;
 }
 
+static void keep(spar_member *b) {
+    spar_member **more = realloc(built, sizeof *built * (size_t)(count + 1));
+    if (!more) {
+        exit(1);
+    }
+    built = more;
+    built[count++] = b;
+}
+
 static spar_member *add_beam(spar_session *s, int i, const double xyz[6], double EA, int root) {
     static const double eta[2] = {0, 1}, stiffness[6] = {50, 10, 10, 0.8, 1, 1}, mass[6] = {200, 200, 200, 20, 10, 10};
     double K[36] = {0}, M[36] = {0};
@@ -68,6 +81,7 @@ static spar_member *add_beam(spar_session *s, int i, const double xyz[6], double
     need(s, spar_beam_set_sections(b, 1, eta, K, M));
     need(s, spar_member_set_root(b, root));
     need(s, spar_member_commit(b));
+    keep(b);
     return b;
 }
 
@@ -88,6 +102,7 @@ static spar_member *add_bar(spar_session *s, int i, const double x[3], const dou
     snprintf(name, sizeof name, "bar%d", i);
     need(s, spar_rigid_create(s, name, x, identity, M, &b));
     need(s, spar_member_commit(b));
+    keep(b);
     return b;
 }
 
@@ -223,6 +238,24 @@ static void build_windows(spar_session *s, int bars) {
     }
 }
 
+static void write_motion(const spar_session *s, const char *path) {
+    FILE *f = fopen(path, "w");
+    if (!f) {
+        fprintf(stderr, "assemblies: cannot write '%s'\n", path);
+        exit(1);
+    }
+    for (int i = 0; i < count; i++) {
+        int64_t nodes;
+        double q[NODES][7];
+        need(s, spar_member_get_count(built[i], &nodes));
+        need(s, spar_member_get_motion(built[i], q[0], NULL, NULL));
+        for (int k = 0; k < 7; k++) {
+            fprintf(f, k < 6 ? "%.16g " : "%.16g\n", q[nodes - 1][k]);
+        }
+    }
+    fclose(f);
+}
+
 int main(int argc, char **argv) {
     const char *kind = argc > 1 ? argv[1] : "jacket";
     int n = argc > 2 ? atoi(argv[2]) : 108, steps = argc > 3 ? atoi(argv[3]) : 10;
@@ -253,6 +286,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "assemblies: '%s' is not known: jacket, grid, hub, chain, ring, windows, modes\n", kind);
         return 1;
     }
+    dt = argc > 4 ? atof(argv[4]) : dt;
     double since = now();
     if (!strcmp(kind, "modes")) {
         need(s, spar_member_solve_modes(leg, MODES, hertz, NULL));
@@ -266,7 +300,11 @@ int main(int argc, char **argv) {
         }
         printf("members,first step s,step us a member,memory kB a member\n%d,%.4f,%.1f,%.1f\n", n, first,
                1e6 * (now() - since) / steps / n, (memory() - before) / n);
+        if (argc > 5) {
+            write_motion(s, argv[5]);
+        }
     }
     spar_session_destroy(&s);
+    free(built);
     return 0;
 }
