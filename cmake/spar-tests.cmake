@@ -73,7 +73,9 @@ function(spar_add_ranks target label timeout)
       WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
     # Open MPI unloads its parts before it ends: the leak checker cannot tell any more what they left.
     spar_set_test(${target}_np${ranks} ${label} ${timeout} ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0)
-    set_tests_properties(${target}_np${ranks} PROPERTIES PROCESSORS 2)
+    if(ranks GREATER 1)
+      set_tests_properties(${target}_np${ranks} PROPERTIES PROCESSORS 2)
+    endif()
   endforeach()
 endfunction()
 
@@ -154,11 +156,11 @@ include("${PROJECT_SOURCE_DIR}/tests/rooms.cmake")
 # The short form of tests/sanitize: the tests with the label short, and the target that builds their programs. It has the unit tests
 # and the torture without those below, which take longest and use memory as others do: test_transfer, test_body and test_nodes run
 # the kernels of every width that the processor has; torture_fuzz_fresh plays what torture_fuzz does, in a tenth of the calls;
-# torture_threads has sessions of several threads.
+# torture_threads has sessions of several threads, torture_memory_shortest the scenes of torture_memory.
 set(spar_not_short test_rotor test_turbine test_trial test_learned_mass test_learned_mass_life test_floquet test_error_scenes
   test_advice_kept test_advice_findings test_transfer_scalar test_transfer_wide test_body_scalar test_body_wide test_nodes_scalar
   test_nodes_wide test_assembly test_coupling test_added_mass test_explicit_stability test_idle_loads test_linear_beams test_pace test_threads
-  torture_traps torture_upward torture_ftz torture_comma torture_twins torture_memory_np2 torture_fuzz)
+  test_modes torture_traps torture_upward torture_ftz torture_comma torture_twins torture_memory torture_memory_np2 torture_fuzz)
 get_property(tests DIRECTORY PROPERTY TESTS)
 foreach(test IN LISTS tests)
   get_test_property(${test} LABELS labels)
@@ -168,5 +170,6 @@ foreach(test IN LISTS tests)
 endforeach()
 get_property(spar_short_targets DIRECTORY PROPERTY BUILDSYSTEM_TARGETS)
 list(FILTER spar_short_targets INCLUDE REGEX "^(test_.*|torture_.*|twins|fuzz)$")
+list(FILTER spar_not_short INCLUDE REGEX "^test_") # programs of torture have other tests too
 list(REMOVE_ITEM spar_short_targets ${spar_not_short})
 add_custom_target(spar_short DEPENDS ${spar_short_targets})

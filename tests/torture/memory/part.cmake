@@ -6,6 +6,8 @@ set_target_properties(torture_memory PROPERTIES ENABLE_EXPORTS ON RUNTIME_OUTPUT
 target_link_libraries(torture_memory PRIVATE ${spar_test_libraries} $<$<BOOL:${SPAR_MPI}>:MPI::MPI_C>)
 if("${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_DEBUG} ${CMAKE_EXE_LINKER_FLAGS}" MATCHES "sanitize")
   target_link_options(torture_memory PRIVATE LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free)
+  add_test(NAME torture_memory_shortest COMMAND torture_memory shortest WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  spar_set_test(torture_memory_shortest torture 300)
 endif()
 add_test(NAME torture_memory COMMAND torture_memory short WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
 spar_set_test(torture_memory torture 300)
