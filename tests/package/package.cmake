@@ -30,14 +30,16 @@ if(SPAR_AWK)
   spar_package_test(interface_fails sh "${here}/interface_fails" "${CMAKE_C_COMPILER}" "${work}/interface")
 endif()
 
+# The builds of the whole library have the portable kernels alone (SPARI_PLAIN_LANES), whose vectors are not what is looked at.
 # the same symbols with nothing but GSL: no MPI, no OpenBLAS (the short form of tests/configurations). It has debug information, so
 # the binary interface is compared here, where there are abidiff and gcc's view of the types.
 if(SPAR_GSL)
   spar_package_test(without_mpi "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}" "${work}/without_mpi"
     --build-generator "${CMAKE_GENERATOR}" --build-target spar --build-options -DSPAR_MPI=OFF -DSPAR_FORTRAN=OFF -DSPAR_OPENBLAS=OFF
     -DSPAR_BUILD_TESTS=OFF -DSPAR_BUILD_EXAMPLES=OFF -DSPAR_BUILD_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=Debug
-    "-DCMAKE_C_FLAGS=-O0 -g"
+    "-DCMAKE_C_FLAGS=-O0 -g -DSPARI_PLAIN_LANES=2"
     --test-command sh "${here}/symbols.sh" "${PROJECT_SOURCE_DIR}" "${work}/without_mpi")
+  set_tests_properties(package_without_mpi PROPERTIES PROCESSORS 2 TIMEOUT 600)
   if(CMAKE_C_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64" AND NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
     spar_package_test(abi sh "${here}/abi" "${work}/without_mpi/libspar.so")
     spar_package_test(abi_fails sh "${here}/abi_fails" "${CMAKE_C_COMPILER}" "${work}/without_mpi" "${work}/abi")
@@ -50,7 +52,7 @@ if(SPAR_GSL AND SPAR_LAPACK AND NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
   spar_package_test(without_gsl "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}" "${work}/without_gsl"
     --build-generator "${CMAKE_GENERATOR}" --build-target spar --build-options -DSPAR_GSL=OFF -DSPAR_MPI=OFF -DSPAR_FORTRAN=OFF
     -DSPAR_BUILD_TESTS=OFF -DSPAR_BUILD_EXAMPLES=OFF -DSPAR_BUILD_BENCHMARKS=OFF -DCMAKE_BUILD_TYPE=Debug
-    "-DCMAKE_C_FLAGS=-O0 -g0"
+    "-DCMAKE_C_FLAGS=-O0 -g0 -DSPARI_PLAIN_LANES=2"
     --test-command sh "${here}/without_gsl.sh" "${work}/without_gsl" "${work}/without_gsl_program" "${CMAKE_C_COMPILER}")
   set_tests_properties(package_without_gsl PROPERTIES PROCESSORS 2 TIMEOUT 600)
 endif()
