@@ -7,7 +7,7 @@
 #include "check_arguments.h"
 #include "point.h"
 #include "pose.h"
-#include "section_forces.h"
+#include "section_resultants.h"
 
 #include <stdlib.h>
 #include <string.h>

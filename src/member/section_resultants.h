@@ -1,8 +1,8 @@
 /* Section forces from the equilibrium of the part of a beam beyond the section: its loads minus its inertia. They
    are as accurate as the nodal equilibrium, and hence as the reaction; stiffness times strain is one order less
    accurate. */
-#ifndef SPARI_SECTION_FORCES_H
-#define SPARI_SECTION_FORCES_H
+#ifndef SPARI_SECTION_RESULTANTS_H
+#define SPARI_SECTION_RESULTANTS_H
 
 #include "beam.h"
 

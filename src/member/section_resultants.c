@@ -1,8 +1,8 @@
-/* Resultant of all loads on the part of a beam beyond a section: see section_forces.h. Loads are kept per element,
+/* Resultant of all loads on the part of a beam beyond a section: see section_resultants.h. Loads are kept per element,
    with each element's own share at nodes in common with its neighbours. Distributed loads (inertia, weight, line
    loads, foundation, fluid) are nodal sums weighted with shape functions; spari_share_beyond gives the fraction of
    them that acts beyond a position in the element. Loads at nodes, joints and point masses act where they are. */
-#include "section_forces.h"
+#include "section_resultants.h"
 
 #include "../math/rotation.h"
 #include "applied.h"
