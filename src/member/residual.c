@@ -1,7 +1,7 @@
 /* Forces and energy of a body: sums over quadrature points. docs/explanation/theory.md, "The beam". */
 #include "../base/thread_pool.h"
 #include "../math/basis.h"
-#include "point.h"
+#include "quadrature_point.h"
 
 /* ---- forces ---- */
 

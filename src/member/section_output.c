@@ -5,8 +5,8 @@
 #include "../math/rotation.h"
 #include "beam.h"
 #include "check_arguments.h"
-#include "point.h"
 #include "pose.h"
+#include "quadrature_point.h"
 #include "section_resultants.h"
 
 #include <stdlib.h>

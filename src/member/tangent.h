@@ -2,7 +2,7 @@
 #ifndef SPARI_TANGENT_H
 #define SPARI_TANGENT_H
 
-#include "point.h"
+#include "quadrature_point.h"
 
 /* Rows of a point's matrices over (u, Q | u', Q'), each [slots].
    - derivatives of the (u, Q) forces with respect to Q

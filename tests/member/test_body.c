@@ -11,7 +11,7 @@
 #include "math/basis.h"
 #include "math/rotation.h"
 #include "member/body.h"
-#include "member/point.h"
+#include "member/quadrature_point.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* Computations at quadrature points for forces, tangent and energy of a body: interpolated fields, strains, section
    forces, inertia. docs/explanation/theory.md, "The beam". */
-#ifndef SPARI_POINT_H
-#define SPARI_POINT_H
+#ifndef SPARI_QUADRATURE_POINT_H
+#define SPARI_QUADRATURE_POINT_H
 
 #include "../math/basis.h"
 #include "../math/lanes.h"

@@ -1,5 +1,5 @@
 /* Gathers the nodal fields of an element for its quadrature points, and selects the mass variant of a section. */
-#include "point.h"
+#include "quadrature_point.h"
 
 /* Velocity of a node relative to the rigid motion of the first; without positions, its absolute velocity. */
 static void see_node(const spari_body *body, int64_t node, const double *q, const double *v, double out[6]) {
