@@ -287,7 +287,7 @@ static void rigid_forces(spari_frame *f, const setup *w) {
 
 int spari_frame_form(spari_frame *f, const spari_body *damped, const double *arm) {
     spari_body undragged = *damped, *body = &undragged;
-    body->drag = 0; /* it is added to D below, for the deformation alone */
+    body->mass_damping = 0; /* it is added to D below, for the deformation alone */
     setup w = {.body = body, .m = 6 * body->per_element, .arm = arm};
     int64_t mm = (int64_t)w.m * w.m, n = f->nodes;
     w.q = spari_zalloc(7 * n + 13 * n + 4 * mm + 6 * n, sizeof *w.q);
@@ -311,8 +311,8 @@ int spari_frame_form(spari_frame *f, const spari_body *damped, const double *arm
     }
     rigid_forces(f, &w);
     int status = f->N[0] ? rotation_terms(f, &w) : SPAR_OK;
-    if (damped->drag > 0 && f->M) {
-        cblas_daxpy((int)f->size, damped->drag, f->M, 1, f->D, 1);
+    if (damped->mass_damping > 0 && f->M) {
+        cblas_daxpy((int)f->size, damped->mass_damping, f->M, 1, f->D, 1);
     }
     free(w.q);
     return status;

@@ -171,9 +171,9 @@ int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
     f->size = (int64_t)cols * cols;
     no_strain(f, m->load.foundation || f->pull ? NULL : f->K); /* else they strain foundation or pretension */
     no_strain(f, f->D);
-    for (int i = 0; i < cols && m->body->drag > 0 && !bad; i++) { /* mass-proportional damping acts on them */
+    for (int i = 0; i < cols && m->body->mass_damping > 0 && !bad; i++) { /* mass-proportional damping acts on them */
         for (int j = 0; j < cols; j++) {
-            f->D[(int64_t)cols * i + j] += i < 6 || j < 6 ? m->body->drag * f->M[(int64_t)cols * i + j] : 0;
+            f->D[(int64_t)cols * i + j] += i < 6 || j < 6 ? m->body->mass_damping * f->M[(int64_t)cols * i + j] : 0;
         }
     }
     spari_linear_free(f->linear);

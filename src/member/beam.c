@@ -685,8 +685,8 @@ int spari_beam_build(const spar_member *member, int massive, const double mu[6],
     return SPAR_OK;
 }
 
-int spari_beam_drag(const spar_member *member, spari_body *body) {
-    if (member->beam->drag == 0 || !body->D || !body->mass) {
+int spari_beam_mass_damping(const spar_member *member, spari_body *body) {
+    if (member->beam->mass_damping == 0 || !body->D || !body->mass) {
         return SPAR_OK;
     }
     int given = spari_member_root_is_prescribed(member);
@@ -694,7 +694,7 @@ int spari_beam_drag(const spar_member *member, spari_body *body) {
     for (int i = 0; position && i < body->unique; i++) {
         memcpy(position + 3 * (int64_t)i, spari_member_position(member, i), 3 * sizeof *position);
     }
-    if ((given && !position) || spari_body_set_drag(body, member->beam->drag, position)) {
+    if ((given && !position) || spari_body_set_mass_damping(body, member->beam->mass_damping, position)) {
         free(position);
         return no_memory_for(member, "its damping");
     }

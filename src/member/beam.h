@@ -20,8 +20,8 @@ struct spari_beam {
     int rule, points; /* rule -1: chosen from the sections */
     double mu[6];
     int damped;
-    double drag; /* 1/s, mass-proportional damping */
-    int planar;  /* held in a plane, with this unit normal */
+    double mass_damping; /* 1/s, mass-proportional damping */
+    int planar;          /* held in a plane, with this unit normal */
     double normal[3];
 };
 
@@ -35,7 +35,7 @@ void spari_beam_tell_plausible(const spar_member *member);
    coefficients; NULL: none. */
 int spari_beam_build(const spar_member *member, int massive, const double mu[6], spari_body **body);
 /* Adds mass-proportional damping, if any, to a damped body. */
-int spari_beam_drag(const spar_member *member, spari_body *body);
+int spari_beam_mass_damping(const spar_member *member, spari_body *body);
 void spari_beam_free(spari_beam *beam);
 /* Element of attached mass k, and its local coordinate. */
 int spari_point_mass_element(const spar_member *member, int64_t k, double *xi);

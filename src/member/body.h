@@ -38,11 +38,11 @@ typedef struct spari_body {
     double *mass; /* [blocks][10][lanes]: m, m c (global at the reference), J (xx, xy, xz, yy, yz, zz); NULL: none */
     int lanes;    /* maximum number of points at once; 0: as the processor has (tests try all) */
     double gravity[3];
-    double drag; /* 1/s, mass-proportional damping of the motion relative to the first node's rigid motion; needs D,
-                    possibly zero */
-    double *
-        node_position; /* [unique][3] reference positions, with drag; NULL: none, or drag acts on absolute velocities */
-    double *seen;      /* [unique][6] workspace, likewise */
+    double mass_damping;   /* 1/s, mass-proportional damping of the motion relative to the first node's rigid motion;
+                      needs D,   possibly zero */
+    double *node_position; /* [unique][3] reference positions, for mass_damping; NULL: none, or it acts on absolute
+                              velocities */
+    double *seen;          /* [unique][6] workspace, likewise */
     int gyroscopic;
     double length;     /* size of the member for tolerances: arc length, or radius of gyration of a rigid body */
     double stiffest;   /* force due to rounding of positions: largest stiffness, and moments divided by this size */
@@ -64,7 +64,7 @@ static inline spari_body spari_body_in_part(const spari_body *body, double facto
 /* Adds mass-proportional damping to a body with D. place: reference positions of its unique nodes, 3 doubles each,
    which the body owns afterwards; NULL: damping of absolute velocities. Returns 0, or 1 if there is no memory; then
    the caller still owns place. */
-int spari_body_set_drag(spari_body *body, double drag, double *position);
+int spari_body_set_mass_damping(spari_body *body, double mass_damping, double *position);
 /* Velocities on which mass-proportional damping acts, out [unique][6]; q NULL: at the reference. */
 void spari_body_see(const spari_body *body, const double *q, const double *v, double *out);
 /* Workspace in doubles of an element with this many points, without its tangent. */

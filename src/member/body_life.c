@@ -84,12 +84,12 @@ int spari_body_set_pre(spari_body *body) {
     return body->pre == NULL;
 }
 
-int spari_body_set_drag(spari_body *body, double drag, double *position) {
+int spari_body_set_mass_damping(spari_body *body, double mass_damping, double *position) {
     body->seen = spari_zalloc(6 * (int64_t)body->unique, sizeof *body->seen);
     if (!body->seen) {
         return 1;
     }
-    body->drag = drag;
+    body->mass_damping = mass_damping;
     body->node_position = position;
     return 0;
 }

@@ -283,7 +283,7 @@ int spar_beam_set_mass_damping(spar_member *beam, double alpha) {
     SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_REQUIRE(beam->session, isfinite(alpha) && alpha >= 0, SPAR_ERR_ARGUMENT,
                   "%s: '%s': alpha is %g; give a number >= 0, 1/s", __func__, beam->name, alpha);
-    beam->beam->drag = alpha;
+    beam->beam->mass_damping = alpha;
     return SPAR_OK;
 }
 
@@ -365,7 +365,7 @@ int spar_beam_get_damping(const spar_member *beam, double mu[6]) {
 
 int spar_beam_get_mass_damping(const spar_member *beam, double *alpha) {
     SPARI_TRY(spari_need_any_beam(beam, __func__));
-    SPARI_GIVE(alpha, beam->beam->drag);
+    SPARI_GIVE(alpha, beam->beam->mass_damping);
     return SPAR_OK;
 }
 
@@ -438,7 +438,7 @@ uint64_t spari_member_copy_hash(const spar_member *m) {
                       b->node_x != NULL, b->node_q != NULL, b->mass != NULL};
         h = spari_hash_bytes(h, more, sizeof more);
         h = spari_hash_bytes(h, b->mu, sizeof b->mu);
-        h = spari_hash_bytes(h, &b->drag, sizeof b->drag);
+        h = spari_hash_bytes(h, &b->mass_damping, sizeof b->mass_damping);
         h = b->planar ? spari_hash_bytes(h, b->normal, sizeof b->normal) : h;
         h = b->eta ? spari_hash_bytes(spari_hash_bytes(h, b->eta, n * d), b->xyz, 3 * n * d) : h;
         h = b->twist ? spari_hash_bytes(h, b->twist, n * d) : h;

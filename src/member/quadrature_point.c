@@ -24,15 +24,15 @@ void spari_body_see(const spari_body *body, const double *q, const double *v, do
     }
 }
 
-/* Mass-proportional damping is the inertia of an acceleration: drag times this velocity. */
-static void add_drag(const spari_body *body, int e, const double *q, const double *v, double *z) {
+/* Mass-proportional damping is the inertia of an acceleration: mass_damping times this velocity. */
+static void add_mass_damping(const spari_body *body, int e, const double *q, const double *v, double *z) {
     int P = body->per_element;
     for (int l = 0; l < P; l++) {
         double *zn = z + l, seen[6], half[4] = {0}, at[4], turned[4];
         see_node(body, (int64_t)e * (P - 1) + l, q, v, seen);
         for (int i = 0; i < 3; i++) {
-            zn[SPARI_MAX_NODES * (UDD + i)] += body->drag * seen[i];
-            half[1 + i] = 0.5 * body->drag * seen[3 + i];
+            zn[SPARI_MAX_NODES * (UDD + i)] += body->mass_damping * seen[i];
+            half[1 + i] = 0.5 * body->mass_damping * seen[3 + i];
         }
         spari_point_rotation(z, l, at);
         spari_quat_mul(half, at, turned);
@@ -66,8 +66,8 @@ void spari_point_gather(const spari_body *body, int e, const double *q, const do
     if (spari_lanes_gather(body, q + 7 * first, v ? v + 6 * first : NULL, v && a ? a + 6 * first : NULL, z)) {
         chain_nodes(P, z);
     }
-    if (v && a && body->drag > 0) {
-        add_drag(body, e, q, v, z);
+    if (v && a && body->mass_damping > 0) {
+        add_mass_damping(body, e, q, v, z);
     }
 }
 

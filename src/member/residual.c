@@ -30,12 +30,13 @@ static void add_forces(const spari_body *body, int tile, int from, int to, void 
     }
 }
 
-/* Power of mass-proportional damping: twice drag times the kinetic energy of the motion relative to the first node. */
-static double drag_power(const spari_body *body, const double *q, const double *v) {
+/* Power of mass-proportional damping: twice mass_damping times the kinetic energy of the motion relative to the first
+ * node. */
+static double mass_damping_power(const spari_body *body, const double *q, const double *v) {
     double energy[4];
     spari_body_see(body, q, v, body->seen);
     spari_body_energy(body, q, body->seen, energy);
-    return 2 * body->drag * energy[0];
+    return 2 * body->mass_damping * energy[0];
 }
 
 enum { CLEARED = 256 };
@@ -57,7 +58,7 @@ double spari_body_residual(const spari_body *body, const double *q, const double
         damped += sum[1];
     }
     if (power) {
-        *power = damped + (v && a && body->drag > 0 ? drag_power(body, q, v) : 0);
+        *power = damped + (v && a && body->mass_damping > 0 ? mass_damping_power(body, q, v) : 0);
     }
     return scale;
 }

@@ -73,14 +73,14 @@ static void fill_motion(const spar_member *m, inertial *w) {
     if (!spari_member_is_linear_at_rest(m)) {
         spari_member_to_unique(m, 7, m->after.q, w->q);
     }
-    if (body->drag > 0 && !w->still) { /* the inertia of an acceleration: drag times its velocity */
+    if (body->mass_damping > 0 && !w->still) { /* the inertia of an acceleration: mass_damping times its velocity */
         if (spari_member_is_linear_at_rest(m)) {
             memcpy(w->workspace, w->v, (size_t)(6 * n) * sizeof *w->workspace);
         } else {
             spari_body_see(body, w->q, w->v, w->workspace);
         }
         for (int64_t i = 0; i < 6 * n; i++) {
-            w->a[i] += body->drag * w->workspace[i];
+            w->a[i] += body->mass_damping * w->workspace[i];
         }
     }
     if (spari_member_is_linear_at_rest(m)) {
@@ -95,7 +95,7 @@ static void element_inertia(const spari_body *body, const inertial *w, int e, do
     part.elements = 1, part.unique = body->per_element;
     part.first += e, part.slot += e;
     part.C = part.D = part.pre = NULL;
-    part.drag = 0;
+    part.mass_damping = 0;
     part.pool = NULL;
     part.weight = weights;
     (void)spari_body_residual(&part, w->q + 7 * first, w->still ? NULL : w->v + 6 * first,

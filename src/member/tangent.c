@@ -187,7 +187,7 @@ static void add_turned_forces(const spari_body *body, int e, const spari_tangent
 
 void spari_body_tangent(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor,
                         double cm, double cv, const double *tinv, double *S) {
-    cm += body->drag * cv; /* the frame's own turn is left out: what the tangent of a step needs not know */
+    cm += body->mass_damping * cv; /* the frame's own turn is left out: what the tangent of a step needs not know */
     const spari_regime how = spari_point_regime(body, v, a, factor);
     int masses = (cm != 0 || a) && body->mass, rates = (cv != 0 || v) && (body->D || masses);
     spari_tangent_work t = begin_tangent(body, e, &how, masses, rates);

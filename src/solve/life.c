@@ -289,7 +289,8 @@ static int check_complete(spar_member *m) {
                       "member '%s' has no sections; call spar_beam_set_sections", m->name);
         SPARI_TRY(spari_point_masses_check(m));
         SPARI_REQUIRE(m->session,
-                      m->beam->drag == 0 || m->fidelity != SPAR_FIDELITY_RIGID || spari_member_root_is_prescribed(m),
+                      m->beam->mass_damping == 0 || m->fidelity != SPAR_FIDELITY_RIGID ||
+                          spari_member_root_is_prescribed(m),
                       SPAR_ERR_UNSUPPORTED,
                       "member '%s' is rigid with a free or pinned root, and mass-proportional damping would slow its "
                       "rigid motion; remove this damping, choose another fidelity, or fix or drive the root",
@@ -310,7 +311,7 @@ int spari_member_effects(const spar_member *m) {
     int possible = SPAR_EFFECT_FLUID_MOMENT;
     possible |= solved && massive ? SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY : 0;
     possible |= solved && massive && (e & SPAR_EFFECT_INERTIA) ? SPAR_EFFECT_GYROSCOPIC : 0;
-    possible |= solved && m->beam && (m->beam->damped || m->beam->drag > 0) ? SPAR_EFFECT_DAMPING : 0;
+    possible |= solved && m->beam && (m->beam->damped || m->beam->mass_damping > 0) ? SPAR_EFFECT_DAMPING : 0;
     possible |= solved && massive && m->beam && m->beam->point_mass_count > 0 ? SPAR_EFFECT_MASSES : 0;
     possible |= solved && m->beam && m->beam->spring_count > 0 ? SPAR_EFFECT_FOUNDATION : 0;
     possible |= solved && !row->whole && m->beam && m->beam->pre_count > 0 ? SPAR_EFFECT_PRETENSION : 0;
@@ -395,10 +396,10 @@ void spari_member_take_back(spar_member *m, const spar_member *detached) {
 }
 
 static int build_body(spar_member *m) {
-    int damped = m->beam && (m->beam->damped || m->beam->drag > 0) && (m->effects & SPAR_EFFECT_DAMPING);
+    int damped = m->beam && (m->beam->damped || m->beam->mass_damping > 0) && (m->effects & SPAR_EFFECT_DAMPING);
     SPARI_TRY(m->kind == SPARI_BEAM ? spari_beam_build(m, m->row->massive, damped ? m->beam->mu : NULL, &m->body)
                                     : spari_rigid_build(m, &m->body));
-    SPARI_TRY(damped ? spari_beam_drag(m, m->body) : SPAR_OK);
+    SPARI_TRY(damped ? spari_beam_mass_damping(m, m->body) : SPAR_OK);
     SPARI_REQUIRE(m->session, !spari_thread_pool_reserve(m->session->pool, spari_body_workspace_size(m->body)),
                   SPAR_ERR_MEMORY, "no memory for the worker threads of '%s'", m->name);
     m->body->gyroscopic = (m->effects & SPAR_EFFECT_GYROSCOPIC) != 0;

@@ -90,10 +90,11 @@ void spari_reaction_of_whole(const spar_member *m, double *workspace, double loa
             spari_member_to_unique(m, 6, m->after.v, v);
         }
         spari_member_to_unique(m, 6, m->after.a, a);
-        if (standing && m->body->drag > 0) { /* the root stands: damping by mass is of the velocities as they are */
+        if (standing &&
+            m->body->mass_damping > 0) { /* the root stands: damping by mass is of the velocities as they are */
             spari_member_to_unique(m, 6, m->after.v, r);
             for (int64_t i = 0; i < 6 * n; i++) {
-                a[i] += m->body->drag * r[i];
+                a[i] += m->body->mass_damping * r[i];
             }
         }
         spari_body loose =

@@ -215,7 +215,7 @@ static int check_modes(const spar_member *m, int64_t n, const int64_t *mode, con
 /* The body with this damping, before it is put in force */
 static int make_body(const spar_member *m, const double mu[6], spari_body **body) {
     SPARI_TRY(spari_beam_build(m, 0, mu, body));
-    SPARI_TRY(spari_beam_drag(m, *body));
+    SPARI_TRY(spari_beam_mass_damping(m, *body));
     (*body)->gyroscopic = m->body->gyroscopic;
     memcpy((*body)->gravity, m->body->gravity, sizeof m->body->gravity);
     return SPAR_OK;
@@ -354,7 +354,7 @@ static int fit_damping(spar_member *m, int64_t n, const int64_t *mode, const dou
 int spar_beam_fit_damping(spar_member *beam, int64_t n, const int64_t *mode, const double *ratio, double *achieved) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
-    double mu[6], alpha = 0, before = beam->beam ? beam->beam->drag : 0, *found = NULL;
+    double mu[6], alpha = 0, before = beam->beam ? beam->beam->mass_damping : 0, *found = NULL;
     spari_body *body = NULL;
     int status = n >= 1 && n <= MOST_FITTED
                      ? check_modes(beam, n, mode, ratio)
@@ -368,14 +368,14 @@ int spar_beam_fit_damping(spar_member *beam, int64_t n, const int64_t *mode, con
     }
     status = status == SPAR_OK ? fit_damping(beam, n, mode, ratio, mu, &alpha, found) : status;
     if (status == SPAR_OK) {
-        beam->beam->drag = alpha;
+        beam->beam->mass_damping = alpha;
         status = make_body(beam, mu, &body);
     }
     const spari_agreed must_agree[] = {spari_whole("n", n), spari_hash("mode", modes), spari_hash("ratio", ratios)};
     status = spari_member_enter(beam, __func__, must_agree, 3, status);
     if (status != SPAR_OK) {
         if (beam->beam) {
-            beam->beam->drag = before;
+            beam->beam->mass_damping = before;
         }
         spari_body_free(body);
         free(found);

@@ -61,7 +61,7 @@ double spari_steady_rotation_residual(const spari_body *damped, const double *q,
                                       double factor, double *r) {
     spari_body body = *damped;
     body.D = NULL;
-    body.drag = 0;
+    body.mass_damping = 0;
     return spari_body_residual(&body, q, v, a, factor, r, NULL);
 }
 
@@ -71,7 +71,7 @@ void spari_steady_rotation_tangent(const spari_body *damped, const spari_steady_
     int n = 6 * damped->per_element;
     spari_body body = *damped;
     body.D = NULL;
-    body.drag = 0;
+    body.mass_damping = 0;
     spari_body_tangent(&body, e, q, rotation ? v : NULL, rotation ? a : NULL, factor, 0, 0, NULL, S);
     spari_body_rates(&body, e, q, rotation ? v : NULL, rotation ? a : NULL, factor, S, NULL, M);
     if (!rotation) {
@@ -128,10 +128,10 @@ void spari_steady_rotation_pencil(const spari_body *body, const double w[3], con
         less[r][c] = W[r][c] - S[r][c];
         back[r][c] = -S[r][c];
     }
-    if (body->drag > 0 && body->node_position) { /* mass-proportional damping acts relative to the frame */
+    if (body->mass_damping > 0 && body->node_position) { /* mass-proportional damping acts relative to the frame */
         double still[3][3];
         for (int i = 0; i < 9; i++) {
-            still[i / 3][i % 3] = -body->drag * W[i / 3][i % 3];
+            still[i / 3][i % 3] = -body->mass_damping * W[i / 3][i % 3];
         }
         add_by_blocks(n, M, 0, still, K);
     }

@@ -89,15 +89,15 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
     spari_member_to_unique(m, 7, m->now.q, q);
     spari_member_to_unique(m, 6, m->now.v, v);
     spari_member_to_unique(m, 6, m->now.a, a);
-    plain.drag = 0; /* mass-proportional damping has the form of inertia but counts as damping */
+    plain.mass_damping = 0; /* mass-proportional damping has the form of inertia but counts as damping */
     spari_body_residual(b, q, NULL, NULL, 0, rest, NULL);
     sum[INTERNAL] += squares(rest, n, length);
     spari_body_residual(b, q, NULL, NULL, 1, r, NULL);
     minus(r, rest, n);
     sum[GRAVITY] += squares(r, n, length);
     if (b->D) {
-        spari_body_residual(m->body, q, v, m->body->drag > 0 ? none : NULL, 0, r, NULL);
-        if (m->body->drag > 0) { /* less what is gyroscopic */
+        spari_body_residual(m->body, q, v, m->body->mass_damping > 0 ? none : NULL, 0, r, NULL);
+        if (m->body->mass_damping > 0) { /* less what is gyroscopic */
             spari_body_residual(b, q, v, none, 0, loads, NULL);
             minus(r, loads, n);
             spari_body_residual(b, q, v, NULL, 0, loads, NULL);
