@@ -7,6 +7,7 @@
 #include "../time/fidelity.h"
 #include "../time/newton.h"
 #include "../time/newton_tolerance.h"
+#include "../time/substeps.h"
 #include "system.h"
 
 #include <float.h>
@@ -765,8 +766,8 @@ int spari_assembly_advance(spari_assembly *a, double dt, int responses) {
     a->rotates_far =
         !a->component[0].scheme.still && (makes_a_chain(a) || rotates_far(a, dt / a->session->integrator.substeps));
     spari_pattern pattern = a->component[0].steps->begin;
-    int status = spari_scheme_run(&how, a, &a->component[0].alpha, &a->component[0].member->state.cuts, &pattern,
-                                  a->session, dt);
+    int status = spari_substeps_run(&how, a, &a->component[0].alpha, &a->component[0].member->state.cuts, &pattern,
+                                    a->session, dt);
     if (status != SPAR_OK) {
         a->factored = 0;
         return status;

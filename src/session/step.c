@@ -13,7 +13,7 @@
 #include "../solve/life.h"
 #include "../solve/work.h"
 #include "../time/fidelity.h"
-#include "../time/scheme.h"
+#include "../time/substeps.h"
 #include "callbacks.h"
 #include "initial_accelerations.h"
 #include "step_control.h"
@@ -37,7 +37,7 @@ static int wrong_phase(spar_session *s, const char *call, const char *cure) {
 
 /* Whether fluids are to see mean accelerations from the step dt on (member/mean_acceleration.h). */
 static int is_uneven(const spar_session *s, double dt) {
-    return s->clock.uneven[0] || !spari_steps_even(&s->clock, dt) || spari_scheme_rotates(s, dt);
+    return s->clock.uneven[0] || !spari_steps_even(&s->clock, dt) || spari_substeps_rotate_fast(s, dt);
 }
 
 /* uneven: result of is_uneven. */

@@ -1,5 +1,5 @@
-/* Time integration by generalised-alpha and TR-BDF2: coefficients, substeps, starting values, corrections
-   and changes of dt. All members of a session use the same integration, whatever their
+/* Time integration by generalised-alpha and TR-BDF2: coefficients, loads, starting values, corrections and
+   changes of dt. substeps.c runs it. All members of a session use the same integration, whatever their
    unknowns are. */
 #ifndef SPARI_SCHEME_H
 #define SPARI_SCHEME_H
@@ -8,6 +8,10 @@
 #include "../member/structure.h"
 
 #include <float.h>
+#include <math.h>
+
+/* The part of a substep that the trapezoidal stage of TR-BDF2 takes. */
+#define SPARI_STAGE (2 - M_SQRT2)
 
 typedef enum spari_rule { SPARI_ALPHA, SPARI_TRAPEZOIDAL, SPARI_BACKWARD } spari_rule;
 
@@ -63,26 +67,6 @@ typedef struct spari_part {
     int again;       /* a longer substep from here failed with TR-BDF2 */
 } spari_part;
 
-/* The operations of a member, or of an assembly, in a substep. self: its data. */
-typedef struct spari_stepper {
-    /* The end of the last substep becomes the beginning of the next one. */
-    void (*enter)(void *self, const spari_part *part);
-    /* The largest mean angular velocity of stiff members that rotate freely; NULL: there are none. */
-    double (*rotation_rate)(const void *self);
-    /* Solves a stage. Returns a status, with a message. */
-    int (*solve)(void *self, const spari_scheme *c, const spari_part *part);
-    /* Ends the substep. Returns a status, with a message. */
-    int (*finish)(void *self, const spari_scheme *c, const spari_part *part);
-    /* Whether the solution has more energy than the state before it and the work of the loads account for. NULL:
-       substeps are not halved. */
-    int (*gains)(void *self, const spari_part *part);
-    /* Its name, for messages. */
-    void (*name)(const void *self, char *text, int size);
-} spari_stepper;
-
-/* Part of the energy that a substep may gain where its motion is hardly resolved. */
-#define SPARI_GAIN 0.1
-
 /* Of substeps h, with the session's spectral radius. damped: forces depend on rates where there is no inertia. */
 spari_scheme spari_scheme_of(const spar_member *member, int damped, double h);
 /* Loads at the ends of the step, fluid and dead ones, of the nodes. */
@@ -100,12 +84,6 @@ spari_scheme spari_scheme_stage(const spari_scheme *alpha, spari_rule rule);
 spari_scheme spari_scheme_last(const spar_member *member, int damped, const spari_pattern *pattern);
 /* The same coefficients for another length. */
 spari_scheme spari_scheme_resize(const spari_scheme *alpha, double h);
-/* Advances from t^n to t^n + dt in the session's substeps. A substep is halved, down to 1/1024, if it has no
-   solution or if its solution gains energy (Newton has found another equilibrium). *cuts keeps the halvings for the
-   next calls of the step. alpha: the coefficients of a substep. *pattern: of the steps that led to t^n; becomes that
-   of the steps to t^{n+1}. Returns a status of the stepper, with a message. */
-int spari_scheme_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_cuts *cuts,
-                     spari_pattern *pattern, const spar_session *session, double dt);
 /* If dt is within 0.1 % of the last step, generalised-alpha continues. Its algorithmic acceleration b^n, which
    stands for the acceleration at t^n + (alpha_m - alpha_f) h, follows: b := a + ratio (b - a). */
 void spari_scheme_stretch(double ratio, int n, const double *a, double *b);
@@ -116,8 +94,6 @@ void spari_scheme_stretch(double ratio, int n, const double *a, double *b);
 int spari_member_rotates_stiffly(const spar_member *member);
 /* w: the mean angular velocity of n nodes with velocities v [n][6]. */
 void spari_mean_rotation(int64_t n, const double *v, double w[3]);
-/* Whether a member rotates so fast in steps dt that TR-BDF2, or nearly so, integrates it. The same on all ranks. */
-int spari_scheme_rotates(const spar_session *session, double dt);
 /* After a substep of TR-BDF2 from accelerations a0 to a: the b that generalised-alpha would go on with. */
 void spari_scheme_restart(const spari_scheme *c, int n, const double *a0, const double *a, double *b);
 
