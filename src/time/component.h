@@ -5,7 +5,7 @@
 #ifndef SPARI_COMPONENT_H
 #define SPARI_COMPONENT_H
 
-#include "root.h"
+#include "stage.h"
 #include "steady_rotation.h"
 
 struct spari_frame;

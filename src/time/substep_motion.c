@@ -4,7 +4,7 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "node_kinematics.h"
-#include "root.h"
+#include "stage.h"
 
 #include <string.h>
 
@@ -41,7 +41,7 @@ static void put_size(const alpha_nodes *t, int64_t from, spari_node_size size) {
 }
 
 /* The increments that give the member, relative to its root, the shape that it had at t^n. Used where the root jumps
-   and the nodes do not follow (root.c). Does not read `to`. */
+   and the nodes do not follow (relative_to_root.c). Does not read `to`. */
 static void keep_shape(const spari_solver *s, const spar_member *member, spari_ends *e, double *dx) {
     const spari_pose before = spari_pose_of(s->from.q, s->from.v, s->from.a);
     const spari_state *from = &e->from, *shape = &e->to;

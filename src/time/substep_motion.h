@@ -2,7 +2,7 @@
 #ifndef SPARI_SUBSTEP_MOTION_H
 #define SPARI_SUBSTEP_MOTION_H
 
-#include "root.h"
+#include "stage.h"
 
 /* Computes starting values: the state e->to and the increments x [unique][6]. Returns 0, and writes nothing, if this
    kind does not exist here. */

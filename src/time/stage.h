@@ -1,20 +1,9 @@
-/* The motion of the nodes relative to a driven root, in the axes of the root. In these axes a steady rotation is
-   rest, and stiff directions stay (docs/evidence/beam.md). */
-#ifndef SPARI_ROOT_H
-#define SPARI_ROOT_H
+/* Stages of a substep of a member whose unknowns are the motions of nodes. */
+#ifndef SPARI_STAGE_H
+#define SPARI_STAGE_H
 
-#include "body_solver.h"
-#include "scheme.h"
+#include "relative_to_root.h"
 
-/* The ends of a substep in the variables of the scheme: relative to a driven root, else absolute. `absolute` is the end
-   as the body takes it. */
-typedef struct spari_ends {
-    spari_state from, to, absolute;
-    const spari_pose *root; /* reference of the motion at the end: a driven root, or a rigid motion; NULL: none */
-    double root_motion; /* how far the reference moves the member: rotation, and displacement relative to its length */
-} spari_ends;
-
-/* A stage of a substep of a member whose unknowns are the motions of nodes. */
 typedef struct spari_stage {
     spari_ends ends;
     spari_pose before, root; /* driven root at the beginning of the substep and at the end of the stage */
@@ -38,8 +27,6 @@ int spari_stage_begin(spari_solver *solver, const spar_member *member, const spa
 /* The driven root only. */
 void spari_stage_drive(const spar_member *member, const spari_scheme *scheme, const spari_part *part,
                        spari_stage *stage);
-/* How far a root moves the member: rotation, and displacement relative to its length. */
-double spari_root_motion(const spari_pose *from, const spari_pose *to, double length);
 /* Whether the substep moved the member too little for a second solution to exist, or the work of its loads is not
    known. */
 int spari_stage_is_near(const spari_solver *solver, const spar_member *member, double h);
@@ -48,10 +35,5 @@ void spari_stage_energy(spari_solver *solver, const spar_member *member, const s
                         double *size);
 /* The substep has ended. */
 void spari_stage_end(const spari_solver *solver, spar_member *member, const spari_scheme *scheme, spari_stage *stage);
-/* own := the motion of all nodes relative to a root. b is relative already. */
-void spari_root_look_from(const spari_solver *solver, const spar_member *member, const spari_pose *root,
-                          const spari_state *state, spari_state *own);
-/* The inverse: sets the absolute motion that the body takes. */
-void spari_root_show(const spari_solver *solver, const spar_member *member, spari_ends *ends);
 
 #endif
