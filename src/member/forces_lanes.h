@@ -1,7 +1,9 @@
 /* Forces of an element for one vector width: interpolates nodal fields to quadrature points, computes the forces
    there, and sums them to the nodes. Included by element_lanes.c once per width with the macros of math/width.h. No
    include guard: this is a body, not an interface. */
-#include "section_lanes.h"
+#include "stiffness_damping_lanes.h"
+/* uses the one above */
+#include "inertia_gravity_lanes.h"
 
 /* ---- from nodes to points: lanes are points ---- */
 

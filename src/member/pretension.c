@@ -1,6 +1,6 @@
 /* Pretension of a beam: section forces of its reference configuration, given by the host. They are added to the
-   section forces at quadrature points (section_lanes.h). So forces, energy, tangent (geometric stiffness), modes and
-   linear members include them. */
+   section forces at quadrature points (stiffness_damping_lanes.h). So forces, energy, tangent (geometric stiffness),
+   modes and linear members include them. */
 #include "../base/environment.h"
 #include "beam.h"
 #include "check_arguments.h"

@@ -84,7 +84,9 @@ void spari_lanes_collect(const spari_body *body, int e, const double *back, doub
 
 #define SPARI_WIDTH 1
 #include "../math/width.h"
-#include "section_lanes.h"
+#include "stiffness_damping_lanes.h"
+/* uses the one above */
+#include "inertia_gravity_lanes.h"
 #define SPARI_WIDTH 0
 #include "../math/width.h"
 
