@@ -6,7 +6,7 @@
 #include "../base/environment.h"
 #include "../base/saved_file.h"
 #include "../comm/enter.h"
-#include "../exchange/exchange.h"
+#include "../exchange/rank_loads_and_motion.h"
 #include "../fluid/fluid.h"
 #include "../member/check_arguments.h"
 #include "../time/fidelity.h"

@@ -5,7 +5,7 @@
 #include "../assembly/assembly.h"
 #include "../comm/enter.h"
 #include "../coupling/coupling.h"
-#include "../exchange/exchange.h"
+#include "../exchange/rank_loads_and_motion.h"
 #include "../fluid/fluid.h"
 #include "../member/check_arguments.h"
 #include "../member/joint.h"

@@ -2,7 +2,7 @@
 #include "prescribed_step.h"
 
 #include "../comm/enter.h"
-#include "../exchange/exchange.h"
+#include "../exchange/rank_loads_and_motion.h"
 #include "../fluid/fluid.h"
 #include "../member/structure.h"
 #include "callbacks.h"

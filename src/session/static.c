@@ -4,7 +4,7 @@
 #include "../comm/enter.h"
 #include "../coupling/coupling.h"
 #include "../coupling/schemes.h"
-#include "../exchange/exchange.h"
+#include "../exchange/rank_loads_and_motion.h"
 #include "../exchange/session_private.h"
 #include "../fluid/fluid.h"
 #include "../member/body.h"

@@ -3,7 +3,7 @@
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
 #include "../coupling/coupling.h"
-#include "../exchange/exchange.h"
+#include "../exchange/rank_loads_and_motion.h"
 #include "../fluid/fluid.h"
 #include "../member/added_mass.h"
 #include "../member/added_mass_fit.h"

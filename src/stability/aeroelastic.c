@@ -7,7 +7,7 @@
 
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
-#include "../exchange/exchange.h"
+#include "../exchange/rank_loads_and_motion.h"
 #include "../time/fidelity.h"
 
 #include <math.h>

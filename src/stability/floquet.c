@@ -9,7 +9,7 @@
 #include "../algebra/eigen.h"
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
-#include "../exchange/exchange.h"
+#include "../exchange/rank_loads_and_motion.h"
 #include "../math/rotation.h"
 #include "../session/callbacks.h"
 #include "../solve/life.h"

@@ -2,7 +2,7 @@
 #include "shapes.h"
 
 #include "../base/session.h"
-#include "../exchange/exchange.h"
+#include "../exchange/rank_loads_and_motion.h"
 #include "../math/rotation.h"
 #include "../time/fidelity.h"
 

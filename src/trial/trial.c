@@ -5,7 +5,7 @@
 #include "move_loads.h"
 
 #include "../coupling/coupling.h"
-#include "../exchange/exchange.h"
+#include "../exchange/rank_loads_and_motion.h"
 #include "../exchange/session_private.h"
 #include "../fluid/fluid.h"
 #include "../member/check_arguments.h"

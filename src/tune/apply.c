@@ -4,7 +4,7 @@
 #include "../base/environment.h"
 #include "../comm/comm.h"
 #include "../comm/enter.h"
-#include "../exchange/exchange.h"
+#include "../exchange/rank_loads_and_motion.h"
 #include "../exchange/session_private.h"
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"

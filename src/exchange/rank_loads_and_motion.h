@@ -1,6 +1,6 @@
 /* Exchange between ranks: nodal loads are summed, motion is sent from the owner of a member to the others. */
-#ifndef SPARI_EXCHANGE_H
-#define SPARI_EXCHANGE_H
+#ifndef SPARI_RANK_LOADS_AND_MOTION_H
+#define SPARI_RANK_LOADS_AND_MOTION_H
 
 #include "../base/session.h"
 

@@ -1,5 +1,5 @@
-/* Exchange between ranks: sums loads, distributes motion. See exchange.h. */
-#include "exchange.h"
+/* Exchange between ranks: sums loads, distributes motion. See rank_loads_and_motion.h. */
+#include "rank_loads_and_motion.h"
 
 #include "../assembly/assembly.h"
 #include "../comm/enter.h"
