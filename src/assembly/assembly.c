@@ -307,12 +307,12 @@ static const char *attempts_of(spari_assembly *a, double s, double dt, int *iter
     newton_step step = {a, s, dt, 0};
     const int serves = tangent_serves(a), most = a->session->newton.max;
     if (a->constraints > 0) {
-        return spari_newton_solve(&tied, &step, serves, most, spari_newton_stop_begin(a->session, &a->trace),
+        return spari_newton_solve(&tied, &step, serves, most, spari_newton_tolerance_begin(a->session, &a->trace),
                                   iterations);
     }
     spari_component *p = a->component;
     const char *wrong =
-        spari_newton_solve(&alone, &step, serves, most, spari_newton_stop_begin(a->session, p->trace), iterations);
+        spari_newton_solve(&alone, &step, serves, most, spari_newton_tolerance_begin(a->session, p->trace), iterations);
     if (wrong) {
         p->row->end_solution(p, 0, 0);
     }

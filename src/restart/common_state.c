@@ -1,4 +1,4 @@
-/* Reads and writes the data of a session that are common to all ranks: see saved.h. */
+/* Reads and writes the data of a session that are common to all ranks: see common_state.h. */
 #include "common_state.h"
 
 #include "../comm/comm.h"

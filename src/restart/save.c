@@ -1,5 +1,5 @@
-/* Saves the whole session in one file (base/saved_file.h): data common to all ranks (saved.h); then the data of each
-   rank, preceded by their number of words: solvers of its members and assemblies, its fluids. No rank holds more
+/* Saves the whole session in one file (base/saved_file.h): data common to all ranks (common_state.h); then the data of
+   each rank, preceded by their number of words: solvers of its members and assemblies, its fluids. No rank holds more
    than its own data. If all ranks see the file that rank 0 has begun, each writes its own part, all at the same
    time. Otherwise the parts go through rank 0 piece by piece. The bytes are the same. */
 #include "../assembly/assembly.h"

@@ -165,7 +165,7 @@ void spari_member_accept(spar_member *m) {
     if (m->means) {
         spari_means_accept(m);
     }
-    spari_newton_stop_accept(m);
+    spari_newton_tolerance_accept(m);
     copy_motion(m, &m->after, &m->now);
     copy_solved(m, 1, 0);
     m->state.balanced[0] = m->state.balanced[1];

@@ -14,7 +14,7 @@
    0 when it reverses. */
 static const double part = 1e-3, part_if_free = 1e-4, most = 1e-7, keeps = 0.85;
 
-void spari_newton_stop_accept(spar_member *m) {
+void spari_newton_tolerance_accept(spar_member *m) {
     const spar_session *s = m->session;
     if (s->newton.strict || !(m->assembly || m->row->solver) || !spari_step_error_applies(m) ||
         !spari_step_error_is_known(s)) {

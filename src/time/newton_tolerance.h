@@ -9,7 +9,7 @@
 #include <math.h>
 
 /* Updates the estimates of the step error. Called when a step is accepted, before its motion becomes that of t^n. */
-void spari_newton_stop_accept(spar_member *member);
+void spari_newton_tolerance_accept(spar_member *member);
 /* The remaining correction that is allowed in a substep that has moved the member by `motion`. */
 double spari_newton_tolerance(const spar_member *member, const spari_scheme *c, double motion);
 /* The same for a stage of TR-BDF2. The strict tolerances hold, and atol is at most 1e-6 h^2. The reason:
@@ -19,7 +19,7 @@ static inline double spari_newton_tolerance_stage(const spar_session *session, c
     return 0.25 * (fmin(session->newton.atol, 1e-6 * c->h * c->h) + session->newton.rtol * motion);
 }
 /* Called at the beginning of a solution. With strict tolerances the contraction of earlier solutions does not count. */
-static inline spari_trace *spari_newton_stop_begin(const spar_session *session, spari_trace *trace) {
+static inline spari_trace *spari_newton_tolerance_begin(const spar_session *session, spari_trace *trace) {
     trace->rate = session->newton.strict ? 0 : trace->rate;
     return trace;
 }
