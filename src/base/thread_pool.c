@@ -23,19 +23,19 @@ typedef struct share {
     char apart[112];
 } share;
 
-typedef struct hand {
+typedef struct worker_thread {
     spari_thread_pool *pool;
     pthread_t thread;
-    int worker;
+    int number;
     spari_workspace workspace;
-} hand;
+} worker_thread;
 
 struct spari_thread_pool {
     int threads;
-    pid_t process; /* process that created the threads: a forked child has the memory but not the threads */
-    hand *hands;   /* [threads]; the first is the calling thread */
-    share *share;  /* [threads] */
-    int64_t kept;  /* size of each worker's workspace, in doubles */
+    pid_t process;          /* process that created the threads: a forked child has the memory but not the threads */
+    worker_thread *workers; /* [threads]; the first is the calling thread */
+    share *share;           /* [threads] */
+    int64_t kept;           /* size of each worker's workspace, in doubles */
     pthread_mutex_t lock;
     pthread_cond_t begun, ended;
     atomic_long round;  /* number of rounds so far */
@@ -96,7 +96,7 @@ static long next_round(spari_thread_pool *c, long last) {
 }
 
 static void *serve(void *argument) {
-    const hand *h = argument;
+    const worker_thread *h = argument;
     spari_thread_pool *c = h->pool;
     for (long round = 0;;) {
         round = next_round(c, round);
@@ -105,7 +105,7 @@ static void *serve(void *argument) {
         }
         spari_environment_begin();
         (void)fesetenv(&c->surroundings); /* rounding mode and denormal handling of the calling thread */
-        work_on(c, h->worker);
+        work_on(c, h->number);
         spari_environment_end();
         if (atomic_fetch_sub_explicit(&c->at_work, 1, memory_order_acq_rel) == 1) {
             (void)pthread_mutex_lock(&c->lock);
@@ -116,14 +116,14 @@ static void *serve(void *argument) {
 }
 
 /* Wakes all threads for a round, or to end. */
-static void call_hands(spari_thread_pool *c) {
+static void wake_workers(spari_thread_pool *c) {
     (void)pthread_mutex_lock(&c->lock);
     atomic_fetch_add_explicit(&c->round, 1, memory_order_release);
     (void)pthread_cond_broadcast(&c->begun);
     (void)pthread_mutex_unlock(&c->lock);
 }
 
-static void wait_for_hands(spari_thread_pool *c) {
+static void wait_for_workers(spari_thread_pool *c) {
     for (int k = 0; k < SPIN && atomic_load_explicit(&c->at_work, memory_order_acquire) > 0; k++) {
         rest();
     }
@@ -141,11 +141,11 @@ static int is_of_this_process(const spari_thread_pool *c) {
 }
 
 /* Ends the first `threads` threads, which are waiting. */
-static void end_hands(spari_thread_pool *c) {
+static void end_workers(spari_thread_pool *c) {
     atomic_store(&c->stop, 1);
-    call_hands(c);
+    wake_workers(c);
     for (int k = 1; k < c->threads; k++) {
-        (void)pthread_join(c->hands[k].thread, NULL);
+        (void)pthread_join(c->workers[k].thread, NULL);
     }
     (void)pthread_cond_destroy(&c->ended);
     (void)pthread_cond_destroy(&c->begun);
@@ -154,16 +154,16 @@ static void end_hands(spari_thread_pool *c) {
 
 static void dismiss(spari_thread_pool *c) {
     if (is_of_this_process(c)) { /* a forked child has no threads to wait for */
-        end_hands(c);
+        end_workers(c);
     }
     for (int k = 1; k < c->threads; k++) {
-        spari_workspace_free(&c->hands[k].workspace);
+        spari_workspace_free(&c->workers[k].workspace);
     }
-    SPARI_FREE(c->hands, c->share, c);
+    SPARI_FREE(c->workers, c->share, c);
 }
 
 /* Signals of the process go to the host's threads. */
-static int start_hand(hand *h) {
+static int start_worker(worker_thread *h) {
     sigset_t all, before;
     (void)sigfillset(&all);
     (void)pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -174,21 +174,21 @@ static int start_hand(hand *h) {
 
 spari_thread_pool *spari_thread_pool_create(int threads) {
     spari_thread_pool *c = spari_zalloc(1, sizeof *c);
-    hand *hands = spari_zalloc(threads, sizeof *hands);
+    worker_thread *workers = spari_zalloc(threads, sizeof *workers);
     share *shares = spari_zalloc(threads, sizeof *shares);
-    if (!c || !hands || !shares) {
-        SPARI_FREE(c, hands, shares);
+    if (!c || !workers || !shares) {
+        SPARI_FREE(c, workers, shares);
         return NULL;
     }
-    c->hands = hands, c->share = shares;
+    c->workers = workers, c->share = shares;
     c->process = getpid();
     (void)pthread_mutex_init(&c->lock, NULL); /* cannot fail with default attributes */
     (void)pthread_cond_init(&c->begun, NULL);
     (void)pthread_cond_init(&c->ended, NULL);
     for (c->threads = 1; c->threads < threads; c->threads++) {
-        hand *h = hands + c->threads;
-        *h = (hand){.pool = c, .worker = c->threads};
-        if (start_hand(h) != 0) {
+        worker_thread *h = workers + c->threads;
+        *h = (worker_thread){.pool = c, .number = c->threads};
+        if (start_worker(h) != 0) {
             dismiss(c);
             return NULL;
         }
@@ -219,16 +219,16 @@ void spari_thread_pool_run(spari_thread_pool *pool, int64_t items, spari_task ta
     }
 #ifdef SPAR_POISON
     for (int k = 1; k < pool->threads; k++) { /* results of a round may stay there until the next */
-        spari_poison(spari_workspace_at(&pool->hands[k].workspace, pool->kept), pool->kept);
+        spari_poison(spari_workspace_at(&pool->workers[k].workspace, pool->kept), pool->kept);
     }
 #endif
     pool->task = task, pool->context = context;
     (void)fegetenv(&pool->surroundings);
     share_out(pool, items);
     atomic_store_explicit(&pool->at_work, pool->threads - 1, memory_order_relaxed);
-    call_hands(pool);
+    wake_workers(pool);
     work_on(pool, 0);
-    wait_for_hands(pool);
+    wait_for_workers(pool);
 }
 
 typedef struct span_task {
@@ -254,7 +254,7 @@ int spari_thread_pool_reserve(spari_thread_pool *pool, int64_t doubles) {
         return 0;
     }
     for (int k = 1; k < pool->threads; k++) {
-        if (spari_workspace_reserve(&pool->hands[k].workspace, doubles)) {
+        if (spari_workspace_reserve(&pool->workers[k].workspace, doubles)) {
             return 1;
         }
     }
@@ -263,7 +263,7 @@ int spari_thread_pool_reserve(spari_thread_pool *pool, int64_t doubles) {
 }
 
 double *spari_thread_pool_workspace(const spari_thread_pool *pool, int worker, int64_t doubles) {
-    return pool && doubles <= pool->kept ? spari_workspace_at(&pool->hands[worker].workspace, doubles) : NULL;
+    return pool && doubles <= pool->kept ? spari_workspace_at(&pool->workers[worker].workspace, doubles) : NULL;
 }
 
 int spari_thread_pool_worker(const spari_thread_pool *pool) {

@@ -42,7 +42,7 @@ static void lose_of_nodes(void *context, int64_t from, int64_t to) {
 }
 
 void spari_root_subtract_jump(const spari_solver *solver, const spar_member *m, double h, const spari_pose *from,
-                      const spari_pose *to, const spari_state *own) {
+                              const spari_pose *to, const spari_state *own) {
     spari_root_jump t = {.lanes = solver->body->lanes, .member = m, .own = own};
     double less[3];
     spari_drive_jump(from, to, h, t.velocity, t.position);

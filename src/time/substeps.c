@@ -119,7 +119,7 @@ static int run_substep(const spari_stepper *how, void *self, const spari_scheme 
 }
 
 int spari_substeps_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_cuts *cuts,
-                     spari_pattern *pattern, const spar_session *session, double dt) {
+                       spari_pattern *pattern, const spar_session *session, double dt) {
     int substeps = session->integrator.substeps;
     if (cuts->begun != session->clock.begun || session->state.rough) {
         *cuts = (spari_cuts){.begun = session->clock.begun};
@@ -130,4 +130,3 @@ int spari_substeps_run(const spari_stepper *how, void *self, const spari_scheme 
     }
     return SPAR_OK;
 }
-

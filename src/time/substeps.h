@@ -29,7 +29,7 @@ typedef struct spari_stepper {
    next calls of the step. alpha: the coefficients of a substep. *pattern: of the steps that led to t^n; becomes that
    of the steps to t^{n+1}. Returns a status of the stepper, with a message. */
 int spari_substeps_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_cuts *cuts,
-                     spari_pattern *pattern, const spar_session *session, double dt);
+                       spari_pattern *pattern, const spar_session *session, double dt);
 /* Whether a member rotates so fast in steps dt that TR-BDF2, or nearly so, integrates it. The same on all ranks. */
 int spari_substeps_rotate_fast(const spar_session *session, double dt);
 
