@@ -182,7 +182,7 @@ static int begin_attempt(void *self, int reused) {
     newton_step *t = self;
     t->took = t->a->factored;
     t->a->factored = reused && tangent_serves(t->a);
-    t->a->standing = 0; /* the beginning of a solution must not depend on earlier solutions */
+    t->a->system_serves = 0; /* the beginning of a solution must not depend on earlier solutions */
     return t->a->factored;
 }
 
@@ -246,7 +246,7 @@ static const char *iterate_newton(void *self, double longest, spari_iterate *it)
     }
     a->moved += it->correction;
     /* Positions must not depend on the state in which the system was factored. */
-    a->standing = a->standing && a->moved < near_factored && a->component[0].scheme.rule == SPARI_ALPHA;
+    a->system_serves = a->system_serves && a->moved < near_factored && a->component[0].scheme.rule == SPARI_ALPHA;
     it->tolerance = tolerance(a, it->correction);
     it->small = it->correction < 1e-11;
     it->rounded = residual_size <= 16 * DBL_EPSILON * scale && it->small;
@@ -883,11 +883,11 @@ int spari_assembly_response(spari_assembly *a, int64_t count, int64_t stride, do
         restore_end(a);
     }
     int singular = 0;
-    a->standing = 0; /* the system was formed at slightly different positions */
+    a->system_serves = 0; /* the system was formed at slightly different positions */
     for (int64_t k = 0; k < count && !singular; k++) {
         singular = has_loads(a, stacked + k * stride) && respond_once(a, stacked + k * stride);
     }
-    a->standing = 0;
+    a->system_serves = 0;
     return singular;
 }
 

@@ -141,7 +141,7 @@ static outcome solve_downhill(spari_assembly *a, double f, double *last_shift) {
     }
     double shift = 0.25 * *last_shift;
     for (int i = 0, wrong = why != FOUND; i < SHIFTS && wrong; i++, shift *= 4) {
-        a->standing = 0;
+        a->system_serves = 0;
         a->shift = *last_shift = shift;
         wrong =
             spari_system_solve(a, 0, 0) || spari_system_weakest_pivot(a) < loose || spari_system_count_negative(a) > 0;

@@ -49,7 +49,7 @@ void spari_system_keep_joint_tangents(spari_assembly *a) {
     for (int i = 0; i < a->constraints && before; i++, before += SPARI_JOINT_TANGENT) {
         memcpy(before, a->constraint[i].joint_tangent, sizeof a->constraint[i].joint_tangent);
     }
-    a->standing = 0;
+    a->system_serves = 0;
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
         memset(l->joint_tangent, 0, sizeof l->joint_tangent);
@@ -626,12 +626,12 @@ static void find_constraint_loads(spari_assembly *a, double *y) {
 
 /* Solves with the condensed residuals of the components in x. loads: the corrections of the multipliers too. */
 static int solve_reduced(spari_assembly *a, double cv, int loads) {
-    if (!a->standing || fabs(a->cv - cv) > 0) {
-        a->standing = 0;
+    if (!a->system_serves || fabs(a->cv - cv) > 0) {
+        a->system_serves = 0;
         if (factor_system(a, cv)) {
             return 1;
         }
-        a->standing = 1, a->cv = cv, a->moved = 0;
+        a->system_serves = 1, a->cv = cv, a->moved = 0;
     }
     int n = 6 * a->interfaces, gaps = find_gaps(a);
     for (int i = 0; i < n; i++) {
@@ -778,7 +778,7 @@ static void scale_motion(spari_assembly *a) {
    small stiffness is added to every motion, so that the system can be factored. Returns 0 or 1. */
 static int free_motion(spari_assembly *a) {
     int n = spari_blocks_rows(a->system);
-    a->standing = 0;
+    a->system_serves = 0;
     if (form_system(a, 0, 8)) {
         return 1;
     }

@@ -49,7 +49,7 @@ struct spari_assembly {
     int factored;         /* 0: there are no tangents; else how many iterations the solution needed that formed them */
     int constrains_rates; /* the step's equations constrain velocities too */
     int rotates_far;      /* joints rotate far in a substep */
-    int standing;         /* the system below is factored, for the present tangents and this cv, */
+    int system_serves;    /* the system below is factored, for the present tangents and this cv, */
     double cv, moved;     /* and the motion of the components since; only within a solution */
     double scale;         /* its largest stiffness */
     double penalty;       /* of constraints that close loops, by their scale */

@@ -91,11 +91,12 @@ typedef struct spari_step_state {
     int past;  /* number of loads known before those of t^n, which limits the order of the next prediction; -1: those
                   of t^n are unknown too */
     int order; /* order of the predictor in the current step */
-    int iterating; /* the last check asked for another iteration */
-    int rough;     /* the loads of this iteration are far from converged */
-    int failed;    /* the last check of the current step failed */
-    int standing;  /* a static solution is in progress: there is one state, whatever theta a fluid pulls at */
-    int trial;     /* a trial is in progress (trial/trial.h) */
+    int iterating;       /* the last check asked for another iteration */
+    int rough;           /* the loads of this iteration are far from converged */
+    int failed;          /* the last check of the current step failed */
+    int static_solution; /* a static solution, or that of the initial accelerations, is in progress: there is one state,
+                            whatever theta a fluid pulls at */
+    int trial;           /* a trial is in progress (trial/trial.h) */
 } spari_step_state;
 
 enum { SPARI_MOST_WARNINGS = 32 }; /* kept; later ones go to the log alone */

@@ -73,14 +73,14 @@ int spari_coupling_fits(const spar_session *s) {
     return c && !s->coupling.stale && c->members == s->member_count && c->n == count_unknowns(s);
 }
 
-int spari_coupling_create(spar_session *s, int scheme, int standing, spari_coupling **coupling) {
+int spari_coupling_create(spar_session *s, int scheme, int static_solution, spari_coupling **coupling) {
     spari_coupling *c = spari_zalloc(1, sizeof *c);
     if (c) {
         c->n = count_unknowns(s);
         c->members = s->member_count;
         int iterates = spari_coupling_scheme_of(scheme)->iterates;
-        c->estimates = !standing && !iterates && s->coupling.estimate;
-        c->weighs = !standing && iterates && spari_motion_norm_is_used(s);
+        c->estimates = !static_solution && !iterates && s->coupling.estimate;
+        c->weighs = !static_solution && iterates && spari_motion_norm_is_used(s);
     }
     if (!c || !make_vectors(s, scheme, c)) {
         spari_coupling_free(&c);
@@ -273,7 +273,7 @@ static double grown_lately(const spari_coupling *c) {
 /* Remedies, beginning with those that are not in use. diverges: the changes grow. */
 static const char *cures_of(const spar_session *s, int diverges) {
     int newton = spari_coupling_scheme_of(s->coupling.scheme)->columns;
-    if (s->state.standing) {
+    if (s->state.static_solution) {
         return newton ? "use a larger tolerance or more iterations, or check the fluid's loads"
                       : "use SPAR_COUPLING_IQN_ILS, a larger tolerance or more iterations";
     }
@@ -377,7 +377,7 @@ static int not_converged(spar_session *s, const char *call) {
         (void)snprintf(motion, sizeof motion, ", motion by %.3g m of %.3g m", c->moved, c->travelled);
     }
     /* Before growth is looked at: what rounding leaves may grow from iteration to iteration. */
-    const double rounding = s->state.standing ? 0 : rounding_of_accelerations(s);
+    const double rounding = s->state.static_solution ? 0 : rounding_of_accelerations(s);
     SPARI_REQUIRE(s, 10 * rounding < s->coupling.rtol || s->coupling.rtol == 0, SPAR_ERR_NUMERIC,
                   "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g N%s%s): in a "
                   "step of %g s the rounding of positions makes a relative error of %.1g in accelerations and in loads "
@@ -613,7 +613,7 @@ int spari_coupling_check(spar_session *s, const char *call, int *done) {
     int agreed;
     *done = 1;
     SPARI_TRY(spari_named(s, call, spari_coupling_compare(s, &agreed)));
-    if (!s->state.standing && (!c->accelerator || (!agreed && c->was_explicit && s->state.iteration == 1))) {
+    if (!s->state.static_solution && (!c->accelerator || (!agreed && c->was_explicit && s->state.iteration == 1))) {
         SPARI_TRY(check_explicit(s, call));
     }
     if (agreed || !c->accelerator) {

@@ -41,9 +41,9 @@ typedef struct spari_coupling {
     int unconverged, in_row;            /* the current step is accepted unconverged; number of such steps before it */
 } spari_coupling;
 
-/* Allocates for the present settings but this scheme. standing: for a solution that is not a step, in the load norm.
-   Local. */
-int spari_coupling_create(spar_session *session, int scheme, int standing, spari_coupling **coupling);
+/* Allocates for the present settings but this scheme. static_solution: for a solution that is not a step, in the load
+   norm. Local. */
+int spari_coupling_create(spar_session *session, int scheme, int static_solution, spari_coupling **coupling);
 /* The same for the session, replacing the existing one. */
 int spari_coupling_prepare(spar_session *session);
 /* Replace the session's coupling by a temporary one for a solution that is not a step, and end it. Collective; on

@@ -9,7 +9,7 @@
 #include <string.h>
 
 double spari_fluid_time(const spar_fluid *fluid, double theta) {
-    return fluid->member->session->state.standing && theta >= 0 && theta <= 1 ? 1 : theta;
+    return fluid->member->session->state.static_solution && theta >= 0 && theta <= 1 ? 1 : theta;
 }
 
 int spari_fluid_check_theta(const spar_fluid *fluid, double theta, const char *caller) {

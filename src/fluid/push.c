@@ -252,7 +252,7 @@ static int push_loads(spar_fluid *fluid, spari_source force, spari_source moment
 /* Factor of a ramp at t^n + theta dt */
 static double ramp_at(const spar_fluid *fluid, double theta) {
     const spar_session *s = fluid->member->session;
-    double ahead = s->state.phase == SPARI_IDLE || s->state.standing ? 0 : theta * s->clock.dt;
+    double ahead = s->state.phase == SPARI_IDLE || s->state.static_solution ? 0 : theta * s->clock.dt;
     double part = (s->clock.time + ahead - fluid->options.ramp_start) / fabs(fluid->options.ramp);
     part = fmax(0, fmin(1, part));
     return fluid->options.ramp > 0 ? part : 1 - part;
@@ -356,7 +356,7 @@ static int push_parts(spar_fluid *fluid, const spari_nodes *s, double theta, con
     swap_bins(fluid, SPARI_OF_MEAN, SPARI_OF_NEXT);
     SPARI_TRY(push_loads(fluid, force, moment, caller));
     memcpy(p->end[1], fluid->load, (size_t)n * sizeof *p->end[1]);
-    int moves = !fluid->member->session->state.standing; /* a static solution has no end of a step */
+    int moves = !fluid->member->session->state.static_solution; /* a static solution has no end of a step */
     if (fluid->bins[SPARI_OF_PUSHED]) {
         memcpy(fluid->bins[SPARI_OF_END], fluid->bins[SPARI_OF_PUSHED], (size_t)n * sizeof(spari_bins));
         combine_bins(fluid, moves);

@@ -32,7 +32,7 @@ int spar_fluid_get_states(const spar_fluid *fluid, int64_t *width, double *dt) {
     SPARI_FLUID_HANDLE(fluid);
     const spar_session *s = fluid->member->session;
     SPARI_GIVE(width, fluid->states ? fluid->states->width : 0);
-    SPARI_GIVE(dt, s->state.phase == SPARI_IDLE || s->state.standing ? 0 : s->clock.dt);
+    SPARI_GIVE(dt, s->state.phase == SPARI_IDLE || s->state.static_solution ? 0 : s->clock.dt);
     return SPAR_OK;
 }
 

@@ -435,7 +435,7 @@ void spari_added_correct(const spar_member *m, double factor, double *load) {
 }
 
 const double *spari_added_shift(const spar_member *m) {
-    return m->added && !m->session->state.standing ? m->added->shift : NULL;
+    return m->added && !m->session->state.static_solution ? m->added->shift : NULL;
 }
 
 void spari_added_restart(spar_member *m) {

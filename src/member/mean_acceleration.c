@@ -39,7 +39,7 @@ void spari_means_free(spari_means *k) {
 
 const double *spari_means_seen(const spar_member *m, int after) {
     const spari_means *k = m->means;
-    return k && k->has[after] && !m->session->state.standing ? k->seen[after] : after ? m->after.a : m->now.a;
+    return k && k->has[after] && !m->session->state.static_solution ? k->seen[after] : after ? m->after.a : m->now.a;
 }
 
 void spari_means_find(spar_member *m) {

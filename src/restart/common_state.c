@@ -27,7 +27,7 @@ int spari_saved_no_memory(const spar_session *s) {
 
 int spari_saved_check_call(const spar_session *s, const char *call, const char *path) {
     SPARI_TRY(spari_need_no_trial(s, call));
-    SPARI_REQUIRE(s, !s->state.standing, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, !s->state.static_solution, SPAR_ERR_STATE,
                   "%s: a static solution or the initial accelerations are in progress; save or load after them", call);
     SPARI_REQUIRE(s, path && path[0], SPAR_ERR_ARGUMENT, "%s: the path is empty; give the name of a file", call);
     return spari_need_all_committed(s, call);

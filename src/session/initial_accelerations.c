@@ -52,7 +52,7 @@ int spari_start_begin(spar_session *s, const char *call, double dt) {
     s->clock.dt = dt;
     s->state.iteration = s->state.iterating = s->state.failed = 0;
     spari_coupling_begin(s);
-    s->clock.started = s->state.standing = 1;
+    s->clock.started = s->state.static_solution = 1;
     s->state.phase = SPARI_BEGUN;
     return SPAR_OK;
 }
@@ -101,7 +101,7 @@ int spari_start_solve(spar_session *s, const char *call) {
 
 static void end_start(spar_session *s) {
     s->state.phase = SPARI_IDLE;
-    s->clock.started = s->state.standing = 0;
+    s->clock.started = s->state.static_solution = 0;
 }
 
 void spari_start_accept(spar_session *s) {

@@ -232,7 +232,7 @@ static int begin_static(spar_session *s) {
         spari_fluid_begin(f, 0, 1, last);
     }
     s->state.iteration = s->state.iterating = s->state.failed = 0;
-    s->clock.started = s->state.standing = 1;
+    s->clock.started = s->state.static_solution = 1;
     s->state.phase = SPARI_SOLVED;
     spari_coupling_begin(s);
     return SPAR_OK;
@@ -425,7 +425,7 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
     }
     s->state.phase = SPARI_IDLE;
     s->clock.started = s->clock.step > 0;
-    s->state.standing = 0;
+    s->state.static_solution = 0;
     free(saved_state);
     return spari_named(s, __func__, status);
 }

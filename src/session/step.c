@@ -196,7 +196,7 @@ int spar_step_solve(spar_session *session) {
     spar_session *s = session;
     int status = s->state.phase == SPARI_IDLE ? wrong_phase(s, __func__, "call spar_step_begin first") : SPAR_OK;
     SPARI_TRY(spari_enter(s, __func__, status));
-    if (s->state.standing) {
+    if (s->state.static_solution) {
         return spari_start_solve(s, __func__);
     }
     s->newton.share = spari_coupling_share(s);
@@ -241,10 +241,10 @@ static int check_iteration(spar_session *s, const char *call, int status, int *d
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m; m = m->next) {
         spari_session_take_loads(s, m, m->load.pushed);
-        if (!s->state.standing) {
+        if (!s->state.static_solution) {
             spari_learned_note(m, s->state.iteration + 1);
         }
-        if (m->added && !s->state.standing) {
+        if (m->added && !s->state.static_solution) {
             spari_added_correct(m, 1, m->load.pushed);
         }
     }
@@ -326,7 +326,7 @@ int spar_step_accept(spar_session *session) {
         status = spari_session_pushes(s, __func__);
     }
     SPARI_TRY(spari_enter(s, __func__, status));
-    if (s->state.standing) {
+    if (s->state.static_solution) {
         spari_start_accept(s);
         return SPAR_OK;
     }
@@ -354,7 +354,7 @@ int spar_step_accept(spar_session *session) {
 
 /* Local: executed on all ranks when the step ends on all of them. */
 static void reject(spar_session *s) {
-    if (s->state.standing) {
+    if (s->state.static_solution) {
         spari_start_reject(s);
         return;
     }
@@ -387,7 +387,7 @@ int spar_step_reject(spar_session *session) {
 /* ---- the whole step ---- */
 
 static int solve_for(spar_session *s, const char *call) {
-    if (!s->state.standing) {
+    if (!s->state.static_solution) {
         return spar_step_solve(s);
     }
     SPARI_TRY(spari_enter(s, call, SPAR_OK));
@@ -398,7 +398,7 @@ static int iterate(spar_session *s, const char *call, spar_fluid_solver solve, v
     int done = 0;
     while (!done) {
         SPARI_TRY(solve_for(s, call));
-        int status = spari_callback_run(s, call, solve, s->state.standing ? 0 : s->clock.dt, context);
+        int status = spari_callback_run(s, call, solve, s->state.static_solution ? 0 : s->clock.dt, context);
         if (status == SPAR_ERR_COMM) {
             return status;
         }

@@ -89,7 +89,7 @@ void spari_step_control_accept(spar_session *s) {
 
 void spari_step_control_reject(spar_session *s) {
     if (!spari_step_control_is_set(s) || s->state.trial || s->state.phase < SPARI_SOLVED || s->state.failed ||
-        s->state.standing) {
+        s->state.static_solution) {
         return;
     }
     spari_step_control *p = &s->own->step_control;
@@ -110,7 +110,7 @@ int spar_session_get_step_control(const spar_session *session, double *ratio, do
     SPARI_REQUIRE(s, spari_step_control_is_set(s), SPAR_ERR_STATE,
                   "%s: no tolerance is set, so step errors are not estimated; call spar_session_set_tolerance first",
                   __func__);
-    int judged = s->state.phase >= SPARI_SOLVED && !s->state.standing && !s->state.trial;
+    int judged = s->state.phase >= SPARI_SOLVED && !s->state.static_solution && !s->state.trial;
     SPARI_REQUIRE(s, judged || p->next > 0, SPAR_ERR_STATE,
                   "%s: no step has been solved since the tolerance was set; make one first", __func__);
     const double now = judged ? spari_step_control_ratio(s) : p->last;

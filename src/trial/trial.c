@@ -46,13 +46,27 @@ void spari_trial_settings_free(spari_trial_settings *trial_settings) {
     { offsetof(spar_session, field), sizeof((spar_session *)NULL)->field }
 static const struct {
     size_t at, size;
-} saved[] = {SPARI_SAVED(failures),       SPARI_SAVED(callbacks.log),   SPARI_SAVED(callbacks.log_context),
-             SPARI_SAVED(coupling.stale), SPARI_SAVED(clock.time),      SPARI_SAVED(clock.rest),
-             SPARI_SAVED(clock.dt),       SPARI_SAVED(clock.dt_last),   SPARI_SAVED(clock.uneven),
-             SPARI_SAVED(clock.step),     SPARI_SAVED(state.iteration), SPARI_SAVED(state.phase),
-             SPARI_SAVED(state.past),     SPARI_SAVED(state.order),     SPARI_SAVED(state.iterating),
-             SPARI_SAVED(clock.started),  SPARI_SAVED(state.failed),    SPARI_SAVED(callbacks.in_progress),
-             SPARI_SAVED(state.standing), SPARI_SAVED(state.trial),     SPARI_SAVED(ranks.calls_differ),
+} saved[] = {SPARI_SAVED(failures),
+             SPARI_SAVED(callbacks.log),
+             SPARI_SAVED(callbacks.log_context),
+             SPARI_SAVED(coupling.stale),
+             SPARI_SAVED(clock.time),
+             SPARI_SAVED(clock.rest),
+             SPARI_SAVED(clock.dt),
+             SPARI_SAVED(clock.dt_last),
+             SPARI_SAVED(clock.uneven),
+             SPARI_SAVED(clock.step),
+             SPARI_SAVED(state.iteration),
+             SPARI_SAVED(state.phase),
+             SPARI_SAVED(state.past),
+             SPARI_SAVED(state.order),
+             SPARI_SAVED(state.iterating),
+             SPARI_SAVED(clock.started),
+             SPARI_SAVED(state.failed),
+             SPARI_SAVED(callbacks.in_progress),
+             SPARI_SAVED(state.static_solution),
+             SPARI_SAVED(state.trial),
+             SPARI_SAVED(ranks.calls_differ),
              SPARI_SAVED(gravity_before)};
 
 static void copy_field(spar_session *to, const spar_session *from, size_t at, size_t size) {

@@ -163,7 +163,7 @@ int spar_member_estimate_error(spar_member *member, double *step, double *nodes)
         s, !step || spari_step_control_is_set(s), SPAR_ERR_STATE,
         "%s: step errors are not recorded; call spar_session_set_tolerance first, or request the error of the nodes",
         __func__);
-    SPARI_REQUIRE(s, !s->state.standing && !s->state.trial, SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, !s->state.static_solution && !s->state.trial, SPAR_ERR_STATE,
                   "%s: a static solution, initial accelerations or a trial is in progress; call this between steps",
                   __func__);
     SPARI_REQUIRE(s, !nodes || s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
