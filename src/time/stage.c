@@ -310,8 +310,9 @@ static double moved_by(const spari_solver *s, double h) {
     return most;
 }
 
-/* Loads at the part `at` of the step, in the state x, times the way of the substep. */
-static double work_in(spari_solver *s, const spar_member *m, const spari_state *x, double at) {
+/* The work of the loads at the part `at` of the step, in the state x, along the substep. s->dx holds their residual,
+   which has the other sign. */
+static double work_of_loads(spari_solver *s, const spar_member *m, const spari_state *x, double at) {
     double sum = 0;
     spari_scheme_mix_loads(m, &s->steps, 6 * s->n, at);
     memcpy(s->dx, s->steps.load, (size_t)(6 * s->n) * sizeof *s->dx);
@@ -334,7 +335,7 @@ static double work_in(spari_solver *s, const spar_member *m, const spari_state *
 
 void spari_stage_energy(spari_solver *s, const spar_member *m, const spari_part *part, double *gain, double *size) {
     double before[4], after[4];
-    double work = 0.5 * (work_in(s, m, &s->from, part->from) + work_in(s, m, &s->to, part->to));
+    double work = 0.5 * (work_of_loads(s, m, &s->from, part->from) + work_of_loads(s, m, &s->to, part->to));
     spari_scheme_mix_loads(m, &s->steps, 6 * s->n, 0.5 * (part->from + part->to)); /* gravity may change too */
     spari_body_energy(s->body, s->from.q, s->from.v, before);
     spari_body_energy(s->body, s->to.q, s->to.v, after);

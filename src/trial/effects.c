@@ -78,12 +78,14 @@ static void load_squares(const spar_member *m, double *loads, double length, dou
     sum[LOADS] += squares(loads, m->nodes, length);
 }
 
-/* Adds the squares of a member's terms at t^n. */
+/* Adds the squares of a member's terms at t^n, as differences of residuals. spari_body_residual takes velocities NULL
+   as no damping, accelerations NULL as no inertia, zero accelerations as gyroscopic forces alone, and a factor of
+   gravity. rest: the residual that is subtracted. */
 static int member_terms(const spar_member *m, double sum[TERMS]) {
     spari_body plain = *m->body, *b = &plain;
     int64_t n = b->unique;
     double *q = spari_zalloc(37 * n + (m->load.foundation ? 12 : 6) * m->nodes, sizeof *q), *v = q + 7 * n,
-           *a = v + 6 * n, *none = a + 6 * n, *rest = none + 6 * n, *r = rest + 6 * n, *loads = r + 6 * n,
+           *a = v + 6 * n, *zero = a + 6 * n, *rest = zero + 6 * n, *r = rest + 6 * n, *loads = r + 6 * n,
            length = spari_member_length(m);
     SPARI_REQUIRE(m->session, q, SPAR_ERR_MEMORY, "no memory for the effects of '%s'", m->name);
     spari_member_to_unique(m, 7, m->now.q, q);
@@ -96,9 +98,9 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
     minus(r, rest, n);
     sum[GRAVITY] += squares(r, n, length);
     if (b->D) {
-        spari_body_residual(m->body, q, v, m->body->mass_damping > 0 ? none : NULL, 0, r, NULL);
+        spari_body_residual(m->body, q, v, m->body->mass_damping > 0 ? zero : NULL, 0, r, NULL);
         if (m->body->mass_damping > 0) { /* less what is gyroscopic */
-            spari_body_residual(b, q, v, none, 0, loads, NULL);
+            spari_body_residual(b, q, v, zero, 0, loads, NULL);
             minus(r, loads, n);
             spari_body_residual(b, q, v, NULL, 0, loads, NULL);
             minus(loads, rest, n);
@@ -113,12 +115,12 @@ static int member_terms(const spar_member *m, double sum[TERMS]) {
     if (m->effects & SPAR_EFFECT_INERTIA) {
         /* inertia is linear in the accelerations: the part at zero acceleration is gyroscopic */
         const double *rate = b->D ? v : NULL;
-        spari_body_residual(b, q, v, none, 0, r, NULL);
+        spari_body_residual(b, q, v, zero, 0, r, NULL);
         spari_body_residual(b, q, rate, NULL, 0, rest, NULL);
         minus(r, rest, n);
         sum[GYROSCOPIC] += b->gyroscopic ? squares(r, n, length) : 0;
         spari_body_residual(b, q, v, a, 0, rest, NULL);
-        spari_body_residual(b, q, v, none, 0, r, NULL);
+        spari_body_residual(b, q, v, zero, 0, r, NULL);
         minus(rest, r, n);
         sum[INERTIA] += squares(rest, n, length);
     }

@@ -165,7 +165,7 @@ static int carry_loads(spar_session *s, const snapshot *t) {
 }
 
 /* The message of a failure is kept. */
-static void go_back(spar_session *s, snapshot *t) {
+static void restore_session(spar_session *s, snapshot *t) {
     spar_fluid *f = s->fluids;
     for (int k = 0; k < t->fluids_made; k++, f = spari_fluid_next(f)) {
         spari_fluid_restore(f, t->fluids[k]);
@@ -304,7 +304,7 @@ int spari_trial_run(spar_session *s, const spari_run *run, const spari_trial_set
         status = run_there(s, run, balanced, record);
     }
     if (away) {
-        go_back(s, &t);
+        restore_session(s, &t);
     }
     record->own = status;
     return share_failure(s, status);
