@@ -623,12 +623,32 @@ static spari_past past_of(const spar_aero *aero, int64_t i, int64_t k, double dt
     return past;
 }
 
-static void solve_element(spar_aero *aero, int64_t i, int64_t k, double density, const double *inflow,
-                          const spari_past *past) {
-    double loss = aero->loss_radius ? aero->loss_radius[k] : 0;
-    const spari_centre station = {
-        aero->x + 3 * k, aero->q + 4 * k, aero->v + 3 * k, inflow + 3 * k, loss, aero->row + k, past};
-    spari_element_solve(&aero->rotor, aero->section + i, &station, density, aero->element + k);
+/* The sections of all blades, some side by side. */
+static void solve_sections(spar_aero *aero, double density, const double *inflow, int remembers, double dt) {
+    int64_t all = count(aero);
+    spari_rotor rotor = aero->rotor;
+    rotor.effects &= rotor.hub_radius > 0.0 ? ~0 : ~SPAR_AERO_HUB_LOSS;
+    for (int64_t first = 0; first < all; first += SPARI_ANNULI) {
+        const spari_section *section[SPARI_ANNULI];
+        spari_centre station[SPARI_ANNULI];
+        spari_past past[SPARI_ANNULI];
+        int side_by_side = all - first < SPARI_ANNULI ? (int)(all - first) : SPARI_ANNULI;
+        for (int l = 0; l < side_by_side; l++) {
+            int64_t k = first + l, i = k % aero->n;
+            section[l] = aero->section + i;
+            if (remembers) {
+                past[l] = past_of(aero, i, k, dt);
+            }
+            station[l] = (spari_centre){aero->x + 3 * k,
+                                        aero->q + 4 * k,
+                                        aero->v + 3 * k,
+                                        inflow + 3 * k,
+                                        aero->loss_radius ? aero->loss_radius[k] : 0.0,
+                                        aero->row + k,
+                                        remembers ? past + l : NULL};
+        }
+        spari_elements_solve(&rotor, 8, side_by_side, section, station, density, aero->element + first);
+    }
 }
 
 static int solve_elements(spar_aero *aero, double density, const double *inflow, double theta, const char *call) {
@@ -640,16 +660,8 @@ static int solve_elements(spar_aero *aero, double density, const double *inflow,
         changed = (aero->rotor.effects & wind_effects) != 0;
     inflow = changed ? meet_wind(aero, inflow) : inflow;
     SPARI_TRY(remembers ? recall_sections(aero, &dt) : SPAR_OK);
+    solve_sections(aero, density, inflow, remembers, dt);
     for (int b = 0; b < aero->blades; b++) {
-        for (int64_t i = 0; i < aero->n; i++) {
-            int64_t k = b * aero->n + i;
-            if (remembers) {
-                const spari_past past = past_of(aero, i, k, dt);
-                solve_element(aero, i, k, density, inflow, &past);
-            } else {
-                solve_element(aero, i, k, density, inflow, NULL);
-            }
-        }
         lump(aero, b, 0, aero->force);
         if (moments) {
             lump(aero, b, 3, aero->moment);

@@ -7,7 +7,7 @@
 
 /* Data that the sections of a rotor share. */
 typedef struct spari_rotor {
-    int effects; /* SPAR_AERO_* in force */
+    int effects; /* SPAR_AERO_* in force; hub loss needs a hub radius > 0 */
     int turn;    /* 1, or -1 for mirrored blades */
     int blades;  /* of the whole rotor */
     double hub[3], axis[3];
@@ -47,7 +47,8 @@ typedef struct spari_element {
 
 /* Distance of x from the shaft axis. */
 double spari_rotor_radius(const spari_rotor *rotor, const double x[3]);
-void spari_element_solve(const spari_rotor *rotor, const spari_section *section, const spari_centre *station,
-                         double density, spari_element *element);
+/* count <= SPARI_ANNULI elements side by side, each by itself. lanes: see spari_momentum_solve. */
+void spari_elements_solve(const spari_rotor *rotor, int lanes, int count, const spari_section *const *section,
+                          const spari_centre *station, double density, spari_element *element);
 
 #endif

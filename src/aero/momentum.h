@@ -34,6 +34,21 @@ typedef struct spari_annulus {
     int64_t *row; /* of the table: where the next look-up begins */
 } spari_annulus;
 
+/* Annuli are solved so many side by side. */
+enum { SPARI_ANNULI = 8 };
+
+/* The first `count` of these annuli, as above. The twist is given by its sine and cosine, or multiples of both. wx, wy:
+   out, the flow with induction, which is the free flow where no_root says 1. */
+typedef struct spari_annuli {
+    int count, swirl;
+    double vx[SPARI_ANNULI], vy[SPARI_ANNULI], twist_sine[SPARI_ANNULI], twist_cosine[SPARI_ANNULI];
+    double sigma[SPARI_ANNULI], tip[SPARI_ANNULI], hub[SPARI_ANNULI];
+    const spari_table *table[SPARI_ANNULI];
+    int64_t *row[SPARI_ANNULI];
+    double wx[SPARI_ANNULI], wy[SPARI_ANNULI];
+    int no_root[SPARI_ANNULI];
+} spari_annuli;
+
 /* The equation at an inflow angle, with angles and flow oriented so that vx >= 0. */
 typedef struct spari_balance {
     double residual; /* vy g - vx h */
@@ -47,8 +62,8 @@ double spari_prandtl(double f, double sin_phi);
 double spari_swirl_sign(double sin_phi);
 spari_balance spari_momentum_balance(const spari_annulus *annulus, double phi);
 
-/* Flow with induction: *wx along p, *wy along s. Returns 0, or 1 when no inflow angle balances: then the flow is the
-   free one. */
-int spari_momentum_solve(const spari_annulus *annulus, double *wx, double *wy);
+/* Newton's method side by side; annuli that it leaves are searched by brackets. The result of an annulus depends on
+   this annulus alone. lanes: the widest vectors to use, 2, 4 or 8; all give the same bits. */
+void spari_momentum_solve(spari_annuli *annuli, int lanes);
 
 #endif

@@ -58,7 +58,7 @@ static spari_element solve(const scene *s) {
     spari_centre station = {.x = s->x, .q = s->q, .v = s->v, .wind = s->wind, .row = &row};
     station.loss_radius = spari_rotor_radius(&s->rotor, s->x);
     spari_element e;
-    spari_element_solve(&s->rotor, &section, &station, 1.225, &e);
+    spari_elements_solve(&s->rotor, 8, 1, (const spari_section *[]){&section}, &station, 1.225, &e);
     spari_table_release(section.table);
     return e;
 }
@@ -213,10 +213,44 @@ static void test_corners(void **state) {
     assert_int_equal(solve(&s).flags, SPAR_AERO_FLAG_NO_ROOT);
 }
 
+/* Eight elements side by side have the bits of each alone: yawed wind, stall, reversed motion, calm air, an element at
+   the tip. */
+static void test_side_by_side(void **state) {
+    (void)state;
+    scene s[SPARI_ANNULI];
+    spari_section section = {.chord = 3.5, .cos_twist = 1.0, .table = spari_polar_share(polar)};
+    const spari_section *sections[SPARI_ANNULI];
+    spari_centre station[SPARI_ANNULI];
+    int64_t row[SPARI_ANNULI] = {0};
+    spari_element all[SPARI_ANNULI], alone;
+    for (int l = 0; l < SPARI_ANNULI; l++) {
+        double omega[3] = {l == 2 ? -1.0 : l == 4 ? 0.05 : 1.0, 0.0, 0.0};
+        s[l] = scene_of(ALL);
+        s[l].x[2] = l == 5 ? 63.0 : 4.0 + 7.0 * l;
+        s[l].wind[0] = l == 3 ? 0.0 : 3.0 * l;
+        s[l].wind[1] = l - 4.0;
+        spari_cross(omega, s[l].x, s[l].v);
+        sections[l] = &section;
+        station[l] = (spari_centre){.x = s[l].x, .q = s[l].q, .v = s[l].v, .wind = s[l].wind, .row = row + l};
+        station[l].loss_radius = spari_rotor_radius(&s[l].rotor, s[l].x);
+    }
+    for (int count = 1; count <= SPARI_ANNULI; count++) {
+        spari_elements_solve(&s[0].rotor, 8, count, sections, station, 1.225, all);
+        for (int l = 0; l < count; l++) {
+            spari_elements_solve(&s[0].rotor, 2, 1, sections + l, station + l, 1.225, &alone);
+            assert_int_equal(all[l].flags, alone.flags);
+            assert_memory_equal(&all[l].alpha, &alone.alpha, 5 * sizeof alone.alpha);
+            assert_memory_equal(all[l].load, alone.load, sizeof alone.load);
+        }
+    }
+    assert_int_equal(all[5].flags, SPAR_AERO_FLAG_END);
+    spari_table_release(section.table);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_wind_triangle),   cmocka_unit_test(test_drag),
                                        cmocka_unit_test(test_twist_is_a_turn), cmocka_unit_test(test_turned),
                                        cmocka_unit_test(test_left_handed),     cmocka_unit_test(test_ends),
-                                       cmocka_unit_test(test_corners)};
+                                       cmocka_unit_test(test_corners),         cmocka_unit_test(test_side_by_side)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -442,7 +442,8 @@ static const effect effects[] = {
      {0}},
     {"pretension", "", NEVER, {.strung = 1}, {.strung = 1, .effects = ALL}, {0}},
     {"joints",
-     "spari_constraint_find spari_constraint_times spari_constraint_gap spari_constraints_add_forces spari_joint_spring "
+     "spari_constraint_find spari_constraint_times spari_constraint_gap spari_constraints_add_forces "
+     "spari_joint_spring "
      "spari_joint_accept spari_joints_on",
      0,
      {.sprung = 1},
@@ -494,13 +495,13 @@ static const effect effects[] = {
      {.aero = 1, .rotor = 1, .aero_effects = GIVEN | SPAR_AERO_DRAG},
      {0}},
     {"tip loss",
-     "acos",
+     "add_loss_plain add_loss_avx2",
      0,
      {.aero = 1, .rotor = 1, .aero_effects = GIVEN | MOMENTUM | SPAR_AERO_TIP_LOSS},
      {.aero = 1, .rotor = 1, .aero_effects = GIVEN | MOMENTUM},
      {0}},
     {"hub loss",
-     "acos",
+     "add_loss_plain add_loss_avx2",
      NEVER,
      {.aero = 1, .rotor = 1, .aero_effects = GIVEN | MOMENTUM | SPAR_AERO_HUB_LOSS},
      {.aero = 1, .rotor = 1, .aero_effects = GIVEN | MOMENTUM},
