@@ -1,4 +1,5 @@
-/* State of an accelerator as doubles, for save and load. */
+/* State of an accelerator as doubles, for save and load. The same code writes and reads, as in
+   restart/common_state.c. */
 #include "quasi_newton.h"
 
 #include "../base/status.h"
@@ -31,101 +32,133 @@ int64_t spari_accelerator_state_size(const spari_accelerator *a) {
     return HEAD + of_iteration(a) * a->n + occupied(a) * (COLUMN_HEAD + of_column(a) * a->n) + a->used;
 }
 
-/* The vectors of a column; without images the first two. */
-static void column_vectors(const spari_accelerator *a, int s, double *vectors[6]) {
-    double *const all[] = {spari_slot_v(a, s),  spari_slot_w(a, s), spari_slot_iv(a, s),
-                           spari_slot_iw(a, s), spari_slot_b(a, s), spari_slot_ib(a, s)};
-    memcpy(vectors, all, sizeof all);
+static int whole_below(double x, double end) {
+    return x >= 0 && x < end && x == floor(x);
 }
 
-/* Returns the position after it. */
-static double *save_column(const spari_accelerator *a, int s, double *state) {
-    const spari_difference *c = a->column + s;
-    const double what[COLUMN_HEAD] = {s, c->state, (double)c->step, (double)c->serial, c->dt, c->led};
-    double *vectors[6];
-    column_vectors(a, s, vectors);
-    memcpy(state, what, sizeof what);
-    state += COLUMN_HEAD;
-    for (int k = 0; k < of_column(a); k++, state += a->n) {
-        memcpy(state, vectors[k], (size_t)a->n * sizeof *state);
+typedef struct state_passage {
+    double *at; /* next number of the state */
+    int reads;
+    int bad; /* a number that was read is not what it must be */
+} state_passage;
+
+static void pass_reals(state_passage *t, double *x, int64_t n) {
+    if (n > 0) {
+        memcpy(t->reads ? x : t->at, t->reads ? t->at : x, (size_t)n * sizeof *x);
     }
-    return state;
+    t->at += n;
 }
 
-static const double *load_column(spari_accelerator *a, const double *state) {
-    int s = (int)state[0];
-    double *vectors[6];
-    a->column[s] = (spari_difference){(spari_difference_state)(int)state[1], (int64_t)state[2], (int64_t)state[3],
-                                      state[4], (int)state[5]};
-    column_vectors(a, s, vectors);
-    state += COLUMN_HEAD;
-    for (int k = 0; k < of_column(a); k++, state += a->n) {
-        memcpy(vectors[k], state, (size_t)a->n * sizeof *state);
+static void pass_finite(state_passage *t, double *x) {
+    pass_reals(t, x, 1);
+    t->bad |= !isfinite(*x);
+}
+
+/* A whole number from 0 to below `end` */
+static void pass_whole(state_passage *t, int *x, double end) {
+    double number = *x;
+    pass_reals(t, &number, 1);
+    t->bad |= t->reads && !whole_below(number, end);
+    *x = t->bad ? *x : (int)number;
+}
+
+/* A count, also beyond an int. */
+static void pass_large(state_passage *t, int64_t *x) {
+    double number = (double)*x;
+    pass_reals(t, &number, 1);
+    t->bad |= t->reads && !spari_is_count(number);
+    *x = t->bad ? *x : (int64_t)number;
+}
+
+static void pass_ratios(state_passage *t, spari_ratios *r) {
+    pass_reals(t, &r->weight, 1);
+    pass_reals(t, &r->square, 1);
+    pass_reals(t, &r->sum, 1);
+    pass_reals(t, &r->sum2, 1);
+}
+
+static void pass_memory(state_passage *t, const spari_accelerator *a, spari_recollection *m) {
+    double words[MEMORY];
+    memcpy(words, m, sizeof words);
+    pass_reals(t, words, MEMORY);
+    memcpy(m, words, sizeof words);
+    int sound = m->contradiction >= 0 && m->contradiction <= 1 && m->rho >= 0 && m->rho < 1 && m->scatter >= 0 &&
+                m->scatter <= 1 && spari_first_nonfinite(&m->told.pairs, 5) < 0;
+    t->bad |= t->reads && !(sound && (a->secants || (m->contradiction == 0 && m->rho == 0)));
+}
+
+/* The head of a state, OWN numbers and the memory. */
+static void pass_head(state_passage *t, spari_accelerator *a, int *occupied) {
+    const int with_images = a->set.imaged ? 2 : 1, with_secants = a->secants ? 2 : 1;
+    pass_large(t, &a->n);
+    pass_large(t, &a->step);
+    pass_large(t, &a->serial);
+    pass_whole(t, &a->iteration, INT_MAX);
+    pass_whole(t, &a->dropped, INT_MAX);
+    pass_reals(t, &a->dt, 1);
+    pass_reals(t, &a->ratio, 1);
+    pass_reals(t, &a->omega, 1);
+    pass_reals(t, &a->omega_accepted, 1);
+    pass_reals(t, a->size, 2);
+    pass_reals(t, a->weight, 2);
+    pass_whole(t, occupied, a->slots + 1.0);
+    pass_whole(t, &a->used, (a->slots > 0 ? a->set.columns : 0) + 1.0);
+    pass_whole(t, &a->imaged, with_images);
+    pass_whole(t, &a->led, with_secants);
+    pass_whole(t, &a->ended, with_secants);
+    pass_reals(t, &a->residual_first, 1);
+    pass_reals(t, &a->residual_least, 1);
+    pass_whole(t, &a->rises, INT_MAX);
+    pass_ratios(t, &a->ratios);
+    pass_ratios(t, &a->ratios_before);
+    pass_reals(t, &a->most_weight, 1);
+    pass_whole(t, &a->renewed, 2);
+    pass_finite(t, &a->reach);
+    pass_finite(t, &a->cut);
+    pass_finite(t, &a->cut_residual);
+    pass_memory(t, a, &a->memory);
+    pass_memory(t, a, &a->memory_accepted);
+}
+
+/* Those of the iteration before. */
+static void pass_vectors(state_passage *t, const spari_accelerator *a) {
+    pass_reals(t, a->x, a->n);
+    pass_reals(t, a->g, a->n);
+    pass_reals(t, a->image, a->set.imaged ? 2 * a->n : 0);
+    pass_reals(t, a->lead, a->secants ? 2 * a->n : 0);
+    pass_reals(t, a->last, a->secants ? a->n : 0);
+}
+
+/* The column in slot s. Without images it has the first two vectors. */
+static void pass_column(state_passage *t, const spari_accelerator *a, int s) {
+    double *const vector[6] = {spari_slot_v(a, s),  spari_slot_w(a, s), spari_slot_iv(a, s),
+                               spari_slot_iw(a, s), spari_slot_b(a, s), spari_slot_ib(a, s)};
+    spari_difference *c = a->column + s;
+    double what[COLUMN_HEAD] = {s, c->state, (double)c->step, (double)c->serial, c->dt, c->led};
+    pass_reals(t, what, COLUMN_HEAD);
+    if (t->reads) {
+        *c = (spari_difference){(spari_difference_state)(int)what[1], (int64_t)what[2], (int64_t)what[3], what[4],
+                                (int)what[5]};
     }
-    return state;
+    for (int k = 0; k < of_column(a); k++) {
+        pass_reals(t, vector[k], a->n);
+    }
 }
 
 void spari_accelerator_save(const spari_accelerator *a, double *state) {
-    const double own[OWN] = {(double)a->n,
-                             (double)a->step,
-                             (double)a->serial,
-                             a->iteration,
-                             a->dropped,
-                             a->dt,
-                             a->ratio,
-                             a->omega,
-                             a->omega_accepted,
-                             a->size[0],
-                             a->size[1],
-                             a->weight[0],
-                             a->weight[1],
-                             occupied(a),
-                             a->used,
-                             a->imaged,
-                             a->led,
-                             a->ended,
-                             a->residual_first,
-                             a->residual_least,
-                             a->rises,
-                             a->ratios.weight,
-                             a->ratios.square,
-                             a->ratios.sum,
-                             a->ratios.sum2,
-                             a->ratios_before.weight,
-                             a->ratios_before.square,
-                             a->ratios_before.sum,
-                             a->ratios_before.sum2,
-                             a->most_weight,
-                             a->renewed,
-                             a->reach,
-                             a->cut,
-                             a->cut_residual};
-    size_t bytes = (size_t)a->n * sizeof *state;
-    memcpy(state, own, sizeof own);
-    memcpy(state += OWN, &a->memory, sizeof a->memory);
-    memcpy(state += MEMORY, &a->memory_accepted, sizeof a->memory);
-    memcpy(state += MEMORY, a->x, bytes);
-    memcpy(state += a->n, a->g, bytes);
-    state += a->n;
-    if (a->set.imaged) {
-        memcpy(state, a->image, 2 * bytes);
-        state += 2 * a->n;
-    }
-    if (a->secants) {
-        memcpy(state, a->lead, 2 * bytes);
-        memcpy(state + 2 * a->n, a->last, bytes);
-        state += 3 * a->n;
-    }
+    state_passage t = {.at = state};
+    spari_accelerator own = *a;
+    int count = occupied(a);
+    pass_head(&t, &own, &count);
+    pass_vectors(&t, a);
     for (int s = 0; s < a->slots; s++) {
-        state = a->column[s].state == SPARI_FREE ? state : save_column(a, s, state);
+        if (a->column[s].state != SPARI_FREE) {
+            pass_column(&t, a, s);
+        }
     }
     for (int j = 0; j < a->used; j++) {
-        state[j] = a->order[j];
+        t.at[j] = a->order[j];
     }
-}
-
-static int whole_below(double x, double end) {
-    return x >= 0 && x < end && x == floor(x);
 }
 
 /* Whether columns are in distinct slots, and not more of this step or of older ones than allowed. */
@@ -149,30 +182,17 @@ static int are_columns(const spari_accelerator *a, const double *first, int64_t 
     return of_step <= a->set.columns && occupied - of_step <= a->set.columns;
 }
 
-/* Whether this is a valid spari_recollection. */
-static int is_memory(const spari_accelerator *a, const double *state) {
-    spari_recollection m;
-    memcpy(&m, state, sizeof m);
-    int sound = m.contradiction >= 0 && m.contradiction <= 1 && m.rho >= 0 && m.rho < 1 && m.scatter >= 0 &&
-                m.scatter <= 1 && spari_first_nonfinite(&m.told.pairs, 5) < 0;
-    return sound && (a->secants || (m.contradiction == 0 && m.rho == 0));
-}
-
-static int is_accelerator_state(const spari_accelerator *a, const double *state, int64_t count) {
-    if (count < HEAD || !spari_is_count(state[1]) || !spari_is_count(state[2]) || !whole_below(state[3], INT_MAX) ||
-        !whole_below(state[4], INT_MAX) || state[0] != (double)a->n || !whole_below(state[13], a->slots + 1.0) ||
-        !whole_below(state[14], (a->slots > 0 ? a->set.columns : 0) + 1.0)) {
+int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count) {
+    spari_accelerator then = *a;
+    state_passage t = {.at = (double *)(uintptr_t)state, .reads = 1};
+    int columns = 0;
+    if (count < HEAD) {
         return 0;
     }
-    int64_t occupied = (int64_t)state[13], used = (int64_t)state[14];
-    if (count != HEAD + of_iteration(a) * a->n + occupied * (COLUMN_HEAD + of_column(a) * a->n) + used) {
-        return 0;
-    }
-    if (spari_first_nonfinite(state + 31, 3) >= 0 || !whole_below(state[15], a->set.imaged ? 2 : 1) ||
-        !whole_below(state[20], INT_MAX) || !whole_below(state[30], 2) || !is_memory(a, state + OWN) ||
-        !is_memory(a, state + OWN + MEMORY) || !whole_below(state[16], a->secants ? 2 : 1) ||
-        !whole_below(state[17], a->secants ? 2 : 1) ||
-        !are_columns(a, state + HEAD + of_iteration(a) * a->n, occupied, state[1])) {
+    pass_head(&t, &then, &columns);
+    const int64_t n = a->n, first = HEAD + of_iteration(a) * n, used = then.used;
+    if (t.bad || then.n != n || count != first + columns * (COLUMN_HEAD + of_column(a) * n) + used ||
+        !are_columns(a, state + first, columns, (double)then.step)) {
         return 0;
     }
     for (int64_t j = count - used; j < count; j++) {
@@ -180,52 +200,18 @@ static int is_accelerator_state(const spari_accelerator *a, const double *state,
             return 0;
         }
     }
-    return 1;
-}
-
-int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count) {
-    if (!is_accelerator_state(a, state, count)) {
-        return 0;
-    }
-    int occupied = (int)state[13], used = (int)state[14];
-    size_t bytes = (size_t)a->n * sizeof *state;
+    *a = then;
     spari_snapshot_close(&a->before);
-    a->step = (int64_t)state[1], a->serial = (int64_t)state[2];
-    a->iteration = (int)state[3], a->dropped = (int)state[4];
-    a->dt = state[5], a->ratio = state[6], a->omega = state[7], a->omega_accepted = state[8];
-    memcpy(a->size, state + 9, sizeof a->size);
-    memcpy(a->weight, state + 11, sizeof a->weight);
-    a->imaged = (int)state[15], a->residual_first = state[18];
-    a->led = (int)state[16], a->ended = (int)state[17];
-    memcpy(&a->memory, state + OWN, sizeof a->memory);
-    memcpy(&a->memory_accepted, state + OWN + MEMORY, sizeof a->memory);
-    a->residual_least = state[19], a->rises = (int)state[20];
-    a->ratios = (spari_ratios){state[21], state[22], state[23], state[24]};
-    a->ratios_before = (spari_ratios){state[25], state[26], state[27], state[28]};
-    a->most_weight = state[29];
-    a->renewed = (int)state[30];
-    a->reach = state[31], a->cut = state[32], a->cut_residual = state[33];
-    memcpy(a->x, state += HEAD, bytes);
-    memcpy(a->g, state += a->n, bytes);
-    state += a->n;
-    if (a->set.imaged) {
-        memcpy(a->image, state, 2 * bytes);
-        state += 2 * a->n;
-    }
-    if (a->secants) {
-        memcpy(a->lead, state, 2 * bytes);
-        memcpy(a->last, state + 2 * a->n, bytes);
-        state += 3 * a->n;
-    }
+    pass_vectors(&t, a);
     for (int s = 0; s < a->slots; s++) {
         a->column[s].state = SPARI_FREE;
     }
-    for (int k = 0; k < occupied; k++) {
-        state = load_column(a, state);
+    for (int k = 0; k < columns; k++) {
+        pass_column(&t, a, (int)*t.at);
     }
     a->used = 0;
-    for (int j = 0; j < used; j++) { /* in the original order: the same bits */
-        (void)spari_differences_append(a, (int)state[j], 0);
+    for (int64_t j = 0; j < used; j++) { /* in the original order: the same bits */
+        (void)spari_differences_append(a, (int)t.at[j], 0);
     }
     return 1;
 }
