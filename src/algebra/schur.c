@@ -1,5 +1,5 @@
-/* Complex Schur form: Householder reduction to Hessenberg form, then QR with Wilkinson shifts and Givens rotations
-   (Golub and Van Loan, Matrix Computations, chapter 7). */
+/* Complex Schur form, by LAPACK. GSL has none: without LAPACK Givens rotations reduce the matrix to Hessenberg form,
+   and then by QR with Wilkinson shifts (Golub and Van Loan, Matrix Computations, chapter 7). */
 #include "schur.h"
 
 #include "../base/status.h"
@@ -81,55 +81,23 @@ static void schur_columns(int n, double complex *A, int i, int to, schur_turn g)
     }
 }
 
-/* A := (I - 2 v v^H) A (I - 2 v v^H), Q := Q (I - 2 v v^H); v has the rows from `first` on */
-static void reflect(int n, double complex *A, double complex *Q, const double complex *v, int first) {
-    for (int j = 0; j < n; j++) {
-        double complex sum = 0;
-        for (int i = first; i < n; i++) {
-            sum += conj(v[i]) * A[(long)n * i + j];
-        }
-        for (int i = first; i < n; i++) {
-            A[(long)n * i + j] -= 2 * sum * v[i];
-        }
-    }
-    for (int side = 0; side < 2; side++) {
-        double complex *B = side ? Q : A;
-        for (int i = 0; i < n; i++) {
-            double complex sum = 0;
-            for (int j = first; j < n; j++) {
-                sum += B[(long)n * i + j] * v[j];
-            }
-            for (int j = first; j < n; j++) {
-                B[(long)n * i + j] -= 2 * sum * conj(v[j]);
-            }
-        }
-    }
+/* Rotates rows and columns i and i + 1 of A, with the columns of Q, such that entry (i + 1, k) becomes 0. */
+static void clear_entry(int n, double complex *A, double complex *Q, int i, int k) {
+    double complex *x = A + (long)n * i + k;
+    schur_turn g = turn_onto(x[0], x[n]);
+    schur_rows(n, A, i, k, g);
+    schur_columns(n, A, i, n, g);
+    schur_columns(n, Q, i, n, g);
+    x[n] = 0;
 }
 
-/* Reduces A to Hessenberg form; v [n] workspace. */
-static void to_hessenberg(int n, double complex *A, double complex *Q, double complex *v) {
+static void to_hessenberg(int n, double complex *A, double complex *Q) {
     for (int i = 0; i < n * n; i++) {
         Q[i] = i % (n + 1) == 0;
     }
     for (int k = 0; k + 2 < n; k++) {
-        double size = 0, rest = 0;
-        for (int i = k + 1; i < n; i++) {
-            v[i] = A[(long)n * i + k];
-            size = hypot(size, cabs(v[i]));
-            rest = i > k + 1 ? hypot(rest, cabs(v[i])) : 0;
-        }
-        if (!(rest > 0)) {
-            continue;
-        }
-        double complex first = v[k + 1], phase = cabs(first) > 0 ? first / cabs(first) : 1;
-        v[k + 1] += phase * size;
-        double norm = hypot(rest, cabs(v[k + 1]));
-        for (int i = k + 1; i < n; i++) {
-            v[i] /= norm;
-        }
-        reflect(n, A, Q, v, k + 1);
-        for (int i = k + 2; i < n; i++) {
-            A[(long)n * i + k] = 0;
+        for (int i = n - 2; i > k; i--) {
+            clear_entry(n, A, Q, i, k);
         }
     }
 }
@@ -169,7 +137,8 @@ static int find_form(int n, double complex *S, double complex *Q, double complex
     for (int i = 0; i < n * n; i++) {
         largest = fmax(largest, cabs(S[i]));
     }
-    to_hessenberg(n, S, Q, workspace);
+    (void)workspace;
+    to_hessenberg(n, S, Q);
     for (int end = n - 1, pass = 0; end > 0;) {
         int begin = end;
         for (; begin > 0; begin--) {
