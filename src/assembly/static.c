@@ -17,7 +17,7 @@
 
 #include "../base/session.h"
 #include "../math/rotation.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../time/fidelity.h"
 #include "rotation_check.h"
 #include "system.h"

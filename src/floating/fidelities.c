@@ -4,7 +4,7 @@
 #include "../algebra/pencil.h"
 #include "../base/session.h"
 #include "../member/added_mass.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../member/beam.h"
 #include "../solve/reaction.h"
 #include "../time/component.h"

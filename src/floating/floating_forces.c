@@ -2,7 +2,7 @@
 #include "../algebra/cblas.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "frame.h"
 
 #include <math.h>

@@ -6,7 +6,7 @@
 #include "../base/poison.h"
 #include "../base/session.h"
 #include "../math/rotation.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../member/body.h"
 #include "../member/pose.h"
 #include "../solve/reaction.h"

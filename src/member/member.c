@@ -2,7 +2,7 @@
 #include "../base/environment.h"
 #include "../math/rotation.h"
 #include "added_mass.h"
-#include "applied.h"
+#include "applied_loads.h"
 #include "body.h"
 #include "check_arguments.h"
 #include "joint.h"

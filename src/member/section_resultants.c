@@ -5,7 +5,7 @@
 #include "section_resultants.h"
 
 #include "../math/rotation.h"
-#include "applied.h"
+#include "applied_loads.h"
 #include "joint.h"
 #include "plane.h"
 

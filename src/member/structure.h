@@ -25,9 +25,9 @@ typedef struct spari_motion {
 typedef struct spari_beam spari_beam;             /* member/beam.h: description of a beam */
 typedef struct spari_assembly spari_assembly;     /* src/assembly/assembly.h: members connected by joints */
 typedef struct spari_work spari_work;             /* solve/work.h: work done on a member */
-typedef struct spari_applied spari_applied;       /* member/applied.h: follower and distributed loads */
-typedef struct spari_ramp spari_ramp;             /* member/applied.h: replaced loads at t^n */
-typedef struct spari_foundation spari_foundation; /* member/applied.h: springs along the line */
+typedef struct spari_applied spari_applied;       /* member/applied_loads.h: follower and distributed loads */
+typedef struct spari_ramp spari_ramp;             /* member/applied_loads.h: replaced loads at t^n */
+typedef struct spari_foundation spari_foundation; /* member/applied_loads.h: springs along the line */
 typedef struct spari_rebuild spari_rebuild;       /* src/trial/rebuild.h: a member rebuilt for a trial */
 typedef struct spari_means spari_means;           /* src/member/mean_acceleration.h: accelerations for fluids */
 typedef struct spari_added spari_added;           /* src/member/added_mass.h: known added mass */

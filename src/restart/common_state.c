@@ -6,7 +6,7 @@
 #include "../exchange/session_private.h"
 #include "../member/added_mass.h"
 #include "../member/added_mass_fit.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../member/check_arguments.h"
 #include "../member/joint.h"
 #include "../member/mean_acceleration.h"

@@ -1,7 +1,7 @@
 /* The exact member: geometrically exact beams and rigid bodies. */
 #include "../algebra/pencil.h"
 #include "../math/rotation.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../member/plane.h"
 #include "../time/body_solver.h"
 #include "../time/component.h"

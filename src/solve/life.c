@@ -8,7 +8,7 @@
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/added_mass_fit.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../member/beam.h"
 #include "../member/check_arguments.h"
 #include "../member/mean_acceleration.h"

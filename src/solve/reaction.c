@@ -3,7 +3,7 @@
 
 #include "../base/environment.h"
 #include "../math/rotation.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../member/body.h"
 #include "../member/check_arguments.h"
 #include "../member/joint.h"

@@ -4,7 +4,7 @@
 
 #include "../algebra/pencil.h"
 #include "../math/rotation.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../member/beam.h"
 #include "../time/component.h"
 #include "../time/fidelity.h"

@@ -5,7 +5,7 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../member/plane.h"
 #include "steady_rotation.h"
 

@@ -3,7 +3,7 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../member/joint.h"
 #include "../member/plane.h"
 #include "component.h"

@@ -4,7 +4,7 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../member/body.h"
 #include "driven_root.h"
 

@@ -3,7 +3,7 @@
 
 #include "../base/session.h"
 #include "../math/rotation.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "driven_root.h"
 
 #include <string.h>

@@ -3,7 +3,7 @@
 #include "handle.h"
 
 #include "../math/rotation.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../member/beam.h"
 #include "../member/body.h"
 #include "../member/joint.h"

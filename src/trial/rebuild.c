@@ -3,7 +3,7 @@
 
 #include "../math/resample.h"
 #include "../member/added_mass.h"
-#include "../member/applied.h"
+#include "../member/applied_loads.h"
 #include "../member/beam.h"
 #include "../member/mean_acceleration.h"
 #include "../solve/life.h"

@@ -1,7 +1,7 @@
 /* Follower loads and loads along a beam: closed forms, virtual work, tangents against finite differences. */
 #include "scene.h"
 
-#include "member/applied.h"
+#include "member/applied_loads.h"
 #include "member/body.h"
 #include "member/structure.h"
 

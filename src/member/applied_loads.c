@@ -1,5 +1,5 @@
-/* Applied loads of a member beside dead nodal loads: description, forces and tangent. See applied.h. */
-#include "applied.h"
+/* Applied loads of a member beside dead nodal loads: description, forces and tangent. See applied_loads.h. */
+#include "applied_loads.h"
 #include "../base/environment.h"
 
 #include "../math/basis.h"

@@ -3,8 +3,8 @@
    Distributed loads enter by their virtual work on the element's field (body.h): a force through delta u = sum phi_l
      delta u_l, a moment m through delta theta = 2 Im(delta Q Q*)/|Q|^2, so the nodal 4-vector is 2 phi_l m Q/|Q|^2.
      Dead distributed loads therefore have a potential, and follower moments rotate with the section. */
-#ifndef SPARI_APPLIED_H
-#define SPARI_APPLIED_H
+#ifndef SPARI_APPLIED_LOADS_H
+#define SPARI_APPLIED_LOADS_H
 
 #include "../base/saved_file.h"
 #include "structure.h"
