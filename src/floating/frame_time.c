@@ -437,6 +437,8 @@ void spari_frame_load(spar_member *m, const double *state) {
         memcpy(&ends[k]->root, at, sizeof ends[k]->root);
         memcpy(ends[k]->y, at + STATE_ROOT, (size_t)(4 * f->n) * sizeof *state);
     }
+    /* a step writes the free unknowns alone */
+    memcpy(f->from.y, f->to.y, (size_t)(4 * f->n) * sizeof *f->to.y);
     spari_snapshot_load(&f->before, at, f->tangent.factored != 0);
     if (f->tangent.factored != 0) {
         spari_linear_load(f->linear, at + SPARI_SNAPSHOT_HEAD + (int64_t)at[2]);
