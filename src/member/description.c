@@ -21,11 +21,11 @@ static int member_create(spar_session *session, const char *call, const char *na
                   "%s: '%s': the clock has started; create members before the first step", call, name);
     spar_member *m = spari_zalloc(1, sizeof *m);
     char *own = strdup(name);
-    int taken = m && own ? spari_names_add(&session->member_names, own) : -1;
-    if (taken) {
+    int failed = m && own ? spari_names_add(&session->member_names, own) : -1;
+    if (failed) {
         free(m);
         free(own);
-        SPARI_REQUIRE(session, taken < 0, SPAR_ERR_ARGUMENT,
+        SPARI_REQUIRE(session, failed < 0, SPAR_ERR_ARGUMENT,
                       "%s: member '%s' already exists; use a unique name in the session", call, name);
         return spari_fail(session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the member", call, name);
     }

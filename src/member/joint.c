@@ -71,11 +71,11 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
     }
     spar_joint *j = spari_zalloc(1, sizeof *j);
     char *own = strdup(name);
-    int taken = j && own && !reserve_joint(a) && !reserve_joint(b) ? spari_names_add(&s->joint_names, own) : -1;
-    if (taken) {
+    int failed = j && own && !reserve_joint(a) && !reserve_joint(b) ? spari_names_add(&s->joint_names, own) : -1;
+    if (failed) {
         free(j);
         free(own);
-        SPARI_REQUIRE(s, taken < 0, SPAR_ERR_ARGUMENT,
+        SPARI_REQUIRE(s, failed < 0, SPAR_ERR_ARGUMENT,
                       "%s: joint '%s' already exists; use a unique name in the session", call, name);
         return spari_fail(s, SPAR_ERR_MEMORY, "%s: '%s': no memory for the joint", call, name);
     }
