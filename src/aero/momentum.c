@@ -141,7 +141,7 @@ void spari_momentum_solve(spari_annuli *a, int lanes) {
         if (hub) {
             kernels->add_loss(a->hub, &w);
         }
-        kernels->step(a, &w);
+        kernels->newton_step(a, &w);
     }
     for (int l = 0; l < a->count; l++) {
         a->no_root[l] = 0;

@@ -15,13 +15,20 @@ typedef struct spari_newton_lanes {
     double active[SPARI_ANNULI], found[SPARI_ANNULI];                                     /* 0 or 1 */
 } spari_newton_lanes;
 
+/* The steps of the method, for all annuli of a group. */
 typedef struct spari_momentum_kernels {
-    void (*free_flow)(const spari_annuli *a, spari_newton_lanes *w); /* twist, and phi of the free flow */
-    void (*guess)(const spari_annuli *a, spari_newton_lanes *w);     /* phi from the lift of the free flow */
-    void (*begin)(spari_newton_lanes *w);                            /* sine, cosine and no loss at phi */
-    void (*add_loss)(const double *f, spari_newton_lanes *w);        /* of tip or hub, where f >= 0 */
-    void (*step)(spari_annuli *a, spari_newton_lanes *w);            /* the rest of one iteration, where active */
-    void (*angles)(const double *y, const double *x, double *angle); /* atan2(y, x) of SPARI_ANNULI */
+    /* Finds the twist, and phi of the free flow. */
+    void (*free_flow)(const spari_annuli *a, spari_newton_lanes *w);
+    /* Guesses phi from the lift of the free flow. */
+    void (*guess)(const spari_annuli *a, spari_newton_lanes *w);
+    /* Finds sine and cosine of phi, without loss. */
+    void (*begin)(spari_newton_lanes *w);
+    /* Adds the loss of tip or hub, where f >= 0. */
+    void (*add_loss)(const double *f, spari_newton_lanes *w);
+    /* The rest of one iteration, where active. */
+    void (*newton_step)(spari_annuli *a, spari_newton_lanes *w);
+    /* angle := atan2(y, x), [SPARI_ANNULI] */
+    void (*angles)(const double *y, const double *x, double *angle);
 } spari_momentum_kernels;
 
 SPARI_KERNEL_TABLES(spari_momentum_kernels)
