@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* LONG: chains of at least so many elements are cut in the middle. ELEMENTS: so many are processed at a time. */
-enum { LONG = 64, ELEMENTS = 16, GATHERED = 128 };
+/* So many elements, or boundaries of elements, are processed at a time. */
+enum { ELEMENTS = 16, GATHERED = 128 };
 
 /* At most this many constrained first unknowns of an element are removed from a dense matrix. */
 enum { MOST_LEAD = 8 };
@@ -21,12 +21,7 @@ enum { MOST_LEAD = 8 };
 /* All memory is allocated at the beginning: nothing in a step allocates.
 
    Elements with many inner unknowns: these are eliminated element by element. A chain of the elements' ends remains,
-   with blocks of 2 overlap. It has half the numbers of a band over all unknowns, and elements are independent.
-
-   A long chain is cut at the element boundary in its middle. The first half is this system. The second half, from the
-   far end backwards, is another. Both end with the unknowns of the boundary. Each half eliminates all others, which
-   leaves its part of the system of the boundary: (S + S') x = b + b' (van der Vorst, Parallel Computing 5, 1987).
-   This takes no more operations than one half after the other, and two threads can share it. */
+   with blocks of 2 overlap. It has half the numbers of a band over all unknowns, and elements are independent. */
 typedef struct linear_rows {
     double *block, *data; /* as allocated; from a cache line on */
     size_t rows, columns, step;
@@ -35,20 +30,17 @@ typedef struct linear_rows {
 struct spari_linear {
     int elements, block, overlap; /* of a chain; otherwise 0 */
     size_t n, band;               /* unknowns; half bandwidth (banded storage) */
-    size_t size, inner;           /* those that stand in A, and those that are eliminated in it: all n, unless cut */
-    linear_rows A;     /* dense n x n, column by column, or banded size x (3 band + 1): column by column, rows apart */
-    int *swap;         /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
-    int *order;        /* dense: where row i came from by all of these */
-    unsigned fixed;    /* dense, of one element: which of its first unknowns are eliminated */
-    size_t lead;       /* dense: so many of them that stand in A no longer */
-    size_t order_of;   /* dense: unknowns in A when it is factored */
-    double *corners;   /* dense: [n / 8, rounded up][4][8][8]: solve_dense */
-    double *y;         /* dense: [n, rounded up to eights] room */
-    double *workspace; /* of the last two */
-    unsigned *band_swap;       /* banded */
-    double *symmetric;         /* spari_linear_watch; NULL: not asked for */
-    spari_linear *far, *joint; /* of a chain that is cut: unknown i is n - 1 - i of `far`; else NULL */
-    double *x;                 /* of a far half: [size] room */
+    linear_rows A;       /* dense n x n, column by column, or banded n x (3 band + 1): column by column, rows apart */
+    int *swap;           /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
+    int *order;          /* dense: where row i came from by all of these */
+    unsigned fixed;      /* dense, of one element: which of its first unknowns are eliminated */
+    size_t lead;         /* dense: so many of them that stand in A no longer */
+    size_t order_of;     /* dense: unknowns in A when it is factored */
+    double *corners;     /* dense: [n / 8, rounded up][4][8][8]: solve_dense */
+    double *y;           /* dense: [n, rounded up to eights] room */
+    double *workspace;   /* of the last two */
+    unsigned *band_swap; /* banded */
+    double *symmetric;   /* spari_linear_watch; NULL: not asked for */
     /* of a chain whose elements have unknowns to themselves; else NULL, 0 */
     spari_linear *ends;             /* the chain without these */
     size_t own;                     /* how many in each */
@@ -80,8 +72,8 @@ static spari_linear *with_workspace(spari_linear *s, int dense) {
         s->corners = s->workspace ? s->workspace + spari_to_line(s->workspace) : NULL;
         s->y = s->workspace ? s->corners + SPARI_CORNERS * SPARI_CORNER * eights : NULL;
     } else {
-        (void)alloc_rows(&s->A, s->size, 3 * s->band + 1, 3 * s->band + 1);
-        s->band_swap = spari_zalloc((int64_t)s->size, sizeof *s->band_swap);
+        (void)alloc_rows(&s->A, s->n, 3 * s->band + 1, 3 * s->band + 1);
+        s->band_swap = spari_zalloc((int64_t)s->n, sizeof *s->band_swap);
     }
     if (!s->A.block || (dense ? !s->swap || !s->corners : !s->band_swap)) {
         spari_linear_free(s);
@@ -90,50 +82,12 @@ static spari_linear *with_workspace(spari_linear *s, int dense) {
     return s;
 }
 
-/* A chain that is not split. */
-static spari_linear *make_chain(int elements, int block, int overlap) {
-    spari_linear *s = spari_zalloc(1, sizeof *s);
-    if (!s) {
-        return NULL;
-    }
-    s->elements = elements, s->block = block, s->overlap = overlap;
-    s->n = s->size = s->inner = (size_t)elements * (size_t)(block - overlap) + (size_t)overlap;
-    s->band = (size_t)block - 1;
-    return with_workspace(s, elements == 1);
-}
-
-/* A chain that is split. */
-static spari_linear *make_halves(int elements, int block, int overlap) {
-    int near = elements / 2;
-    spari_linear *s = make_chain(near, block, overlap);
-    if (!s) {
-        return NULL;
-    }
-    s->far = make_chain(elements - near, block, overlap);
-    s->joint = make_chain(1, overlap, 0);
-    if (!s->far || !s->joint || !(s->far->x = spari_zalloc((int64_t)s->far->n, sizeof *s->far->x))) {
-        spari_linear_free(s);
-        return NULL;
-    }
-    s->elements = elements;
-    s->n += s->far->n - (size_t)overlap;
-    s->inner -= (size_t)overlap;
-    s->far->inner -= (size_t)overlap;
-    return s;
-}
-
-/* A chain whose elements have interior unknowns. */
-static spari_linear *make_parts(int elements, int block, int overlap) {
-    spari_linear *s = spari_zalloc(1, sizeof *s);
-    if (!s) {
-        return NULL;
-    }
-    int64_t m = block, count = elements;
-    s->elements = elements, s->block = block, s->overlap = overlap;
-    s->n = (size_t)elements * (size_t)(block - overlap) + (size_t)overlap;
-    s->band = (size_t)block - 1;
+/* The chain as the ends of its elements, which have interior unknowns. */
+static spari_linear *with_parts(spari_linear *s) {
+    int64_t m = s->block, count = s->elements;
+    int block = s->block, overlap = s->overlap;
     s->own = (size_t)(block - 2 * overlap);
-    s->ends = spari_linear_create(elements, 2 * overlap, overlap);
+    s->ends = spari_linear_create(s->elements, 2 * overlap, overlap);
     s->parts = spari_zalloc(count * m * m, sizeof *s->parts);
     s->part_swap = spari_zalloc(count * (int64_t)s->own, sizeof *s->part_swap);
     int64_t corner = 4 * (int64_t)overlap * overlap;
@@ -148,11 +102,17 @@ static spari_linear *make_parts(int elements, int block, int overlap) {
 }
 
 spari_linear *spari_linear_create(int elements, int block, int overlap) {
-    if (elements > 1 && overlap > 0 && block >= 4 * overlap) { /* with fewer, the band of all unknowns is as cheap */
-        return make_parts(elements, block, overlap);
+    spari_linear *s = spari_zalloc(1, sizeof *s);
+    if (!s) {
+        return NULL;
     }
-    return elements < LONG || overlap < 1 ? make_chain(elements, block, overlap)
-                                          : make_halves(elements, block, overlap);
+    s->elements = elements, s->block = block, s->overlap = overlap;
+    s->n = (size_t)elements * (size_t)(block - overlap) + (size_t)overlap;
+    s->band = (size_t)block - 1;
+    if (elements > 1 && overlap > 0 && block >= 4 * overlap) { /* with fewer, the band of all unknowns is as cheap */
+        return with_parts(s);
+    }
+    return with_workspace(s, elements == 1);
 }
 
 spari_linear *spari_linear_create_banded(int n, int band) {
@@ -160,16 +120,13 @@ spari_linear *spari_linear_create_banded(int n, int band) {
     if (!s) {
         return NULL;
     }
-    s->n = s->size = s->inner = (size_t)n, s->band = (size_t)band;
+    s->n = (size_t)n, s->band = (size_t)band;
     return with_workspace(s, 3 * s->band + 1 >= s->n);
 }
 
 void spari_linear_free(spari_linear *s) {
     if (s) {
-        spari_linear_free(s->far);
-        spari_linear_free(s->joint);
         spari_linear_free(s->ends);
-        free(s->x);
         free(s->parts);
         free(s->part_swap);
         free(s->z);
@@ -186,13 +143,6 @@ void spari_linear_free(spari_linear *s) {
 
 void spari_linear_share(spari_linear *s, spari_thread_pool *const *pool) {
     s->pool = pool;
-    if (s->ends) {
-        s->ends->pool = pool;
-    }
-}
-
-static void zero_rows(const linear_rows *A) {
-    memset(A->data, 0, A->rows * A->step * sizeof *A->data);
 }
 
 void spari_linear_zero(spari_linear *s) {
@@ -201,10 +151,7 @@ void spari_linear_zero(spari_linear *s) {
         memset(s->parts, 0, (size_t)s->elements * (size_t)(s->block * s->block) * sizeof *s->parts);
         return;
     }
-    zero_rows(&s->A);
-    if (s->far) {
-        zero_rows(&s->far->A);
-    }
+    memset(s->A.data, 0, s->A.rows * s->A.step * sizeof *s->A.data);
 }
 
 /* Entry (i, j). Row j of the storage is column j of the matrix; banded storage has A(i, j) at 2 band + i - j. */
@@ -251,38 +198,18 @@ static void add_to_element(spari_linear *s, int element, const double *S) {
 }
 
 void spari_linear_add(spari_linear *s, int element, const double *S) {
-    size_t first = (size_t)element * (size_t)(s->block - s->overlap), m = (size_t)s->block;
+    size_t first = (size_t)element * (size_t)(s->block - s->overlap);
     if (s->ends) {
         add_to_element(s, element, S);
         return;
     }
-    if (s->far && first >= s->inner) { /* the second half is stored reversed */
-        first = s->n - first - m;
-        for (size_t j = 0; j < m; j++) {
-            double *column = entry(s->far, first, first + j);
-            for (size_t i = 0; i < m; i++) {
-                column[i] += S[m * m - 1 - (m * i + j)];
-            }
-        }
-        return;
-    }
-    kernels_here()->add((int64_t)m, S, (int64_t)s->A.step - (s->swap ? 0 : 1), entry(s, first, first));
+    kernels_here()->add(s->block, S, (int64_t)s->A.step - (s->swap ? 0 : 1), entry(s, first, first));
 }
 
 /* Range [from, to) of unknowns that may have entries with unknown i in A. */
 static void reach_of(const spari_linear *s, size_t i, size_t *from, size_t *to) {
     *from = !s->swap && i > s->band ? i - s->band : 0;
-    *to = !s->swap && i + s->band + 1 < s->size ? i + s->band + 1 : s->size;
-}
-
-/* Adds row and column of unknown i; unknown j is at step j. */
-static void read_part(const spari_linear *s, size_t i, double *row, double *column, int step) {
-    size_t from, to;
-    reach_of(s, i, &from, &to);
-    for (size_t j = from; j < to; j++) {
-        row[step * (int64_t)j] += *entry(s, i, j);
-        column[step * (int64_t)j] += *entry(s, j, i);
-    }
+    *to = !s->swap && i + s->band + 1 < s->n ? i + s->band + 1 : s->n;
 }
 
 static void read_elements(const spari_linear *s, size_t at, double *row, double *column) {
@@ -298,28 +225,18 @@ static void read_elements(const spari_linear *s, size_t at, double *row, double 
 }
 
 void spari_linear_read(const spari_linear *s, int i, double *row, double *column) {
-    size_t at = (size_t)i, end = s->n - 1;
+    size_t at = (size_t)i, from, to;
     memset(row, 0, s->n * sizeof *row);
     memset(column, 0, s->n * sizeof *column);
     if (s->ends) {
         read_elements(s, at, row, column);
         return;
     }
-    if (at < s->size) {
-        read_part(s, at, row, column, 1);
-    }
-    if (s->far && at >= s->inner) {
-        read_part(s->far, end - at, row + end, column + end, -1);
-    }
-}
-
-static void fix_part(spari_linear *s, size_t i, double diagonal) {
-    size_t from, to;
-    reach_of(s, i, &from, &to);
+    reach_of(s, at, &from, &to);
     for (size_t j = from; j < to; j++) {
-        *entry(s, i, j) = *entry(s, j, i) = 0;
+        row[j] = *entry(s, at, j);
+        column[j] = *entry(s, j, at);
     }
-    *entry(s, i, i) = diagonal;
 }
 
 static void fix_elements(spari_linear *s, size_t at) {
@@ -335,18 +252,17 @@ static void fix_elements(spari_linear *s, size_t at) {
 }
 
 void spari_linear_fix(spari_linear *s, int i) {
-    size_t at = (size_t)i;
+    size_t at = (size_t)i, from, to;
     if (s->ends) {
         fix_elements(s, at);
         return;
     }
-    if (at < s->size) {
-        fix_part(s, at, 1);
-        s->fixed |= at < MOST_LEAD ? 1U << at : 0;
+    reach_of(s, at, &from, &to);
+    for (size_t j = from; j < to; j++) {
+        *entry(s, at, j) = *entry(s, j, at) = 0;
     }
-    if (s->far && at >= s->inner) {
-        fix_part(s->far, s->n - 1 - at, at >= s->size);
-    }
+    *entry(s, at, at) = 1;
+    s->fixed |= at < MOST_LEAD ? 1U << at : 0;
 }
 
 /* Removes constrained first unknowns from a dense matrix before it is factored; the others move to the front. The
@@ -388,7 +304,7 @@ static void ready_dense(spari_linear *s, int loaded) {
     }
 }
 
-static int factor_part(spari_linear *s) {
+static int factor_matrix(spari_linear *s) {
     /* before: a search for the largest of what are no numbers may answer anything */
     if (spari_first_nonfinite(s->A.data, (int64_t)(s->A.rows * s->A.step)) >= 0) {
         return 1;
@@ -401,13 +317,13 @@ static int factor_part(spari_linear *s) {
         bad = kernels_here()->factor_dense((int64_t)s->order_of, (int64_t)s->order_of, least, s->A.data,
                                            (int64_t)s->A.step, s->swap, s->corners);
     } else {
-        bad = kernels_here()->factor_band((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, least, s->A.data,
-                                          (int64_t)s->A.step, s->band_swap);
+        bad = kernels_here()->factor_band((int64_t)s->n, (int64_t)s->band, least, s->A.data, (int64_t)s->A.step,
+                                          s->band_swap);
     }
     if (bad) {
         return 1;
     }
-    for (size_t i = 0; i < (s->swap ? s->order_of : s->inner); i++) {
+    for (size_t i = 0; i < (s->swap ? s->order_of : s->n); i++) {
         double pivot = fabs(*entry(s, i, i));
         if (!(pivot > 0) || !isfinite(pivot)) {
             return 1;
@@ -417,24 +333,6 @@ static int factor_part(spari_linear *s) {
         ready_dense(s, 0);
     }
     return 0;
-}
-
-/* ---- split chains ---- */
-
-typedef struct linear_halves {
-    spari_linear *s;
-    double *x;
-    int bad[2];
-} linear_halves;
-
-static void both(linear_halves *h, spari_task half) {
-    spari_thread_pool_run(h->s->pool ? *h->s->pool : NULL, 2, half, h);
-}
-
-static void factor_half(void *context, int64_t item, int worker) {
-    linear_halves *h = context;
-    (void)worker;
-    h->bad[item] = factor_part(item ? h->s->far : h->s);
 }
 
 /* ---- element by element ---- */
@@ -494,25 +392,11 @@ static int factor_ends(spari_linear *s) {
 }
 
 int spari_linear_factor(spari_linear *s) {
-    linear_halves h = {.s = s};
     if (s->ends) {
         spread_elements(s, factor_elements, s);
         return is_any_bad(s) || factor_ends(s);
     }
-    if (!s->far) {
-        return factor_part(s);
-    }
-    both(&h, factor_half);
-    if (h.bad[0] || h.bad[1]) {
-        return 1;
-    }
-    for (size_t i = 0; i < s->joint->n; i++) {
-        for (size_t j = 0; j < s->joint->n; j++) {
-            size_t a = s->inner + i, b = s->inner + j, end = s->n - 1;
-            *entry(s->joint, i, j) = *entry(s, a, b) + *entry(s->far, end - a, end - b);
-        }
-    }
-    return factor_part(s->joint);
+    return factor_matrix(s);
 }
 
 static int sign_of_elements(const spari_linear *s) {
@@ -529,8 +413,8 @@ int spari_linear_sign(const spari_linear *s) {
     if (s->ends) {
         return sign_of_elements(s) * spari_linear_sign(s->ends);
     }
-    int sign = s->far ? spari_linear_sign(s->far) * spari_linear_sign(s->joint) : 1;
-    for (size_t i = 0; i < (s->swap ? s->order_of : s->inner); i++) {
+    int sign = 1;
+    for (size_t i = 0; i < (s->swap ? s->order_of : s->n); i++) {
         size_t from = s->swap ? (size_t)s->swap[i] - 1 : s->band_swap[i];
         sign = (*entry(s, i, i) < 0) != (from != i) ? -sign : sign;
     }
@@ -550,19 +434,18 @@ void spari_linear_unwatch(spari_linear *s) {
 
 /* Entry (i, j), in A or in an element. */
 static double value_at(const spari_linear *s, size_t i, size_t j) {
-    size_t end = s->n - 1, first, last, of_first, of_last;
-    if (s->ends) {
-        double sum = 0;
-        elements_of(s, i, &first, &last);
-        elements_of(s, j, &of_first, &of_last);
-        for (size_t e = first > of_first ? first : of_first; e <= last && e <= of_last; e++) {
-            size_t from = e * (size_t)(s->block - s->overlap);
-            sum += *part_entry(s, e, i - from, j - from);
-        }
-        return sum;
+    size_t first, last, of_first, of_last;
+    if (!s->ends) {
+        return *entry(s, i, j);
     }
-    double x = i < s->size && j < s->size ? *entry(s, i, j) : 0;
-    return s->far && i >= s->inner && j >= s->inner ? x + *entry(s->far, end - i, end - j) : x;
+    double sum = 0;
+    elements_of(s, i, &first, &last);
+    elements_of(s, j, &of_first, &of_last);
+    for (size_t e = first > of_first ? first : of_first; e <= last && e <= of_last; e++) {
+        size_t from = e * (size_t)(s->block - s->overlap);
+        sum += *part_entry(s, e, i - from, j - from);
+    }
+    return sum;
 }
 
 int spari_linear_definite(spari_linear *s) {
@@ -595,60 +478,6 @@ int spari_linear_definite(spari_linear *s) {
         }
     }
     return !(s->swap ? spari_cholesky((int)n, L) : spari_cholesky_band((int)n, (int)band, L));
-}
-
-static void forth_part(const spari_linear *s, double *x) {
-    kernels_here()->forth((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, s->A.data, (int64_t)s->A.step,
-                          s->band_swap, x);
-}
-
-static void back_part(const spari_linear *s, double *x) {
-    kernels_here()->back((int64_t)s->size, (int64_t)s->inner, (int64_t)s->band, s->A.data, (int64_t)s->A.step, x);
-}
-
-static void forth_half(void *context, int64_t item, int worker) {
-    linear_halves *h = context;
-    const spari_linear *far = h->s->far;
-    (void)worker;
-    if (item == 0) {
-        forth_part(h->s, h->x);
-        return;
-    }
-    for (size_t i = 0; i < far->size; i++) {
-        far->x[i] = i < far->inner ? h->x[h->s->n - 1 - i] : 0;
-    }
-    forth_part(far, far->x);
-}
-
-static void back_half(void *context, int64_t item, int worker) {
-    linear_halves *h = context;
-    const spari_linear *far = h->s->far;
-    (void)worker;
-    if (item == 0) {
-        back_part(h->s, h->x);
-        h->bad[0] = spari_first_nonfinite(h->x, (int64_t)h->s->inner) >= 0;
-        return;
-    }
-    back_part(far, far->x);
-    h->bad[1] = spari_first_nonfinite(far->x, (int64_t)far->inner) >= 0;
-    for (size_t i = 0; i < far->inner; i++) {
-        h->x[h->s->n - 1 - i] = far->x[i];
-    }
-}
-
-static int solve_halves(spari_linear *s, double *x) {
-    linear_halves h = {.s = s, .x = x};
-    double *joint = x + s->inner, *end = s->far->x + s->far->size - 1;
-    both(&h, forth_half);
-    for (size_t i = 0; i < s->joint->n; i++) {
-        joint[i] += end[-(int64_t)i];
-    }
-    int bad = spari_linear_solve(s->joint, joint);
-    for (size_t i = 0; i < s->joint->n; i++) {
-        end[-(int64_t)i] = joint[i];
-    }
-    both(&h, back_half);
-    return bad || h.bad[0] || h.bad[1];
 }
 
 /* Arguments of the solution x with interior unknowns. */
@@ -739,14 +568,11 @@ int spari_linear_solve(spari_linear *s, double *x) {
     if (s->ends) {
         return solve_by_ends(s, x);
     }
-    if (s->far) {
-        return solve_halves(s, x);
-    }
     if (s->swap) {
         return solve_left(s, x);
     }
-    forth_part(s, x);
-    back_part(s, x);
+    kernels_here()->forth(n, (int64_t)s->band, s->A.data, (int64_t)s->A.step, s->band_swap, x);
+    kernels_here()->back(n, (int64_t)s->band, s->A.data, (int64_t)s->A.step, x);
     return spari_first_nonfinite(x, n) < 0 ? 0 : 1;
 }
 
@@ -795,15 +621,11 @@ static void load_chain(spari_linear *s, const double *state) {
     spari_linear_load(s->ends, state + n + swaps);
 }
 
-static int64_t part_size(const spari_linear *s) {
-    return (int64_t)(s->A.rows * s->A.columns + s->inner);
-}
-
 int64_t spari_linear_state_size(const spari_linear *s) {
     if (s->ends) {
         return size_of_parts(s) + swaps_of_parts(s) + spari_linear_state_size(s->ends);
     }
-    return part_size(s) + (s->far ? part_size(s->far) + part_size(s->joint) : 0);
+    return (int64_t)(s->A.rows * s->A.columns + s->n);
 }
 
 /* Column i of the factors, with the removed unknowns. */
@@ -859,14 +681,10 @@ void spari_linear_save(const spari_linear *s, double *state) {
     for (size_t i = 0; i < s->A.rows; i++, state += s->A.columns) {
         save_dense(s, i, state);
     }
-    for (size_t i = 0; i < s->inner; i++) {
+    for (size_t i = 0; i < s->n; i++) {
         state[i] = !s->swap      ? (double)s->band_swap[i]
                    : i < s->lead ? (double)(i + 1)
                                  : (double)s->lead + s->swap[i - s->lead];
-    }
-    if (s->far) {
-        spari_linear_save(s->far, state + s->inner);
-        spari_linear_save(s->joint, state + s->inner + part_size(s->far));
     }
 }
 
@@ -876,14 +694,12 @@ int spari_linear_is_state(const spari_linear *s, const double *state) {
     }
     double first = s->swap ? 1 : 0;
     state += s->A.rows * s->A.columns;
-    for (size_t i = 0; i < s->inner; i++) {
-        if (!(state[i] >= first && state[i] < first + (double)s->inner)) {
+    for (size_t i = 0; i < s->n; i++) {
+        if (!(state[i] >= first && state[i] < first + (double)s->n)) {
             return 0;
         }
     }
-    state += s->inner;
-    return !s->far ||
-           (spari_linear_is_state(s->far, state) && spari_linear_is_state(s->joint, state + part_size(s->far)));
+    return 1;
 }
 
 void spari_linear_load(spari_linear *s, const double *state) {
@@ -894,7 +710,7 @@ void spari_linear_load(spari_linear *s, const double *state) {
     for (size_t i = 0; i < s->A.rows; i++, state += s->A.columns) {
         memcpy(s->A.data + i * s->A.step, state, s->A.columns * sizeof *state);
     }
-    for (size_t i = 0; i < s->inner; i++) {
+    for (size_t i = 0; i < s->n; i++) {
         if (s->swap) {
             s->swap[i] = (int)state[i];
         } else {
@@ -903,9 +719,5 @@ void spari_linear_load(spari_linear *s, const double *state) {
     }
     if (s->swap) {
         load_dense(s);
-    }
-    if (s->far) {
-        spari_linear_load(s->far, state + s->inner);
-        spari_linear_load(s->joint, state + s->inner + part_size(s->far));
     }
 }

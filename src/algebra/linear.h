@@ -7,14 +7,13 @@
 
 typedef struct spari_linear spari_linear;
 
-/* Chain of elements with block x block matrices; neighbours share their last and first `overlap` unknowns. A long
-   chain is split in the middle and its halves are factored separately, with or without threads, so the bits are the
-   same. NULL: no memory. */
+/* Chain of elements with block x block matrices; neighbours share their last and first `overlap` unknowns. NULL:
+   no memory. */
 spari_linear *spari_linear_create(int elements, int block, int overlap);
 /* General system of n unknowns; entries (i, j) have |i - j| <= band. Stored dense if that takes no more memory. */
 spari_linear *spari_linear_create_banded(int n, int band);
 void spari_linear_free(spari_linear *system);
-/* Threads for the halves of a long chain (base/thread_pool.h) from now on; NULL: the calling thread. */
+/* Threads for the elements of a chain (base/thread_pool.h) from now on; NULL: the calling thread. */
 void spari_linear_share(spari_linear *system, spari_thread_pool *const *pool);
 void spari_linear_zero(spari_linear *system);
 void spari_linear_add(spari_linear *system, int element, const double *S); /* S row-major [block][block] */

@@ -342,11 +342,10 @@ TARGET static void NAME(back_dense)(int64_t n, int64_t inner, const double *A, d
 
 /* The same for a band with `band` entries on either side, and as many more above from row exchanges: row j was
    exchanged with row swap[j] before column j was eliminated. A(i, j) is at columns[step j + 2 band + i - j]. */
-TARGET static void NAME(forth_band)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step,
-                                    const unsigned *swap, double *x) {
+TARGET static void NAME(forth_band)(int64_t n, int64_t band, const double *columns, int64_t step, const unsigned *swap,
+                                    double *x) {
     const double *at = columns + 2 * band;
-    int64_t end = inner < n ? inner : n - 1;
-    for (int64_t j = 0; j < end; j++, at += step) {
+    for (int64_t j = 0; j < n - 1; j++, at += step) {
         double there = x[swap[j]];
         x[swap[j]] = x[j];
         x[j] = there;
@@ -354,15 +353,9 @@ TARGET static void NAME(forth_band)(int64_t n, int64_t inner, int64_t band, cons
     }
 }
 
-TARGET static void NAME(back_band)(int64_t n, int64_t inner, int64_t band, const double *columns, int64_t step,
-                                   double *x) {
+TARGET static void NAME(back_band)(int64_t n, int64_t band, const double *columns, int64_t step, double *x) {
     const double *at = columns + step * (n - 1) + 2 * band;
-    int64_t j = n - 1;
-    for (; j >= inner; j--, at -= step) {
-        int64_t above = j < 2 * band ? j : 2 * band, met = inner - (j - above);
-        NAME(less_columns)(1, met, at - above, step, x + j, x + j - above);
-    }
-    for (; j >= 0; j--, at -= step) {
+    for (int64_t j = n - 1; j >= 0; j--, at -= step) {
         int64_t above = j < 2 * band ? j : 2 * band;
         x[j] /= *at;
         NAME(less_columns)(1, above, at - above, step, x + j, x + j - above);
@@ -550,14 +543,13 @@ TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, dou
     return 0;
 }
 
-/* The same for a band, as forth_band and back_band need it. Rows are exchanged from column j on, among the first
-   `inner`; the rest is left as their Schur complement. */
-TARGET static int NAME(factor_band)(int64_t n, int64_t inner, int64_t band, double least, double *columns, int64_t step,
+/* The same for a band, as forth_band and back_band need it. Rows are exchanged from column j on. */
+TARGET static int NAME(factor_band)(int64_t n, int64_t band, double least, double *columns, int64_t step,
                                     unsigned *swap) {
     for (int64_t j = 0; j < n; j++) {
         double *x = columns + step * j + 2 * band - j; /* x[i]: row i */
         int64_t end = j + band + 1 < n ? j + band + 1 : n;
-        for (int64_t k = j > 2 * band ? j - 2 * band : 0; k < j && k < inner; k++) {
+        for (int64_t k = j > 2 * band ? j - 2 * band : 0; k < j; k++) {
             double there = x[swap[k]];
             x[swap[k]] = x[k];
             x[k] = there;
@@ -566,10 +558,7 @@ TARGET static int NAME(factor_band)(int64_t n, int64_t inner, int64_t band, doub
                 (1, n - 1 - k < band ? n - 1 - k : band, columns + step * k + 2 * band + 1, step, x + k, x + k + 1);
             }
         }
-        if (j >= inner) {
-            continue;
-        }
-        int64_t p = j + NAME(pivot_of)((end < inner ? end : inner) - j, least, x + j);
+        int64_t p = j + NAME(pivot_of)(end - j, least, x + j);
         swap[j] = (unsigned)p;
         double there = x[p];
         x[p] = x[j];

@@ -253,8 +253,8 @@ static void chain_free(long_chain *c) {
     free(c->A);
 }
 
-/* The same in one piece. */
-static spari_linear *chain_uncut(const long_chain *c) {
+/* The same as a general band. */
+static spari_linear *chain_as_band(const long_chain *c) {
     int64_t step;
     spari_linear *s = spari_linear_create_banded(c->n, c->block - 1);
     double *entry = spari_linear_entries(s, &step);
@@ -283,8 +283,8 @@ static double left_of(const long_chain *c, const double *x, const double *b) {
 
 /* ---- chains whose elements have unknowns to themselves, which are taken out first ---- */
 
-/* Rows and columns as they were put in; what is left of A x = b, a digit more where the last pivots of a half or of
-   an element, which have its rows alone to choose from, are small; the sign of the determinant as in one piece. */
+/* Rows and columns as they were put in; what is left of A x = b, a digit more where the last pivots of an element,
+   which have its rows alone to choose from, are small; the sign of the determinant as of a general band. */
 static void check_chain(int elements, int block, int overlap, int held) {
     long_chain c = chain_create(elements, block, overlap, held);
     double *x = calloc(4 * (size_t)c.n, sizeof *x), *b = x + c.n, *row = b + c.n, *column = row + c.n;
@@ -295,7 +295,7 @@ static void check_chain(int elements, int block, int overlap, int held) {
             assert_true(fabs(row[j] - c.A[c.n * i + j]) < 1e-15 && fabs(column[j] - c.A[c.n * j + i]) < 1e-15);
         }
     }
-    spari_linear *whole = chain_uncut(&c);
+    spari_linear *whole = chain_as_band(&c);
     assert_int_equal(spari_linear_factor(c.s), 0);
     assert_int_equal(spari_linear_factor(whole), 0);
     assert_int_equal(spari_linear_sign(c.s), spari_linear_sign(whole));
@@ -306,8 +306,8 @@ static void check_chain(int elements, int block, int overlap, int held) {
     free(x);
 }
 
-/* Halves alike and not; held at an end, within a half, at the joint in the middle. */
-static void test_halves(void **unused) {
+/* Many elements without unknowns of their own; held at an end, at a joint and beside it. */
+static void test_long_chains(void **unused) {
     (void)unused;
     for (int elements = 64; elements < 68; elements++) {
         for (int block = 2; block <= 18; block += 4) {
@@ -367,7 +367,7 @@ static void check_threads(int block) {
         }
         assert_int_equal(spari_linear_solve(d.s, x), 0);
         assert_memory_equal(first, x, sizeof x);
-        state[size - 1] = OVERLAP + 1; /* the last row of the joint's went where there is none */
+        state[size - 1] = n; /* the last row went where there is none */
         assert_false(spari_linear_is_state(d.s, state));
         free(state);
         chain_free(&c);
@@ -382,7 +382,7 @@ static void test_threads_of_chain(void **unused) {
     check_threads(24);
 }
 
-/* Springs in a row, whose pivots are exact: singular with both ends free, and so is either half with an element
+/* Springs in a row, whose pivots are exact: singular with both ends free, and so is the chain with an element
    missing; not a number, a solution beyond the numbers; definite or not. Elements of as many springs, the last of
    another stiffness. */
 static int springs(int each, int missing, double of_last, int held, int *definite) {
@@ -449,9 +449,9 @@ static void test_not_finite(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_dense),    cmocka_unit_test(test_band),     cmocka_unit_test(test_holes),
-        cmocka_unit_test(test_halves),   cmocka_unit_test(test_springs),  cmocka_unit_test(test_threads_of_chain),
-        cmocka_unit_test(test_elements), cmocka_unit_test(test_products), cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_dense),       cmocka_unit_test(test_band),     cmocka_unit_test(test_holes),
+        cmocka_unit_test(test_long_chains), cmocka_unit_test(test_springs),  cmocka_unit_test(test_threads_of_chain),
+        cmocka_unit_test(test_elements),    cmocka_unit_test(test_products), cmocka_unit_test(test_not_finite),
         cmocka_unit_test(test_held),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -182,7 +182,7 @@ static void test_rounding_of_the_host(void **state) {
     free(two);
 }
 
-/* A long beam alone, whose elements, nodes and halves are shared out with two threads already: on a root that turns,
+/* A long beam alone, whose elements and nodes are shared out with two threads already: on a root that turns,
    and hanging on one that stands, at rest and then let go. */
 enum { LONG = 130, NODES = 4 * LONG };
 
