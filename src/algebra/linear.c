@@ -30,17 +30,17 @@ typedef struct linear_rows {
 struct spari_linear {
     int elements, block, overlap; /* of a chain; otherwise 0 */
     size_t n, band;               /* unknowns; half bandwidth (banded storage) */
-    linear_rows A;       /* dense n x n, column by column, or banded n x (3 band + 1): column by column, rows apart */
-    int *swap;           /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
-    int *order;          /* dense: where row i came from by all of these */
-    unsigned fixed;      /* dense, of one element: which of its first unknowns are eliminated */
-    size_t lead;         /* dense: so many of them that stand in A no longer */
-    size_t order_of;     /* dense: unknowns in A when it is factored */
-    double *corners;     /* dense: [n / 8, rounded up][4][8][8]: solve_dense */
-    double *y;           /* dense: [n, rounded up to eights] room */
-    double *workspace;   /* of the last two */
-    unsigned *band_swap; /* banded */
-    double *symmetric;   /* spari_linear_watch; NULL: not asked for */
+    linear_rows A;     /* dense n x n, column by column, or banded n x (3 band + 1): column by column, rows apart */
+    int *swap;         /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
+    int *order;        /* dense: where row i came from by all of these */
+    unsigned fixed;    /* dense, of one element: which of its first unknowns are eliminated */
+    size_t lead;       /* dense: so many of them that stand in A no longer */
+    size_t order_of;   /* dense: unknowns in A when it is factored */
+    double *corners;   /* dense: [n / 8, rounded up][4][8][8]: solve_dense */
+    double *y;         /* dense: [n, rounded up to eights] room */
+    double *workspace; /* of the last two */
+    int *band_swap;    /* banded */
+    double *symmetric; /* spari_linear_watch; NULL: not asked for */
     /* of a chain whose elements have unknowns to themselves; else NULL, 0 */
     spari_linear *ends;             /* the chain without these */
     size_t own;                     /* how many in each */
@@ -265,15 +265,20 @@ void spari_linear_fix(spari_linear *s, int i) {
     s->fixed |= at < MOST_LEAD ? 1U << at : 0;
 }
 
-/* Removes constrained first unknowns from a dense matrix before it is factored; the others move to the front. The
-   matrix is padded to a multiple of eight by identity rows, because solutions process eights faster than a
-   remainder. */
-static void leave_out_lead(spari_linear *s, unsigned fixed) {
-    const size_t lead = (size_t)s->overlap, step = s->A.step, left = s->n > lead ? s->n - lead : 0;
+/* Unknowns of a dense matrix without its constrained first ones, padded to a multiple of eight, because solutions
+   process eights faster than a remainder. 0: they stay. */
+static size_t size_without_lead(const spari_linear *s) {
+    const size_t lead = (size_t)s->overlap, left = s->n > lead ? s->n - lead : 0;
     const size_t eights = (left + SPARI_CORNER - 1) / SPARI_CORNER * SPARI_CORNER;
-    const unsigned all = lead <= MOST_LEAD ? (1U << lead) - 1 : 0;
+    return s->elements == 1 && lead > 0 && lead <= MOST_LEAD && left > 0 && eights <= s->n ? eights : 0;
+}
+
+/* Removes constrained first unknowns from a dense matrix before it is factored; the others move to the front, and
+   identity rows fill the rest. */
+static void leave_out_lead(spari_linear *s) {
+    const size_t lead = (size_t)s->overlap, step = s->A.step, eights = size_without_lead(s), left = s->n - lead;
     s->lead = 0, s->order_of = s->n;
-    if (s->elements != 1 || all == 0 || (fixed & all) != all || left == 0 || eights > s->n) {
+    if (eights == 0 || ~s->fixed & ((1U << lead) - 1)) {
         return;
     }
     s->lead = lead, s->order_of = eights;
@@ -313,7 +318,7 @@ static int factor_matrix(spari_linear *s) {
     double least =
         s->elements > 0 ? 1 : 0.1; /* a general matrix has zeros inside its profile, which row exchanges would fill */
     if (s->swap) {
-        leave_out_lead(s, s->fixed);
+        leave_out_lead(s);
         bad = kernels_here()->factor_dense((int64_t)s->order_of, (int64_t)s->order_of, least, s->A.data,
                                            (int64_t)s->A.step, s->swap, s->corners);
     } else {
@@ -415,7 +420,7 @@ int spari_linear_sign(const spari_linear *s) {
     }
     int sign = 1;
     for (size_t i = 0; i < (s->swap ? s->order_of : s->n); i++) {
-        size_t from = s->swap ? (size_t)s->swap[i] - 1 : s->band_swap[i];
+        size_t from = (size_t)(s->swap ? s->swap[i] - 1 : s->band_swap[i]);
         sign = (*entry(s, i, i) < 0) != (from != i) ? -sign : sign;
     }
     return sign;
@@ -584,140 +589,89 @@ void spari_linear_add_rows(int n, int count, const double *rows, double by, cons
     kernels_here()->rows(n, count, rows, by, x, y);
 }
 
-/* Size of the element matrices and their row exchanges. */
-static int64_t size_of_parts(const spari_linear *s) {
-    return (int64_t)s->elements * s->block * s->block;
-}
-
-static int64_t swaps_of_parts(const spari_linear *s) {
-    return (int64_t)s->elements * (int64_t)s->own;
-}
-
-static void save_chain(const spari_linear *s, double *state) {
-    int64_t n = size_of_parts(s), swaps = swaps_of_parts(s);
-    memcpy(state, s->parts, (size_t)n * sizeof *state);
-    for (int64_t i = 0; i < swaps; i++) {
-        state[n + i] = s->part_swap[i];
-    }
-    spari_linear_save(s->ends, state + n + swaps);
-}
-
-static int is_chain(const spari_linear *s, const double *state) {
-    int64_t n = size_of_parts(s), swaps = swaps_of_parts(s);
-    for (int64_t i = 0; i < swaps; i++) {
-        if (!(state[n + i] >= 1 && state[n + i] < 1 + (double)s->own)) {
-            return 0;
-        }
-    }
-    return spari_linear_is_state(s->ends, state + n + swaps);
-}
-
-static void load_chain(spari_linear *s, const double *state) {
-    int64_t n = size_of_parts(s), swaps = swaps_of_parts(s);
-    memcpy(s->parts, state, (size_t)n * sizeof *state);
-    for (int64_t i = 0; i < swaps; i++) {
-        s->part_swap[i] = (int)state[n + i];
-    }
-    spari_linear_load(s->ends, state + n + swaps);
-}
+/* ---- states ---- */
 
 int64_t spari_linear_state_size(const spari_linear *s) {
     if (s->ends) {
-        return size_of_parts(s) + swaps_of_parts(s) + spari_linear_state_size(s->ends);
+        int64_t of_element = (int64_t)s->block * s->block + (int64_t)s->own;
+        return s->elements * of_element + spari_linear_state_size(s->ends);
     }
-    return (int64_t)(s->A.rows * s->A.columns + s->n);
+    return (int64_t)(s->A.rows * s->A.columns + s->n) + (s->swap ? 1 : 0);
 }
 
-/* Column i of the factors, with the removed unknowns. */
-static void save_dense(const spari_linear *s, size_t i, double *column) {
-    const size_t lead = s->lead;
-    if (lead == 0) {
-        memcpy(column, s->A.data + i * s->A.step, s->A.columns * sizeof *column);
+/* The same code saves, checks and loads a state. */
+typedef struct linear_passage {
+    double *at; /* next number of the state */
+    enum { SAVE, CHECK, LOAD } job;
+    int bad; /* a number is not what it must be */
+} linear_passage;
+
+static void pass_factors(linear_passage *t, double *x, size_t n) {
+    if (t->job == SAVE) {
+        memcpy(t->at, x, n * sizeof *x);
+    } else if (t->job == LOAD) {
+        memcpy(x, t->at, n * sizeof *x);
+    }
+    t->at += n;
+}
+
+/* Numbers of rows, from `first` to below `end`. */
+static void pass_swaps(linear_passage *t, int *swap, size_t n, int first, size_t end) {
+    for (size_t i = 0; i < n; i++, t->at++) {
+        if (t->job == SAVE) {
+            *t->at = swap[i];
+        } else if (t->job == LOAD) {
+            swap[i] = (int)*t->at;
+        } else {
+            t->bad |= !(*t->at >= first && *t->at < (double)end);
+        }
+    }
+}
+
+/* Row exchanges of a dense matrix, preceded by the number of unknowns that were left out of it. */
+static void pass_dense(linear_passage *t, spari_linear *s) {
+    double lead = t->job == SAVE ? (double)s->lead : *t->at;
+    size_t size = lead > 0 ? size_without_lead(s) : s->n;
+    t->bad |= lead != 0 && !(lead == s->overlap && size > 0);
+    pass_factors(t, &lead, 1);
+    pass_swaps(t, s->swap, size, 1, size + 1);
+    pass_swaps(t, s->swap + size, s->n - size, 0, s->n + 1); /* not in use */
+    if (t->job == LOAD) {
+        s->lead = (size_t)lead, s->order_of = size;
+        ready_dense(s, 1);
+    }
+}
+
+static void pass_system(linear_passage *t, spari_linear *s) {
+    if (s->ends) {
+        size_t elements = (size_t)s->elements;
+        pass_factors(t, s->parts, elements * (size_t)(s->block * s->block));
+        pass_swaps(t, s->part_swap, elements * s->own, 1, s->own + 1);
+        pass_system(t, s->ends);
         return;
     }
-    memset(column, 0, s->n * sizeof *column);
-    if (i < lead) {
-        column[i] = 1;
+    for (size_t i = 0; i < s->A.rows; i++) {
+        pass_factors(t, s->A.data + i * s->A.step, s->A.columns);
+    }
+    if (s->swap) {
+        pass_dense(t, s);
     } else {
-        memcpy(column + lead, s->A.data + (i - lead) * s->A.step, (s->n - lead) * sizeof *column);
+        pass_swaps(t, s->band_swap, s->n, 0, s->n);
     }
-}
-
-/* Which first unknowns had been removed from loaded factors. */
-static unsigned fixed_of(const spari_linear *s) {
-    unsigned fixed = 0;
-    for (size_t i = 0; i < s->n; i++) {
-        if (s->swap[i] <= (int)i) { /* the factors were not computed here */
-            return 0;
-        }
-    }
-    for (size_t i = 0; i < MOST_LEAD && i < s->n; i++) {
-        int unit = s->swap[i] == (int)i + 1 && *entry(s, i, i) == 1;
-        for (size_t j = 0; j < s->n; j++) {
-            unit = unit && (j == i || (*entry(s, i, j) == 0 && *entry(s, j, i) == 0));
-        }
-        fixed |= unit ? 1U << i : 0;
-    }
-    return fixed;
-}
-
-/* Loads factors of all unknowns into A. */
-static void load_dense(spari_linear *s) {
-    leave_out_lead(s, fixed_of(s));
-    for (size_t i = 0; i + s->lead < s->n && s->lead > 0; i++) {
-        s->swap[i] = s->swap[i + s->lead] - (int)s->lead;
-    }
-    for (size_t i = s->n - s->lead; i < s->order_of; i++) {
-        s->swap[i] = (int)i + 1;
-    }
-    ready_dense(s, 1);
 }
 
 void spari_linear_save(const spari_linear *s, double *state) {
-    if (s->ends) {
-        save_chain(s, state);
-        return;
-    }
-    for (size_t i = 0; i < s->A.rows; i++, state += s->A.columns) {
-        save_dense(s, i, state);
-    }
-    for (size_t i = 0; i < s->n; i++) {
-        state[i] = !s->swap      ? (double)s->band_swap[i]
-                   : i < s->lead ? (double)(i + 1)
-                                 : (double)s->lead + s->swap[i - s->lead];
-    }
+    linear_passage t = {state, SAVE, 0};
+    pass_system(&t, (spari_linear *)(uintptr_t)s); /* which saving does not change */
 }
 
 int spari_linear_is_state(const spari_linear *s, const double *state) {
-    if (s->ends) {
-        return is_chain(s, state);
-    }
-    double first = s->swap ? 1 : 0;
-    state += s->A.rows * s->A.columns;
-    for (size_t i = 0; i < s->n; i++) {
-        if (!(state[i] >= first && state[i] < first + (double)s->n)) {
-            return 0;
-        }
-    }
-    return 1;
+    linear_passage t = {(double *)(uintptr_t)state, CHECK, 0};
+    pass_system(&t, (spari_linear *)(uintptr_t)s);
+    return !t.bad;
 }
 
 void spari_linear_load(spari_linear *s, const double *state) {
-    if (s->ends) {
-        load_chain(s, state);
-        return;
-    }
-    for (size_t i = 0; i < s->A.rows; i++, state += s->A.columns) {
-        memcpy(s->A.data + i * s->A.step, state, s->A.columns * sizeof *state);
-    }
-    for (size_t i = 0; i < s->n; i++) {
-        if (s->swap) {
-            s->swap[i] = (int)state[i];
-        } else {
-            s->band_swap[i] = (unsigned)state[i];
-        }
-    }
-    if (s->swap) {
-        load_dense(s);
-    }
+    linear_passage t = {(double *)(uintptr_t)state, LOAD, 0};
+    pass_system(&t, s);
 }

@@ -10,12 +10,12 @@ enum { SPARI_CORNER = 8, SPARI_CORNERS = 4 };
 typedef struct spari_linear_kernels {
     void (*add)(int64_t m, const double *S, int64_t step, double *A);
     int (*factor_dense)(int64_t n, int64_t inner, double least, double *A, int64_t step, int *swap, double *corners);
-    int (*factor_band)(int64_t n, int64_t band, double least, double *columns, int64_t step, unsigned *swap);
+    int (*factor_band)(int64_t n, int64_t band, double least, double *columns, int64_t step, int *swap);
     void (*corner)(int64_t n, int64_t j, int loaded, const double *A, int64_t step, double *corner);
     int (*dense)(int64_t n, const double *A, int64_t step, const double *corners, double *y);
     void (*forth_dense)(int64_t n, int64_t inner, const double *A, double *x);
     void (*back_dense)(int64_t n, int64_t inner, const double *A, double *x);
-    void (*forth)(int64_t n, int64_t band, const double *columns, int64_t step, const unsigned *swap, double *x);
+    void (*forth)(int64_t n, int64_t band, const double *columns, int64_t step, const int *swap, double *x);
     void (*back)(int64_t n, int64_t band, const double *columns, int64_t step, double *x);
     void (*columns)(int64_t n, int64_t count, const double *columns, const double *by, double *x);
     void (*rows)(int64_t n, int64_t count, const double *rows, double by, const double *x, double *y);

@@ -342,7 +342,7 @@ TARGET static void NAME(back_dense)(int64_t n, int64_t inner, const double *A, d
 
 /* The same for a band with `band` entries on either side, and as many more above from row exchanges: row j was
    exchanged with row swap[j] before column j was eliminated. A(i, j) is at columns[step j + 2 band + i - j]. */
-TARGET static void NAME(forth_band)(int64_t n, int64_t band, const double *columns, int64_t step, const unsigned *swap,
+TARGET static void NAME(forth_band)(int64_t n, int64_t band, const double *columns, int64_t step, const int *swap,
                                     double *x) {
     const double *at = columns + 2 * band;
     for (int64_t j = 0; j < n - 1; j++, at += step) {
@@ -544,8 +544,7 @@ TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, dou
 }
 
 /* The same for a band, as forth_band and back_band need it. Rows are exchanged from column j on. */
-TARGET static int NAME(factor_band)(int64_t n, int64_t band, double least, double *columns, int64_t step,
-                                    unsigned *swap) {
+TARGET static int NAME(factor_band)(int64_t n, int64_t band, double least, double *columns, int64_t step, int *swap) {
     for (int64_t j = 0; j < n; j++) {
         double *x = columns + step * j + 2 * band - j; /* x[i]: row i */
         int64_t end = j + band + 1 < n ? j + band + 1 : n;
@@ -559,7 +558,7 @@ TARGET static int NAME(factor_band)(int64_t n, int64_t band, double least, doubl
             }
         }
         int64_t p = j + NAME(pivot_of)(end - j, least, x + j);
-        swap[j] = (unsigned)p;
+        swap[j] = (int)p;
         double there = x[p];
         x[p] = x[j];
         x[j] = there;
