@@ -426,8 +426,8 @@ SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, int which, double theta, d
 /* Writes the state of the session to a file, or reads it. A run that continues from the file has the same bits.
    Collective, between steps.
      path: in, that of rank 0; other ranks may give any text
-   save writes path.new and renames it, so path is always a whole file. If ranks see rank 0's file they write their own
-   parts, otherwise rank 0 writes for all. What is not a regular file is SPAR_ERR_IO.
+   save writes path.new and renames it, so path is always a whole file. Rank 0 writes and reads for all; other ranks
+   need not see the file. What is not a regular file is SPAR_ERR_IO.
    load needs the same members and joints, committed, and the same mapped fluids by name, on any number of ranks. Nodes
    are matched by their reference position, to 1e-9 of the member's length. Settings are not in the file; the host makes
    them as before. After a failure the session is as it was. SPAR_ERR_IO: the file cannot be read, or is damaged;

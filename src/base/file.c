@@ -246,57 +246,6 @@ static int finish(spari_file *file, int safe) {
     return reason;
 }
 
-/* ---- parts ---- */
-
-static int put_all(int fd, int64_t offset, const char *data, size_t n) {
-    while (n > 0) {
-        ssize_t done = pwrite(fd, data, n, (off_t)offset);
-        if (done < 0 && errno != EINTR) {
-            return errno;
-        }
-        done = done < 0 ? 0 : done;
-        offset += done, data += done, n -= (size_t)done;
-    }
-    return 0;
-}
-
-/* The lock protects against file systems whose clients write back whole cached pages. */
-int spari_file_put_part(const char *temporary, int64_t offset, const void *data, size_t n, char *why, size_t size) {
-    struct flock part = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = (off_t)offset, .l_len = (off_t)n};
-    int fd = open(temporary, O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC), reason = fd < 0 ? errno : 0;
-    if (fd >= 0) {
-        int locked = n == 0 || fcntl(fd, F_SETLK, &part) == 0 || (errno != EACCES && errno != EAGAIN);
-        reason = locked ? put_all(fd, offset, data, n) : EBUSY;
-        reason = !reason && fsync(fd) != 0 ? errno : reason;
-        reason = close(fd) != 0 && !reason ? errno : reason;
-    }
-    return reason ? failure(why, size, temporary, reason) : SPAR_OK;
-}
-
-int spari_file_get_part(const char *temporary, int64_t offset, void *data, size_t n, char *why, size_t size) {
-    int fd = open(temporary, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC), reason = fd < 0 ? errno : 0;
-    char *to = data;
-    while (n > 0 && !reason) {
-        ssize_t done = pread(fd, to, n, (off_t)offset);
-        reason = done == 0 ? EIO : done < 0 && errno != EINTR ? errno : 0;
-        done = done < 0 ? 0 : done;
-        offset += done, to += done, n -= (size_t)done;
-    }
-    if (fd >= 0) {
-        (void)close(fd);
-    }
-    return reason ? failure(why, size, temporary, reason) : SPAR_OK;
-}
-
-void spari_file_release(spari_file *file) {
-    struct flock whole = {.l_type = F_UNLCK, .l_whence = SEEK_SET};
-    (void)fcntl(fileno(file->stream), F_SETLK, &whole);
-}
-
-int spari_file_hold(spari_file *file) {
-    return lock(fileno(file->stream)) && is_at(fileno(file->stream), file->temporary);
-}
-
 void spari_file_drop(spari_file *file) {
     if (is_at(fileno(file->stream), file->temporary)) {
         (void)unlink(file->temporary);

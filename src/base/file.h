@@ -25,14 +25,6 @@ int spari_file_begin(spari_file *file, const char *path, const char *suffix, cha
 /* Closes and renames the file, or removes it if writing failed. safe: synchronise with the disc before returning.
    Returns as spari_file_begin. */
 int spari_file_end(spari_file *file, int safe, char *why, size_t size);
-/* Write or read n bytes of the temporary file from another process than the one that created it. No other process
-   may write these bytes. They are on disc on return. Return as spari_file_begin. */
-int spari_file_put_part(const char *temporary, int64_t offset, const void *data, size_t n, char *why, size_t size);
-int spari_file_get_part(const char *temporary, int64_t offset, void *data, size_t n, char *why, size_t size);
-/* Release the lock for other processes, and take it again before the end. hold returns 0 if another process has the
-   lock. */
-void spari_file_release(spari_file *file);
-int spari_file_hold(spari_file *file);
 /* Closes and removes the temporary file. */
 void spari_file_drop(spari_file *file);
 

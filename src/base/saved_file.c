@@ -99,12 +99,6 @@ static uint64_t get_word(const unsigned char *from) {
     return word;
 }
 
-void spari_words_to_disc(uint64_t *words, int64_t n) {
-    for (int64_t i = 0; i < n; i++) {
-        put_word((unsigned char *)(words + i), words[i]);
-    }
-}
-
 static void words_from_disc(uint64_t *words, int64_t n) {
     for (int64_t i = 0; i < n; i++) {
         words[i] = get_word((const unsigned char *)(words + i));
@@ -115,7 +109,8 @@ static void words_from_disc(uint64_t *words, int64_t n) {
 
 static const uint64_t crc_polynomial = UINT64_C(0xC96C5795D7870F42); /* reflected: the highest bit is x^0 */
 
-uint64_t spari_check_bytes(uint64_t sum, const void *data, size_t n) {
+/* Check sum of further bytes; it begins with 0. */
+static uint64_t check_bytes(uint64_t sum, const void *data, size_t n) {
     const unsigned char *byte = data;
     uint64_t table[256], crc = ~sum;
     for (uint64_t i = 0; i < 256; i++) {
@@ -129,27 +124,6 @@ uint64_t spari_check_bytes(uint64_t sum, const void *data, size_t n) {
         crc = (crc >> 8) ^ table[(crc ^ byte[i]) & 0xff];
     }
     return ~crc;
-}
-
-/* Product of polynomials modulo the polynomial of the check sum. */
-static uint64_t multiply_polynomials(uint64_t a, uint64_t b) {
-    uint64_t product = 0;
-    for (uint64_t bit = UINT64_C(1) << 63; bit; bit >>= 1) {
-        product ^= a & bit ? b : 0;
-        b = (b >> 1) ^ (b & 1 ? crc_polynomial : 0);
-    }
-    return product;
-}
-
-/* A check sum is the remainder of its bytes as a polynomial (the initial and final ones cancel). Appending n bytes
-   multiplies it by x^(8 n). */
-uint64_t spari_check_join(uint64_t first, uint64_t second, uint64_t n) {
-    uint64_t power = UINT64_C(1) << 55; /* x^8, x^16, x^32, ... */
-    for (; n > 0; n >>= 1) {
-        first = n & 1 ? multiply_polynomials(power, first) : first;
-        power = multiply_polynomials(power, power);
-    }
-    return first ^ second;
 }
 
 /* ---- files ---- */
@@ -166,7 +140,7 @@ static void put_summed(spari_saving *saving, const void *bytes, size_t n) {
     if (fwrite(bytes, 1, n, saving->file.stream) != n && saving->reason == 0) { /* reported at the end */
         saving->reason = errno ? errno : EIO;
     }
-    saving->sum = spari_check_bytes(saving->sum, bytes, n);
+    saving->sum = check_bytes(saving->sum, bytes, n);
 }
 
 int spari_saving_begin(spari_saving *saving, const char *path, int64_t count, char *why, size_t size) {
@@ -180,7 +154,10 @@ int spari_saving_begin(spari_saving *saving, const char *path, int64_t count, ch
     return SPAR_OK;
 }
 
-void spari_saving_put(spari_saving *saving, const uint64_t *words, int64_t n) {
+void spari_saving_put(spari_saving *saving, uint64_t *words, int64_t n) {
+    for (int64_t i = 0; i < n; i++) {
+        put_word((unsigned char *)(words + i), words[i]);
+    }
     put_summed(saving, words, 8 * (size_t)n);
 }
 
@@ -188,58 +165,12 @@ static int64_t offset_of_word(int64_t word) {
     return HEAD_BYTES + 8 * word;
 }
 
-int spari_saving_mark(spari_saving *saving, int64_t count, uint64_t mark) {
+int spari_saving_end(spari_saving *saving, char *why, size_t size) {
     unsigned char bytes[CHECK_BYTES];
-    FILE *f = saving->file.stream;
-    long here = ftell(f);
-    put_word(bytes, mark);
-    return here >= 0 && fseeko(f, (off_t)offset_of_word(count), SEEK_SET) == 0 &&
-           fwrite(bytes, 1, sizeof bytes, f) == sizeof bytes && fseek(f, here, SEEK_SET) == 0 && fsync(fileno(f)) == 0;
-}
-
-int spari_saving_is_marked(const char *temporary, int64_t count, uint64_t mark) {
-    unsigned char bytes[CHECK_BYTES];
-    char why[2];
-    return spari_file_get_part(temporary, offset_of_word(count), bytes, sizeof bytes, why, sizeof why) == SPAR_OK &&
-           get_word(bytes) == mark;
-}
-
-int spari_saving_put_part(const char *temporary, int64_t at, int64_t n, const uint64_t *words, char *why, size_t size) {
-    return spari_file_put_part(temporary, offset_of_word(at), words, 8 * (size_t)n, why, size);
-}
-
-int spari_saving_has_part(const char *temporary, int64_t at, int64_t n, uint64_t sum) {
-    enum { PIECE = 1 << 7 };
-    uint64_t words[PIECE], seen = 0;
-    char why[2];
-    for (int64_t i = 0; i < n; i += PIECE) {
-        size_t bytes = 8 * (size_t)(n - i < PIECE ? n - i : PIECE);
-        if (spari_file_get_part(temporary, offset_of_word(at + i), words, bytes, why, sizeof why) != SPAR_OK) {
-            return 0;
-        }
-        seen = spari_check_bytes(seen, words, bytes);
-    }
-    return seen == sum;
-}
-
-void spari_saving_skip(spari_saving *saving, int64_t n, uint64_t sum) {
-    saving->sum = spari_check_join(saving->sum, sum, 8 * (uint64_t)n);
-    saving->skipped = 1;
-}
-
-int spari_saving_end(spari_saving *saving, int64_t count, char *why, size_t size) {
-    unsigned char bytes[CHECK_BYTES];
-    FILE *f = saving->file.stream;
     put_word(bytes, saving->sum);
-    if (!saving->skipped || fseeko(f, (off_t)offset_of_word(count), SEEK_SET) == 0) {
-        put_summed(saving, bytes, sizeof bytes);
-        errno = saving->reason;
-        return spari_file_end(&saving->file, 1, why, size);
-    }
-    errno = saving->reason ? saving->reason : errno;
-    int status = io_failure(why, size, "cannot write", saving->file.place);
-    spari_file_drop(&saving->file);
-    return status;
+    put_summed(saving, bytes, sizeof bytes);
+    errno = saving->reason;
+    return spari_file_end(&saving->file, 1, why, size);
 }
 
 /* ---- reading ---- */
@@ -343,21 +274,18 @@ int spari_loading_read(spari_loading *source, int64_t at, int64_t n, uint64_t *w
     return SPAR_OK;
 }
 
-int spari_loading_sum(spari_loading *source, int part, int parts, uint64_t *sum, uint64_t *n, char *why, size_t size) {
+int spari_loading_check(spari_loading *source, char *why, size_t size) {
     unsigned char bytes[1 << 10];
-    int64_t words = HEAD_WORDS + source->count, each = words / parts, more = words % parts;
-    int64_t at = 8 * (part * each + (part < more ? part : more)), end = at + 8 * (each + (part < more));
-    *sum = 0, *n = (uint64_t)(end - at);
-    while (at < end) {
+    int64_t end = offset_of_word(source->count);
+    uint64_t sum = 0;
+    for (int64_t at = 0; at < end; at += (int64_t)sizeof bytes) {
         size_t piece = end - at < (int64_t)sizeof bytes ? (size_t)(end - at) : sizeof bytes;
         SPARI_TRY(read_raw(source, at, piece, bytes, why, size));
-        *sum = spari_check_bytes(*sum, bytes, piece);
-        at += (int64_t)piece;
+        sum = check_bytes(sum, bytes, piece);
+    }
+    if (sum != source->sum) {
+        (void)snprintf(why, size, "'%s' is damaged (wrong checksum); use an older file", source->path);
+        return SPAR_ERR_IO;
     }
     return SPAR_OK;
-}
-
-int spari_loading_refuse(const char *path, char *why, size_t size) {
-    (void)snprintf(why, size, "'%s' is damaged (wrong checksum); use an older file", path);
-    return SPAR_ERR_IO;
 }

@@ -28,39 +28,20 @@ int64_t spari_image_get_int(spari_image *image);
 /* Whether the next text equals `text`. */
 int spari_image_is_text(spari_image *image, const char *text);
 
-/* Converts words in place to the byte order of the file. */
-void spari_words_to_disc(uint64_t *words, int64_t n);
-
-/* Check sum of further bytes (it begins with 0), and check sum of two pieces, the second of n bytes. */
-uint64_t spari_check_bytes(uint64_t sum, const void *data, size_t n);
-uint64_t spari_check_join(uint64_t first, uint64_t second, uint64_t n);
-
 /* The calls below return SPAR_ERR_IO or SPAR_ERR_MEMORY with the reason in why[size]. */
 
-/* A file of `count` words that is being written. One process writes in order; others may write parts to
-   file.temporary. */
+/* A file of `count` words that is being written. */
 typedef struct spari_saving {
     spari_file file;
     uint64_t sum; /* of the bytes so far */
-    int skipped;  /* some words were written by other processes */
     int reason;   /* errno of the first write that failed */
 } spari_saving;
 int spari_saving_begin(spari_saving *saving, const char *path, int64_t count, char *why, size_t size);
-/* words are in the byte order of the file. Write errors are reported at the end. */
-void spari_saving_put(spari_saving *saving, const uint64_t *words, int64_t n);
-/* Writes a mark in place of the check sum, by which other processes recognise this file. mark returns 0 if it could
-   not be written. */
-int spari_saving_mark(spari_saving *saving, int64_t count, uint64_t mark);
-int spari_saving_is_marked(const char *temporary, int64_t count, uint64_t mark);
-/* Write n words of that file from another process, in the byte order of the file; and verify them by their check
-   sum. */
-int spari_saving_put_part(const char *temporary, int64_t at, int64_t n, const uint64_t *words, char *why, size_t size);
-int spari_saving_has_part(const char *temporary, int64_t at, int64_t n, uint64_t sum);
-/* Skips n words with this check sum, which other processes have written. */
-void spari_saving_skip(spari_saving *saving, int64_t n, uint64_t sum);
+/* Words are converted in place to the byte order of the file. Write errors are reported at the end. */
+void spari_saving_put(spari_saving *saving, uint64_t *words, int64_t n);
 /* Writes the check sum and moves the file to its final path. After a failure nothing has changed. To give up, call
    spari_file_drop. */
-int spari_saving_end(spari_saving *saving, int64_t count, char *why, size_t size);
+int spari_saving_end(spari_saving *saving, char *why, size_t size);
 
 /* A file that is being read. */
 typedef struct spari_loading {
@@ -73,8 +54,7 @@ typedef struct spari_loading {
 int spari_loading_open(spari_loading *source, const char *path, char *why, size_t size);
 void spari_loading_close(spari_loading *source);
 int spari_loading_read(spari_loading *source, int64_t at, int64_t n, uint64_t *words, char *why, size_t size);
-/* Check sum of one of `parts` parts of the n bytes that precede the stored check sum. */
-int spari_loading_sum(spari_loading *source, int part, int parts, uint64_t *sum, uint64_t *n, char *why, size_t size);
-int spari_loading_refuse(const char *path, char *why, size_t size); /* reports a wrong check sum */
+/* Whether the check sum is right. */
+int spari_loading_check(spari_loading *source, char *why, size_t size);
 
 #endif

@@ -1,7 +1,8 @@
 /* Loads a saved session (save.c describes the file) into a session with the same members. Two passes: the first
    checks and allocates; only if all ranks can load, the second changes the session. Members and fluids may be on
-   other ranks than before. No rank holds the whole file. Data common to all ranks are sent to all. For data of
-   single ranks, rank 0 sends the positions, and the data then go piece by piece to the ranks that need them. */
+   other ranks than before. Rank 0 reads, and no rank holds the whole file. Data common to all ranks are sent to all.
+   For data of single ranks, rank 0 sends the positions, and the data then go piece by piece to the ranks that need
+   them. */
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
 #include "../base/saved_file.h"
@@ -33,10 +34,9 @@ typedef struct fluid_record {
 } fluid_record;
 
 typedef struct reading {
-    const char *call; /* rank that reads */
-    spari_loading source;
-    int shared; /* all ranks have the file open; otherwise rank 0 alone */
-    int status; /* status of reading here, */
+    const char *call;
+    spari_loading source; /* on rank 0 */
+    int status;           /* status of reading here, */
     char why[SPARI_MESSAGE_SIZE / 2];
     spari_saved common;
     spari_image index;  /* index of the rest, rank by rank, without states */
@@ -83,80 +83,13 @@ static int tell_why(spar_session *s, const reading *l, int status) {
 
 /* ---- the file ---- */
 
-/* Path of rank 0's file; empty if it has none. */
-typedef struct told_file {
-    int64_t count;
-    uint64_t sum;
-    char path[4096];
-} told_file;
-
-/* Whether all ranks see the same file as rank 0. */
-static int share_file(spar_session *s, reading *l, told_file *told) {
-    char *where = is_root(s) ? realpath(l->source.path, NULL) : NULL;
-    if (where && strlen(where) < sizeof told->path) {
-        memcpy(told->path, where, strlen(where) + 1);
-        told->count = l->source.count;
-        told->sum = l->source.sum;
-    }
-    free(where);
-    SPARI_TRY(spari_comm_broadcast(s->ranks.comm, told, sizeof *told, s->message, sizeof s->message));
-    int blind = 0;
-    if (!is_root(s)) {
-        char why[sizeof l->why];
-        int seen = spari_loading_open(&l->source, told->path, why, sizeof why) == SPAR_OK;
-        blind = !seen || l->source.count != told->count || l->source.sum != told->sum;
-    }
-    SPARI_TRY(spari_anywhere(s, blind, &blind));
-    l->shared = !blind;
-    return SPAR_OK;
-}
-
-/* Check sum of the file: a part of it on each rank, or all of it on rank 0. */
-static int check_file_sum(spar_session *s, reading *l) {
-    enum { SUM, COUNT, STATUS, WORDS };
-    int ranks = spari_comm_size(s->ranks.comm), rank = spari_comm_rank(s->ranks.comm);
-    double *part = spari_zalloc((int64_t)WORDS * ranks, sizeof *part);
-    int64_t *first = spari_zalloc(ranks + 1, sizeof *first);
-    int status = agree_on_memory(s, part && first);
-    if (status == SPAR_OK) {
-        uint64_t own[2] = {0, 0}, sum = 0;
-        for (int r = 0; r < ranks; r++) {
-            first[r + 1] = first[r] + WORDS;
-        }
-        if (l->shared || rank == 0) {
-            status = spari_loading_sum(&l->source, l->shared ? rank : 0, l->shared ? ranks : 1, own, own + 1, l->why,
-                                       sizeof l->why);
-            status = tell_why(s, l, status);
-        }
-        memcpy(part + (ptrdiff_t)WORDS * rank, own, sizeof own);
-        status = spari_comm_share(s->ranks.comm, part, first, status, s->message, sizeof s->message);
-        for (int r = 0; r < ranks && status == SPAR_OK; r++) {
-            memcpy(own, part + (ptrdiff_t)WORDS * r, sizeof own);
-            sum = spari_check_join(sum, own[0], own[1]);
-        }
-        if (status == SPAR_OK && rank == 0 && sum != l->source.sum) {
-            status = tell_why(s, l, spari_loading_refuse(l->source.path, l->why, sizeof l->why));
-        }
-        status = spari_agree(s, status);
-    }
-    SPARI_FREE(part, first);
-    return status;
-}
-
 static int open_file(spar_session *s, reading *l, const char *path) {
     int status = SPAR_OK;
     if (is_root(s)) {
-        status = tell_why(s, l, spari_loading_open(&l->source, path, l->why, sizeof l->why));
+        status = spari_loading_open(&l->source, path, l->why, sizeof l->why);
+        status = status == SPAR_OK ? spari_loading_check(&l->source, l->why, sizeof l->why) : status;
     }
-    SPARI_TRY(spari_agree(s, status));
-    l->shared = spari_comm_size(s->ranks.comm) == 1;
-    if (!l->shared) {
-        told_file *told = spari_zalloc(1, sizeof *told);
-        status = agree_on_memory(s, told != NULL);
-        status = status == SPAR_OK ? share_file(s, l, told) : status;
-        free(told);
-    }
-    return status == SPAR_OK ? check_file_sum(s, l) : status;
+    return spari_agree(s, tell_why(s, l, status));
 }
 
 /* Words that cannot be read are zeros; the failure is reported after all ranks have received. */
@@ -170,25 +103,19 @@ static void read_words(reading *l, int64_t at, int64_t n, uint64_t *words) {
     }
 }
 
-/* Sends words of the file to the ranks that need them. to: a single rank, EACH: few ranks, EVERYBODY: many.
-   Collective, except for a single rank. */
-enum { EACH = -1, EVERYBODY = -2 };
+/* Sends words of the file to rank `to`, or to all. wanted: whether they are needed here. Collective, except for a
+   single rank. */
+enum { EVERYBODY = -1 };
 static int fetch_words(spar_session *s, reading *l, int to, int wanted, int64_t at, int64_t n, uint64_t *words) {
-    int root = is_root(s);
-    if (l->shared && to != EVERYBODY) {
-        if (wanted) {
-            read_words(l, at, n, words);
-        }
-        return SPAR_OK;
-    }
     for (int64_t i = 0; i < n; i += PIECE) {
         int64_t piece = n - i < PIECE ? n - i : PIECE;
         uint64_t *by = wanted ? words + i : l->buffer;
-        if (root) {
+        if (is_root(s)) {
             read_words(l, at + i, piece, by);
         }
-        SPARI_TRY(to < 0 ? spari_comm_broadcast(s->ranks.comm, by, 8 * piece, s->message, sizeof s->message)
-                         : spari_comm_move(s->ranks.comm, 0, to, by, 8 * piece, s->message, sizeof s->message));
+        SPARI_TRY(to == EVERYBODY
+                      ? spari_comm_broadcast(s->ranks.comm, by, 8 * piece, s->message, sizeof s->message)
+                      : spari_comm_move(s->ranks.comm, 0, to, by, 8 * piece, s->message, sizeof s->message));
     }
     return SPAR_OK;
 }
@@ -547,7 +474,7 @@ static int fetch_solvers(spar_session *s, reading *l) {
     for (int64_t i = 0; i < l->solver_count; i++) {
         const solver_record *r = l->solvers + i;
         double *to = (r->assembly ? l->assembled : l->solution)[r->index];
-        SPARI_TRY(fetch_words(s, l, EACH, to != NULL, r->at, r->count, (uint64_t *)(void *)to));
+        SPARI_TRY(fetch_words(s, l, EVERYBODY, to != NULL, r->at, r->count, (uint64_t *)(void *)to));
         if (to && l->status == SPAR_OK) {
             const spar_member *m = r->assembly ? NULL : member_at(s, r->index);
             broken |= m ? !m->row->is_state(m, to, r->count)
@@ -573,7 +500,7 @@ static int fetch_fluid(spar_session *s, reading *l, const fluid_record *r, int64
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         wanted |= takes(s, l, r, f, own);
     }
-    if (l->exact && !wanted && (l->shared || rank > 0)) {
+    if (l->exact && !wanted && rank > 0) {
         return SPAR_OK;
     }
     SPARI_TRY(fetch_piece(s, l, r, wanted, 0, r->loads, 0));

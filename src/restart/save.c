@@ -1,7 +1,6 @@
 /* Saves the whole session in one file (base/saved_file.h): data common to all ranks (common_state.h); then the data of
    each rank, preceded by their number of words: solvers of its members and assemblies, its fluids. No rank holds more
-   than its own data. If all ranks see the file that rank 0 has begun, each writes its own part, all at the same
-   time. Otherwise the parts go through rank 0 piece by piece. The bytes are the same. */
+   than its own data: rank 0 receives the others' piece by piece and writes them. */
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
 #include "../base/saved_file.h"
@@ -13,8 +12,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 /* ---- data of one rank ---- */
 
@@ -82,37 +79,29 @@ static int put_own(spari_image *image, const spar_session *s, const char *call) 
 
 /* ---- the file ---- */
 
-enum { PIECE = 1 << 13 }; /* words sent through rank 0 at once */
+enum { PIECE = 1 << 13 }; /* words sent to rank 0 at once */
 
-/* Layout of the parts, known on all ranks, and the file on rank 0. */
 typedef struct save_plan {
+    double *part;       /* [ranks][PART_WORDS] number of words of each rank */
     spari_image common; /* on rank 0 */
-    double *part;       /* [ranks][PART_WORDS] */
-    int64_t count;      /* words of the file */
+    int64_t count;      /* words of the file, on rank 0 */
     spari_saving file;  /* on rank 0 */
     char why[SPARI_MESSAGE_SIZE / 2];
-    char temporary[SPARI_MESSAGE_SIZE]; /* current path of its bytes, for all ranks; empty: not available */
-    uint64_t mark;                      /* by which they recognise it */
-    uint64_t piece[PIECE];              /* for pieces sent through rank 0: too large for a small stack */
+    uint64_t piece[PIECE]; /* too large for a small stack */
 } save_plan;
-enum { PART_COUNT, PART_SUM, PART_STATUS, PART_WORDS };
+enum { PART_COUNT, PART_STATUS, PART_WORDS };
 
 static int64_t part_count(const save_plan *p, int rank) {
     return (int64_t)p->part[rank * PART_WORDS + PART_COUNT];
 }
 
-/* Size and check sum of each rank's words, which are in the byte order of the file from here on. */
-static int share_parts(spar_session *s, save_plan *p, spari_image *own) {
+static int share_counts(spar_session *s, save_plan *p, const spari_image *own) {
     int ranks = spari_comm_size(s->ranks.comm);
     int64_t *first = spari_zalloc(ranks + 1, sizeof *first);
     p->part = spari_zalloc((int64_t)PART_WORDS * ranks, sizeof *p->part);
     int status = spari_agree(s, first && p->part ? SPAR_OK : spari_saved_no_memory(s));
     if (first && p->part && status == SPAR_OK) {
-        double *mine = p->part + (ptrdiff_t)PART_WORDS * spari_comm_rank(s->ranks.comm);
-        spari_words_to_disc(own->word, own->count);
-        uint64_t sum = spari_check_bytes(0, own->word, 8 * (size_t)own->count);
-        mine[PART_COUNT] = (double)own->count;
-        memcpy(mine + PART_SUM, &sum, sizeof sum);
+        p->part[spari_comm_rank(s->ranks.comm) * PART_WORDS + PART_COUNT] = (double)own->count;
         for (int r = 0; r < ranks; r++) {
             first[r + 1] = first[r] + PART_WORDS;
         }
@@ -122,7 +111,7 @@ static int share_parts(spar_session *s, save_plan *p, spari_image *own) {
     return status;
 }
 
-/* Writes the common data and rank 0's own; and finds where the others can write. */
+/* Writes the common data and rank 0's own. */
 static int begin_file(spar_session *s, save_plan *p, const spari_image *own, const char *path) {
     spari_saved_put(&p->common, s);
     if (p->common.failed) {
@@ -136,77 +125,13 @@ static int begin_file(spar_session *s, save_plan *p, const spari_image *own, con
     if (status != SPAR_OK) {
         return spari_fail(s, status, "%s", p->why);
     }
-    spari_words_to_disc(p->common.word, p->common.count);
     spari_saving_put(&p->file, p->common.word, p->common.count);
     spari_saving_put(&p->file, own->word, own->count);
     return SPAR_OK;
 }
 
-/* On rank 0: the mark is unique up to a probability of 2^-64. */
-static void offer_file(save_plan *p) {
-    struct timespec now = {0, 0};
-    (void)clock_gettime(CLOCK_REALTIME, &now);
-    const uint64_t own[] = {(uint64_t)now.tv_sec, (uint64_t)now.tv_nsec, (uint64_t)getpid(), (uintptr_t)p};
-    char *where = realpath(p->file.file.temporary, NULL);
-    p->mark = spari_hash_bytes(SPARI_HASH_BEGIN, own, sizeof own);
-    if (where && strlen(where) < sizeof p->temporary && spari_saving_mark(&p->file, p->count, p->mark)) {
-        memcpy(p->temporary, where, strlen(where) + 1);
-        spari_file_release(&p->file.file); /* the file system may need locks for ranks that write side by side */
-    }
-    free(where);
-}
-
-/* Whether all ranks see the file. */
-static int is_seen_by_all(spar_session *s, save_plan *p, int *all) {
-    int64_t told[2] = {p->count, 0};
-    memcpy(told + 1, &p->mark, sizeof p->mark);
-    SPARI_TRY(spari_comm_broadcast(s->ranks.comm, p->temporary, sizeof p->temporary, s->message, sizeof s->message));
-    SPARI_TRY(spari_comm_broadcast(s->ranks.comm, told, sizeof told, s->message, sizeof s->message));
-    p->count = told[0];
-    memcpy(&p->mark, told + 1, sizeof p->mark);
-    int blind = spari_comm_rank(s->ranks.comm) > 0 && !spari_saving_is_marked(p->temporary, p->count, p->mark);
-    SPARI_TRY(spari_anywhere(s, blind, &blind));
-    *all = !blind;
-    return SPAR_OK;
-}
-
-static uint64_t part_sum(const save_plan *p, int rank) {
-    uint64_t sum;
-    memcpy(&sum, p->part + rank * PART_WORDS + PART_SUM, sizeof sum);
-    return sum;
-}
-
-/* Position of a rank's part: the parts are at the end of the file. */
-static int64_t part_at(const save_plan *p, int rank, int ranks) {
-    int64_t at = p->count;
-    for (int r = rank; r < ranks; r++) {
-        at -= part_count(p, r);
-    }
-    return at;
-}
-
-/* Each rank but 0 writes its own part. Then each verifies the next one's, because not all file systems keep what two
-   machines write side by side. *whole: everything is there. */
-static int write_own_part(spar_session *s, save_plan *p, const spari_image *own, int *whole) {
-    int rank = spari_comm_rank(s->ranks.comm), ranks = spari_comm_size(s->ranks.comm), next = (rank + 1) % ranks,
-        status = SPAR_OK;
-    if (rank > 0) {
-        status =
-            spari_saving_put_part(p->temporary, part_at(p, rank, ranks), own->count, own->word, p->why, sizeof p->why);
-        status = status == SPAR_OK ? SPAR_OK : spari_fail(s, status, "%s", p->why);
-    }
-    SPARI_TRY(spari_agree(s, status));
-    int lost = !spari_saving_has_part(p->temporary, part_at(p, next, ranks), part_count(p, next), part_sum(p, next));
-    SPARI_TRY(spari_anywhere(s, lost, &lost));
-    *whole = !lost;
-    for (int r = 1; rank == 0 && *whole && r < ranks; r++) {
-        spari_saving_skip(&p->file, part_count(p, r), part_sum(p, r));
-    }
-    return SPAR_OK;
-}
-
-/* Sends through rank 0. Rank 0 receives also what it cannot write, and reports the failure at the end. */
-static int send_own_part(spar_session *s, save_plan *p, const spari_image *own) {
+/* Rank 0 receives also what it cannot write, and reports the failure at the end. */
+static int send_parts(spar_session *s, save_plan *p, const spari_image *own) {
     int rank = spari_comm_rank(s->ranks.comm);
     for (int r = 1; r < spari_comm_size(s->ranks.comm); r++) {
         for (int64_t at = 0; at < part_count(p, r) && (rank == 0 || rank == r); at += PIECE) {
@@ -221,45 +146,25 @@ static int send_own_part(spar_session *s, save_plan *p, const spari_image *own) 
     return SPAR_OK;
 }
 
-static int write_parts(spar_session *s, save_plan *p, const spari_image *own) {
-    int seen = 0, whole = 0;
-    if (spari_comm_rank(s->ranks.comm) == 0) {
-        offer_file(p);
-    }
-    SPARI_TRY(is_seen_by_all(s, p, &seen));
-    if (seen) {
-        SPARI_TRY(write_own_part(s, p, own, &whole));
-    }
-    return whole ? SPAR_OK : send_own_part(s, p, own);
-}
-
 /* Rank 0 moves the file to its final path, or removes it. */
 static int end_file(spar_session *s, save_plan *p, int status) {
-    if (spari_comm_rank(s->ranks.comm) == 0 && p->file.file.stream) {
-        if (status != SPAR_OK || !spari_file_hold(&p->file.file)) {
-            spari_file_drop(&p->file.file);
-            status = status != SPAR_OK
-                         ? status
-                         : spari_fail(s, SPAR_ERR_IO,
-                                      "another process is writing the same file; give each process its own path");
-        } else if ((status = spari_saving_end(&p->file, p->count, p->why, sizeof p->why)) != SPAR_OK) {
-            (void)spari_fail(s, status, "%s", p->why);
-        }
+    if (status != SPAR_OK) {
+        spari_file_drop(&p->file.file);
+        return status;
     }
-    return status;
+    status = spari_saving_end(&p->file, p->why, sizeof p->why);
+    return status == SPAR_OK ? SPAR_OK : spari_fail(s, status, "%s", p->why);
 }
 
-static int write_file(spar_session *s, spari_image *own, const char *path) {
+static int write_file(spar_session *s, const spari_image *own, const char *path) {
     save_plan *p = spari_zalloc(1, sizeof *p);
     int root = spari_comm_rank(s->ranks.comm) == 0;
     int status = spari_agree(s, p ? SPAR_OK : spari_saved_no_memory(s));
-    status = p && status == SPAR_OK ? share_parts(s, p, own) : status;
+    status = p && status == SPAR_OK ? share_counts(s, p, own) : status;
     if (p && status == SPAR_OK) {
         status = spari_agree(s, root ? begin_file(s, p, own, path) : SPAR_OK);
-        if (status == SPAR_OK && spari_comm_size(s->ranks.comm) > 1) {
-            status = write_parts(s, p, own);
-        }
-        status = end_file(s, p, status);
+        status = status == SPAR_OK ? send_parts(s, p, own) : status;
+        status = p->file.file.stream ? end_file(s, p, status) : status;
         status = spari_agree(s, status);
     }
     if (p) {
