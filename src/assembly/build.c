@@ -19,25 +19,36 @@ static int is_part(const spar_member *m) {
 
 /* ---- one assembly ---- */
 
-static void take_member(spari_assembly *a, spar_member *m) {
+static int take_member(spari_assembly *a, int *capacity, spar_member *m) {
+    if (a->components == *capacity) {
+        int more = 2 * *capacity + 4;
+        spari_component *component = realloc(a->component, (size_t)more * sizeof *component);
+        if (!component) {
+            return SPAR_ERR_MEMORY;
+        }
+        a->component = component, *capacity = more;
+    }
     m->assembly = a;
     m->component = a->components;
     a->component[a->components++] = (spari_component){.member = m, .owner_before = m->owner};
+    return SPAR_OK;
 }
 
 /* Lists all members that are connected to the first one, in the order in which joints reach them. */
-static void gather(spari_assembly *a, spar_member *first) {
-    take_member(a, first);
+static int gather(spari_assembly *a, spar_member *first) {
+    int capacity = 0;
+    SPARI_TRY(take_member(a, &capacity, first));
     for (int i = 0; i < a->components; i++) {
         const spar_member *m = a->component[i].member;
         for (int n = 0; n < m->joint_count; n++) {
             const spar_joint *j = m->joints[n];
             spar_member *other = j->member[j->member[0] == m];
             if (is_part(other) && !other->assembly) {
-                take_member(a, other);
+                SPARI_TRY(take_member(a, &capacity, other));
             }
         }
     }
+    return SPAR_OK;
 }
 
 static spari_component *part_of(spari_assembly *a, const spar_member *m) {
@@ -58,34 +69,23 @@ static void look_at_reference(spari_constraint *l) {
     spari_kinematics_motion(&j->kinematics, &l->pose[0], &l->pose[1], z, l->B);
 }
 
-/* Adds its members and joints, in the order in which joints reach them. first NULL: the joint `only`, whose nodes both
-   have prescribed motion. */
-static int assembly_create(spar_session *s, spar_member *first, spar_joint *only) {
+static spari_assembly *assembly_create(spar_session *s) {
     spari_assembly *a = spari_zalloc(1, sizeof *a);
-    if (!a) {
-        return SPAR_ERR_MEMORY;
+    if (a) {
+        a->session = s;
+        a->next = s->assemblies;
+        s->assemblies = a;
     }
-    a->session = s;
-    a->next = s->assemblies;
-    s->assemblies = a;
-    a->component = spari_zalloc(s->member_count, sizeof *a->component);
-    a->constraint = spari_zalloc(only ? 1 : s->joint_count, sizeof *a->constraint);
-    if (!a->component || !a->constraint) {
-        return SPAR_ERR_MEMORY;
-    }
-    if (first) {
-        gather(a, first);
-    }
-    for (spar_joint *j = only ? only : s->joints; j; j = only ? NULL : j->next) {
-        spari_component *of[2] = {part_of(a, j->member[0]), part_of(a, j->member[1])};
-        if (of[0] || of[1] || only) {
-            spari_constraint *l = a->constraint + a->constraints++;
-            l->joint = j;
-            l->component[0] = of[0], l->component[1] = of[1];
-            j->constrained = spari_joint_constrained(j);
-        }
-    }
-    return SPAR_OK;
+    return a;
+}
+
+/* The constraint of a joint, in an assembly that has memory for it. */
+static void take_joint(spari_assembly *a, spar_joint *j) {
+    spari_constraint *l = a->constraint + a->constraints;
+    l->joint = j;
+    l->component[0] = part_of(a, j->member[0]), l->component[1] = part_of(a, j->member[1]);
+    j->constraint = a->constraints++;
+    j->constrained = spari_joint_constrained(j);
 }
 
 static double mass_of_all(const spari_assembly *a) {
@@ -170,18 +170,51 @@ static void lead_to_components(spar_joint *j) {
     }
 }
 
-static int gather_all(spar_session *s) {
+/* The assembly of a joint; NULL: its nodes all have prescribed motion. */
+static spari_assembly *assembly_of(const spar_joint *j) {
+    return is_part(j->member[0]) ? j->member[0]->assembly : is_part(j->member[1]) ? j->member[1]->assembly : NULL;
+}
+
+/* Finds the members of the assemblies. A joint whose nodes all have prescribed motion is an assembly of its own. */
+static int gather_members(spar_session *s) {
     for (spar_joint *j = s->joints; j; j = j->next) {
-        int parts = 0;
         for (int side = 0; side < 2; side++) {
             spar_member *m = j->member[side];
-            parts += is_part(m);
             if (is_part(m) && !m->assembly) {
-                SPARI_TRY(assembly_create(s, m, NULL));
+                spari_assembly *a = assembly_create(s);
+                SPARI_TRY(a ? gather(a, m) : SPAR_ERR_MEMORY);
             }
         }
-        if (parts == 0) {
-            SPARI_TRY(assembly_create(s, NULL, j));
+        if (!assembly_of(j)) {
+            spari_assembly *a = assembly_create(s);
+            if (!a || !(a->constraint = spari_zalloc(1, sizeof *a->constraint))) {
+                return SPAR_ERR_MEMORY;
+            }
+            take_joint(a, j);
+        }
+    }
+    return SPAR_OK;
+}
+
+/* Joints in order of creation, whatever the order of the members. */
+static int gather_joints(spar_session *s) {
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        if (assembly_of(j)) {
+            assembly_of(j)->constraints++;
+        }
+    }
+    for (spari_assembly *a = s->assemblies; a; a = a->next) {
+        if (!a->constraint) {
+            a->constraint = spari_zalloc(a->constraints, sizeof *a->constraint);
+            a->constraints = 0;
+        }
+        if (!a->constraint) {
+            return SPAR_ERR_MEMORY;
+        }
+    }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        if (assembly_of(j)) {
+            take_joint(assembly_of(j), j);
         }
     }
     return SPAR_OK;
@@ -226,7 +259,8 @@ int spari_joints_place(spar_session *s) {
 /* This rank's part. */
 static int make_all(spar_session *s) {
     SPARI_TRY(spari_joints_place(s));
-    int status = gather_all(s);
+    int status = gather_members(s);
+    status = status == SPAR_OK ? gather_joints(s) : status;
     status = status == SPAR_OK ? spari_owners_of_assemblies(s) : status;
     for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = a->next) {
         status = move_members(a);
@@ -301,6 +335,9 @@ void spari_assemblies_give(spar_session *s, spari_assembly *all) {
     for (spari_assembly *a = all; a; a = a->next) {
         for (int i = 0; i < a->components; i++) {
             a->component[i].member->assembly = a;
+        }
+        for (int i = 0; i < a->constraints; i++) {
+            a->constraint[i].joint->constraint = i;
         }
     }
 }

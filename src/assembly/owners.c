@@ -84,20 +84,52 @@ static int find_host_owner(spari_assembly *a) {
     return SPAR_OK;
 }
 
-/* The most expensive assembly without an owner; NULL: all have one. */
-static spari_assembly *dearest_left(const spar_session *s) {
-    spari_assembly *found = NULL;
+/* Something to be given to a rank. */
+typedef struct load {
+    double expected;
+    int at; /* its place before sorting */
+} load;
+
+/* The most expensive first; of equal ones the one that came first. x and y begin with a load. */
+static int compare_loads(const void *a, const void *b) {
+    const load *x = a, *y = b;
+    return x->expected != y->expected ? (x->expected < y->expected) - (x->expected > y->expected)
+                                      : (x->at > y->at) - (x->at < y->at);
+}
+
+typedef struct open_assembly {
+    load load;
+    spari_assembly *assembly;
+} open_assembly;
+
+/* Gives the assemblies without an owner to the rank with the least to do. */
+static int assign_open(spar_session *s, double *busy) {
+    int n = 0;
+    for (const spari_assembly *a = s->assemblies; a; a = a->next) {
+        n += a->owner < 0;
+    }
+    open_assembly *all = spari_zalloc(n, sizeof *all);
+    if (!all) {
+        return SPAR_ERR_MEMORY;
+    }
+    n = 0;
     for (spari_assembly *a = s->assemblies; a; a = a->next) {
-        if (a->owner < 0 && (!found || spari_assembly_expected(a) > spari_assembly_expected(found))) {
-            found = a;
+        if (a->owner < 0) {
+            all[n] = (open_assembly){{spari_assembly_expected(a), n}, a};
+            n++;
         }
     }
-    return found;
+    qsort(all, (size_t)n, sizeof *all, compare_loads);
+    for (int i = 0; i < n; i++) {
+        all[i].assembly->owner = least_busy(busy, spari_comm_size(s->ranks.comm));
+        busy[all[i].assembly->owner] += all[i].load.expected;
+    }
+    free(all);
+    return SPAR_OK;
 }
 
 int spari_owners_of_assemblies(spar_session *s) {
-    int ranks = spari_comm_size(s->ranks.comm);
-    double *busy = spari_zalloc(ranks, sizeof *busy);
+    double *busy = spari_zalloc(spari_comm_size(s->ranks.comm), sizeof *busy);
     int status = busy ? SPAR_OK : SPAR_ERR_MEMORY;
     if (busy) {
         add_assigned(s, busy);
@@ -108,10 +140,7 @@ int spari_owners_of_assemblies(spar_session *s) {
             busy[a->owner] += spari_assembly_expected(a);
         }
     }
-    for (spari_assembly *a = NULL; status == SPAR_OK && (a = dearest_left(s)) != NULL;) {
-        a->owner = least_busy(busy, ranks);
-        busy[a->owner] += spari_assembly_expected(a);
-    }
+    status = status == SPAR_OK ? assign_open(s, busy) : status;
     free(busy);
     return status;
 }
@@ -119,27 +148,19 @@ int spari_owners_of_assemblies(spar_session *s) {
 /* ---- members without joints ---- */
 
 typedef struct free_member {
+    load load;
     spar_member *member;
-    int at, owner_before; /* `at`: its index in the order of creation */
-    double expected;
+    int owner_before;
     void *before; /* its former solution, while it moves */
     int moved;
 } free_member;
-
-/* The most expensive first; of equal ones the one created first. */
-static int compare_free(const void *a, const void *b) {
-    const free_member *x = a, *y = b;
-    return x->expected != y->expected ? (x->expected < y->expected) - (x->expected > y->expected)
-                                      : (x->at > y->at) - (x->at < y->at);
-}
 
 static int find_free(const spar_session *s, free_member *all) {
     int n = 0;
     for (spar_member *m = s->members; m; m = m->next) {
         if (is_unsettled(m)) {
             if (all) {
-                all[n] = (free_member){.member = m, .at = n, .owner_before = m->owner};
-                all[n].expected = spari_member_expected(m);
+                all[n] = (free_member){{spari_member_expected(m), n}, .member = m, .owner_before = m->owner};
             }
             n++;
         }
@@ -149,7 +170,7 @@ static int find_free(const spar_session *s, free_member *all) {
 
 static int move_free(spar_session *s, free_member *all, int n, double *busy) {
     int ranks = spari_comm_size(s->ranks.comm);
-    qsort(all, (size_t)n, sizeof *all, compare_free);
+    qsort(all, (size_t)n, sizeof *all, compare_loads);
     add_assigned(s, busy);
     for (const spari_assembly *a = s->assemblies; a; a = a->next) {
         busy[a->owner] += spari_assembly_expected(a);
@@ -157,7 +178,7 @@ static int move_free(spar_session *s, free_member *all, int n, double *busy) {
     for (int i = 0; i < n; i++) {
         spar_member *m = all[i].member;
         int owner = least_busy(busy, ranks);
-        busy[owner] += all[i].expected;
+        busy[owner] += all[i].load.expected;
         if (owner != m->owner) {
             all[i].moved = 1;
             int status = spari_member_move(m, owner, &all[i].before);

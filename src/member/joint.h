@@ -28,6 +28,7 @@ struct spar_joint {
     int64_t seat[2]; /* nodes whose motion moves the ends: those given, or the root if one body carries a beam */
     int unique[2];   /* the same as unique nodes; after the members are committed */
     int placed;      /* seats, lever arms and axes are known */
+    int constraint;  /* its place among the constraints of the assembly */
     spari_joint_kinematics kinematics; /* lever arms and axes: likewise */
     int frame_given;
     double position[3], axes[4]; /* of spar_joint_set_frame */
