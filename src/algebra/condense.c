@@ -6,23 +6,41 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Finds the unknowns from the first node that is no interface node to the last one. */
+static void find_interior(spari_condensed *c) {
+    int first = 0, last = c->n / 6;
+    while (first < c->ends && c->node[first] == first) {
+        first++;
+    }
+    for (int k = c->ends - 1; k >= 0 && c->node[k] == last - 1; k--) {
+        last--;
+    }
+    c->first = 6 * first;
+    c->length = last > first ? 6 * (last - first) : 0;
+}
+
 spari_condensed *spari_condensed_create(int ends, const int *node, int unknowns) {
     spari_condensed *c = spari_zalloc(1, sizeof *c);
-    int64_t m = 6 * (int64_t)ends, n = unknowns;
+    int64_t m = 6 * (int64_t)ends;
     if (!c) {
         return NULL;
     }
     c->ends = ends, c->n = unknowns;
     c->node = spari_zalloc(ends, sizeof *c->node);
-    c->W = spari_zalloc(m * n, sizeof *c->W);
-    c->rows = spari_zalloc(m * n, sizeof *c->rows);
+    if (c->node) {
+        memcpy(c->node, node, (size_t)ends * sizeof *node);
+        find_interior(c);
+    }
+    c->W = spari_zalloc(m * c->length + 1, sizeof *c->W);
+    c->rows = spari_zalloc(m * c->length + 1, sizeof *c->rows);
     c->K = spari_zalloc(m * m, sizeof *c->K);
     c->end_values = spari_zalloc(m, sizeof *c->end_values);
-    if (!c->node || !c->W || !c->rows || !c->K || !c->end_values) {
+    c->row = spari_zalloc(unknowns, sizeof *c->row);
+    c->column = spari_zalloc(unknowns, sizeof *c->column);
+    if (!c->node || !c->W || !c->rows || !c->K || !c->end_values || !c->row || !c->column) {
         spari_condensed_free(c);
         return NULL;
     }
-    memcpy(c->node, node, (size_t)ends * sizeof *node);
     return c;
 }
 
@@ -33,6 +51,8 @@ void spari_condensed_free(spari_condensed *c) {
         free(c->rows);
         free(c->K);
         free(c->end_values);
+        free(c->row);
+        free(c->column);
         free(c);
     }
 }
@@ -48,24 +68,25 @@ static int is_fixed(const spari_condensed *c, int unknown) {
 
 void spari_condensed_take(spari_condensed *c, spari_linear *tangent, int fixed) {
     int m = 6 * c->ends;
-    size_t n = (size_t)c->n;
+    const size_t length = (size_t)c->length;
     c->fixed = fixed;
     for (int j = 0; j < m; j++) {
-        spari_linear_read(tangent, unknown_of(c, j), c->rows + n * (size_t)j, c->W + n * (size_t)j);
-    }
-    for (int j = 0; j < m; j++) {
-        double *row = c->rows + n * (size_t)j, *column = c->W + n * (size_t)j;
+        double *row = c->rows + length * (size_t)j, *column = c->W + length * (size_t)j;
+        spari_linear_read(tangent, unknown_of(c, j), c->row, c->column);
         for (int k = 0; k < m; k++) {
             int u = unknown_of(c, k), out = is_fixed(c, u) || is_fixed(c, unknown_of(c, j));
-            c->K[m * j + k] = out ? k == j : row[u];
-            row[u] = column[u] = 0;
-        }
-        for (int i = 0; i < fixed; i++) {
-            row[i] = column[i] = 0;
+            c->K[m * j + k] = out ? k == j : c->row[u];
+            c->row[u] = c->column[u] = 0;
         }
         if (is_fixed(c, unknown_of(c, j))) {
-            memset(row, 0, n * sizeof *row);
-            memset(column, 0, n * sizeof *column);
+            memset(row, 0, length * sizeof *row);
+            memset(column, 0, length * sizeof *column);
+            continue;
+        }
+        memcpy(row, c->row + c->first, length * sizeof *row);
+        memcpy(column, c->column + c->first, length * sizeof *column);
+        for (int i = c->first; i < fixed && i < c->first + c->length; i++) {
+            row[i - c->first] = column[i - c->first] = 0;
         }
     }
     for (int j = 0; j < m; j++) {
@@ -74,14 +95,18 @@ void spari_condensed_take(spari_condensed *c, spari_linear *tangent, int fixed) 
 }
 
 int spari_condensed_form(spari_condensed *c, spari_linear *factors) {
-    int m = 6 * c->ends, n = c->n;
-    for (int k = 0; k < m; k++) {
-        double *column = c->W + (int64_t)n * k;
-        if (spari_linear_solve(factors, column)) {
+    int m = 6 * c->ends;
+    const size_t length = (size_t)c->length;
+    for (int k = 0; k < m && length > 0; k++) {
+        double *column = c->W + length * (size_t)k;
+        memset(c->column, 0, (size_t)c->n * sizeof *column);
+        memcpy(c->column + c->first, column, length * sizeof *column);
+        if (spari_linear_solve(factors, c->column)) {
             return 1;
         }
+        memcpy(column, c->column + c->first, length * sizeof *column);
         memset(c->end_values, 0, (size_t)m * sizeof *c->end_values);
-        spari_linear_add_rows(n, m, c->rows, -1, column, c->end_values);
+        spari_linear_add_rows(c->length, m, c->rows, -1, column, c->end_values);
         for (int j = 0; j < m; j++) {
             c->K[m * j + k] += c->end_values[j];
         }
@@ -96,11 +121,11 @@ int spari_condensed_reduce(const spari_condensed *c, spari_linear *factors, doub
         c->end_values[j] = is_fixed(c, u) ? 0 : r[u];
         r[u] = 0;
     }
-    if (c->n > m) { /* the member has other nodes */
+    if (c->length > 0) {
         if (spari_linear_solve(factors, r)) {
             return 1;
         }
-        spari_linear_add_rows(c->n, m, c->rows, -1, r, c->end_values);
+        spari_linear_add_rows(c->length, m, c->rows, -1, r + c->first, c->end_values);
     }
     for (int j = 0; j < m; j++) {
         r[unknown_of(c, j)] = c->end_values[j];
@@ -113,25 +138,25 @@ void spari_condensed_expand(const spari_condensed *c, double *x) {
     for (int j = 0; j < m; j++) {
         c->end_values[j] = x[unknown_of(c, j)];
     }
-    if (c->n > m) {
-        spari_linear_less_columns(c->n, m, c->W, c->end_values, x);
+    if (c->length > 0) {
+        spari_linear_less_columns(c->length, m, c->W, c->end_values, x + c->first);
     }
 }
 
 int64_t spari_condensed_state_size(const spari_condensed *c) {
     int64_t m = 6 * (int64_t)c->ends;
-    return m * (2 * (int64_t)c->n + m);
+    return m * (2 * (int64_t)c->length + m);
 }
 
 void spari_condensed_save(const spari_condensed *c, double *state) {
-    size_t m = 6 * (size_t)c->ends, n = (size_t)c->n;
+    size_t m = 6 * (size_t)c->ends, n = (size_t)c->length;
     memcpy(state, c->W, m * n * sizeof *state);
     memcpy(state + m * n, c->rows, m * n * sizeof *state);
     memcpy(state + 2 * m * n, c->K, m * m * sizeof *state);
 }
 
 void spari_condensed_load(spari_condensed *c, int fixed, const double *state) {
-    size_t m = 6 * (size_t)c->ends, n = (size_t)c->n;
+    size_t m = 6 * (size_t)c->ends, n = (size_t)c->length;
     c->fixed = fixed;
     memcpy(c->W, state, m * n * sizeof *state);
     memcpy(c->rows, state + m * n, m * n * sizeof *state);
