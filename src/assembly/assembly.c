@@ -26,7 +26,7 @@ void spari_assembly_name(const void *assembly, char *text, int size) {
 }
 
 int spari_assembly_solve(spari_assembly *a, double cv) {
-    return a->constraints == 0 ? a->component->row->solve(a->component) : spari_system_solve(a, cv, 0);
+    return a->constraints == 0 ? a->component->row->solve(a->component) : spari_system_solve(a, cv);
 }
 
 enum { NAME = 160 };
@@ -59,22 +59,47 @@ static int predict(void *self, spari_guess stays) {
     return any;
 }
 
-/* Residuals of all components and gaps of all constraints at the latest iterate. Returns the size that rounding
-   errors are relative to, or NaN. */
-static double balance(spari_assembly *a, double s, double dt, double *residual_size) {
-    double scale = 0;
+/* A position gap below this counts as zero: in a step h, it causes an acceleration of gap / h^2, 1 m/s^2 for 1e-8 s. */
+static double rounding_of(const spari_constraint *l) {
+    double size = 0;
+    for (int side = 0; side < 2; side++) {
+        size = fmax(size, spari_norm(l->pose[side].x));
+        size = fmax(size, l->component[side] ? spari_member_length(l->component[side]->member) : 0);
+    }
+    return 8 * DBL_EPSILON * size;
+}
+
+/* Gaps of all constraints at the latest iterate. */
+static void update_gaps(spari_assembly *a, double s, double dt) {
     for (int i = 0; i < a->components; i++) {
-        scale += a->component[i].row->balance(a->component + i);
+        spari_component_impose_root(a->component + i);
     }
     for (int i = 0; i < a->constraints; i++) {
-        spari_constraint_find(a->constraint + i, s, dt, 1);
+        spari_constraint *l = a->constraint + i;
+        spari_constraint_find(l, s, dt, 1);
+        double rounding = rounding_of(l);
+        for (int k = 0; k < 6; k++) {
+            double gap = spari_constraint_holds(l, k) ? spari_constraint_gap(l, k) : 0;
+            l->gap[k] = copysign(fmax(fabs(gap) - (k < 3 ? rounding : 8 * DBL_EPSILON), 0), gap);
+        }
     }
-    spari_constraints_add_forces(a);
+}
+
+/* Residuals of all components, with reused tangents also condensed: a component is visited once, since a large
+   assembly does not fit the caches. Returns the size that rounding errors are relative to, or NaN. */
+static double balance(spari_assembly *a, double *residual_size) {
+    double scale = 0;
     *residual_size = 0;
     for (int i = 0; i < a->components; i++) {
-        double left = a->component[i].row->residual_size(a->component + i);
+        spari_component *p = a->component + i;
+        scale += p->row->balance(p);
+        spari_constraints_add_forces(a, p);
+        double left = p->row->residual_size(p);
         *residual_size = fmax(*residual_size, left);
         scale += 0 * left;
+        if (a->factored && spari_component_reduce(p, 1, a->x + p->at)) {
+            return NAN;
+        }
     }
     return scale;
 }
@@ -93,12 +118,13 @@ static int form(spari_assembly *a) {
 static double correct(spari_assembly *a, double longest) {
     double largest = 0;
     for (int i = 0; i < a->components; i++) {
-        a->component[i].correction_size = a->component[i].row->correction_size(a->component + i);
         largest = fmax(largest, a->component[i].correction_size);
     }
     double cut = largest > longest ? longest / largest : 1;
     for (int i = 0; i < a->components; i++) {
-        spari_component_correct(a->component + i, cut);
+        spari_component *p = a->component + i;
+        spari_component_correct(p, cut);
+        p->motion = spari_component_motion(p);
     }
     spari_constraints_correct_loads(a, cut);
     return largest;
@@ -140,9 +166,8 @@ static double tolerance(const spari_assembly *a, double largest) {
     double size = 0, most = 0, worst = 0;
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
-        double motion = spari_component_motion(p);
-        p->allowed = s->newton.strict ? 0 : spari_newton_tolerance(p->member, &p->scheme, motion);
-        size = fmax(size, motion);
+        p->allowed = s->newton.strict ? 0 : spari_newton_tolerance(p->member, &p->scheme, p->motion);
+        size = fmax(size, p->motion);
         most = fmax(most, p->allowed);
     }
     for (int i = 0; i < a->components && !s->newton.strict; i++) {
@@ -186,16 +211,6 @@ static int begin_attempt(void *self, int reused) {
     return t->a->factored;
 }
 
-/* A position gap below this counts as zero: in a step h, it causes an acceleration of gap / h^2, 1 m/s^2 for 1e-8 s. */
-static double rounding_of(const spari_constraint *l) {
-    double size = 0;
-    for (int side = 0; side < 2; side++) {
-        size = fmax(size, spari_norm(l->pose[side].x));
-        size = fmax(size, l->component[side] ? spari_member_length(l->component[side]->member) : 0);
-    }
-    return 8 * DBL_EPSILON * size;
-}
-
 /* An iteration of a member without joints. */
 static const char *iterate_alone(spari_assembly *a, double longest, spari_iterate *it) {
     spari_component *p = a->component;
@@ -220,23 +235,16 @@ static const char *iterate_newton(void *self, double longest, spari_iterate *it)
     if (a->constraints == 0) {
         return iterate_alone(a, longest, it);
     }
-    double residual_size, scale = balance(a, t->s, t->dt, &residual_size);
+    update_gaps(a, t->s, t->dt);
+    double residual_size, scale = balance(a, &residual_size);
     if (!isfinite(scale)) {
         return "met values that are not finite";
     }
-    for (int i = 0; i < a->constraints; i++) {
-        spari_constraint *l = a->constraint + i;
-        double rounding = rounding_of(l);
-        for (int k = 0; k < 6; k++) {
-            double gap = spari_constraint_holds(l, k) ? spari_constraint_gap(l, k) : 0;
-            l->gap[k] = copysign(fmax(fabs(gap) - (k < 3 ? rounding : 8 * DBL_EPSILON), 0), gap);
-        }
-    }
-    if (!a->factored && form(a)) {
+    if (!a->factored && (form(a) || spari_system_reduce(a, 1))) {
         return "found a singular tangent";
     }
     a->factored = 1;
-    if (spari_system_solve(a, a->component[0].scheme.cv, 1)) {
+    if (spari_system_solve_reduced(a, a->component[0].scheme.cv)) {
         return "found a singular tangent";
     }
     it->correction = correct(a, longest);
@@ -274,7 +282,11 @@ static int project(spari_assembly *a, double s, double dt) {
         double worst = 0, size = 0;
         for (int i = 0; i < a->constraints; i++) {
             spari_constraint *l = a->constraint + i;
-            spari_constraint_find(l, s, dt, 1);
+            if (pass == 0) {
+                spari_constraint_find(l, s, dt, 1);
+            } else {
+                spari_constraint_find_rates(l, dt, 1);
+            }
             for (int k = 0; k < 6; k++) {
                 l->gap[k] = spari_constraint_holds(l, k) ? spari_constraint_rate_gap(l, k) : 0;
                 worst = fmax(worst, fabs(l->gap[k]));
@@ -427,9 +439,6 @@ enum { START_REFINEMENTS = 3 };
 
 /* The residual of the balance at t^0 and of the constraints' accelerations. */
 static void start_residual(spari_assembly *a, double cm) {
-    for (int i = 0; i < a->components; i++) {
-        a->component[i].row->unbalance(a->component + i);
-    }
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
         spari_constraint_find(l, 0, 0, 1);
@@ -438,7 +447,10 @@ static void start_residual(spari_assembly *a, double cm) {
             l->gap[k] /= cm;
         }
     }
-    spari_constraints_add_forces(a);
+    for (int i = 0; i < a->components; i++) {
+        a->component[i].row->unbalance(a->component + i);
+        spari_constraints_add_forces(a, a->component + i);
+    }
 }
 
 /* At t^0 a driven motion begins with the motion of its members; later with the motion that it was driven to. */
@@ -848,7 +860,7 @@ static int respond_once(spari_assembly *a, double *stacked) {
     for (int i = 0; i < a->constraints; i++) {
         memset(a->constraint[i].gap, 0, sizeof a->constraint[i].gap);
     }
-    if (spari_system_solve(a, a->component[0].scheme.cv, 0)) {
+    if (spari_system_solve(a, a->component[0].scheme.cv)) {
         return 1;
     }
     for (int i = 0; i < a->components; i++) {

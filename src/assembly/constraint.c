@@ -43,10 +43,17 @@ void spari_constraint_times(double B[6][12], const double v[12], double rate[6])
     }
 }
 
+static void find_rates(spari_constraint *l, double dt, double factor) {
+    const spari_component *p = l->component[0] ? l->component[0] : l->component[1];
+    spari_relative *r = &l->joint->after;
+    spari_constraint_times(l->B, l->v, r->rate);
+    double rate = p && dt > 0 ? p->scheme.rate : INFINITY; /* of the coordinates in a step; none at one moment */
+    l->springs = spari_joint_spring(l->joint, r->z, r->rate, rate, factor, r->load);
+}
+
 void spari_constraint_find(spari_constraint *l, double s, double dt, double factor) {
     spar_joint *j = l->joint;
     spari_relative *r = &j->after;
-    const spari_component *p = l->component[0] ? l->component[0] : l->component[1];
     double near[6];
     memcpy(near, r->z, sizeof near);
     r->found = 1;
@@ -54,9 +61,17 @@ void spari_constraint_find(spari_constraint *l, double s, double dt, double fact
     find_side(l, 1, s, dt);
     spari_kinematics_motion(&j->kinematics, &l->pose[0], &l->pose[1], r->z, l->B);
     spari_joint_count_turns(j, near, r->z);
-    spari_constraint_times(l->B, l->v, r->rate);
-    double rate = p && dt > 0 ? p->scheme.rate : INFINITY; /* of the coordinates in a step; none at one moment */
-    l->springs = spari_joint_spring(j, r->z, r->rate, rate, factor, r->load);
+    find_rates(l, dt, factor);
+}
+
+void spari_constraint_find_rates(spari_constraint *l, double dt, double factor) {
+    for (int side = 0; side < 2; side++) {
+        const spari_component *p = l->component[side];
+        if (p) {
+            memcpy(l->v + 6 * side, p->state->v + 6 * l->joint->unique[side], 6 * sizeof *l->v);
+        }
+    }
+    find_rates(l, dt, factor);
 }
 
 double spari_constraint_gap(const spari_constraint *l, int k) {

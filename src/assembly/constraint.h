@@ -51,6 +51,8 @@ static inline int spari_constraint_count(const spari_constraint *l) {
    Nodes with prescribed motion are at the part s of the step dt. The loads on constrained motions are the
    multipliers, which stay. factor: of the host's load and of preloads. */
 void spari_constraint_find(spari_constraint *l, double s, double dt, double factor);
+/* The same after only the velocities of its components have changed. */
+void spari_constraint_find_rates(spari_constraint *l, double dt, double factor);
 /* rate := B v */
 void spari_constraint_times(double B[6][12], const double v[12], double rate[6]);
 /* The error of constrained motion k, and of its rate. */

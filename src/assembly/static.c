@@ -63,9 +63,9 @@ static double balance_static(spari_assembly *a, double f, double *residual_size)
             scale = fmax(scale, fabs(j->after.load[k]));
         }
     }
-    spari_constraints_add_forces(a);
     *residual_size = 0;
     for (int i = 0; i < a->components; i++) {
+        spari_constraints_add_forces(a, a->component + i);
         double left = a->component[i].row->residual_size(a->component + i);
         *residual_size = fmax(*residual_size, left);
         scale += 0 * left;
@@ -143,8 +143,7 @@ static outcome solve_downhill(spari_assembly *a, double f, double *last_shift) {
     for (int i = 0, wrong = why != FOUND; i < SHIFTS && wrong; i++, shift *= 4) {
         a->system_serves = 0;
         a->shift = *last_shift = shift;
-        wrong =
-            spari_system_solve(a, 0, 0) || spari_system_weakest_pivot(a) < loose || spari_system_count_negative(a) > 0;
+        wrong = spari_system_solve(a, 0) || spari_system_weakest_pivot(a) < loose || spari_system_count_negative(a) > 0;
         if (wrong && i == SHIFTS - 1) {
             return FAILED;
         }

@@ -657,28 +657,24 @@ static int solve_reduced(spari_assembly *a, double cv, int loads) {
     for (int i = 0; i < n && gaps; i++) {
         a->x[i] += a->interface[i / 6].gap[i % 6];
     }
-    for (int i = 0; i < a->components; i++) {
-        spari_component *p = a->component + i;
-        spari_component_expand(p, a->x + p->at);
-    }
     return 0;
 }
 
-void spari_constraints_add_forces(spari_assembly *a) {
-    for (int i = 0; i < a->constraints; i++) {
-        spari_constraint *l = a->constraint + i;
+void spari_constraints_add_forces(const spari_assembly *a, spari_component *p) {
+    if (a->constraints == 0) { /* a member that is solved alone */
+        return;
+    }
+    for (int n = 0; n < p->member->joint_count; n++) {
+        spari_constraint *l = a->constraint + p->member->joints[n]->constraint;
         double f[12];
         spari_kinematics_forces(l->B, l->joint->after.load, f);
         for (int side = 0; side < 2; side++) {
-            spari_component *p = l->component[side];
-            for (int k = 0; k < 6 && p; k++) {
+            for (int k = 0; k < 6 && l->component[side] == p; k++) {
                 p->solver->r[6 * l->joint->unique[side] + k] -= f[6 * side + k];
-            }
-            if (p) {
-                memset(p->solver->r, 0, (size_t)spari_member_constrained(p->member) * sizeof(double));
             }
         }
     }
+    memset(p->solver->r, 0, (size_t)spari_member_constrained(p->member) * sizeof(double));
 }
 
 void spari_constraints_correct_loads(spari_assembly *a, double cut) {
@@ -689,15 +685,30 @@ void spari_constraints_correct_loads(spari_assembly *a, double cut) {
     }
 }
 
-int spari_system_solve(spari_assembly *a, double cv, int rotated) {
-    /* first, because the system uses the rotations of the components */
+int spari_system_reduce(spari_assembly *a, int rotated) {
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
         if (spari_component_reduce(p, rotated, a->x + p->at)) {
             return 1;
         }
     }
-    return solve_reduced(a, cv, 1);
+    return 0;
+}
+
+int spari_system_solve_reduced(spari_assembly *a, double cv) {
+    if (solve_reduced(a, cv, 1)) {
+        return 1;
+    }
+    for (int i = 0; i < a->components; i++) {
+        spari_component *p = a->component + i;
+        spari_component_expand(p, a->x + p->at);
+        p->correction_size = p->row->correction_size(p);
+    }
+    return 0;
+}
+
+int spari_system_solve(spari_assembly *a, double cv) {
+    return spari_system_reduce(a, 0) || spari_system_solve_reduced(a, cv);
 }
 
 static int close_gaps(spari_assembly *a, double cv, int loads) {
@@ -710,7 +721,13 @@ static int close_gaps(spari_assembly *a, double cv, int loads) {
 }
 
 int spari_system_close_gaps(spari_assembly *a, double cv) {
-    return close_gaps(a, cv, 1);
+    if (close_gaps(a, cv, 1)) {
+        return 1;
+    }
+    for (int i = 0; i < a->components; i++) {
+        spari_component_expand(a->component + i, a->x + a->component[i].at);
+    }
+    return 0;
 }
 
 int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acceleration) {
@@ -721,6 +738,7 @@ int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acce
         return 1;
     }
     for (int i = 0; i < a->components; i++) {
+        spari_component_expand(a->component + i, a->x + a->component[i].at);
         spari_component_shift_rates(a->component + i, v, acceleration, 0);
     }
     return 0;

@@ -60,8 +60,8 @@ struct spari_assembly {
     double *rates; /* 6 of each node of the largest component */
 };
 
-/* Subtracts the constraints' forces from the components' residuals; constrained unknowns get none. */
-void spari_constraints_add_forces(spari_assembly *a);
+/* Subtracts the constraints' forces from the residual of a component; constrained unknowns get none. */
+void spari_constraints_add_forces(const spari_assembly *a, spari_component *p);
 /* A member without joints is solved as an assembly of one component and no constraint. */
 static inline spari_assembly spari_assembly_of_one(spari_component *p) {
     return (spari_assembly){.session = p->member->session, .here = 1, .components = 1, .component = p};
@@ -86,11 +86,11 @@ void spari_system_name_free(spari_assembly *a, char *text, int size);
 void spari_system_keep_joint_tangents(spari_assembly *a);
 /* Solves for the corrections of the components, and of the multipliers (`correction`), that remove the components'
    residuals and the constraints' gaps. The constraints are those of the present positions; the reused tangents of
-   the components follow their nodes.
-     cv: as for the tangents
-     rotated: as for spari_component_reduce
-   Returns 0 or 1. */
-int spari_system_solve(spari_assembly *a, double cv, int rotated);
+   the components follow their nodes. cv: as for the tangents. Returns 0 or 1. */
+int spari_system_solve(spari_assembly *a, double cv);
+/* The same in two parts: the condensed residuals (rotated: as for spari_component_reduce), and the solution. */
+int spari_system_reduce(spari_assembly *a, int rotated);
+int spari_system_solve_reduced(spari_assembly *a, double cv);
 /* The same for the gaps alone, without forces. */
 int spari_system_close_gaps(spari_assembly *a, double cv);
 /* The same for the rates at the end: shifts velocities by v, and accelerations by `acceleration`, times the

@@ -98,8 +98,8 @@ typedef struct spari_component {
     spari_stage stage;
     const spari_rotating_frame *rotating; /* equilibrium in a rotating frame; NULL: in one at rest */
     double moved_in_step;                 /* of a component without ends: the motion of the stage; 0: not known */
-    double correction_size,
-        allowed;             /* of the latest correction: its size, and the remaining correction that is allowed */
+    /* Of the latest correction: its size, the motion in the step, and the remaining correction that is allowed. */
+    double correction_size, motion, allowed;
     int moved, owner_before; /* during creation: the rank that had the member before, and the solution of this rank */
     void *solution_before;
 } spari_component;
@@ -127,6 +127,8 @@ spari_component spari_component_of(spar_member *member);
 
 /* Allocates the ends, before `attach`. Returns 0 or SPAR_ERR_MEMORY. */
 int spari_component_make_ends(const spari_component *p);
+/* Gives the root its prescribed motion, or that at t^n. */
+void spari_component_impose_root(spari_component *p);
 /* The step begins with the published velocities. */
 void spari_component_take_velocities(const spari_component *p);
 /* Saves the rates at the end, or restores them (back). */

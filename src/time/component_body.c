@@ -136,12 +136,16 @@ static void subtract_loads(void *context, int64_t from, int64_t to) {
     }
 }
 
+void spari_component_impose_root(spari_component *p) {
+    spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, p->solver->increment);
+}
+
 static double balance_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     const spari_body *body = s->body;
     const spari_state *at = &p->stage.ends.absolute;
     const int still = p->scheme.still;
-    spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, s->increment);
+    spari_component_impose_root(p);
     double scale =
         spari_body_residual(body, at->q, still && !body->D ? NULL : at->v, still ? NULL : at->a, 1, s->r, &s->power);
     spari_solver_spread(s, subtract_loads, s);
