@@ -301,6 +301,7 @@ static void pass_coupling(passage *t, spari_coupling *c) {
     c->iterations = c->iterations < 0 ? 0 : c->iterations > c->most ? c->most : c->iterations;
     pass(t, c->residual, c->iterations);
     pass(t, c->size, c->iterations);
+    pass_int(t, &c->idle);
     pass(t, &c->moved, 1);
     pass(t, &c->travelled, 1);
     pass(t, c->report, SPAR_REPORT_COUNT);
