@@ -348,7 +348,7 @@ void spari_accelerator_reject(spari_accelerator *a) {
     a->ratios = (spari_ratios){0};
     a->most_weight = 0;
     a->memory = a->memory_accepted;
-    if (a->before.open) { /* otherwise the step was read from a file */
+    if (a->before.open) {
         a->imaged = a->begun.imaged;
         a->ratios_before = a->begun.ratios;
         spari_differences_restore(a);

@@ -8,7 +8,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { OWN = 34, MEMORY = sizeof(spari_recollection) / sizeof(double), HEAD = OWN + 2 * MEMORY, COLUMN_HEAD = 6 };
+enum {
+    OWN = 34,
+    MEMORY = sizeof(spari_recollection) / sizeof(double),
+    HEAD = OWN + 2 * MEMORY,
+    COLUMN_HEAD = 6,
+    BEGUN = 5
+};
 
 /* Vectors of length n per column. */
 static int64_t of_column(const spari_accelerator *a) {
@@ -29,7 +35,8 @@ static int occupied(const spari_accelerator *a) {
 }
 
 int64_t spari_accelerator_state_size(const spari_accelerator *a) {
-    return HEAD + of_iteration(a) * a->n + occupied(a) * (COLUMN_HEAD + of_column(a) * a->n) + a->used;
+    return HEAD + of_iteration(a) * a->n + occupied(a) * (COLUMN_HEAD + of_column(a) * a->n) + a->used + BEGUN +
+           spari_snapshot_size(&a->before);
 }
 
 static int whole_below(double x, double end) {
@@ -145,6 +152,12 @@ static void pass_column(state_passage *t, const spari_accelerator *a, int s) {
     }
 }
 
+/* For a reject: the beginning of the step, BEGUN numbers. The images from then follow as a snapshot. */
+static void pass_beginning(state_passage *t, spari_accelerator *a) {
+    pass_whole(t, &a->begun.imaged, a->set.imaged ? 2 : 1);
+    pass_ratios(t, &a->begun.ratios);
+}
+
 void spari_accelerator_save(const spari_accelerator *a, double *state) {
     state_passage t = {.at = state};
     spari_accelerator own = *a;
@@ -157,8 +170,10 @@ void spari_accelerator_save(const spari_accelerator *a, double *state) {
         }
     }
     for (int j = 0; j < a->used; j++) {
-        t.at[j] = a->order[j];
+        *t.at++ = a->order[j];
     }
+    pass_beginning(&t, &own);
+    spari_snapshot_save(&a->before, t.at);
 }
 
 /* Whether columns are in distinct slots, and not more of this step or of older ones than allowed. */
@@ -182,6 +197,21 @@ static int are_columns(const spari_accelerator *a, const double *first, int64_t 
     return of_step <= a->set.columns && occupied - of_step <= a->set.columns;
 }
 
+/* Length of a snapshot of images (quasi_newton.c), of which `count` numbers are there; -1: it is none. */
+static int64_t images_before(const spari_accelerator *a, const double *from, int64_t count) {
+    int64_t length = a->slots;
+    if (!a->set.imaged || count < length) {
+        return -1;
+    }
+    for (int s = 0; s < a->slots; s++) {
+        if (from[s] != -1 && from[s] != 0 && from[s] != 1) {
+            return -1;
+        }
+        length += from[s] < 0 ? 0 : (from[s] > 0 ? 4 : 2) * a->n;
+    }
+    return length;
+}
+
 int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count) {
     spari_accelerator then = *a;
     state_passage t = {.at = (double *)(uintptr_t)state, .reads = 1};
@@ -190,17 +220,25 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
         return 0;
     }
     pass_head(&t, &then, &columns);
-    const int64_t n = a->n, first = HEAD + of_iteration(a) * n, used = then.used;
-    if (t.bad || then.n != n || count != first + columns * (COLUMN_HEAD + of_column(a) * n) + used ||
-        !are_columns(a, state + first, columns, (double)then.step)) {
+    const int64_t n = a->n, first = HEAD + of_iteration(a) * n, used = then.used,
+                  order = first + columns * (COLUMN_HEAD + of_column(a) * n), images = order + used + BEGUN,
+                  left = count - images - SPARI_SNAPSHOT_HEAD;
+    if (t.bad || then.n != n || left < 0 || !are_columns(a, state + first, columns, (double)then.step)) {
         return 0;
     }
-    for (int64_t j = count - used; j < count; j++) {
+    for (int64_t j = order; j < order + used; j++) {
         if (!whole_below(state[j], a->slots)) {
             return 0;
         }
     }
+    t.at = (double *)(uintptr_t)state + order + used;
+    pass_beginning(&t, &then);
+    if (t.bad ||
+        !spari_snapshot_is(t.at, left + SPARI_SNAPSHOT_HEAD, images_before(a, t.at + SPARI_SNAPSHOT_HEAD, left))) {
+        return 0;
+    }
     *a = then;
+    t.at = (double *)(uintptr_t)state + HEAD;
     spari_snapshot_close(&a->before);
     pass_vectors(&t, a);
     for (int s = 0; s < a->slots; s++) {
@@ -213,5 +251,6 @@ int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t co
     for (int64_t j = 0; j < used; j++) { /* in the original order: the same bits */
         (void)spari_differences_append(a, (int)t.at[j], 0);
     }
+    spari_snapshot_load(&a->before, state + images, 1);
     return 1;
 }

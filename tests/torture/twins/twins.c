@@ -1,8 +1,8 @@
 /* Random scenes, each played several times: as it is; with 2, 3 or 7 threads; with getters and refused calls in
    between, around which the saved session must stay the same to the byte; saved and loaded into another session, within
-   steps too, which goes on; with steps that are rejected and made again, by other dt. All end with the same bits.
-   Scenes have joints and lines of all kinds, members whose motion is given, fluids with added mass, guessed or learned,
-   substeps, a balanced start or none, and uneven steps.
+   steps too, which goes on; with steps that are rejected and made again, by other dt; with both. All end with the same
+   bits. Scenes have joints and lines of all kinds, members whose motion is given, fluids with added mass, guessed or
+   learned, substeps, a balanced start or none, and uneven steps.
 
      twins [--scenes n] [--seed s] [--keep] [--one]     one: the seed is that of a scene that was told */
 #include <spar/spar.h>
@@ -18,8 +18,8 @@
 #include <unistd.h>
 
 enum { MOST_MEMBERS = 7, MOST_JOINTS = 8, MOST_FLUIDS = 3, PLACES = 3, STEPS = 7, ROW = 2048, NODES = 32 };
-enum way { PLAIN, THREADS, ASKED, LOADED, REJECTED, WAYS };
-static const char *const way_name[WAYS] = {"as it is", "threads", "asked", "loaded", "rejected"};
+enum way { PLAIN, THREADS, ASKED, LOADED, REJECTED, LOADED_REJECTED, WAYS };
+static const char *const way_name[WAYS] = {"as it is", "threads", "asked", "loaded", "rejected", "loaded and rejected"};
 
 typedef struct scene {
     uint64_t random; /* of the description and the run: the same in all ways */
@@ -435,7 +435,7 @@ static void between_calls(scene *w, uint64_t seed, int *bad) {
     (void)spar_session_get_phase(w->s, &phase);
     if (w->way == ASKED && draw(&w->own, 2)) {
         *bad = *bad || stays(w);
-    } else if (w->way == LOADED && draw(&w->own, w->within ? 6 : 2) == 0 &&
+    } else if ((w->way == LOADED || w->way == LOADED_REJECTED) && draw(&w->own, w->within ? 6 : 2) == 0 &&
                (w->within || phase <= SPAR_PHASE_BETWEEN)) {
         *bad = *bad || reload(w, seed);
     }
@@ -498,7 +498,7 @@ static int play(uint64_t seed, enum way way, double row[STEPS + 1][ROW]) {
         double h = draw(&w.random, 3) ? dt : dt * between(&w.random, 0.2, 3);
         tell(&w, w.time + h, 0);
         between_calls(&w, seed, &bad);
-        for (int again = way == REJECTED ? draw(&w.own, 3) : 0; again > 0; again--) {
+        for (int again = way >= REJECTED ? draw(&w.own, 3) : 0; again > 0; again--) {
             (void)play_step(&w, seed, h * between(&w.own, 0.5, 2), 1 + draw(&w.own, 2), &bad);
             tell(&w, w.time + h, 0);
         }
