@@ -353,7 +353,7 @@ void spari_frame_restart(spar_member *m) {
 }
 
 enum {
-    STATE_HEAD = 12,
+    STATE_HEAD = 14,
     STATE_ROTATION = STATE_HEAD,
     STATE_BEGUN = STATE_ROTATION + 12,
     STATE_ENDS = STATE_BEGUN + sizeof(spari_frame_tangent_state) / sizeof(double),
@@ -385,7 +385,9 @@ void spari_frame_save(const spar_member *m, double *state) {
                                      f->steps.begin.h,
                                      f->steps.begin.even,
                                      f->steps.solved.h,
-                                     f->steps.solved.even};
+                                     f->steps.solved.even,
+                                     (double)f->solves,
+                                     (double)f->factors};
     const spari_frame_state *const ends[2] = {&f->begin, &f->to};
     memcpy(state, head, sizeof head);
     memcpy(state + STATE_ROTATION, f->rates, sizeof f->rates);
@@ -407,7 +409,7 @@ int spari_frame_is_state(const spar_member *m, const double *state, int64_t coun
     const int64_t at = ends_size(f), expected = spari_linear_state_size(f->linear);
     if (count < at + SPARI_SNAPSHOT_HEAD || state[0] != f->n || !spari_trace_is(state + 6) ||
         !spari_pattern_is(state[8], state[9]) || !spari_pattern_is(state[10], state[11]) ||
-        !spari_trace_is(state + STATE_BEGUN + 3)) {
+        !spari_is_count(state[12]) || !spari_is_count(state[13]) || !spari_trace_is(state + STATE_BEGUN + 3)) {
         return 0;
     }
     int64_t factors = state[1] != 0 ? expected : 0, before = SPARI_SNAPSHOT_HEAD + (state[at + 1] > 0 ? expected : 0);
@@ -430,6 +432,7 @@ void spari_frame_load(spar_member *m, const double *state) {
     f->tangent.trace = (spari_trace){state[6], state[7]};
     f->steps.begin = (spari_pattern){state[8], (int)state[9]};
     f->steps.solved = (spari_pattern){state[10], (int)state[11]};
+    f->solves = (int64_t)state[12], f->factors = (int64_t)state[13];
     memcpy(f->tangent.rates, state + STATE_ROTATION + 6, sizeof f->tangent.rates);
     memcpy(&f->begun, state + STATE_BEGUN, sizeof f->begun);
     const double *at = state + STATE_ENDS;

@@ -301,6 +301,35 @@ static void same_bits_after_reject(void **state) {
     spar_session_destroy(&s);
 }
 
+/* The count of iterations since the commit goes on after a load, whatever the fidelity. */
+static void iterations_go_on(void **state) {
+    (void)state;
+    static const int fidelities[] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL,
+                                     SPAR_FIDELITY_RIGID};
+    double K[36], M[36];
+    scene_box(K, M);
+    for (size_t k = 0; k < sizeof fidelities / sizeof *fidelities; k++) {
+        int64_t there = 0, here = 0;
+        for (int again = 0; again < 2; again++) {
+            spar_session *s = scene_session();
+            spar_member *beam = scene_beam(s, "beam", 2, 4, 10, K, M);
+            OK(s, spar_member_set_root(beam, SPAR_ROOT_FREE));
+            OK(s, spar_member_set_fidelity(beam, fidelities[k], fidelities[k] == SPAR_FIDELITY_MODAL ? 9 : 0));
+            OK(s, spar_member_commit(beam));
+            if (again) {
+                OK(s, spar_session_load(s, file));
+            } else {
+                scene_run(s, 0.01, 3);
+                OK(s, spar_session_save(s, file));
+            }
+            OK(s, spar_member_get_iterations(beam, again ? &here : &there, NULL));
+            spar_session_destroy(&s);
+        }
+        assert_true(there > 0);
+        assert_int_equal(here, there);
+    }
+}
+
 /* ---- refusals ---- */
 
 static unsigned char *bytes;
@@ -482,6 +511,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits),
                                        cmocka_unit_test(same_bits_without_loads),
                                        cmocka_unit_test(same_bits_after_reject),
+                                       cmocka_unit_test(iterations_go_on),
                                        cmocka_unit_test(bad_files),
                                        cmocka_unit_test(other_settings),
                                        cmocka_unit_test(leaves_one_file),
