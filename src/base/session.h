@@ -118,6 +118,7 @@ struct spar_session {
     int joint_count;
     spar_member *last_member; /* of those lists */
     spar_joint *last_joint;
+    spar_fluid *last_fluid;
     spari_names member_names, joint_names;
 
     double gravity[3];

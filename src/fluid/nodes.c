@@ -39,11 +39,9 @@ int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid)
     }
     strcpy(copy, name);
     made->member = member, made->name = copy;
-    spar_fluid **end = &session->fluids; /* appended: loads are added in order of creation */
-    while (*end) {
-        end = &(*end)->next;
-    }
-    *end = made;
+    made->before = session->last_fluid; /* appended: loads are added in order of creation */
+    *(made->before ? &made->before->next : &session->fluids) = made;
+    session->last_fluid = made;
     *fluid = made;
     return SPAR_OK;
 }
@@ -165,13 +163,9 @@ void spari_fluid_forget_refusal(spar_fluid *fluid) {
 }
 
 static void take_out(spar_fluid *fluid) {
-    spar_fluid **at = &fluid->member->session->fluids;
-    while (*at && *at != fluid) {
-        at = &(*at)->next;
-    }
-    if (*at) {
-        *at = fluid->next;
-    }
+    spar_session *session = fluid->member->session;
+    *(fluid->before ? &fluid->before->next : &session->fluids) = fluid->next;
+    *(fluid->next ? &fluid->next->before : &session->last_fluid) = fluid->before;
     spari_fluid_free(fluid);
 }
 

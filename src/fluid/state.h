@@ -105,7 +105,7 @@ typedef struct spari_fluid_options {
 
 struct spar_fluid {
     spar_member *member;
-    spar_fluid *next;
+    spar_fluid *before, *next; /* in order of creation */
     char *name;
     int method, consistent;
     double max_distance;
