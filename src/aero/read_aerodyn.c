@@ -4,7 +4,6 @@
 #include "aerodyn.h"
 #include "message.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>

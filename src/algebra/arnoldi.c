@@ -8,7 +8,6 @@
 #include "cblas.h"
 #include "schur.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,6 @@
 
 #include "../base/status.h"
 #include "cblas.h"
-#include "dense.h"
 
 #ifdef SPARI_HAVE_LAPACK
 #include "lapack.h"
@@ -13,7 +12,6 @@
 #endif
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #ifndef CMPLX /* the system's header has it for GCC alone; here both parts are finite */
 #define CMPLX(re, im) ((double complex)((re) + (im)*_Complex_I))

@@ -11,7 +11,6 @@
 #include "eigen.h"
 #include "shifted.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,6 @@
 #include "../base/status.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 int spari_pencil_create(spari_pencil *p, int unknowns) {
     *p = (spari_pencil){.n = unknowns};

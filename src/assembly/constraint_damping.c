@@ -15,8 +15,6 @@
 
 #include "../base/session.h"
 
-#include <string.h>
-
 static const double most = 0.9;
 
 /* Sets the gaps to e. */

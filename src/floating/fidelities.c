@@ -1,7 +1,6 @@
 /* Linear and modal beams: creation of their frames, and their rows of the table of fidelities. */
 #include "frame.h"
 
-#include "../algebra/pencil.h"
 #include "../base/session.h"
 #include "../member/added_mass.h"
 #include "../member/applied_loads.h"
@@ -11,7 +10,6 @@
 #include "../time/fidelity.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- life ---- */
 

@@ -1,12 +1,10 @@
 /* The matrices of a frame, from the tangents of the exact member at the reference. */
 #include "../algebra/cblas.h"
-#include "../base/session.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
 #include "frame.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -6,7 +6,6 @@
      are connected by cubic splines over z, natural at their ends. */
 #include "../base/environment.h"
 #include "../base/reader.h"
-#include "../math/rotation.h"
 #include "../math/spline.h"
 #include "beam.h"
 #include "check_arguments.h"

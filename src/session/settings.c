@@ -3,7 +3,6 @@
 #include "settings.h"
 
 #include "../base/environment.h"
-#include "../comm/comm.h"
 #include "../coupling/schemes.h"
 #include "../fluid/fluid.h"
 #include "../math/predictor.h"

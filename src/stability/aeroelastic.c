@@ -8,7 +8,6 @@
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
 #include "../exchange/rank_loads_and_motion.h"
-#include "../time/fidelity.h"
 
 #include <math.h>
 #include <stdlib.h>

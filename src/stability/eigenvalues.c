@@ -9,7 +9,6 @@
 #include "../time/fidelity.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The n eigenvalues nearest to the shift (see pencil.h), and x [n][size], with unit x^H M x. */

@@ -5,7 +5,6 @@
    number of modes has the mu of the groups and the mass-proportional alpha, which adds alpha / (2 omega). */
 #include "../algebra/dense.h"
 #include "../base/environment.h"
-#include "../math/rotation.h"
 #include "../member/beam.h"
 #include "../member/check_arguments.h"
 #include "../time/fidelity.h"

@@ -12,7 +12,6 @@
 #include "small_motions.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static const char *subject(int connected) {
     return connected ? "the assembly of" : "member";

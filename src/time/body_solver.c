@@ -3,7 +3,6 @@
 
 #include "../base/poison.h"
 #include "../base/session.h"
-#include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied_loads.h"
 #include "../member/plane.h"

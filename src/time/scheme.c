@@ -2,7 +2,6 @@
 #include "scheme.h"
 
 #include "../base/session.h"
-#include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied_loads.h"
 #include "../member/body.h"

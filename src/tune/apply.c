@@ -2,7 +2,6 @@
 #include "apply.h"
 
 #include "../base/environment.h"
-#include "../comm/comm.h"
 #include "../comm/enter.h"
 #include "../exchange/rank_loads_and_motion.h"
 #include "../exchange/session_private.h"
