@@ -45,7 +45,7 @@ static int check_guess(const spar_member *m, const char *call, int64_t n, const 
                   "%s: '%s': %lld stations; give 0 to 2^40 for a beam, 1 for a rigid body, or 0 for no added mass",
                   call, m->name, (long long)n);
     if (n > 0 && m->kind == SPARI_BEAM) {
-        SPARI_TRY(spari_need_increasing(s, call, m->name, n, eta));
+        SPARI_TRY(spari_need_eta(s, call, m->name, n, eta, SPARI_INCREASING));
     }
     SPARI_TRY(spari_need_finite(s, call, m->name, "mass", 36 * n, mass));
     for (int64_t i = 0; i < n; i++) {
@@ -60,28 +60,14 @@ int spar_member_set_added_mass(spar_member *member, int64_t n, const double *eta
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_open(member, __func__));
     SPARI_TRY(check_guess(member, __func__, n, eta, mass));
-    int beam = member->kind == SPARI_BEAM;
-    double *copies[2] = {beam && n > 0 ? spari_copy(eta, n) : spari_zalloc(n + 1, sizeof(double)),
-                         n > 0 ? spari_copy(mass, 36 * n) : NULL};
-    if (!copies[0] || (n > 0 && !copies[1])) {
-        free(copies[0]), free(copies[1]);
-        return spari_fail(member->session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the added mass", __func__,
-                          member->name);
-    }
-    free(member->guess_eta), free(member->guess);
-    member->guess_eta = copies[0], member->guess = copies[1];
-    member->guess_count = n;
-    return SPAR_OK;
+    return spari_line_table_set(member, __func__, "added mass", n, 36, member->kind == SPARI_BEAM ? eta : NULL, mass,
+                                &member->guess);
 }
 
 int spar_member_get_added_mass(const spar_member *member, int64_t *n, int64_t capacity, double *eta, double *mass) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_member(member, __func__));
-    SPARI_TRY(spari_need_capacity(member->session, __func__, capacity));
-    SPARI_GIVE(n, member->guess_count);
-    spari_fill(capacity, eta, member->guess_count, member->guess_eta);
-    spari_fill(36 * capacity, mass, 36 * member->guess_count, member->guess);
-    return SPAR_OK;
+    return spari_line_table_get(member, __func__, 36, &member->guess, capacity, n, eta, mass);
 }
 
 int spar_member_set_added_mass_response(spar_member *member, int response) {
@@ -228,7 +214,7 @@ static int allocate_points(const spar_member *m, spari_added *d) {
 }
 
 int spari_added_create(spar_member *m, int whole) {
-    if ((m->guess_count == 0 && !m->learned) || !m->body || !(m->effects & SPAR_EFFECT_INERTIA)) {
+    if ((m->guess.count == 0 && !m->learned) || !m->body || !(m->effects & SPAR_EFFECT_INERTIA)) {
         return SPAR_OK;
     }
     spari_added *d = m->added = spari_zalloc(1, sizeof *d);
@@ -239,7 +225,7 @@ int spari_added_create(spar_member *m, int whole) {
         status = status == SPAR_OK ? allocate_points(m, d) : status;
     }
     SPARI_REQUIRE(m->session, status == SPAR_OK, SPAR_ERR_MEMORY, "no memory for the added mass of '%s'", m->name);
-    spari_added_fill(m, m->guess_count, m->guess_eta, m->guess);
+    spari_added_fill(m, m->guess.count, m->guess.eta, m->guess.value);
     if (!m->learned) {
         free_strips(&d->strips);
     }

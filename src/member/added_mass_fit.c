@@ -64,7 +64,7 @@ static int check_stations(const spar_member *m, const char *call, int64_t n, con
     SPARI_REQUIRE(s, n >= 0 && n <= SPARI_LEARNED_STATIONS && (n <= 1 || m->kind == SPARI_BEAM), SPAR_ERR_ARGUMENT,
                   "%s: '%s': %lld stations; give 1 to %d for a beam, 1 for a rigid body, or 0 to switch estimation off",
                   call, m->name, (long long)n, SPARI_LEARNED_STATIONS);
-    return n > 0 && m->kind == SPARI_BEAM ? spari_need_increasing(s, call, m->name, n, eta) : SPAR_OK;
+    return n > 0 && m->kind == SPARI_BEAM ? spari_need_eta(s, call, m->name, n, eta, SPARI_INCREASING) : SPAR_OK;
 }
 
 static spari_learned *create_learned(int64_t n, const double *eta) {
@@ -649,7 +649,7 @@ void spari_learned_put(spar_member *m) {
     if (l->head[USED] > 0) {
         spari_added_fill(m, l->n, l->eta, l->force);
     } else {
-        spari_added_fill(m, m->guess_count, m->guess_eta, m->guess);
+        spari_added_fill(m, m->guess.count, m->guess.eta, m->guess.value);
     }
 }
 

@@ -858,20 +858,20 @@ int spari_foundation_build(spar_member *m) {
     const spari_beam *b = m->kind == SPARI_BEAM ? m->beam : NULL;
     spari_foundation_free(m->load.foundation);
     m->load.foundation = NULL;
-    if (!b || b->spring_count == 0 || !(m->effects & SPAR_EFFECT_FOUNDATION)) {
+    if (!b || b->springs.count == 0 || !(m->effects & SPAR_EFFECT_FOUNDATION)) {
         return SPAR_OK;
     }
     line_load line = {0};
-    double *load = spari_zalloc(6 * b->spring_count, sizeof *load);
+    double *load = spari_zalloc(6 * b->springs.count, sizeof *load);
     m->load.foundation = spari_zalloc(1, sizeof *m->load.foundation);
     int status = load && m->load.foundation &&
                          (m->load.foundation->pair = spari_zalloc(pairs_of(m) * m->mesh.elements, sizeof *load))
                      ? SPAR_OK
                      : SPAR_ERR_MEMORY;
-    for (int64_t i = 0; status == SPAR_OK && i < b->spring_count; i++) {
-        memcpy(load + 6 * i, b->spring + 3 * i, 3 * sizeof *load);
+    for (int64_t i = 0; status == SPAR_OK && i < b->springs.count; i++) {
+        memcpy(load + 6 * i, b->springs.value + 3 * i, 3 * sizeof *load);
     }
-    status = status == SPAR_OK ? line_build(m, SPARI_LINE_SPRINGS, b->spring_count, b->spring_eta, load, &line)
+    status = status == SPAR_OK ? line_build(m, SPARI_LINE_SPRINGS, b->springs.count, b->springs.eta, load, &line)
                                : spari_fail(m->session, status, "no memory for the foundation of '%s'", m->name);
     free(load);
     if (status == SPAR_OK) {
@@ -884,67 +884,34 @@ int spari_foundation_build(spar_member *m) {
     return status;
 }
 
-static int check_line_load(const spar_member *m, const char *call, int kind, int64_t n, const double *eta,
-                           const double *load) {
-    spar_session *s = m->session;
-    SPARI_REQUIRE(s, m->kind == SPARI_BEAM, SPAR_ERR_ARGUMENT,
-                  "%s: member '%s' is not a beam; call this for a beam alone", call, m->name);
-    SPARI_TRY(need_kind(m, call, kind));
-    SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT, "%s: '%s': %lld stations; give 0 to 2^40", call,
-                  m->name, (long long)n);
-    SPARI_TRY(spari_need_finite(s, call, m->name, "eta", n, eta));
-    SPARI_TRY(spari_need_finite(s, call, m->name, "load", 6 * n, load));
-    for (int64_t i = 0; i < n; i++) {
-        SPARI_REQUIRE(s, eta[i] >= -1e-9 && eta[i] <= 1 + 1e-9, SPAR_ERR_ARGUMENT,
-                      "%s: '%s': eta %lld is %g; eta runs from 0 to 1", call, m->name, (long long)i, eta[i]);
-        SPARI_REQUIRE(s, i == 0 || eta[i] >= eta[i - 1], SPAR_ERR_ARGUMENT,
-                      "%s: '%s': eta %lld (%.17g) is below the previous one; two stations at the same eta mark a jump",
-                      call, m->name, (long long)i, eta[i]);
-    }
-    return SPAR_OK;
-}
-
-static int check_bed(const spar_member *m, const char *call, int64_t n, const double *eta, const double *k) {
-    spar_session *s = m->session;
-    SPARI_REQUIRE(s, n >= 0 && n <= SPARI_MOST_POINT_MASSES, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld stations; give 0 (removes all) to %d", call, m->name, (long long)n,
-                  SPARI_MOST_POINT_MASSES);
-    SPARI_TRY(spari_need_finite(s, call, m->name, "eta", n, eta));
-    SPARI_TRY(spari_need_finite(s, call, m->name, "stiffness", 3 * n, k));
-    for (int64_t i = 0; i < n; i++) {
-        SPARI_REQUIRE(s, eta[i] >= 0 && eta[i] <= 1 && (i == 0 || eta[i] >= eta[i - 1]), SPAR_ERR_ARGUMENT,
-                      "%s: '%s': eta %lld is %g; eta runs from 0 to 1 and must not decrease; two stations at the same "
-                      "eta mark a jump",
-                      call, m->name, (long long)i, eta[i]);
-        SPARI_REQUIRE(s, k[3 * i] >= 0 && k[3 * i + 1] >= 0 && k[3 * i + 2] >= 0, SPAR_ERR_ARGUMENT,
-                      "%s: '%s': a stiffness of station %lld is below 0; give numbers >= 0, N/m^2", call, m->name,
-                      (long long)i);
-    }
-    return SPAR_OK;
-}
-
 int spar_beam_set_foundation(spar_member *beam, int64_t n, const double *eta, const double *stiffness) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_beam(beam, __func__));
-    SPARI_TRY(check_bed(beam, __func__, n, eta, stiffness));
-    spari_beam *b = beam->beam;
-    return spari_keep_stations(beam, __func__, "springs", n, 3, eta, stiffness, &b->spring_count, &b->spring_eta,
-                               &b->spring);
+    SPARI_TRY(
+        spari_need_stations(beam, __func__, n, SPARI_MOST_STATIONS, eta, SPARI_WITH_JUMPS, "stiffness", 3, stiffness));
+    for (int64_t i = 0; i < 3 * n; i++) {
+        SPARI_REQUIRE(beam->session, stiffness[i] >= 0, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': a stiffness of station %lld is below 0; give numbers >= 0, N/m^2", __func__,
+                      beam->name, (long long)(i / 3));
+    }
+    return spari_line_table_set(beam, __func__, "springs", n, 3, eta, stiffness, &beam->beam->springs);
 }
 
 int spar_beam_get_foundation(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *stiffness) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_any_beam(beam, __func__));
-    const spari_beam *b = beam->beam;
-    return spari_give_stations(beam, __func__, 3, b->spring_count, b->spring_eta, b->spring, capacity, n, eta,
-                               stiffness);
+    return spari_line_table_get(beam, __func__, 3, &beam->beam->springs, capacity, n, eta, stiffness);
 }
 
 int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double *eta, const double *load) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(need_applied(beam, __func__));
     line_load line = {0};
-    int status = check_line_load(beam, __func__, kind, n, eta, load);
+    int status = spari_need_any_beam(beam, __func__);
+    status = status == SPAR_OK ? need_kind(beam, __func__, kind) : status;
+    status = status == SPAR_OK
+                 ? spari_need_stations(beam, __func__, n, SPARI_MOST, eta, SPARI_WITH_JUMPS, "load", 6, load)
+                 : status;
     status = status == SPAR_OK && n > 0 ? line_set(beam, kind, n, eta, load, &line) : status;
     const int again = status == SPAR_OK && changes(beam, 1 << kind); /* a kind that exists already */
     if (status == SPAR_OK && (status = keep_before(beam, __func__, 1 << kind)) != SPAR_OK) {

@@ -15,8 +15,8 @@ void spari_beam_free(spari_beam *beam) {
         return;
     }
     SPARI_FREE(beam->eta, beam->xyz, beam->twist, beam->node_x, beam->node_q, beam->section_eta, beam->stiffness,
-               beam->mass, beam->point_mass_eta, beam->point_mass, beam->spring_eta, beam->spring, beam->pre_eta,
-               beam->pre, beam);
+               beam->mass, beam->point_masses.eta, beam->point_masses.value, beam->springs.eta, beam->springs.value,
+               beam->pretension.eta, beam->pretension.value, beam);
 }
 
 /* ---- nodes from axis points ---- */
@@ -435,7 +435,7 @@ void spari_beam_table_at(int64_t n, const double *stations, const double *table,
 }
 
 void spari_pretension_at(const spari_beam *beam, double eta, double out[6]) {
-    spari_beam_table_at(beam->pre_count, beam->pre_eta, beam->pre, 6, eta, out);
+    spari_beam_table_at(beam->pretension.count, beam->pretension.eta, beam->pretension.value, 6, eta, out);
 }
 
 void spari_beam_section_at(const spari_beam *beam, const double *table, double eta, double out[36]) {
@@ -594,7 +594,7 @@ static void fill_point(const spar_member *member, spari_body *b, int e, int i, d
 
 /* Whether attached masses are quadrature points of the body. */
 static int shows_point_masses(const spar_member *member, int massive) {
-    return massive && member->beam->point_mass_count > 0 && (member->effects & SPAR_EFFECT_MASSES);
+    return massive && member->beam->point_masses.count > 0 && (member->effects & SPAR_EFFECT_MASSES);
 }
 
 /* Adds the attached masses of element e after its `at` other points: weight 1, no stiffness. */
@@ -602,7 +602,7 @@ static void fill_point_masses(const spar_member *member, const framing *f, const
                               spari_body *b) {
     double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES];
     spari_gll(b->per_element, gll, NULL, bary);
-    for (int64_t k = 0; k < member->beam->point_mass_count; k++) {
+    for (int64_t k = 0; k < member->beam->point_masses.count; k++) {
         double xi, R[9], mass[10];
         if (spari_point_mass_element(member, k, &xi) != e) {
             continue;
@@ -610,7 +610,7 @@ static void fill_point_masses(const spar_member *member, const framing *f, const
         (void)fill_place(member, b, e, at, xi, gll, bary);
         b->weight[b->slot[e] + at] = 1;
         reference_frame(member, f, gll, bary, x, e, xi, R);
-        spari_mass_rotate(R, member->beam->point_mass + 36 * k, mass);
+        spari_mass_rotate(R, member->beam->point_masses.value + 36 * k, mass);
         spari_slot_put(b->mass, 10, b->slot[e] + at, mass);
         at++;
     }

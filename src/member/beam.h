@@ -11,13 +11,10 @@ struct spari_beam {
     double *eta, *xyz, *twist; /* axis points */
     double *node_x, *node_q;   /* nodes, if given instead */
     double *section_eta, *stiffness, *mass;
-    int64_t point_mass_count; /* attached masses: eta and 6x6 mass of each */
-    double *point_mass_eta, *point_mass;
-    int64_t spring_count; /* stations of springs to the ground: eta and stiffness along the section's axes [3] */
-    double *spring_eta, *spring;
-    int64_t pre_count; /* stations of pretension: eta and section forces, local axes [6] */
-    double *pre_eta, *pre;
-    int rule, points; /* rule -1: chosen from the sections */
+    spari_line_table point_masses; /* 6x6 mass of each */
+    spari_line_table springs;      /* to the ground: stiffness along the section's axes [3] */
+    spari_line_table pretension;   /* section forces, local axes [6] */
+    int rule, points;              /* rule -1: chosen from the sections */
     double mu[6];
     int damped;
     double mass_damping; /* 1/s, mass-proportional damping */
@@ -45,7 +42,7 @@ int spari_point_masses_of(const spar_member *member, int e);
 void spari_point_masses_weight(const spar_member *member, double weight);
 /* Checks the attached masses at commit. */
 int spari_point_masses_check(const spar_member *member);
-enum { SPARI_MOST_POINT_MASSES = 10000 }; /* maximum number */
+enum { SPARI_MOST_STATIONS = 10000 }; /* of attached masses, foundation and pretension */
 /* Section forces [6] of the reference at eta, local axes; the beam must have pretension. */
 void spari_pretension_at(const spari_beam *beam, double eta, double out[6]);
 /* Quadrature rule in force. */

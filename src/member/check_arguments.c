@@ -57,25 +57,29 @@ int spari_need_beam(spar_member *member, const char *call) {
     return spari_need_any_beam(member, call);
 }
 
-int spari_keep_stations(const spar_member *beam, const char *call, const char *what, int64_t n, int width,
-                        const double *eta, const double *value, int64_t *kept, double **kept_eta, double **kept_value) {
-    double *copies[2] = {n > 0 ? spari_copy(eta, n) : NULL, n > 0 ? spari_copy(value, width * n) : NULL};
-    if (n > 0 && (!copies[0] || !copies[1])) {
-        free(copies[0]), free(copies[1]);
-        return spari_fail(beam->session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the %s", call, beam->name, what);
+int spari_line_table_set(const spar_member *member, const char *call, const char *what, int64_t n, int width,
+                         const double *eta, const double *value, spari_line_table *table) {
+    spari_line_table copy = {n, NULL, NULL};
+    if (n > 0) {
+        copy.eta = eta ? spari_copy(eta, n) : spari_zalloc(n, sizeof *eta);
+        copy.value = spari_copy(value, width * n);
+        if (!copy.eta || !copy.value) {
+            SPARI_FREE(copy.eta, copy.value);
+            return spari_fail(member->session, SPAR_ERR_MEMORY, "%s: '%s': no memory for the %s", call, member->name,
+                              what);
+        }
     }
-    free(*kept_eta), free(*kept_value);
-    *kept_eta = copies[0], *kept_value = copies[1];
-    *kept = n;
+    SPARI_FREE(table->eta, table->value);
+    *table = copy;
     return SPAR_OK;
 }
 
-int spari_give_stations(const spar_member *beam, const char *call, int width, int64_t kept, const double *kept_eta,
-                        const double *kept_value, int64_t capacity, int64_t *count, double *eta, double *value) {
-    SPARI_TRY(spari_need_capacity(beam->session, call, capacity));
-    SPARI_GIVE(count, kept);
-    spari_fill(capacity, eta, kept, kept_eta);
-    spari_fill(width * capacity, value, width * kept, kept_value);
+int spari_line_table_get(const spar_member *member, const char *call, int width, const spari_line_table *table,
+                         int64_t capacity, int64_t *count, double *eta, double *value) {
+    SPARI_TRY(spari_need_capacity(member->session, call, capacity));
+    SPARI_GIVE(count, table->count);
+    spari_fill(capacity, eta, table->count, table->eta);
+    spari_fill(width * capacity, value, width * table->count, table->value);
     return SPAR_OK;
 }
 
@@ -106,15 +110,28 @@ int spari_need_unit(spar_session *session, const char *call, const char *name, c
     return SPAR_OK;
 }
 
-int spari_need_increasing(spar_session *session, const char *call, const char *name, int64_t n, const double *eta) {
+int spari_need_eta(spar_session *session, const char *call, const char *name, int64_t n, const double *eta,
+                   spari_order order) {
     SPARI_TRY(spari_need_finite(session, call, name, "eta", n, eta));
     for (int64_t i = 0; i < n; i++) {
         SPARI_REQUIRE(session, eta[i] >= -1e-9 && eta[i] <= 1 + 1e-9, SPAR_ERR_ARGUMENT,
                       "%s: '%s': eta %lld is %g; eta runs from 0 to 1", call, name, (long long)i, eta[i]);
-        SPARI_REQUIRE(session, i == 0 || eta[i] > eta[i - 1], SPAR_ERR_ARGUMENT,
+        SPARI_REQUIRE(session, i == 0 || order != SPARI_INCREASING || eta[i] > eta[i - 1], SPAR_ERR_ARGUMENT,
                       "%s: '%s': eta %lld (%.17g) is not above the previous one", call, name, (long long)i, eta[i]);
+        SPARI_REQUIRE(session, i == 0 || order != SPARI_WITH_JUMPS || eta[i] >= eta[i - 1], SPAR_ERR_ARGUMENT,
+                      "%s: '%s': eta %lld (%.17g) is below the previous one; two stations at the same eta mark a jump",
+                      call, name, (long long)i, eta[i]);
     }
     return SPAR_OK;
+}
+
+int spari_need_stations(const spar_member *beam, const char *call, int64_t n, int64_t most, const double *eta,
+                        spari_order order, const char *what, int width, const double *value) {
+    SPARI_REQUIRE(beam->session, n >= 0 && n <= most, SPAR_ERR_ARGUMENT,
+                  "%s: '%s': %lld stations; give 0 (removes all) to %lld", call, beam->name, (long long)n,
+                  (long long)most);
+    SPARI_TRY(spari_need_eta(beam->session, call, beam->name, n, eta, order));
+    return spari_need_finite(beam->session, call, beam->name, what, width * n, value);
 }
 
 int spari_member_enter(const spar_member *member, const char *call, const spari_agreed *must_agree, int count,

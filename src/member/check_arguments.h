@@ -19,13 +19,13 @@ int spari_need_idle(const spar_session *session, const char *call);
 int spari_need_any_beam(const spar_member *member, const char *call);
 /* The member must be an uncommitted beam. */
 int spari_need_beam(spar_member *member, const char *call);
-/* Copies n stations with `width` numbers each over eta and value; `what` names them in messages. Without memory
-   nothing changes. */
-int spari_keep_stations(const spar_member *beam, const char *call, const char *what, int64_t n, int width,
-                        const double *eta, const double *value, int64_t *kept, double **kept_eta, double **kept_value);
-/* Returns stored stations to a host: *count stations (may be NULL), and up to `capacity` of eta and value. */
-int spari_give_stations(const spar_member *beam, const char *call, int width, int64_t kept, const double *kept_eta,
-                        const double *kept_value, int64_t capacity, int64_t *count, double *eta, double *value);
+/* Copies n stations with `width` numbers each to the table; `what` names them in messages. eta NULL: zeros. Without
+   memory nothing changes. */
+int spari_line_table_set(const spar_member *member, const char *call, const char *what, int64_t n, int width,
+                         const double *eta, const double *value, spari_line_table *table);
+/* Returns a table to a host: *count stations (may be NULL), and up to `capacity` of eta and value. */
+int spari_line_table_get(const spar_member *member, const char *call, int width, const spari_line_table *table,
+                         int64_t capacity, int64_t *count, double *eta, double *value);
 /* Entry of a collective call on one member, as spari_enter_agreed. */
 int spari_member_enter(const spar_member *member, const char *call, const spari_agreed *must_agree, int count,
                        int status);
@@ -37,7 +37,12 @@ int spari_need_dt(spar_session *session, const char *call, double dt);
 /* n unit quaternions, `stride` doubles apart */
 int spari_need_unit(spar_session *session, const char *call, const char *name, const char *what, int64_t n,
                     const double *q, int stride);
-/* eta[n] strictly increasing in [0,1] */
-int spari_need_increasing(spar_session *session, const char *call, const char *name, int64_t n, const double *eta);
+/* eta[n] in [0,1]. Order: strictly increasing, increasing but for jumps (two stations at the same eta), or any. */
+typedef enum spari_order { SPARI_INCREASING, SPARI_WITH_JUMPS, SPARI_UNORDERED } spari_order;
+int spari_need_eta(spar_session *session, const char *call, const char *name, int64_t n, const double *eta,
+                   spari_order order);
+/* n stations of a beam, at most `most`, 0: removes all; `width` finite numbers `what` at each. */
+int spari_need_stations(const spar_member *beam, const char *call, int64_t n, int64_t most, const double *eta,
+                        spari_order order, const char *what, int width, const double *value);
 
 #endif

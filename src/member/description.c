@@ -132,7 +132,7 @@ int spar_beam_set_axis(spar_member *beam, int64_t n, const double *eta, const do
     spar_session *session = beam->session;
     SPARI_REQUIRE(session, n >= 2 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT,
                   "%s: '%s': %lld axis points; give at least 2, at most 2^40", __func__, beam->name, (long long)n);
-    SPARI_TRY(spari_need_increasing(session, __func__, beam->name, n, eta));
+    SPARI_TRY(spari_need_eta(session, __func__, beam->name, n, eta, SPARI_INCREASING));
     SPARI_REQUIRE(session, fabs(eta[0]) < 1e-9 && fabs(eta[n - 1] - 1) < 1e-9, SPAR_ERR_ARGUMENT,
                   "%s: '%s': eta runs from %g to %g; the first point is eta 0 and the last eta 1", __func__, beam->name,
                   eta[0], eta[n - 1]);
@@ -222,7 +222,7 @@ int spar_beam_set_sections(spar_member *beam, int64_t n, const double *eta, cons
     spar_session *session = beam->session;
     SPARI_REQUIRE(session, n >= 1 && n <= SPARI_MOST, SPAR_ERR_ARGUMENT,
                   "%s: '%s': %lld sections; give at least 1, at most 2^40", __func__, beam->name, (long long)n);
-    SPARI_TRY(spari_need_increasing(session, __func__, beam->name, n, eta));
+    SPARI_TRY(spari_need_eta(session, __func__, beam->name, n, eta, SPARI_INCREASING));
     SPARI_TRY(spari_need_finite(session, __func__, beam->name, "stiffness", 36 * n, stiffness));
     if (mass) {
         SPARI_TRY(spari_need_finite(session, __func__, beam->name, "mass", 36 * n, mass));
@@ -419,6 +419,11 @@ int spar_member_get_owner(const spar_member *member, int *rank) {
     return SPAR_OK;
 }
 
+static uint64_t hash_table(uint64_t h, const spari_line_table *table, int width) {
+    size_t n = (size_t)table->count * sizeof(double);
+    return n > 0 ? spari_hash_bytes(spari_hash_bytes(h, table->eta, n), table->value, (size_t)width * n) : h;
+}
+
 /* FNV-1a hash of everything the ranks must agree on. */
 uint64_t spari_member_copy_hash(const spar_member *m) {
     uint64_t h = SPARI_HASH_BEGIN;
@@ -426,10 +431,7 @@ uint64_t spari_member_copy_hash(const spar_member *m) {
                      m->mesh.elements, m->mesh.per_element, m->fidelity, (int)m->modes, m->added_by_velocity};
     h = spari_hash_bytes(h, numbers, sizeof numbers);
     h = spari_hash_bytes(h, m->mass, sizeof m->mass);
-    if (m->guess_count > 0) {
-        size_t n = (size_t)m->guess_count * sizeof(double);
-        h = spari_hash_bytes(spari_hash_bytes(h, m->guess_eta, n), m->guess, 36 * n);
-    }
+    h = hash_table(h, &m->guess, 36);
     h = spari_learned_hash(m, h);
     const spari_beam *b = m->beam;
     if (b) {
@@ -446,18 +448,9 @@ uint64_t spari_member_copy_hash(const spar_member *m) {
         h = b->node_q ? spari_hash_bytes(h, b->node_q, 4 * (size_t)m->nodes * d) : h;
         h = b->section_eta ? spari_hash_bytes(spari_hash_bytes(h, b->section_eta, s * d), b->stiffness, 36 * s * d) : h;
         h = b->mass ? spari_hash_bytes(h, b->mass, 36 * s * d) : h;
-        if (b->spring_count > 0) {
-            size_t k = (size_t)b->spring_count * d;
-            h = spari_hash_bytes(spari_hash_bytes(h, b->spring_eta, k), b->spring, 3 * k);
-        }
-        if (b->pre_count > 0) {
-            size_t k = (size_t)b->pre_count * d;
-            h = spari_hash_bytes(spari_hash_bytes(h, b->pre_eta, k), b->pre, 6 * k);
-        }
-        if (b->point_mass_count > 0) {
-            size_t k = (size_t)b->point_mass_count * d;
-            h = spari_hash_bytes(spari_hash_bytes(h, b->point_mass_eta, k), b->point_mass, 36 * k);
-        }
+        h = hash_table(h, &b->springs, 3);
+        h = hash_table(h, &b->pretension, 6);
+        h = hash_table(h, &b->point_masses, 36);
     }
     return h;
 }

@@ -78,7 +78,7 @@ void spari_beam_tell_locking(const spar_member *m) {
                    "bending stiffness / length^2, so its deflection is too small; use %d nodes per element, or "
                    "%.3g times as many elements",
                    m->name, element, m->mesh.per_element, ratio, ENOUGH, ceil(sqrt(ratio / most)));
-    } else if (whole > rounding && m->beam->pre_count == 0) {
+    } else if (whole > rounding && m->beam->pretension.count == 0) {
         spari_warn(m->session,
                    "member '%s': axial or shear stiffness is %.2g times its bending stiffness / length^2: rounding "
                    "hides bending for any number of nodes; bring the stiffnesses closer together",

@@ -9,7 +9,7 @@
 #include <string.h>
 
 int spari_means_make(spar_member *m) {
-    if (m->means || (m->added && (m->guess_count > 0 || !m->learned)) || !m->body ||
+    if (m->means || (m->added && (m->guess.count > 0 || !m->learned)) || !m->body ||
         !(m->effects & SPAR_EFFECT_INERTIA)) {
         return SPAR_OK;
     }

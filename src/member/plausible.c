@@ -33,16 +33,16 @@ static means means_of(const spar_member *m) {
             spari_beam_section_at(b, b->mass, eta, C);
             a.mass += C[0] * a.length / PLACES;
         }
-        if (b->pre_count > 0) {
+        if (b->pretension.count > 0) {
             spari_pretension_at(b, eta, pre);
             a.tension += pre[0] / PLACES;
         }
     }
-    for (int64_t i = 0; i < b->point_mass_count; i++) {
-        a.mass += b->point_mass[36 * i];
+    for (int64_t i = 0; i < b->point_masses.count; i++) {
+        a.mass += b->point_masses.value[36 * i];
     }
-    for (int64_t i = 0; i < b->spring_count; i++) {
-        a.bed += fmin(b->spring[3 * i + 1], b->spring[3 * i + 2]) / (double)b->spring_count;
+    for (int64_t i = 0; i < b->springs.count; i++) {
+        a.bed += fmin(b->springs.value[3 * i + 1], b->springs.value[3 * i + 2]) / (double)b->springs.count;
     }
     a.weight_length = m->effects & SPAR_EFFECT_GRAVITY ? spari_norm(m->session->gravity) / a.length : 0;
     return a;

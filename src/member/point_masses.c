@@ -7,7 +7,7 @@
 #include <math.h>
 
 int spari_point_mass_element(const spar_member *member, int64_t k, double *xi) {
-    double along = member->beam->point_mass_eta[k] * member->mesh.elements;
+    double along = member->beam->point_masses.eta[k] * member->mesh.elements;
     int e = (int)ceil(along - 1e-9) - 1; /* an element boundary belongs to the element before it */
     e = e < 0 ? 0 : e > member->mesh.elements - 1 ? member->mesh.elements - 1 : e;
     *xi = fmin(fmax(2 * (along - e) - 1, -1), 1);
@@ -16,7 +16,7 @@ int spari_point_mass_element(const spar_member *member, int64_t k, double *xi) {
 
 int spari_point_masses_of(const spar_member *member, int e) {
     int n = 0;
-    for (int64_t k = 0; k < member->beam->point_mass_count; k++) {
+    for (int64_t k = 0; k < member->beam->point_masses.count; k++) {
         double xi;
         n += spari_point_mass_element(member, k, &xi) == e;
     }
@@ -34,45 +34,29 @@ void spari_point_masses_weight(const spar_member *member, double weight) {
 }
 
 int spari_point_masses_check(const spar_member *member) {
-    SPARI_REQUIRE(member->session, member->beam->point_mass_count == 0 || member->external || member->beam->mass,
+    SPARI_REQUIRE(member->session, member->beam->point_masses.count == 0 || member->external || member->beam->mass,
                   SPAR_ERR_STATE,
                   "member '%s' has attached bodies but sections without mass; give its sections mass, however small",
                   member->name);
     return SPAR_OK;
 }
 
-static int check_point_masses(const spar_member *beam, const char *call, int64_t n, const double *eta,
-                              const double *mass) {
-    SPARI_REQUIRE(beam->session, n >= 0 && n <= SPARI_MOST_POINT_MASSES, SPAR_ERR_ARGUMENT,
-                  "%s: '%s': %lld bodies; give 0 (removes all) to %d", call, beam->name, (long long)n,
-                  SPARI_MOST_POINT_MASSES);
-    SPARI_TRY(spari_need_finite(beam->session, call, beam->name, "eta", n, eta));
-    SPARI_TRY(spari_need_finite(beam->session, call, beam->name, "mass", 36 * n, mass));
-    for (int64_t i = 0; i < n; i++) {
-        double m, c[3], J[6];
-        SPARI_REQUIRE(beam->session, eta[i] >= 0 && eta[i] <= 1, SPAR_ERR_ARGUMENT,
-                      "%s: '%s': body %lld is at eta %g; eta runs from 0 to 1", call, beam->name, (long long)i, eta[i]);
-        const char *wrong = spari_mass_split(mass + 36 * i, &m, c, J);
-        SPARI_REQUIRE(beam->session, !wrong, SPAR_ERR_ARGUMENT,
-                      "%s: '%s': the mass of body %lld is not that of a rigid body: %s", call, beam->name, (long long)i,
-                      wrong);
-    }
-    return SPAR_OK;
-}
-
 int spar_beam_set_masses(spar_member *beam, int64_t n, const double *eta, const double *mass) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_beam(beam, __func__));
-    SPARI_TRY(check_point_masses(beam, __func__, n, eta, mass));
-    spari_beam *b = beam->beam;
-    return spari_keep_stations(beam, __func__, "bodies", n, 36, eta, mass, &b->point_mass_count, &b->point_mass_eta,
-                               &b->point_mass);
+    SPARI_TRY(spari_need_stations(beam, __func__, n, SPARI_MOST_STATIONS, eta, SPARI_UNORDERED, "mass", 36, mass));
+    for (int64_t i = 0; i < n; i++) {
+        double m, c[3], J[6];
+        const char *wrong = spari_mass_split(mass + 36 * i, &m, c, J);
+        SPARI_REQUIRE(beam->session, !wrong, SPAR_ERR_ARGUMENT,
+                      "%s: '%s': the mass of body %lld is not that of a rigid body: %s", __func__, beam->name,
+                      (long long)i, wrong);
+    }
+    return spari_line_table_set(beam, __func__, "bodies", n, 36, eta, mass, &beam->beam->point_masses);
 }
 
 int spar_beam_get_masses(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *mass) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_need_any_beam(beam, __func__));
-    const spari_beam *b = beam->beam;
-    return spari_give_stations(beam, __func__, 36, b->point_mass_count, b->point_mass_eta, b->point_mass, capacity, n,
-                               eta, mass);
+    return spari_line_table_get(beam, __func__, 36, &beam->beam->point_masses, capacity, n, eta, mass);
 }

@@ -110,7 +110,7 @@ static void take_masses(spari_beyond *b, const inertial *w, int e, double *weigh
               point_masses = spari_point_masses_of(m, e);
     double *at = weights + body->slot[e], r[6 * SPARI_MAX_NODES], phi[SPARI_MAX_NODES];
     int next = points - point_masses;
-    for (int64_t k = 0; k < m->beam->point_mass_count && next < points; k++) {
+    for (int64_t k = 0; k < m->beam->point_masses.count && next < points; k++) {
         double xi;
         if (spari_point_mass_element(m, k, &xi) != e) {
             continue;
@@ -141,7 +141,7 @@ static int add_inertia(spari_beyond *b) {
     const spar_member *m = b->member;
     const spari_body *body = m->body;
     const int64_t n = body->unique, slots = body->slot[body->elements];
-    const int lumped = m->beam->point_mass_count > 0 && (m->effects & SPAR_EFFECT_MASSES) && body->mass;
+    const int lumped = m->beam->point_masses.count > 0 && (m->effects & SPAR_EFFECT_MASSES) && body->mass;
     double *workspace = spari_zalloc(25 * n + 2 * slots, sizeof *workspace), *weights = workspace + 25 * n;
     if (!workspace) {
         return SPAR_ERR_MEMORY;
@@ -227,7 +227,7 @@ spari_beyond *spari_beyond_create(const spar_member *m) {
     b->spread = spari_zalloc(6 * m->nodes, sizeof *b->spread);
     b->point = spari_zalloc(6 * m->nodes, sizeof *b->point);
     b->sum = spari_zalloc(6 * ((int64_t)m->mesh.elements + 1), sizeof *b->sum);
-    b->mass = spari_zalloc(m->beam->point_mass_count + 1, sizeof *b->mass);
+    b->mass = spari_zalloc(m->beam->point_masses.count + 1, sizeof *b->mass);
     if (!b->x || !b->spread || !b->point || !b->sum || !b->mass) {
         spari_beyond_free(b);
         return NULL;

@@ -79,6 +79,12 @@ typedef struct spari_member_loads {
     int64_t pack_at;              /* offset of the loads in the vector that the ranks sum */
 } spari_member_loads;
 
+/* Stations along a line, with a row of numbers at each; or none. */
+typedef struct spari_line_table {
+    int64_t count;
+    double *eta, *value;
+} spari_line_table;
+
 /* Placement of a member in space. */
 typedef struct spari_placement {
     double x[3];
@@ -140,10 +146,8 @@ struct spar_member {
     double *xr; /* reference positions [n][3], placed; after commit */
     double *qr; /* reference orientations [n][4], placed; after commit */
     spari_placement placement;
-    double mass[36];     /* rigid */
-    int64_t guess_count; /* stations of the host's added mass (a rigid body: 1); 0: none */
-    double *guess_eta;
-    double *guess;
+    double mass[36];        /* rigid */
+    spari_line_table guess; /* the host's added mass, 36 numbers (a rigid body: one station) */
     int added_by_velocity;  /* the fluid's added mass responds to velocities; used with one substep */
     spari_learned *learned; /* NULL: not requested; shared with the member rebuilt from it in a trial */
     spari_beam *beam;

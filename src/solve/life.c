@@ -312,9 +312,9 @@ int spari_member_effects(const spar_member *m) {
     possible |= solved && massive ? SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY : 0;
     possible |= solved && massive && (e & SPAR_EFFECT_INERTIA) ? SPAR_EFFECT_GYROSCOPIC : 0;
     possible |= solved && m->beam && (m->beam->damped || m->beam->mass_damping > 0) ? SPAR_EFFECT_DAMPING : 0;
-    possible |= solved && massive && m->beam && m->beam->point_mass_count > 0 ? SPAR_EFFECT_MASSES : 0;
-    possible |= solved && m->beam && m->beam->spring_count > 0 ? SPAR_EFFECT_FOUNDATION : 0;
-    possible |= solved && !row->whole && m->beam && m->beam->pre_count > 0 ? SPAR_EFFECT_PRETENSION : 0;
+    possible |= solved && massive && m->beam && m->beam->point_masses.count > 0 ? SPAR_EFFECT_MASSES : 0;
+    possible |= solved && m->beam && m->beam->springs.count > 0 ? SPAR_EFFECT_FOUNDATION : 0;
+    possible |= solved && !row->whole && m->beam && m->beam->pretension.count > 0 ? SPAR_EFFECT_PRETENSION : 0;
     possible |= SPAR_EFFECT_FLUID_HISTORY | SPAR_EFFECT_WORK; /* unasked, a history comes with fluids of sections */
     return row->effects ? row->effects(m, e & possible) : e & possible;
 }
@@ -496,7 +496,7 @@ void spari_member_free(spar_member *member) {
     }
     spari_member_release(member);
     spari_beam_free(member->beam);
-    SPARI_FREE(member->guess_eta, member->guess);
+    SPARI_FREE(member->guess.eta, member->guess.value);
     spari_learned_free(member->learned);
     SPARI_FREE(member->joints, member->name, member);
 }

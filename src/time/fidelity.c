@@ -24,18 +24,18 @@ int spari_fidelity_check(const spar_member *m) {
     SPARI_REQUIRE(
         m->session, m->fidelity == SPAR_FIDELITY_EXACT || (m->kind == SPARI_BEAM && !m->external), SPAR_ERR_STATE,
         "member '%s': only beams that spar solves can have a fidelity below exact; keep SPAR_FIDELITY_EXACT", m->name);
-    SPARI_REQUIRE(m->session, (m->guess_count == 0 && !m->learned) || spari_fidelity_of(m)->solved,
+    SPARI_REQUIRE(m->session, (m->guess.count == 0 && !m->learned) || spari_fidelity_of(m)->solved,
                   SPAR_ERR_UNSUPPORTED,
                   "member '%s' is external or prescribed: added mass does not apply to prescribed members; remove "
                   "spar_member_set_added_mass and spar_member_learn_added_mass",
                   m->name);
-    SPARI_REQUIRE(m->session, !m->beam || m->beam->spring_count == 0 || (row->solved && !row->whole),
+    SPARI_REQUIRE(m->session, !m->beam || m->beam->springs.count == 0 || (row->solved && !row->whole),
                   SPAR_ERR_UNSUPPORTED,
                   "member '%s' has a foundation (spar_beam_set_foundation), which needs fidelity exact, linear or "
                   "modal; choose one of these (spar_member_set_fidelity)",
                   m->name);
     SPARI_REQUIRE(m->session,
-                  !m->beam || m->beam->spring_count == 0 || row->frame != SPARI_FRAME_LINEAR ||
+                  !m->beam || m->beam->springs.count == 0 || row->frame != SPARI_FRAME_LINEAR ||
                       m->root != SPAR_ROOT_DRIVEN,
                   SPAR_ERR_UNSUPPORTED,
                   "member '%s' is linear in the frame of a driven root, which moves relative to its foundation "

@@ -326,10 +326,10 @@ static void test_bad_input(void **state) {
     OK(s, spar_beam_get_masses(b, &n, 0, NULL, NULL));
     assert_int_equal(n, 0);
     OK(s, spar_beam_set_masses(b, 2, eta, mass));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "body 1 is at eta 1.5", spar_beam_set_masses(b, 2, beyond, mass));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "eta 1 is 1.5", spar_beam_set_masses(b, 2, beyond, mass));
     REFUSED(s, SPAR_ERR_ARGUMENT, "eta", spar_beam_set_masses(b, 2, bad, mass));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "-1 bodies", spar_beam_set_masses(b, -1, eta, mass));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "10001 bodies", spar_beam_set_masses(b, 10001, eta, mass));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "-1 stations", spar_beam_set_masses(b, -1, eta, mass));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "10001 stations", spar_beam_set_masses(b, 10001, eta, mass));
     assert_int_equal(spar_beam_set_masses(b, 1, NULL, mass), SPAR_ERR_ARGUMENT);
     assert_int_equal(spar_beam_set_masses(b, 1, eta, NULL), SPAR_ERR_ARGUMENT);
     mass[36] = 9;

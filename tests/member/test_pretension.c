@@ -326,7 +326,7 @@ static void test_refusals(void **state) {
     spar_member *b = cable(s, 1, 4);
     const double eta[2] = {0.5, 0.5}, far[2] = {0.5, 1.5}, k[12] = {7, 1, 1, 1, 1, 1}, bad[6] = {1, NAN, 1, 0, 0, 0};
     OK(s, spar_beam_set_pretension(b, 1, eta, k));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "must increase from station", spar_beam_set_pretension(b, 2, eta, k));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "not above the previous one", spar_beam_set_pretension(b, 2, eta, k));
     REFUSED(s, SPAR_ERR_ARGUMENT, "eta 1 is 1.5", spar_beam_set_pretension(b, 2, far, k));
     REFUSED(s, SPAR_ERR_ARGUMENT, "-1 stations", spar_beam_set_pretension(b, -1, eta, k));
     REFUSED(s, SPAR_ERR_ARGUMENT, "entry 1 of force", spar_beam_set_pretension(b, 1, eta, bad));
