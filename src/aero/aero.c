@@ -23,14 +23,9 @@ static void aero_free(spar_aero *aero) {
     for (int64_t i = 0; aero->section && i < aero->n; i++) {
         spari_table_release(aero->section[i].table);
     }
-    void *all[] = {aero->fluid,  aero->section, aero->row,     aero->place,  aero->length,  aero->loss_radius,
-                   aero->x,      aero->v,       aero->q,       aero->omega,  aero->element, aero->force,
-                   aero->moment, aero->wind,    aero->met,     aero->inside, aero->was,     aero->is,
-                   aero->a,      aero->omega_a, aero->attached};
-    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
-        free(all[i]);
-    }
-    free(aero);
+    SPARI_FREE(aero->fluid, aero->section, aero->row, aero->place, aero->length, aero->loss_radius, aero->x, aero->v,
+               aero->q, aero->omega, aero->element, aero->force, aero->moment, aero->wind, aero->met, aero->inside,
+               aero->was, aero->is, aero->a, aero->omega_a, aero->attached, aero);
 }
 
 void spar_aero_destroy(spar_aero **aero) {

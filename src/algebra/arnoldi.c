@@ -27,14 +27,6 @@ typedef struct krylov {
     uint64_t seed;
 } krylov;
 
-static void krylov_free(krylov *k) {
-    free(k->V);
-    free(k->H);
-    free(k->S);
-    free(k->workspace);
-    free(k->last);
-}
-
 static int krylov_create(krylov *k) {
     int64_t m = k->most, n = k->size;
     k->V = spari_zalloc((m + 1) * n, sizeof *k->V);
@@ -216,6 +208,6 @@ int spari_arnoldi(const spari_arnoldi_problem *of, int wanted, int *count, doubl
         *count = m >= 0 ? found : 0;
         status = m >= 0 ? SPAR_OK : SPAR_ERR_NUMERIC;
     }
-    krylov_free(&k);
+    SPARI_FREE(k.V, k.H, k.S, k.workspace, k.last);
     return status;
 }

@@ -104,10 +104,6 @@ static inline void solve_one_of(int n, const double *A, const int *pivot, double
     }
 }
 
-static void solve_one(int n, const double *A, const int *pivot, double *x) {
-    WITH_LENGTH(solve_one_of, n, A, pivot, x);
-}
-
 static void solve_block(int n, const double *A, const int *pivot, int count, double *x, int x_stride) {
     for (int k = 0; k < n; k++) {
         double *row = x + k * x_stride, *other = x + pivot[k] * x_stride;
@@ -153,10 +149,7 @@ static void graph_free(block_graph *g) {
     for (int i = 0; g->near && i < g->n; i++) {
         free(g->near[i]);
     }
-    void *all[] = {g->near, g->count, g->waits, g->later, g->later_at, g->head, g->next, g->last, g->key};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        free(all[i]);
-    }
+    SPARI_FREE(g->near, g->count, g->waits, g->later, g->later_at, g->head, g->next, g->last, g->key);
 }
 
 static int compare_numbers(const void *a, const void *b) {
@@ -520,7 +513,7 @@ int spari_blocks_solve(spari_blocks *m, double *x) {
         const block_panel *panel = m->panel + p;
         double *own = x + panel->first;
         int s = panel->size;
-        solve_one(s, panel->D, panel->pivot, own);
+        WITH_LENGTH(solve_one_of, s, panel->D, panel->pivot, own);
         for (int k = panel->near; k < panel->near + panel->nears; k++) {
             const block_panel *a = m->panel + m->near[k];
             less_rows(a->size, s, panel->L + m->offset[k] * s, s, own, x + a->first);

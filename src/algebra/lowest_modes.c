@@ -31,11 +31,6 @@ typedef struct lanczos {
     uint64_t seed;
 } lanczos;
 
-static void lanczos_free(lanczos *k) {
-    free(k->V);
-    free(k->H);
-}
-
 static int lanczos_create(lanczos *k, spari_shifted *of, int most) {
     int64_t n = of->n;
     *k = (lanczos){.of = of, .n = of->n, .dimension = of->n - of->rank, .seed = 1};
@@ -393,7 +388,7 @@ int spari_lowest_modes(const spari_modes_problem *problem, int n, double *square
         status = lanczos_create(&k, &a, n + (n > 8 * BLOCK ? n : 8 * BLOCK));
         status = status == SPAR_OK ? solve(&k, n, square, x) : status;
     }
-    lanczos_free(&k);
+    SPARI_FREE(k.V, k.H);
     spari_shifted_free(&a);
     return status;
 }

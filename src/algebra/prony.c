@@ -64,12 +64,6 @@ int spari_decay_solve(int n, double complex *A, int columns, double complex *b) 
     return 0;
 }
 
-static void hankel_free(hankel *h) {
-    free(h->at);
-    free(h->A);
-    free(h->U);
-}
-
 /* Indices of the block rows and columns: 0, 1, .. and then increasingly distant, up to a third of the samples. The
    last third of Y is predicted, which noise cannot be. */
 static void place_rows(hankel *h, int64_t count) {
@@ -230,6 +224,6 @@ int spari_decay_fit(int size, int64_t count, const double *y, double noise, spar
     if (status == SPAR_OK) {
         choose_order(&h, count, y, most, d);
     }
-    hankel_free(&h);
+    SPARI_FREE(h.at, h.A, h.U);
     return status;
 }

@@ -19,10 +19,7 @@ static const double dependent_row = 1e-9, independent_in_block = 1e-6;
 enum { MOST_IN_BLOCK = 6 };
 
 void spari_shifted_free(spari_shifted *a) {
-    void *all[] = {a->begin, a->column, a->k, a->g, a->group, a->x};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        free(all[i]);
-    }
+    SPARI_FREE(a->begin, a->column, a->k, a->g, a->group, a->x);
     spari_blocks_free(a->matrix);
     *a = (spari_shifted){0};
 }
@@ -105,13 +102,6 @@ typedef struct constraint_groups {
     int *queue, queued;
     char *kept; /* [constraints] rows that are independent */
 } constraint_groups;
-
-static void groups_free(constraint_groups *c) {
-    void *all[] = {c->group, c->begin, c->entry, c->touched, c->queue, c->kept};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        free(all[i]);
-    }
-}
 
 static int groups_create(constraint_groups *c, const spari_shifted *a, const spari_pencil *p) {
     *c = (constraint_groups){.p = p};
@@ -348,8 +338,7 @@ int spari_shifted_create(spari_shifted *a, const spari_pencil *p, const int *blo
         status = status == SPAR_OK ? find_loop_rows(&c, first + a->blocks, first + a->blocks + p->n) : status;
     }
     status = status == SPAR_OK ? make_matrix(a, &c) : status;
-    groups_free(&c);
-    free(first);
+    SPARI_FREE(c.group, c.begin, c.entry, c.touched, c.queue, c.kept, first);
     return status;
 }
 

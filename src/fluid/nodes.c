@@ -146,14 +146,10 @@ void spari_fluid_free(spar_fluid *fluid) {
     spari_history_free(fluid->history);
     spari_states_free(fluid->states);
     spari_taking_free(fluid->taking);
-    double *all[] = {fluid->modal, fluid->field[0], fluid->field[1],     fluid->reference,
-                     fluid->load,  fluid->load_new, fluid->load_accepted};
-    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
-        free(all[i]);
-    }
     spari_parts_free(fluid->parts);
     spari_fluid_drop_bins(fluid);
-    SPARI_FREE(fluid->why, fluid->name, fluid);
+    SPARI_FREE(fluid->modal, fluid->field[0], fluid->field[1], fluid->reference, fluid->load, fluid->load_new,
+               fluid->load_accepted, fluid->why, fluid->name, fluid);
 }
 
 void spari_fluid_forget_refusal(spar_fluid *fluid) {

@@ -324,15 +324,6 @@ static void rotate_columns(const double X[36], const double *T, double out[36]) 
     }
 }
 
-/* to, 6x6 with rows of `row`, += f X */
-static void add_section_block(double f, const double X[36], int64_t row, double *to) {
-    for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) {
-            to[row * i + j] += f * X[6 * i + j];
-        }
-    }
-}
-
 void spari_added_tangent(const spar_member *m, int e, double cm, const double *tinv, double *S) {
     const spari_added *d = m->added;
     int P = d->per_element;
@@ -349,7 +340,9 @@ void spari_added_tangent(const spar_member *m, int e, double cm, const double *t
             rotate_columns(X, tinv ? tinv + 9 * (first + j) : NULL, XT);
             for (int l = 0; l < P; l++) {
                 double f = cm * phi[l] * phi[j], *to = S + row * 6 * l + 6 * j;
-                add_section_block(f, XT, row, to);
+                for (int i = 0; i < 36; i++) {
+                    to[row * (i / 6) + i % 6] += f * XT[i];
+                }
             }
         }
     }

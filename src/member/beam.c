@@ -592,11 +592,6 @@ static void fill_point(const spar_member *member, spari_body *b, int e, int i, d
     }
 }
 
-/* Whether attached masses are quadrature points of the body. */
-static int shows_point_masses(const spar_member *member, int massive) {
-    return massive && member->beam->point_masses.count > 0 && (member->effects & SPAR_EFFECT_MASSES);
-}
-
 /* Adds the attached masses of element e after its `at` other points: weight 1, no stiffness. */
 static void fill_point_masses(const spar_member *member, const framing *f, const double *x, int e, int at,
                               spari_body *b) {
@@ -664,8 +659,9 @@ int spari_beam_build(const spar_member *member, int massive, const double mu[6],
     spari_body *b = NULL;
     if (status == SPAR_OK) {
         massive = massive || (member->beam->mass && (member->effects & (SPAR_EFFECT_INERTIA | SPAR_EFFECT_GRAVITY)));
-        for (int e = 0; e < member->mesh.elements && shows_point_masses(member, massive); e++) {
-            points[e] += spari_point_masses_of(member, e);
+        int attached = massive && (member->effects & SPAR_EFFECT_MASSES);
+        for (int e = 0; e < member->mesh.elements && attached; e++) {
+            points[e] += spari_point_masses_of(member, e); /* attached masses are quadrature points too */
         }
         b = spari_body_create(member->mesh.elements, member->mesh.per_element, points, 1, mu != NULL, massive,
                               &member->session->bodies, &member->session->pool);

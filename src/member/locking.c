@@ -24,11 +24,6 @@ static double bearable(int P, int bent) {
     }
 }
 
-/* The same ratio for a section, per length squared. */
-static double stiffness_ratio(const double C[36]) {
-    return fmax(C[0], fmax(C[7], C[14])) / fmin(C[28], C[35]);
-}
-
 /* Largest ratio of the elements, and of the member with its whole length; *element: the element. */
 static double largest_ratio(const spar_member *m, double *whole, int *element) {
     double most = 0, length = 0, section = 0;
@@ -42,7 +37,7 @@ static double largest_ratio(const spar_member *m, double *whole, int *element) {
         for (int k = 0; k < 3; k++) {
             double C[36];
             spari_beam_section_at(m->beam, m->beam->stiffness, (e + 0.5 * k) / m->mesh.elements, C);
-            ratio = fmax(ratio, stiffness_ratio(C));
+            ratio = fmax(ratio, fmax(C[0], fmax(C[7], C[14])) / fmin(C[28], C[35])); /* per length squared */
         }
         length += h, section = fmax(section, ratio);
         *element = ratio * h * h > most ? e : *element;

@@ -29,10 +29,6 @@ typedef struct blade {
     char *file; /* name of the blade file in the primary file */
 } blade;
 
-static void blade_free(blade *b) {
-    SPARI_FREE(b->count, b->key, b->eta, b->stiffness, b->mass, b->line, b->file);
-}
-
 /* ---- the files ---- */
 
 static int read_primary(spari_reader *r, blade *b) {
@@ -303,7 +299,6 @@ int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const ch
         fclose(r->file);
     }
     status = status == SPAR_OK ? describe_blade(beam, r, &b) : status;
-    blade_free(&b);
-    free(r);
+    SPARI_FREE(b.count, b.key, b.eta, b.stiffness, b.mass, b.line, b.file, r);
     return spari_named(beam->session, __func__, status);
 }
