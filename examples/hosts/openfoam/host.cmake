@@ -54,7 +54,8 @@ foam_test(_flaps flaps --no-vorticity --refine 0.5 --steps 12)
 # the case file does not hold the flag in the plane.
 file(READ "${SPAR_HOST_DIR}/../cases/flag.case" text)
 string(REGEX REPLACE "\nplane [^\n]*" "" text "${text}")
-file(WRITE "${out}_cases/flag_pressure.case" "${text}\n[host openfoam]\npressure 10000\n")
+string(REPLACE "[host openfoam]" "[host openfoam]\npressure 10000" text "${text}")
+file(WRITE "${out}_cases/flag_pressure.case" "${text}")
 foam_test(_plane "${out}_cases/flag_pressure.case" --no-vorticity --refine 0.4 --steps 64)
 
 set_tests_properties(host_openfoam_restart PROPERTIES DEPENDS "host_openfoam_whole;host_openfoam_half")

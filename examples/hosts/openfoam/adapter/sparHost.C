@@ -202,7 +202,7 @@ Foam::sparHost::sparHost
     const scalar t = sparFoam::startTime(mesh.time()) - begun_;
     const fileName file(stateFile(mesh.time().timeName(mesh.time().startTime().value())));
     checkCase(spar_case_resume(scene_, resumes ? file.c_str() : nullptr, max(t, scalar(0)), resumes ? -1 : 0));
-    for (const char* key : {"flow", "dt", "steps", "speed", "density", "pressure", "half"}) // those of the script run
+    for (const char* key : {"flow", "dt", "steps", "speed", "density", "pressure", "half", "shake"}) // those of the script run
     {
         const char* text;
         checkCase(spar_case_get_text(scene_, key, "", &text));
