@@ -3,7 +3,6 @@
 
 #include "../base/status.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Finds the unknowns from the first node that is no interface node to the last one. */
@@ -46,14 +45,7 @@ spari_condensed *spari_condensed_create(int ends, const int *node, int unknowns)
 
 void spari_condensed_free(spari_condensed *c) {
     if (c) {
-        free(c->node);
-        free(c->W);
-        free(c->rows);
-        free(c->K);
-        free(c->end_values);
-        free(c->row);
-        free(c->column);
-        free(c);
+        SPARI_FREE(c->node, c->W, c->rows, c->K, c->end_values, c->row, c->column, c);
     }
 }
 

@@ -88,7 +88,8 @@ void spari_system_keep_joint_tangents(spari_assembly *a);
    residuals and the constraints' gaps. The constraints are those of the present positions; the reused tangents of
    the components follow their nodes. cv: as for the tangents. Returns 0 or 1. */
 int spari_system_solve(spari_assembly *a, double cv);
-/* The same in two parts: the condensed residuals (rotated: as for spari_component_reduce), and the solution. */
+/* The same in two parts: the condensed residuals (rotated: as for spari_component_reduce), and the solution. The
+   residuals come first, because the system uses the rotations of the components that they find. */
 int spari_system_reduce(spari_assembly *a, int rotated);
 int spari_system_solve_reduced(spari_assembly *a, double cv);
 /* The same for the gaps alone, without forces. */
