@@ -631,10 +631,12 @@ static void pass_swaps(linear_passage *t, int *swap, size_t n, int first, size_t
 /* Row exchanges of a dense matrix, preceded by the number of unknowns that were left out of it. */
 static void pass_dense(linear_passage *t, spari_linear *s) {
     double lead = t->job == SAVE ? (double)s->lead : *t->at;
-    size_t size = lead > 0 ? size_without_lead(s) : s->n;
+    const size_t size = lead > 0 ? size_without_lead(s) : s->n;
+    const size_t left = lead > 0 && size > 0 ? s->n - (size_t)s->overlap : size;
     t->bad |= lead != 0 && !(lead == s->overlap && size > 0);
     pass_factors(t, &lead, 1);
-    pass_swaps(t, s->swap, size, 1, size + 1);
+    pass_swaps(t, s->swap, left, 1, left + 1); /* a solution reads only these rows of its right-hand side */
+    pass_swaps(t, s->swap + left, size - left, (int)left + 1, size + 1);
     pass_swaps(t, s->swap + size, s->n - size, 0, s->n + 1); /* not in use */
     if (t->job == LOAD) {
         s->lead = (size_t)lead, s->order_of = size;
