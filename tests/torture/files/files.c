@@ -219,9 +219,23 @@ static void end(scene *c) {
 
 /* ---- cases ---- */
 
+static time_t began; /* the case; seconds of processor time */
+static int rounds;
+
+static time_t processor_time(void) {
+    struct timespec t = {0};
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return t.tv_sec;
+}
+
+/* A case that got less than LIMIT seconds of processor time may still end: another LIMIT, at most five. */
 static void too_long(int signal_number) {
     static const char text[] = "\nfiles: waits: ";
     (void)signal_number;
+    if (processor_time() - began < LIMIT && ++rounds < 5) {
+        (void)alarm(LIMIT);
+        return;
+    }
     (void)!write(2, text, sizeof text - 1);
     (void)!write(2, name, strlen(name));
     (void)!write(2, "\n", 1);
@@ -231,6 +245,8 @@ static void too_long(int signal_number) {
 static void start(const char *what, long a, long b) {
     (void)snprintf(name, sizeof name, "%s %ld %ld", what, a, b);
     cases++;
+    began = processor_time();
+    rounds = 0;
     (void)alarm(LIMIT);
 }
 
