@@ -1,5 +1,4 @@
-/* State of an accelerator as doubles, for save and load. The same code writes and reads, as in
-   restart/common_state.c. */
+/* State of an accelerator as doubles, for save and load. The same code counts, writes and reads. */
 #include "quasi_newton.h"
 
 #include "../base/status.h"
@@ -8,73 +7,52 @@
 #include <math.h>
 #include <string.h>
 
-enum {
-    OWN = 34,
-    MEMORY = sizeof(spari_recollection) / sizeof(double),
-    HEAD = OWN + 2 * MEMORY,
-    COLUMN_HEAD = 6,
-    BEGUN = 5
-};
-
-/* Vectors of length n per column. */
-static int64_t of_column(const spari_accelerator *a) {
-    return a->set.imaged ? 6 : 2;
-}
-
-/* Vectors of the iteration before: x and g, their images, the memory model. */
-static int64_t of_iteration(const spari_accelerator *a) {
-    return 2 + (a->set.imaged ? 2 : 0) + (a->secants ? 3 : 0);
-}
-
-static int occupied(const spari_accelerator *a) {
-    int count = 0;
-    for (int s = 0; s < a->slots; s++) {
-        count += a->column[s].state != SPARI_FREE;
-    }
-    return count;
-}
-
-int64_t spari_accelerator_state_size(const spari_accelerator *a) {
-    return HEAD + of_iteration(a) * a->n + occupied(a) * (COLUMN_HEAD + of_column(a) * a->n) + a->used + BEGUN +
-           spari_snapshot_size(&a->before);
-}
-
 static int whole_below(double x, double end) {
     return x >= 0 && x < end && x == floor(x);
 }
 
 typedef struct state_passage {
-    double *at; /* next number of the state */
-    int reads;
-    int bad; /* a number that was read is not what it must be */
+    enum { COUNT, SAVE, LOAD } job;
+    double *state;
+    int64_t at, size; /* next number, and how many a state to load has */
+    int bad;          /* a number that was read is not what it must be */
 } state_passage;
 
 static void pass_reals(state_passage *t, double *x, int64_t n) {
-    if (n > 0) {
-        memcpy(t->reads ? x : t->at, t->reads ? t->at : x, (size_t)n * sizeof *x);
+    t->bad |= t->job == LOAD && n > t->size - t->at;
+    if (t->bad || n <= 0) {
+        return;
+    }
+    if (t->job != COUNT) {
+        double *there = t->state + t->at;
+        memcpy(t->job == LOAD ? x : there, t->job == LOAD ? there : x, (size_t)n * sizeof *x);
     }
     t->at += n;
 }
 
 static void pass_finite(state_passage *t, double *x) {
     pass_reals(t, x, 1);
-    t->bad |= !isfinite(*x);
+    t->bad |= t->job == LOAD && !isfinite(*x);
 }
 
 /* A whole number from 0 to below `end` */
 static void pass_whole(state_passage *t, int *x, double end) {
     double number = *x;
     pass_reals(t, &number, 1);
-    t->bad |= t->reads && !whole_below(number, end);
-    *x = t->bad ? *x : (int)number;
+    t->bad |= t->job == LOAD && !whole_below(number, end);
+    if (t->job == LOAD && !t->bad) {
+        *x = (int)number;
+    }
 }
 
 /* A count, also beyond an int. */
 static void pass_large(state_passage *t, int64_t *x) {
     double number = (double)*x;
     pass_reals(t, &number, 1);
-    t->bad |= t->reads && !spari_is_count(number);
-    *x = t->bad ? *x : (int64_t)number;
+    t->bad |= t->job == LOAD && !spari_is_count(number);
+    if (t->job == LOAD && !t->bad) {
+        *x = (int64_t)number;
+    }
 }
 
 static void pass_ratios(state_passage *t, spari_ratios *r) {
@@ -85,19 +63,21 @@ static void pass_ratios(state_passage *t, spari_ratios *r) {
 }
 
 static void pass_memory(state_passage *t, const spari_accelerator *a, spari_recollection *m) {
+    enum { MEMORY = sizeof *m / sizeof(double) };
     double words[MEMORY];
     memcpy(words, m, sizeof words);
     pass_reals(t, words, MEMORY);
     memcpy(m, words, sizeof words);
     int sound = m->contradiction >= 0 && m->contradiction <= 1 && m->rho >= 0 && m->rho < 1 && m->scatter >= 0 &&
                 m->scatter <= 1 && spari_first_nonfinite(&m->told.pairs, 5) < 0;
-    t->bad |= t->reads && !(sound && (a->secants || (m->contradiction == 0 && m->rho == 0)));
+    t->bad |= t->job == LOAD && !(sound && (a->secants || (m->contradiction == 0 && m->rho == 0)));
 }
 
-/* The head of a state, OWN numbers and the memory. */
 static void pass_head(state_passage *t, spari_accelerator *a, int *occupied) {
     const int with_images = a->set.imaged ? 2 : 1, with_secants = a->secants ? 2 : 1;
-    pass_large(t, &a->n);
+    int64_t n = a->n;
+    pass_large(t, &n);
+    t->bad |= n != a->n;
     pass_large(t, &a->step);
     pass_large(t, &a->serial);
     pass_whole(t, &a->iteration, INT_MAX);
@@ -125,82 +105,57 @@ static void pass_head(state_passage *t, spari_accelerator *a, int *occupied) {
     pass_finite(t, &a->cut_residual);
     pass_memory(t, a, &a->memory);
     pass_memory(t, a, &a->memory_accepted);
+    pass_whole(t, &a->begun.imaged, with_images);
+    pass_ratios(t, &a->begun.ratios);
 }
 
-/* Those of the iteration before. */
-static void pass_vectors(state_passage *t, const spari_accelerator *a) {
-    pass_reals(t, a->x, a->n);
-    pass_reals(t, a->g, a->n);
-    pass_reals(t, a->image, a->set.imaged ? 2 * a->n : 0);
-    pass_reals(t, a->lead, a->secants ? 2 * a->n : 0);
-    pass_reals(t, a->last, a->secants ? a->n : 0);
-}
-
-/* The column in slot s. Without images it has the first two vectors. */
+/* A column: that of slot s, or the next in the state. Without images it has the first two vectors. Each has a slot of
+   its own, and none of this step is out of use. */
 static void pass_column(state_passage *t, const spari_accelerator *a, int s) {
+    spari_difference c = a->column[s];
+    int state = (int)c.state;
+    pass_whole(t, &s, a->slots);
+    pass_whole(t, &state, SPARI_DROPPED + 1.0);
+    pass_large(t, &c.step);
+    pass_large(t, &c.serial);
+    pass_reals(t, &c.dt, 1);
+    pass_whole(t, &c.led, a->secants ? 2 : 1);
+    c.state = (spari_difference_state)state;
+    t->bad |= t->job == LOAD && (a->column[s].state != SPARI_FREE || c.state == SPARI_FREE || c.step > a->step ||
+                                 (c.step == a->step && c.state != SPARI_LIVE));
+    if (t->job == LOAD && !t->bad) {
+        a->column[s] = c;
+    }
     double *const vector[6] = {spari_slot_v(a, s),  spari_slot_w(a, s), spari_slot_iv(a, s),
                                spari_slot_iw(a, s), spari_slot_b(a, s), spari_slot_ib(a, s)};
-    spari_difference *c = a->column + s;
-    double what[COLUMN_HEAD] = {s, c->state, (double)c->step, (double)c->serial, c->dt, c->led};
-    pass_reals(t, what, COLUMN_HEAD);
-    if (t->reads) {
-        *c = (spari_difference){(spari_difference_state)(int)what[1], (int64_t)what[2], (int64_t)what[3], what[4],
-                                (int)what[5]};
-    }
-    for (int k = 0; k < of_column(a); k++) {
+    for (int k = 0; k < (a->set.imaged ? 6 : 2); k++) {
         pass_reals(t, vector[k], a->n);
     }
 }
 
-/* For a reject: the beginning of the step, BEGUN numbers. The images from then follow as a snapshot. */
-static void pass_beginning(state_passage *t, spari_accelerator *a) {
-    pass_whole(t, &a->begun.imaged, a->set.imaged ? 2 : 1);
-    pass_ratios(t, &a->begun.ratios);
-}
-
-void spari_accelerator_save(const spari_accelerator *a, double *state) {
-    state_passage t = {.at = state};
-    spari_accelerator own = *a;
-    int count = occupied(a);
-    pass_head(&t, &own, &count);
-    pass_vectors(&t, a);
+/* All columns in use. Neither those of this step nor the older ones are more than allowed. */
+static void pass_columns(state_passage *t, const spari_accelerator *a, int occupied) {
+    int of_step = 0;
+    for (int s = 0; s < a->slots && t->job == LOAD; s++) {
+        a->column[s].state = SPARI_FREE;
+    }
+    for (int k = 0, s = 0; k < occupied && !t->bad; k++, s++) {
+        while (t->job != LOAD && a->column[s].state == SPARI_FREE) {
+            s++;
+        }
+        pass_column(t, a, s);
+    }
     for (int s = 0; s < a->slots; s++) {
-        if (a->column[s].state != SPARI_FREE) {
-            pass_column(&t, a, s);
-        }
+        of_step += a->column[s].state != SPARI_FREE && a->column[s].step == a->step;
     }
-    for (int j = 0; j < a->used; j++) {
-        *t.at++ = a->order[j];
-    }
-    pass_beginning(&t, &own);
-    spari_snapshot_save(&a->before, t.at);
+    t->bad |= t->job == LOAD && (of_step > a->set.columns || occupied - of_step > a->set.columns);
 }
 
-/* Whether columns are in distinct slots, and not more of this step or of older ones than allowed. */
-static int are_columns(const spari_accelerator *a, const double *first, int64_t occupied, double step) {
-    int64_t width = COLUMN_HEAD + of_column(a) * a->n, of_step = 0;
-    for (int64_t k = 0; k < occupied; k++) {
-        const double *c = first + k * width;
-        int now = c[2] == step;
-        of_step += now;
-        if (!whole_below(c[0], a->slots) ||
-            !(c[1] == SPARI_LIVE || (!now && (c[1] == SPARI_RESTING || c[1] == SPARI_DROPPED))) ||
-            !whole_below(c[2], step + 1) || !spari_is_count(c[3]) || !whole_below(c[5], a->secants ? 2 : 1)) {
-            return 0;
-        }
-        for (const double *other = first; other != c; other += width) {
-            if (other[0] == c[0]) {
-                return 0;
-            }
-        }
-    }
-    return of_step <= a->set.columns && occupied - of_step <= a->set.columns;
-}
-
-/* Length of a snapshot of images (quasi_newton.c), of which `count` numbers are there; -1: it is none. */
-static int64_t images_before(const spari_accelerator *a, const double *from, int64_t count) {
+/* Length of the snapshot of images (quasi_newton.c) that begins with the next number; -1: it is none. */
+static int64_t images_before(const state_passage *t, const spari_accelerator *a) {
+    const double *from = t->state + t->at + SPARI_SNAPSHOT_HEAD;
     int64_t length = a->slots;
-    if (!a->set.imaged || count < length) {
+    if (!a->set.imaged || t->size - t->at - SPARI_SNAPSHOT_HEAD < length) {
         return -1;
     }
     for (int s = 0; s < a->slots; s++) {
@@ -212,45 +167,60 @@ static int64_t images_before(const spari_accelerator *a, const double *from, int
     return length;
 }
 
-int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count) {
-    spari_accelerator then = *a;
-    state_passage t = {.at = (double *)(uintptr_t)state, .reads = 1};
-    int columns = 0;
-    if (count < HEAD) {
-        return 0;
-    }
-    pass_head(&t, &then, &columns);
-    const int64_t n = a->n, first = HEAD + of_iteration(a) * n, used = then.used,
-                  order = first + columns * (COLUMN_HEAD + of_column(a) * n), images = order + used + BEGUN,
-                  left = count - images - SPARI_SNAPSHOT_HEAD;
-    if (t.bad || then.n != n || left < 0 || !are_columns(a, state + first, columns, (double)then.step)) {
-        return 0;
-    }
-    for (int64_t j = order; j < order + used; j++) {
-        if (!whole_below(state[j], a->slots)) {
-            return 0;
+/* For a reject: images from the beginning of the step. */
+static void pass_snapshot(state_passage *t, spari_accelerator *a) {
+    double *there = t->job == COUNT ? NULL : t->state + t->at;
+    if (t->job == SAVE) {
+        spari_snapshot_save(&a->before, there);
+    } else if (t->job == LOAD) {
+        t->bad |= t->bad || !spari_snapshot_is(there, t->size - t->at, images_before(t, a));
+        spari_snapshot_close(&a->before);
+        if (!t->bad) {
+            spari_snapshot_load(&a->before, there, 1);
         }
     }
-    t.at = (double *)(uintptr_t)state + order + used;
-    pass_beginning(&t, &then);
-    if (t.bad ||
-        !spari_snapshot_is(t.at, left + SPARI_SNAPSHOT_HEAD, images_before(a, t.at + SPARI_SNAPSHOT_HEAD, left))) {
-        return 0;
-    }
-    *a = then;
-    t.at = (double *)(uintptr_t)state + HEAD;
-    spari_snapshot_close(&a->before);
-    pass_vectors(&t, a);
+    t->at += spari_snapshot_size(&a->before);
+}
+
+/* a: a copy, unless a state is loaded. */
+static void pass_scheme_state(state_passage *t, spari_accelerator *a) {
+    int occupied = 0;
     for (int s = 0; s < a->slots; s++) {
-        a->column[s].state = SPARI_FREE;
+        occupied += a->column[s].state != SPARI_FREE;
     }
-    for (int k = 0; k < columns; k++) {
-        pass_column(&t, a, (int)*t.at);
+    pass_head(t, a, &occupied);
+    pass_reals(t, a->x, a->n);
+    pass_reals(t, a->g, a->n);
+    pass_reals(t, a->image, a->set.imaged ? 2 * a->n : 0);
+    pass_reals(t, a->lead, a->secants ? 2 * a->n : 0);
+    pass_reals(t, a->last, a->secants ? a->n : 0);
+    pass_columns(t, a, occupied);
+    for (int j = 0; j < a->used; j++) {
+        pass_whole(t, a->order + j, a->slots);
     }
+    pass_snapshot(t, a);
+}
+
+int64_t spari_accelerator_state_size(const spari_accelerator *a) {
+    state_passage t = {.job = COUNT};
+    spari_accelerator own = *a;
+    pass_scheme_state(&t, &own);
+    return t.at;
+}
+
+void spari_accelerator_save(const spari_accelerator *a, double *state) {
+    state_passage t = {.job = SAVE, .state = state};
+    spari_accelerator own = *a;
+    pass_scheme_state(&t, &own);
+}
+
+int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count) {
+    state_passage t = {.job = LOAD, .state = (double *)(uintptr_t)state, .size = count};
+    pass_scheme_state(&t, a);
+    const int used = t.bad ? 0 : a->used;
     a->used = 0;
-    for (int64_t j = 0; j < used; j++) { /* in the original order: the same bits */
-        (void)spari_differences_append(a, (int)t.at[j], 0);
+    for (int j = 0; j < used; j++) { /* in the original order: the same bits */
+        (void)spari_differences_append(a, a->order[j], 0);
     }
-    spari_snapshot_load(&a->before, state + images, 1);
-    return 1;
+    return !t.bad;
 }

@@ -103,7 +103,7 @@ double spari_accelerator_typical_ratio(const spari_accelerator *a);
 /* State as doubles, for save and load into an accelerator with the same n and settings. */
 int64_t spari_accelerator_state_size(const spari_accelerator *a);
 void spari_accelerator_save(const spari_accelerator *a, double *state);
-/* Returns whether `count` doubles are a valid state, and changes nothing if not. */
+/* Returns whether `count` doubles are a valid state; if not, load another or free the accelerator. */
 int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count);
 
 #endif
