@@ -295,8 +295,28 @@ static void pass_growth(passage *t, spari_growth *g) {
     pass(t, &g->log_last, 1);
 }
 
+static int64_t motion_words(const spar_session *s, const spari_coupling *c) {
+    return c->accelerator && spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0;
+}
+
+static void pass_accelerator(passage *t, const spar_session *s, spari_coupling *c) {
+    int64_t n = t->mode == WRITE ? spari_accelerator_state_size(c->accelerator) : 0;
+    pass(t, &n, 1);
+    if (t->mode == WRITE) {
+        double *state = (double *)(void *)spari_image_add(t->image, n);
+        if (state) {
+            spari_accelerator_save(c->accelerator, state);
+        }
+    } else {
+        const double *state = (const double *)(const void *)spari_image_get(t->image, n);
+        t->image->failed |= !state || !spari_accelerator_load(c->accelerator, state, n);
+    }
+    pass(t, c->predicted, c->n);
+    pass(t, c->motion, motion_words(s, c));
+}
+
 /* c: created with the settings of the image; never only checked */
-static void pass_coupling(passage *t, spari_coupling *c) {
+static void pass_coupling(passage *t, const spar_session *s, spari_coupling *c) {
     pass_int(t, &c->iterations);
     c->iterations = c->iterations < 0 ? 0 : c->iterations > c->most ? c->most : c->iterations;
     pass(t, c->residual, c->iterations);
@@ -327,42 +347,69 @@ static void pass_coupling(passage *t, spari_coupling *c) {
         pass(t, &b->part, 1);
         pass_growth(t, &b->growth);
     }
-}
-
-static void put_accelerator(spari_image *image, const spari_coupling *c) {
-    int64_t n = spari_accelerator_state_size(c->accelerator);
-    double *state = spari_zalloc(n, sizeof *state);
-    if (!state) {
-        image->failed = 1;
-        return;
+    if (c->accelerator) {
+        pass_accelerator(t, s, c);
     }
-    spari_accelerator_save(c->accelerator, state);
-    spari_image_put_int(image, n);
-    spari_image_put(image, state, n);
-    spari_image_put(image, c->predicted, c->n);
-    free(state);
-}
-
-static int64_t motion_words(const spar_session *s, const spari_coupling *c) {
-    return c->accelerator && spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0;
 }
 
 /* The length of the coupling comes first, so that it can be skipped. */
-static void put_coupling(spari_image *image, spar_session *s) {
+static void put_coupling(passage *t, const spar_session *s) {
     double settings[SPARI_MOST_OF_COUPLING];
+    spari_image *image = t->image;
     int64_t at = image->count;
     spari_image_put_int(image, 0);
     if (spari_coupling_fits(s)) {
-        passage t = {image, WRITE};
         spari_image_put(image, settings, spari_settings_of_coupling(s, settings));
-        pass_coupling(&t, s->own->coupling);
-        if (s->own->coupling->accelerator) {
-            put_accelerator(image, s->own->coupling);
-            spari_image_put(image, s->own->coupling->motion, motion_words(s, s->own->coupling));
-        }
+        pass_coupling(t, s, s->own->coupling);
     }
     if (!image->failed) {
         image->word[at] = (uint64_t)(image->count - at - 1);
+    }
+}
+
+/* A member or joint, which must be the same in the file. */
+static int pass_name(passage *t, const spar_session *s, const char *what, const char *name, uint64_t hash) {
+    if (t->mode == WRITE) {
+        spari_image_put_text(t->image, name);
+        spari_image_put(t->image, &hash, 1);
+        return SPAR_OK;
+    }
+    SPARI_REQUIRE(s, spari_image_is_text(t->image, name), SPAR_ERR_ARGUMENT,
+                  "the file does not match this session: %s '%s' is out of order; create members and joints in the "
+                  "order of the saved run",
+                  what, name);
+    SPARI_REQUIRE(s, (uint64_t)spari_image_get_int(t->image) == hash, SPAR_ERR_ARGUMENT,
+                  "the file does not match this session: it has a different description of %s '%s'", what, name);
+    return SPAR_OK;
+}
+
+/* The number of ranks, and the names and descriptions of members and joints. */
+static int pass_names(passage *t, const spar_session *s, int *ranks) {
+    int members = s->member_count, joints = s->joint_count;
+    pass_int(t, ranks);
+    pass_int(t, &members);
+    SPARI_REQUIRE(s, members == s->member_count, SPAR_ERR_ARGUMENT,
+                  "the file does not match this session: it has %d members, this session has %d", members,
+                  s->member_count);
+    for (const spar_member *m = s->members; m; m = m->next) {
+        SPARI_TRY(pass_name(t, s, "member", m->name, spari_member_hash(m)));
+    }
+    pass_int(t, &joints);
+    SPARI_REQUIRE(s, joints == s->joint_count || t->image->failed, SPAR_ERR_ARGUMENT,
+                  "the file does not match this session: it has %d joints, this session has %d", joints,
+                  s->joint_count);
+    for (const spar_joint *j = s->joints; j; j = j->next) {
+        SPARI_TRY(pass_name(t, s, "joint", j->name, spari_joint_hash(j)));
+    }
+    return SPAR_OK;
+}
+
+static void pass_structure(passage *t, const spar_session *s) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        pass_member(t, m);
+    }
+    for (spar_joint *j = s->joints; j; j = j->next) {
+        pass_joint(t, j);
     }
 }
 
@@ -370,59 +417,14 @@ static void put_coupling(spari_image *image, spar_session *s) {
 
 void spari_saved_put(spari_image *image, spar_session *s) {
     passage t = {image, WRITE};
-    spari_image_put_int(image, spari_comm_size(s->ranks.comm));
-    spari_image_put_int(image, s->member_count);
-    for (const spar_member *m = s->members; m; m = m->next) {
-        uint64_t hash = spari_member_hash(m);
-        spari_image_put_text(image, m->name);
-        spari_image_put(image, &hash, 1);
-    }
-    spari_image_put_int(image, s->joint_count);
-    for (const spar_joint *j = s->joints; j; j = j->next) {
-        uint64_t hash = spari_joint_hash(j);
-        spari_image_put_text(image, j->name);
-        spari_image_put(image, &hash, 1);
-    }
+    int ranks = spari_comm_size(s->ranks.comm);
+    (void)pass_names(&t, s, &ranks);
     pass_clock(&t, s);
-    for (spar_member *m = s->members; m; m = m->next) {
-        pass_member(&t, m);
-    }
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        pass_joint(&t, j);
-    }
-    put_coupling(image, s);
+    pass_structure(&t, s);
+    put_coupling(&t, s);
 }
 
 /* ---- from a file ---- */
-
-static int compare_session(spar_session *s, spari_saved *l) {
-    l->ranks = (int)spari_image_get_int(&l->image);
-    int64_t members = spari_image_get_int(&l->image);
-    SPARI_REQUIRE(s, members == s->member_count, SPAR_ERR_ARGUMENT,
-                  "the file does not match this session: it has %lld members, this session has %d", (long long)members,
-                  s->member_count);
-    for (const spar_member *m = s->members; m; m = m->next) {
-        SPARI_REQUIRE(s, spari_image_is_text(&l->image, m->name), SPAR_ERR_ARGUMENT,
-                      "the file does not match this session: member '%s' is out of order; create the same "
-                      "members in the same order",
-                      m->name);
-        SPARI_REQUIRE(s, (uint64_t)spari_image_get_int(&l->image) == spari_member_hash(m), SPAR_ERR_ARGUMENT,
-                      "the file does not match this session: it has a different description of member '%s'", m->name);
-    }
-    int64_t joints = spari_image_get_int(&l->image);
-    SPARI_REQUIRE(s, joints == s->joint_count || l->image.failed, SPAR_ERR_ARGUMENT,
-                  "the file does not match this session: it has %lld joints, this session has %d", (long long)joints,
-                  s->joint_count);
-    for (const spar_joint *j = s->joints; j; j = j->next) {
-        SPARI_REQUIRE(s, spari_image_is_text(&l->image, j->name), SPAR_ERR_ARGUMENT,
-                      "the file does not match this session: joint '%s' is out of order; create the same joints in "
-                      "the same order",
-                      j->name);
-        SPARI_REQUIRE(s, (uint64_t)spari_image_get_int(&l->image) == spari_joint_hash(j), SPAR_ERR_ARGUMENT,
-                      "the file does not match this session: it has a different description of joint '%s'", j->name);
-    }
-    return l->image.failed || l->ranks < 1 ? spari_saved_broken(s) : SPAR_OK;
-}
 
 static int is_within(int64_t x, int64_t least, int64_t most) {
     return x >= least && x <= most;
@@ -465,16 +467,7 @@ static int check_coupling(spar_session *s, spari_saved *l) {
     if (saved && memcmp(saved, settings, (size_t)own * sizeof *settings) == 0) {
         SPARI_TRY(spari_coupling_create(s, s->coupling.scheme, 0, &l->coupling));
         passage t = {&l->image, READ};
-        pass_coupling(&t, l->coupling);
-        if (l->coupling->accelerator) {
-            int64_t n = spari_image_get_int(&l->image);
-            const double *state = (const double *)(const void *)spari_image_get(&l->image, n);
-            if (!state || !spari_accelerator_load(l->coupling->accelerator, state, n)) {
-                return spari_saved_broken(s);
-            }
-            pass(&t, l->coupling->predicted, l->coupling->n);
-            pass(&t, l->coupling->motion, motion_words(s, l->coupling));
-        }
+        pass_coupling(&t, s, l->coupling);
         return l->image.failed || l->image.at != end ? spari_saved_broken(s) : SPAR_OK;
     }
     SPARI_REQUIRE(s, l->phase == SPARI_IDLE, SPAR_ERR_STATE,
@@ -485,21 +478,16 @@ static int check_coupling(spar_session *s, spari_saved *l) {
 }
 
 int spari_saved_check(spar_session *s, spari_saved *l) {
-    passage t = {&l->image, CHECK};
-    l->image.at = 0;
-    l->image.failed = l->image.no_memory = 0;
-    spari_coupling_free(&l->coupling);
-    SPARI_TRY(compare_session(s, l));
+    passage names = {&l->image, READ}, t = {&l->image, CHECK};
+    SPARI_TRY(pass_names(&names, s, &l->ranks));
+    if (l->image.failed || l->ranks < 1) {
+        return spari_saved_broken(s);
+    }
     l->clock = l->image.at;
     SPARI_TRY(check_clock(s, l));
-    for (spar_member *m = s->members; m; m = m->next) {
-        pass_member(&t, m);
-        if (l->image.no_memory) {
-            return spari_saved_no_memory(s);
-        }
-    }
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        pass_joint(&t, j);
+    pass_structure(&t, s);
+    if (l->image.no_memory) {
+        return spari_saved_no_memory(s);
     }
     return l->image.failed ? spari_saved_broken(s) : check_coupling(s, l);
 }
@@ -508,12 +496,7 @@ void spari_saved_load(spar_session *s, spari_saved *l) {
     passage t = {&l->image, READ};
     l->image.at = l->clock;
     pass_clock(&t, s);
-    for (spar_member *m = s->members; m; m = m->next) {
-        pass_member(&t, m);
-    }
-    for (spar_joint *j = s->joints; j; j = j->next) {
-        pass_joint(&t, j);
-    }
+    pass_structure(&t, s);
     s->coupling.stale = !l->coupling;
     if (l->coupling) {
         spari_coupling_free(&s->own->coupling);

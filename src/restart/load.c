@@ -1,8 +1,7 @@
 /* Loads a saved session (save.c describes the file) into a session with the same members. Two passes: the first
    checks and allocates; only if all ranks can load, the second changes the session. Members and fluids may be on
-   other ranks than before. Rank 0 reads, and no rank holds the whole file. Data common to all ranks are sent to all.
-   For data of single ranks, rank 0 sends the positions, and the data then go piece by piece to the ranks that need
-   them. */
+   other ranks than before. Rank 0 reads, and no rank holds the whole file. Data common to all ranks and the directories
+   are sent to all. The states then go piece by piece to the ranks that need them. */
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
 #include "../base/saved_file.h"
@@ -13,6 +12,7 @@
 #include "../time/fidelity.h"
 #include "common_state.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,7 +25,7 @@ typedef struct solver_record {
 /* A fluid of the saved run. */
 typedef struct fluid_record {
     int rank, member;
-    int64_t name; /* position of its name in the index */
+    int64_t name; /* position of its name in the directories */
     int64_t at, count;
     int64_t loads; /* words before the data per node */
     spari_by_node by;
@@ -38,8 +38,8 @@ typedef struct reading {
     spari_loading source; /* on rank 0 */
     int status;           /* status of reading here, */
     char why[SPARI_MESSAGE_SIZE / 2];
-    spari_saved common;
-    spari_image index;  /* index of the rest, rank by rank, without states */
+    spari_saved common; /* and the directories */
+    int64_t at, end;    /* position of the next state that the directories name; words of the file */
     double **solution;  /* [members] state of each member solved here; NULL: not here */
     double **assembled; /* [joints] the same for assemblies; NULL: none */
     solver_record *solvers;
@@ -56,7 +56,6 @@ enum { PIECE_NODES = 4096, NODE_WORDS = 15, PIECE = NODE_WORDS * PIECE_NODES };
 static void end_loading(const spar_session *s, reading *l) {
     spari_loading_close(&l->source);
     spari_saved_free(&l->common);
-    spari_image_free(&l->index);
     for (int k = 0; l->solution && k < s->member_count; k++) {
         free(l->solution[k]);
     }
@@ -120,144 +119,23 @@ static int fetch_words(spar_session *s, reading *l, int to, int wanted, int64_t 
     return SPAR_OK;
 }
 
-/* ---- data common to all ranks ---- */
-
-/* Rank 0 reads until it has all; the contents determine the end. */
-static int read_common(spar_session *s, reading *l) {
-    spari_image *image = &l->common.image;
-    int64_t n = 1 << 14;
-    for (;; n *= 4) {
-        n = n < l->source.count ? n : l->source.count;
-        free(image->word);
-        image->word = spari_zalloc(n, sizeof *image->word);
-        if (!image->word) {
-            return spari_saved_no_memory(s);
-        }
-        SPARI_TRY(tell_why(s, l, spari_loading_read(&l->source, 0, n, image->word, l->why, sizeof l->why)));
-        image->count = image->capacity = n;
-        char unheard[SPARI_MESSAGE_SIZE]; /* what is read may end too soon */
-        char *before = spari_messages_redirect(unheard);
-        int status = spari_saved_check(s, &l->common);
-        (void)spari_messages_redirect(before);
-        if (status == SPAR_OK) {
-            image->count = image->at;
-        }
-        if (status == SPAR_OK || status == SPAR_ERR_MEMORY || n == l->source.count ||
-            (status != SPAR_ERR_IO && !image->failed)) {
-            return status == SPAR_ERR_MEMORY ? spari_saved_no_memory(s) : SPAR_OK; /* all ranks find other errors */
-        }
-    }
-}
-
-/* Sends rank 0's words to all ranks. */
-static int send_image(spar_session *s, spari_image *image) {
-    SPARI_TRY(spari_comm_broadcast(s->ranks.comm, &image->count, sizeof image->count, s->message, sizeof s->message));
-    if (!is_root(s)) {
-        image->word = spari_zalloc(image->count, sizeof *image->word);
-    }
-    SPARI_TRY(spari_agree(s, image->word ? SPAR_OK : spari_saved_no_memory(s)));
-    return spari_comm_broadcast(s->ranks.comm, image->word, 8 * image->count, s->message, sizeof s->message);
-}
+/* ---- data common to all ranks, and the directories ---- */
 
 static int load_common(spar_session *s, reading *l) {
-    SPARI_TRY(spari_agree(s, is_root(s) ? read_common(s, l) : SPAR_OK));
-    SPARI_TRY(send_image(s, &l->common.image));
+    spari_image *image = &l->common.image;
+    int64_t count[2] = {0, l->source.count};
+    if (is_root(s)) {
+        read_words(l, 0, 1, (uint64_t *)count);
+    }
+    SPARI_TRY(spari_comm_broadcast(s->ranks.comm, count, sizeof count, s->message, sizeof s->message));
+    image->count = count[0] > 0 && count[0] < count[1] ? count[0] : 0;
+    l->end = count[1];
+    l->at = 1 + image->count;
+    image->word = spari_zalloc(image->count, sizeof *image->word);
+    SPARI_TRY(spari_agree(s, image->word ? SPAR_OK : spari_saved_no_memory(s)));
+    SPARI_TRY(fetch_words(s, l, EVERYBODY, 1, 1, image->count, image->word));
+    SPARI_TRY(spari_agree(s, tell_why(s, l, l->status)));
     return spari_agree(s, spari_saved_check(s, &l->common));
-}
-
-/* ---- index of the rest: rank 0 reads it without the states ---- */
-
-/* Reads words within a rank's block; reading past its end is a failure. */
-typedef struct block_reader {
-    reading *l;
-    int64_t at, end;
-    int failed;
-} block_reader;
-
-static void next_words(block_reader *b, int64_t n, uint64_t *words) {
-    b->failed |= n < 0 || n > b->end - b->at;
-    if (!b->failed) {
-        read_words(b->l, b->at, n, words);
-        b->at += n;
-        b->failed |= b->l->status != SPAR_OK;
-    }
-}
-
-static int64_t next_int(block_reader *b) {
-    uint64_t word = 0;
-    int64_t value = 0;
-    next_words(b, 1, &word);
-    memcpy(&value, &word, sizeof value);
-    return b->failed ? 0 : value;
-}
-
-/* Copies n words to the index. */
-static void copy_words(block_reader *b, int64_t n) {
-    b->failed |= n < 0 || n > b->end - b->at;
-    uint64_t *to = b->failed ? NULL : spari_image_add(&b->l->index, n);
-    if (to) {
-        next_words(b, n, to);
-    }
-}
-
-/* Skips a counted block of words; its position and size go to the index, and its first `head` words (zeros if there
-   are fewer). */
-static void index_state(block_reader *b, int64_t head) {
-    int64_t n = next_int(b);
-    b->failed |= n < 0 || n > b->end - b->at;
-    spari_image_put_int(&b->l->index, b->at);
-    spari_image_put_int(&b->l->index, n);
-    int64_t at = b->at, there = b->failed ? 0 : n < head ? n : head;
-    copy_words(b, there);
-    for (int64_t i = there; i < head; i++) {
-        spari_image_put_int(&b->l->index, 0);
-    }
-    b->at = b->failed ? b->end : at + n;
-}
-
-/* Copies a text. */
-static void index_text(block_reader *b) {
-    int64_t length = next_int(b);
-    b->failed |= length < 0 || length > INT64_MAX - 7;
-    spari_image_put_int(&b->l->index, length);
-    copy_words(b, b->failed ? 0 : (length + 7) / 8);
-}
-
-/* Solvers of members, of assemblies; fluids: each preceded by their number. */
-static void index_block(block_reader *b) {
-    spari_image *index = &b->l->index;
-    for (int kind = 0; kind < 3 && !b->failed; kind++) {
-        int64_t count = next_int(b);
-        spari_image_put_int(index, count);
-        for (int64_t i = 0; i < count && !b->failed && !index->failed; i++) {
-            spari_image_put_int(index, next_int(b));
-            if (kind == 2) {
-                index_text(b);
-            }
-            index_state(b, kind == 2 ? SPARI_FLUID_HEAD : 0);
-        }
-    }
-    b->failed |= b->at != b->end;
-}
-
-/* First word: whether the file can be read in this way. */
-static int read_index(spar_session *s, reading *l) {
-    block_reader all = {l, l->common.image.count, l->source.count, 0};
-    spari_image_put_int(&l->index, 1);
-    for (int r = 0; r < l->common.ranks && !all.failed; r++) {
-        int64_t n = next_int(&all);
-        all.failed |= n < 0 || n > all.end - all.at;
-        block_reader block = {l, all.at, all.failed ? all.at : all.at + n, all.failed};
-        index_block(&block);
-        all.failed |= block.failed;
-        all.at = block.end;
-    }
-    SPARI_TRY(tell_why(s, l, l->status));
-    if (l->index.failed) {
-        return spari_saved_no_memory(s);
-    }
-    l->index.word[0] = !all.failed && all.at == all.end;
-    return SPAR_OK;
 }
 
 static const spar_member *member_at(const spar_session *s, int64_t k) {
@@ -276,55 +154,48 @@ static const spari_assembly *assembly_at(const spar_session *s, int64_t k) {
     return a;
 }
 
-static int note_solver(spar_session *s, reading *l, int assembly) {
-    int64_t k = spari_image_get_int(&l->index);
-    int64_t at = spari_image_get_int(&l->index), count = spari_image_get_int(&l->index);
-    if (l->index.failed || !(assembly ? assembly_at(s, k) != NULL : member_at(s, k) != NULL)) {
-        return spari_saved_broken(s);
-    }
-    l->solvers[l->solver_count++] = (solver_record){assembly, (int)k, at, count};
-    return SPAR_OK;
+static int is_fluid(const spar_session *s, spari_image *image, fluid_record *r) {
+    const spar_member *m = member_at(s, r->member);
+    r->name = image->at;
+    (void)spari_image_is_text(image, "");
+    r->head = (const double *)(const void *)spari_image_get(image, SPARI_FLUID_HEAD);
+    return m && r->head && r->count >= SPARI_FLUID_HEAD &&
+           spari_fluid_is_state(m, r->head, r->count, &r->loads, &r->by);
 }
 
-static int note_fluid(spar_session *s, reading *l, int rank) {
-    int64_t k = spari_image_get_int(&l->index);
-    fluid_record r = {.rank = rank, .name = l->index.at};
-    (void)spari_image_is_text(&l->index, "");
-    r.at = spari_image_get_int(&l->index);
-    r.count = spari_image_get_int(&l->index);
-    r.head = (const double *)(const void *)spari_image_get(&l->index, SPARI_FLUID_HEAD);
-    const spar_member *m = member_at(s, k);
-    if (l->index.failed || !m || r.count < SPARI_FLUID_HEAD ||
-        !spari_fluid_is_state(m, r.head, r.count, &r.loads, &r.by)) {
-        return spari_saved_broken(s);
-    }
-    r.member = (int)k;
-    l->fluids[l->fluid_count++] = r;
-    return SPAR_OK;
-}
-
-static int note_block(spar_session *s, reading *l, int rank) {
-    for (int kind = 0; kind < 3; kind++) {
-        int64_t count = spari_image_get_int(&l->index);
-        for (int64_t i = 0; i < count; i++) {
-            SPARI_TRY(kind == 2 ? note_fluid(s, l, rank) : note_solver(s, l, kind));
+/* Notes the next state in the directory of a rank. */
+static int note_state(spar_session *s, reading *l, int rank, int64_t kind) {
+    spari_image *image = &l->common.image;
+    const int64_t k = spari_image_get_int(image), count = spari_image_get_int(image);
+    int ok = !image->failed && count >= 0 && count <= l->end - l->at && k <= INT_MAX;
+    if (ok && kind == SPARI_SAVED_FLUID) {
+        fluid_record r = {.rank = rank, .member = (int)k, .at = l->at, .count = count};
+        ok = is_fluid(s, image, &r);
+        if (ok) {
+            l->fluids[l->fluid_count++] = r;
         }
+    } else if (ok) {
+        ok = kind == SPARI_SAVED_ASSEMBLY ? assembly_at(s, k) != NULL
+                                          : kind == SPARI_SAVED_MEMBER && member_at(s, k) != NULL;
+        l->solvers[l->solver_count++] = (solver_record){kind == SPARI_SAVED_ASSEMBLY, (int)k, l->at, count};
     }
-    return l->index.failed ? spari_saved_broken(s) : SPAR_OK;
+    l->at += ok ? count : 0;
+    return ok ? SPAR_OK : spari_saved_broken(s);
 }
 
-static int load_index(spar_session *s, reading *l) {
-    SPARI_TRY(spari_agree(s, is_root(s) ? read_index(s, l) : SPAR_OK));
-    SPARI_TRY(send_image(s, &l->index));
-    /* each record has at least three words in the index, a fluid's head too */
-    l->solvers = spari_zalloc(l->index.count / 3, sizeof *l->solvers);
-    l->fluids = spari_zalloc(l->index.count / (3 + SPARI_FLUID_HEAD), sizeof *l->fluids);
+static int load_directories(spar_session *s, reading *l) {
+    spari_image *image = &l->common.image;
+    const int64_t most = (image->count - image->at) / 3; /* a state has at least three words */
+    l->solvers = spari_zalloc(most, sizeof *l->solvers);
+    l->fluids = spari_zalloc(most / 4, sizeof *l->fluids); /* and a fluid's head */
     int status = l->solvers && l->fluids ? SPAR_OK : spari_saved_no_memory(s);
-    if (status == SPAR_OK && spari_image_get_int(&l->index) != 1) {
-        status = spari_saved_broken(s);
+    for (int r = 0; r < l->common.ranks && status == SPAR_OK;) {
+        const int64_t kind = spari_image_get_int(image);
+        status = kind == SPARI_SAVED_END ? SPAR_OK : note_state(s, l, r, kind);
+        r += kind == SPARI_SAVED_END;
     }
-    for (int r = 0; r < l->common.ranks && status == SPAR_OK; r++) {
-        status = note_block(s, l, r);
+    if (status == SPAR_OK && (image->at != image->count || l->at != l->end)) {
+        status = spari_saved_broken(s);
     }
     return spari_agree(s, status);
 }
@@ -332,12 +203,12 @@ static int load_index(spar_session *s, reading *l) {
 /* ---- distribution ---- */
 
 static int is_record_of(reading *l, const fluid_record *r, const spar_fluid *f) {
-    l->index.at = r->name;
-    return r->member == spari_fluid_member(f)->number && spari_image_is_text(&l->index, spar_fluid_get_name(f));
+    l->common.image.at = r->name;
+    return r->member == spari_fluid_member(f)->number && spari_image_is_text(&l->common.image, spar_fluid_get_name(f));
 }
 
 static int same_key(const reading *l, const fluid_record *a, const fluid_record *b) {
-    const uint64_t *x = l->index.word + a->name, *y = l->index.word + b->name;
+    const uint64_t *x = l->common.image.word + a->name, *y = l->common.image.word + b->name;
     return a->member == b->member && x[0] == y[0] && memcmp(x + 1, y + 1, (size_t)((x[0] + 7) / 8) * sizeof *x) == 0;
 }
 
@@ -607,7 +478,8 @@ int spar_session_load(spar_session *session, const char *path) {
     SPARI_TRY(spari_enter_agreed(s, __func__, NULL, 0, status));
     status = open_file(s, &l, path); /* without a file, nothing of the joints is created */
     status = status == SPAR_OK ? spari_solvers_place(s, __func__) : status;
-    int (*const parts[])(spar_session *, reading *) = {load_common, load_index, prepare, load_solvers, load_fluids};
+    int (*const parts[])(spar_session *, reading *) = {load_common, load_directories, prepare, load_solvers,
+                                                       load_fluids};
     for (size_t k = 0; k < sizeof parts / sizeof *parts && status == SPAR_OK; k++) {
         status = parts[k](s, &l);
     }

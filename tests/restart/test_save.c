@@ -486,7 +486,7 @@ static void count_errors(const spar_session *s, int level, const char *text, voi
     *(int *)errors += level == SPAR_LOG_ERROR;
 }
 
-/* A file of more than the 16384 words that are read first is loaded without a word in the log. */
+/* A large file is loaded without a word in the log. */
 static void large_file(void **state) {
     (void)state;
     int errors = 0;
