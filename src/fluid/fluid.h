@@ -82,9 +82,8 @@ int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state);
 /* The part of a state that is stored per node: consecutive blocks, each with a number of words per node. */
 enum { SPARI_FLUID_BLOCKS = 7 };
 typedef struct spari_by_node {
-    int64_t nodes; /* 0: nothing is kept per node */
-    int blocks;
-    int64_t width[SPARI_FLUID_BLOCKS], all; /* per block; all: their sum */
+    int64_t nodes;                          /* 0: nothing is kept per node */
+    int64_t width[SPARI_FLUID_BLOCKS], all; /* per block, 0: not kept; all: their sum */
 } spari_by_node;
 /* From the first SPARI_FLUID_HEAD words of a state (or all, if fewer), on a member: words before the data per node,
    and its blocks. 0: not a valid state. */

@@ -70,7 +70,7 @@ void spari_taking_free(spari_taking *t) {
     }
     spari_history_free(t->history);
     spari_states_free(t->states);
-    SPARI_FREE(t->load, t->bins, t->end_bins, t->end, t->positions, t->sorted, t->found, t);
+    SPARI_FREE(t->load[0], t->load[1], t->bins[0], t->bins[1], t->positions, t->sorted, t->found, t);
 }
 
 spari_history *spari_history_create(int64_t n, int order) {

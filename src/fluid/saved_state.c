@@ -29,6 +29,9 @@ enum {
     S_HEAD = SPARI_FLUID_HEAD
 };
 
+/* Blocks of data per node: positions, forces at t^{n+1}, t^n, t^{n-1}, t^{n-2}, the host's numbers at t^n, t^{n+1}. */
+enum { POSITIONS, FORCES, NUMBERS = 5 };
+
 enum { PARTS_BEFORE = 1, PARTS_NOW = 2 }; /* S_PARTS: which of the ends come from parts */
 
 enum { IS_MAPPED = 1, HAS_BINS = 2, /* of S_MAPPED */ BIN_WORDS = sizeof(spari_bins) / sizeof(double) };
@@ -49,17 +52,10 @@ static int64_t state_loads(const spar_member *m, const double *head) {
 }
 
 static spari_by_node state_by_node(const double *head) {
-    spari_by_node by = {.nodes = (int64_t)head[S_NODES]};
-    if (head[S_KEPT] == 0 && head[S_WIDTH] == 0) {
-        return (spari_by_node){0};
-    }
-    for (int k = 0; k < (head[S_KEPT] != 0 ? 5 : 1); k++) {
-        by.width[by.blocks++] = 3;
-    }
-    for (int k = 0; k < 2 && head[S_WIDTH] != 0; k++) {
-        by.width[by.blocks++] = (int64_t)head[S_WIDTH];
-    }
-    for (int k = 0; k < by.blocks; k++) {
+    const int forces = head[S_KEPT] != 0, numbers = head[S_WIDTH] != 0;
+    spari_by_node by = {.nodes = forces || numbers ? (int64_t)head[S_NODES] : 0};
+    for (int k = 0; k < SPARI_FLUID_BLOCKS && (forces || numbers); k++) {
+        by.width[k] = k == POSITIONS ? 3 : k < NUMBERS ? (forces ? 3 : 0) : (int64_t)head[S_WIDTH];
         by.all += by.width[k];
     }
     return by;
@@ -92,38 +88,55 @@ int64_t spari_fluid_state_size(const spar_fluid *fluid) {
     return state_size(fluid->member, head);
 }
 
-/* Writes a pair of nodal loads and their sums; sums[0] NULL: none. Returns the position after them. */
-static double *put_load_pair(double *at, int64_t n, const double *const value[2], const spari_bins *const sums[2]) {
+/* Nodal loads of a fluid that are saved together, with their reproducible sums. */
+typedef struct load_pair {
+    double *value[2];
+    spari_bins *sum[2]; /* NULL: none */
+} load_pair;
+
+enum { IN_USE, ENDS }; /* of spari_taking too */
+
+static load_pair load_pair_of(const spar_fluid *f, int which) {
+    return which == IN_USE
+               ? (load_pair){{f->load, f->load_accepted}, {f->bins[SPARI_OF_PUSHED], f->bins[SPARI_OF_ACCEPTED]}}
+               : (load_pair){{f->parts->end[0], f->parts->end[1]}, {f->bins[SPARI_OF_BEGIN], f->bins[SPARI_OF_END]}};
+}
+
+/* Returns the position after them. */
+static double *put_load_pair(double *at, int64_t n, load_pair pair) {
     for (int k = 0; k < 2; k++, at += n) {
-        memcpy(at, value[k], (size_t)n * sizeof *at);
+        memcpy(at, pair.value[k], (size_t)n * sizeof *at);
     }
-    for (int k = 0; k < 2 && sums[0]; k++, at += n * BIN_WORDS) {
-        memcpy(at, sums[k], (size_t)n * sizeof *sums[k]);
+    for (int k = 0; k < 2 && pair.sum[0]; k++, at += n * BIN_WORDS) {
+        memcpy(at, pair.sum[k], (size_t)n * sizeof *pair.sum[k]);
     }
     return at;
 }
 
-static int put_by_node(const spar_fluid *fluid, const char *call, const spari_by_node *by, double *at) {
-    const spari_history *h = fluid->history;
-    const spari_states *t = fluid->states;
-    double *positions = spari_fluid_positions(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes);
-    SPARI_FLUID_REQUIRE_OF(fluid, call, positions, SPAR_ERR_MEMORY, "no memory to save its states");
-    const double *all[SPARI_FLUID_BLOCKS] = {positions};
-    int blocks = 1;
-    if (h) {
-        const double *forces[] = {h->after, h->past[0], h->past[1], h->past[2]};
-        memcpy(all + blocks, forces, sizeof forces);
-        blocks += 4;
+/* Data per node; NULL: not kept. */
+static void find_blocks_of(double *positions, const spari_history *h, const spari_states *t,
+                           double *block[SPARI_FLUID_BLOCKS]) {
+    memset(block, 0, SPARI_FLUID_BLOCKS * sizeof *block);
+    block[POSITIONS] = positions;
+    for (int k = 0; k < NUMBERS - FORCES && h; k++) {
+        block[FORCES + k] = k == 0 ? h->after : h->past[k - 1];
     }
     if (t) {
-        all[blocks] = t->now, all[blocks + 1] = t->next;
+        block[NUMBERS] = t->now, block[NUMBERS + 1] = t->next;
     }
-    for (int k = 0; k < by->blocks; k++) {
-        size_t n = (size_t)(by->nodes * by->width[k]);
-        if (all[k]) {
-            memcpy(at, all[k], n * sizeof *at);
+}
+
+static int put_by_node(const spar_fluid *fluid, const char *call, const spari_by_node *by, double *at) {
+    double *positions = spari_fluid_positions(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes);
+    double *block[SPARI_FLUID_BLOCKS];
+    SPARI_FLUID_REQUIRE_OF(fluid, call, positions, SPAR_ERR_MEMORY, "no memory to save its states");
+    find_blocks_of(positions, fluid->history, fluid->states, block);
+    for (int k = 0; k < SPARI_FLUID_BLOCKS; k++) {
+        int64_t n = by->nodes * by->width[k];
+        if (block[k]) {
+            spari_give(at, block[k], n);
         } else {
-            memset(at, 0, n * sizeof *at);
+            memset(at, 0, (size_t)n * sizeof *at);
         }
         at += n;
     }
@@ -141,12 +154,10 @@ int spari_fluid_save(const spar_fluid *fluid, const char *call, double *state) {
     double *at = state + S_HEAD;
     int64_t loads = 6 * fluid->member->nodes;
     if (fluid->load) {
-        at = put_load_pair(at, loads, (const double *const[]){fluid->load, fluid->load_accepted},
-                           (const spari_bins *const[]){fluid->bins[SPARI_OF_PUSHED], fluid->bins[SPARI_OF_ACCEPTED]});
+        at = put_load_pair(at, loads, load_pair_of(fluid, IN_USE));
     }
     if (p && state[S_PARTS] != 0) {
-        at = put_load_pair(at, loads, (const double *const[]){p->end[0], p->end[1]},
-                           (const spari_bins *const[]){fluid->bins[SPARI_OF_BEGIN], fluid->bins[SPARI_OF_END]});
+        at = put_load_pair(at, loads, load_pair_of(fluid, ENDS));
     }
     const spari_by_node by = state_by_node(state);
     return by.nodes > 0 ? put_by_node(fluid, call, &by, at) : SPAR_OK;
@@ -194,14 +205,13 @@ static int alloc_loads(spar_fluid *fluid, const char *call, spari_taking *t) {
         spari_fluid_make_bins(fluid) != SPAR_OK) {
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, call, "no memory for reproducible sums of its loads");
     }
-    t->load = spari_zalloc(n, sizeof *t->load);
-    t->bins = fluid->bins[0] ? spari_zalloc(n, sizeof *t->bins) : NULL;
-    t->end = fluid->parts ? spari_zalloc(n, sizeof *t->end) : NULL;
-    t->end_bins = t->bins && t->end ? spari_zalloc(n, sizeof *t->end_bins) : NULL;
-    SPARI_FLUID_REQUIRE_OF(fluid, call,
-                           t->load && (t->bins || !fluid->bins[0]) && (t->end || !fluid->parts) &&
-                               (t->end_bins || !t->bins || !t->end),
-                           SPAR_ERR_MEMORY, "no memory for its loads");
+    int ok = 1;
+    for (int p = IN_USE; p <= (fluid->parts ? ENDS : IN_USE); p++) {
+        t->load[p] = spari_zalloc(n, sizeof **t->load);
+        t->bins[p] = fluid->bins[0] ? spari_zalloc(n, sizeof **t->bins) : NULL;
+        ok = ok && t->load[p] && (t->bins[p] || !fluid->bins[0]);
+    }
+    SPARI_FLUID_REQUIRE_OF(fluid, call, ok, SPAR_ERR_MEMORY, "no memory for its loads");
     return SPAR_OK;
 }
 
@@ -228,6 +238,7 @@ static int alloc_nodes(spar_fluid *fluid, const char *call, spari_taking *t, con
     SPARI_FLUID_REQUIRE_OF(fluid, call,
                            (t->history || !kept) && (t->states || width == 0) && t->positions && t->sorted && t->found,
                            SPAR_ERR_MEMORY, "no memory for its states");
+    find_blocks_of(t->positions, t->history, t->states, t->block);
     for (int64_t i = 0; i < s->n; i++) {
         t->sorted[i] = t->positions + 3 * i;
     }
@@ -320,18 +331,15 @@ int spari_fluid_take_loads(spar_fluid *fluid, const double *state, int takes_loa
     if (!takes_loads || state[S_MAPPED] == 0) {
         return 1;
     }
-    for (int which = 0; which < 2; which++) {
-        add_of_state(t->load + which * n, loads + which * n, n, t->added == 0);
-        if (t->bins) {
-            add_bins_of_pair(t->bins + which * n, m, loads, which, has_bins);
+    for (int k = 0; k < 4; k++) {
+        int p = k / 2, which = k % 2, has = p == IN_USE || (int)state[S_PARTS] & (which ? PARTS_NOW : PARTS_BEFORE);
+        int from = has ? which : 1 - which; /* ends without sums are the loads in use */
+        const double *pair = p == ENDS && has ? ends : loads;
+        if (t->load[p]) {
+            add_of_state(t->load[p] + which * n, pair + from * n, n, t->added == 0);
         }
-        if (t->end) { /* without sums, its loads */
-            int has = (int)state[S_PARTS] & (which == 0 ? PARTS_BEFORE : PARTS_NOW), from = has ? which : 1 - which;
-            const double *pair = has ? ends : loads;
-            add_of_state(t->end + which * n, pair + from * n, n, t->added == 0);
-            if (t->end_bins) {
-                add_bins_of_pair(t->end_bins + which * n, m, pair, from, has_bins);
-            }
+        if (t->bins[p]) {
+            add_bins_of_pair(t->bins[p] + which * n, m, pair, from, has_bins);
         }
     }
     t->added++;
@@ -375,54 +383,28 @@ static int64_t find_node(const spar_fluid *fluid, const double *position, int fo
     return best;
 }
 
-/* Data of one node in the blocks after the positions: its forces, then the host's numbers. */
-typedef struct loaded_node {
-    const double *force[4], *state[2];
-} loaded_node;
-
-static void put_node(spari_taking *t, int64_t to, const loaded_node *from) {
-    for (int k = 0; k < 4; k++) {
-        double *row = !t->history ? NULL : k == 0 ? t->history->after : t->history->past[k - 1];
-        if (row && from->force[k]) {
-            memcpy(row + 3 * to, from->force[k], 3 * sizeof *row);
-        }
-    }
-    for (int k = 0; k < 2 && t->states; k++) {
-        size_t width = (size_t)t->states->width;
-        if (from->state[k]) {
-            memcpy((k == 0 ? t->states->now : t->states->next) + (size_t)to * width, from->state[k],
-                   width * sizeof(double));
+/* Data of node `to` from node `from` of `count` nodes in consecutive blocks. */
+static void put_node(spari_taking *t, int64_t to, const spari_by_node *by, const double *rows, int64_t count,
+                     int64_t from) {
+    for (int k = 0; k < SPARI_FLUID_BLOCKS; rows += by->width[k] * count, k++) {
+        if (k > POSITIONS && t->block[k]) {
+            spari_give(t->block[k] + by->width[k] * to, rows + by->width[k] * from, by->width[k]);
         }
     }
     t->found[to] = 1;
 }
 
-/* Node i of `count` in consecutive blocks. */
-static loaded_node node_of_blocks(const double *head, const double *rows, int64_t count, int64_t i) {
-    const spari_by_node by = state_by_node(head);
-    loaded_node from = {{NULL}, {NULL}};
-    int forces = head[S_KEPT] != 0 ? 4 : 0;
-    const double *at = rows + 3 * count;
-    for (int k = 1; k < by.blocks; k++) {
-        const double **to = k <= forces ? from.force + (k - 1) : from.state + (k - 1 - forces);
-        *to = at + by.width[k] * i;
-        at += by.width[k] * count;
-    }
-    return from;
-}
-
 void spari_fluid_take_nodes(spar_fluid *fluid, const double *head, int64_t first, int64_t count, const double *rows) {
     spari_taking *t = fluid->taking;
-    int64_t here = t->positions ? t->n : 0, n = (int64_t)head[S_NODES];
+    const spari_by_node by = state_by_node(head);
+    int64_t here = t->positions ? t->n : 0;
     for (int64_t i = 0; i < count && here > 0; i++) {
-        const double *position = rows + 3 * i, *own = n == here ? t->positions + 3 * (first + i) : NULL;
+        const double *position = rows + 3 * i, *own = by.nodes == here ? t->positions + 3 * (first + i) : NULL;
         /* same nodes in the same order, possibly repeated: no search */
-        int same =
-            n == here && !t->found[first + i] && distance_between(position, own) <= position_tolerance(fluid, own);
+        int same = own && !t->found[first + i] && distance_between(position, own) <= position_tolerance(fluid, own);
         int64_t to = same ? first + i : find_node(fluid, position, 0);
         if (to >= 0) {
-            const loaded_node from = node_of_blocks(head, rows, count, i);
-            put_node(t, to, &from);
+            put_node(t, to, &by, rows, count, i);
         }
     }
 }
@@ -430,21 +412,15 @@ void spari_fluid_take_nodes(spar_fluid *fluid, const double *head, int64_t first
 /* A node whose position occurred fewer times in the file gets the data of another node at this position. */
 static int share_node(spar_fluid *fluid, int64_t to) {
     spari_taking *t = fluid->taking;
+    const spari_by_node by = state_by_node(t->head);
     int64_t i = find_node(fluid, t->positions + 3 * to, 1);
-    if (i < 0) {
-        return 0;
+    for (int k = FORCES; k < SPARI_FLUID_BLOCKS && i >= 0; k++) {
+        if (t->block[k]) {
+            memcpy(t->block[k] + by.width[k] * to, t->block[k] + by.width[k] * i, (size_t)by.width[k] * sizeof(double));
+        }
     }
-    loaded_node from = {{NULL}, {NULL}};
-    for (int k = 0; k < 4 && t->history; k++) {
-        const double *row = k == 0 ? t->history->after : t->history->past[k - 1];
-        from.force[k] = row ? row + 3 * i : NULL;
-    }
-    if (t->states) {
-        from.state[0] = t->states->now + i * t->states->width;
-        from.state[1] = t->states->next + i * t->states->width;
-    }
-    put_node(t, to, &from);
-    return 1;
+    t->found[to] = i >= 0;
+    return i >= 0;
 }
 
 int64_t spari_fluid_first_missing(spar_fluid *fluid) {
@@ -466,32 +442,13 @@ int spari_fluid_loaded_whole(spar_fluid *fluid, const char *call) {
 
 /* ---- putting in force ---- */
 
-static void load_parts(spar_fluid *fluid) {
-    const spari_taking *t = fluid->taking;
-    spari_parts *p = fluid->parts;
-    int have = (int)t->head[S_PARTS];
-    p->ended = (have & PARTS_BEFORE) != 0;
-    p->theta = have & PARTS_NOW ? 1 : 0;
-    p->plain = 0;
+static void load_load_pair(const spar_fluid *fluid, load_pair to, const double *value, const spari_bins *sum) {
+    const int64_t n = 6 * fluid->member->nodes;
     for (int which = 0; which < 2; which++) {
-        int64_t n = 6 * fluid->member->nodes;
-        memcpy(p->end[which], t->end + which * n, (size_t)n * sizeof *t->end);
-        for (int64_t i = 0; t->end_bins && i < n; i++) {
-            fluid->bins[SPARI_OF_BEGIN + which][i] = t->end_bins[which * n + i];
-            p->end[which][i] = 0.5 * spari_bins_value(t->end_bins + which * n + i);
-        }
-    }
-}
-
-static void load_nodal(spar_fluid *fluid) {
-    const spari_taking *t = fluid->taking;
-    int64_t n = 6 * fluid->member->nodes;
-    double *value[2] = {fluid->load, fluid->load_accepted};
-    for (int which = 0; which < 2; which++) {
-        memcpy(value[which], t->load + which * n, (size_t)n * sizeof *t->load);
-        for (int64_t i = 0; t->bins && i < n; i++) {
-            fluid->bins[2 * which][i] = t->bins[which * n + i];
-            value[which][i] = 0.5 * spari_bins_value(t->bins + which * n + i);
+        memcpy(to.value[which], value + which * n, (size_t)n * sizeof *value);
+        for (int64_t i = 0; sum && i < n; i++) {
+            to.sum[which][i] = sum[which * n + i];
+            to.value[which][i] = 0.5 * spari_bins_value(sum + which * n + i);
         }
     }
 }
@@ -502,10 +459,14 @@ void spari_fluid_load(spar_fluid *fluid) {
     memcpy(fluid->audit, t->head + S_AUDIT, sizeof fluid->audit);
     spari_fluid_forget_refusal(fluid);
     if (fluid->parts) {
-        load_parts(fluid);
+        int have = (int)t->head[S_PARTS];
+        fluid->parts->ended = (have & PARTS_BEFORE) != 0;
+        fluid->parts->theta = have & PARTS_NOW ? 1 : 0;
+        fluid->parts->plain = 0;
+        load_load_pair(fluid, load_pair_of(fluid, ENDS), t->load[ENDS], t->bins[ENDS]);
     }
     if (fluid->load) {
-        load_nodal(fluid);
+        load_load_pair(fluid, load_pair_of(fluid, IN_USE), t->load[IN_USE], t->bins[IN_USE]);
     }
     if (t->history) {
         spari_history_free(fluid->history);

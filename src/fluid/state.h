@@ -76,17 +76,16 @@ typedef struct spari_parts {
 /* New state of a fluid, assembled from the states of a file (saved_state.c); layout as in their heads. */
 typedef struct spari_taking {
     double head[SPARI_FLUID_HEAD]; /* over all states: sums, or whether any has it */
-    double *load;                  /* [2][nodes][6]: load and load_accepted, summed over the states */
-    spari_bins *bins;              /* of these, if kept */
-    double *end;                   /* [2][nodes][6]: ends of parts, if any */
-    spari_bins *end_bins;          /* of these, if kept */
+    double *load[2];               /* [2][nodes][6]: load and load_accepted, summed; and the ends of parts, if any */
+    spari_bins *bins[2];           /* of these, if kept */
     int added;                     /* number of states with loads so far */
     int64_t n;
-    double *positions;      /* [n][3] of the force nodes here; NULL: nothing is kept per node, or no nodes */
-    const double **sorted;  /* [n] positions, sorted by height */
-    char *found;            /* [n] */
-    spari_history *history; /* NULL: forces are not kept */
-    spari_states *states;   /* NULL: none */
+    double *positions;                 /* [n][3] of the force nodes here; NULL: nothing is kept per node, or no nodes */
+    const double **sorted;             /* [n] positions, sorted by height */
+    char *found;                       /* [n] */
+    spari_history *history;            /* NULL: forces are not kept */
+    spari_states *states;              /* NULL: none */
+    double *block[SPARI_FLUID_BLOCKS]; /* the data per node in both; NULL: not kept */
 } spari_taking;
 
 /* Reproducible sums of a fluid's loads: of load, load_new, load_accepted; of `mean`, end[0] and end[1] of its parts.

@@ -384,7 +384,7 @@ static int fetch_fluid(spar_session *s, reading *l, const fluid_record *r, int64
     int64_t most = by->all > 0 ? PIECE / by->all : 1;
     for (int64_t i = 0; i < by->nodes; i += most) {
         int64_t n = by->nodes - i < most ? by->nodes - i : most, before = 0;
-        for (int k = 0; k < by->blocks; before += by->width[k], k++) {
+        for (int k = 0; k < SPARI_FLUID_BLOCKS; before += by->width[k], k++) {
             int64_t width = by->width[k];
             SPARI_TRY(fetch_piece(s, l, r, wanted, r->loads + before * by->nodes + width * i, width * n, before * n));
         }
