@@ -1,4 +1,4 @@
-/* Dense and banded linear systems, with general entries or assembled along a chain of elements: see linear.h. */
+/* Dense and banded linear systems, assembled along a chain of elements: see linear.h. */
 #include "linear.h"
 #include "linear_kernels.h"
 
@@ -28,7 +28,7 @@ typedef struct linear_rows {
 } linear_rows;
 
 struct spari_linear {
-    int elements, block, overlap; /* of a chain; otherwise 0 */
+    int elements, block, overlap; /* of the chain */
     size_t n, band;               /* unknowns; half bandwidth (banded storage) */
     linear_rows A;     /* dense n x n, column by column, or banded n x (3 band + 1): column by column, rows apart */
     int *swap;         /* dense, else NULL: row i went to swap[i] - 1, one after the other, as LAPACK says it */
@@ -115,15 +115,6 @@ spari_linear *spari_linear_create(int elements, int block, int overlap) {
     return with_workspace(s, elements == 1);
 }
 
-spari_linear *spari_linear_create_banded(int n, int band) {
-    spari_linear *s = spari_zalloc(1, sizeof *s);
-    if (!s) {
-        return NULL;
-    }
-    s->n = (size_t)n, s->band = (size_t)band;
-    return with_workspace(s, 3 * s->band + 1 >= s->n);
-}
-
 void spari_linear_free(spari_linear *s) {
     if (s) {
         spari_linear_free(s->ends);
@@ -157,11 +148,6 @@ void spari_linear_zero(spari_linear *s) {
 /* Entry (i, j). Row j of the storage is column j of the matrix; banded storage has A(i, j) at 2 band + i - j. */
 static double *entry(const spari_linear *s, size_t i, size_t j) {
     return s->A.data + j * s->A.step + (s->swap ? i : 2 * s->band + i - j);
-}
-
-double *spari_linear_entries(const spari_linear *s, int64_t *step) {
-    *step = (int64_t)s->A.step - (s->swap ? 0 : 1);
-    return entry(s, 0, 0);
 }
 
 /* Position of unknown i of an element in its matrix. */
@@ -270,7 +256,7 @@ void spari_linear_fix(spari_linear *s, int i) {
 static size_t size_without_lead(const spari_linear *s) {
     const size_t lead = (size_t)s->overlap, left = s->n > lead ? s->n - lead : 0;
     const size_t eights = (left + SPARI_CORNER - 1) / SPARI_CORNER * SPARI_CORNER;
-    return s->elements == 1 && lead > 0 && lead <= MOST_LEAD && left > 0 && eights <= s->n ? eights : 0;
+    return lead > 0 && lead <= MOST_LEAD && left > 0 && eights <= s->n ? eights : 0;
 }
 
 /* Removes constrained first unknowns from a dense matrix before it is factored; the others move to the front, and
@@ -315,15 +301,12 @@ static int factor_matrix(spari_linear *s) {
         return 1;
     }
     int bad = 0;
-    double least =
-        s->elements > 0 ? 1 : 0.1; /* a general matrix has zeros inside its profile, which row exchanges would fill */
     if (s->swap) {
         leave_out_lead(s);
-        bad = kernels_here()->factor_dense((int64_t)s->order_of, (int64_t)s->order_of, least, s->A.data,
-                                           (int64_t)s->A.step, s->swap, s->corners);
+        bad = kernels_here()->factor_dense((int64_t)s->order_of, (int64_t)s->order_of, s->A.data, (int64_t)s->A.step,
+                                           s->swap, s->corners);
     } else {
-        bad = kernels_here()->factor_band((int64_t)s->n, (int64_t)s->band, least, s->A.data, (int64_t)s->A.step,
-                                          s->band_swap);
+        bad = kernels_here()->factor_band((int64_t)s->n, (int64_t)s->band, s->A.data, (int64_t)s->A.step, s->band_swap);
     }
     if (bad) {
         return 1;
@@ -347,7 +330,7 @@ static int factor_element(const spari_linear *s, size_t e) {
     size_t m = (size_t)s->block;
     double *A = s->parts + m * m * e;
     if (spari_first_nonfinite(A, (int64_t)(m * m)) >= 0 ||
-        kernels_here()->factor_dense((int64_t)m, (int64_t)s->own, 1, A, (int64_t)m, s->part_swap + s->own * e, NULL)) {
+        kernels_here()->factor_dense((int64_t)m, (int64_t)s->own, A, (int64_t)m, s->part_swap + s->own * e, NULL)) {
         return 1;
     }
     for (size_t i = 0; i < s->own; i++) {

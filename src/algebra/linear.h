@@ -1,5 +1,5 @@
-/* Linear systems of members: element matrices assembled along a chain, dense for one element and banded for more;
-   and general banded systems. Only create and watch allocate memory. */
+/* Linear systems of members: element matrices assembled along a chain, dense for one element and banded for more.
+   Only create and watch allocate memory. */
 #ifndef SPARI_LINEAR_H
 #define SPARI_LINEAR_H
 
@@ -10,16 +10,11 @@ typedef struct spari_linear spari_linear;
 /* Chain of elements with block x block matrices; neighbours share their last and first `overlap` unknowns. NULL:
    no memory. */
 spari_linear *spari_linear_create(int elements, int block, int overlap);
-/* General system of n unknowns; entries (i, j) have |i - j| <= band. Stored dense if that takes no more memory. */
-spari_linear *spari_linear_create_banded(int n, int band);
 void spari_linear_free(spari_linear *system);
 /* Threads for the elements of a chain (base/thread_pool.h) from now on; NULL: the calling thread. */
 void spari_linear_share(spari_linear *system, spari_thread_pool *const *pool);
 void spari_linear_zero(spari_linear *system);
 void spari_linear_add(spari_linear *system, int element, const double *S); /* S row-major [block][block] */
-/* For general systems: entry (0, 0); entry (i, j), within the band, is i + step j further on. After factoring, (i,
-   i) is the pivot. */
-double *spari_linear_entries(const spari_linear *system, int64_t *step);
 /* Row and column of unknown i, [unknowns] each. Call before factoring. */
 void spari_linear_read(const spari_linear *system, int i, double *row, double *column);
 /* Constrains unknown i: its row and column become those of the identity. Call before factoring. */

@@ -369,8 +369,8 @@ HERE int NAME(are_zero)(const double *x) {
     return (bits[0] | bits[1] | bits[2] | bits[3]) << 1 == 0;
 }
 
-/* Index of the largest of |x[n]|; 0 if |x[0]| is at least `least` times that. */
-HERE int64_t NAME(pivot_of)(int64_t n, double least, const double *x) {
+/* Index of the largest of |x[n]|, the first of equal ones. */
+HERE int64_t NAME(pivot_of)(int64_t n, const double *x) {
     L lanes = {0};
     int64_t i = 0;
     double most = 0;
@@ -382,10 +382,7 @@ HERE int64_t NAME(pivot_of)(int64_t n, double least, const double *x) {
         most = fabs(x[i]) > most ? fabs(x[i]) : most;
     }
     most = NAME(largest)(most, lanes);
-    if (fabs(x[0]) >= least * most) {
-        return 0;
-    }
-    for (i = 1; i < n - 1 && !(fabs(x[i]) >= most);) {
+    for (i = 0; i < n - 1 && !(fabs(x[i]) >= most);) {
         i++;
     }
     return i;
@@ -508,16 +505,15 @@ HERE void NAME(take_from)(int64_t n, int64_t first, int64_t end, const double *A
 /* Factors A [n][step] in place, eight columns at a time.
    inner: rows are exchanged among the first `inner`, which are eliminated; the rest is left as their Schur
      complement
-   least: row j is exchanged with row swap[j] - 1 unless the diagonal is at least `least` times the largest entry
+   swap: row j is exchanged with row swap[j] - 1, that of the largest entry
    corners: receives the lower inverses of whole blocks of eight for solve_dense; may be NULL
    Columns without entries are skipped. In the elimination order of a tree of parts these are most, the more so the
      fewer rows are exchanged. Returns 0, or 1 if a pivot is 0 or not finite. */
-TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, double *A, int64_t step, int *swap,
-                                     double *corners) {
+TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double *A, int64_t step, int *swap, double *corners) {
     double inverse[SPARI_CORNER * SPARI_CORNER];
     for (int64_t j = 0; j < inner; j++) {
         double *x = A + step * j;
-        int64_t p = j + NAME(pivot_of)(inner - j, least, x + j), first = j - j % SPARI_CORNER, c = j + 1;
+        int64_t p = j + NAME(pivot_of)(inner - j, x + j), first = j - j % SPARI_CORNER, c = j + 1;
         swap[j] = (int)p + 1;
         for (double *row = A; p != j && row < A + step * n; row += step) {
             double there = row[p];
@@ -544,7 +540,7 @@ TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double least, dou
 }
 
 /* The same for a band, as forth_band and back_band need it. Rows are exchanged from column j on. */
-TARGET static int NAME(factor_band)(int64_t n, int64_t band, double least, double *columns, int64_t step, int *swap) {
+TARGET static int NAME(factor_band)(int64_t n, int64_t band, double *columns, int64_t step, int *swap) {
     for (int64_t j = 0; j < n; j++) {
         double *x = columns + step * j + 2 * band - j; /* x[i]: row i */
         int64_t end = j + band + 1 < n ? j + band + 1 : n;
@@ -557,7 +553,7 @@ TARGET static int NAME(factor_band)(int64_t n, int64_t band, double least, doubl
                 (1, n - 1 - k < band ? n - 1 - k : band, columns + step * k + 2 * band + 1, step, x + k, x + k + 1);
             }
         }
-        int64_t p = j + NAME(pivot_of)(end - j, least, x + j);
+        int64_t p = j + NAME(pivot_of)(end - j, x + j);
         swap[j] = (int)p;
         double there = x[p];
         x[p] = x[j];
