@@ -211,16 +211,26 @@ static int check_modes(const spar_member *m, int64_t n, const int64_t *mode, con
     return SPAR_OK;
 }
 
-/* The body with this damping, before it is put in force */
-static int make_body(const spar_member *m, const double mu[6], spari_body **body) {
-    SPARI_TRY(spari_beam_build(m, 0, mu, body));
-    SPARI_TRY(spari_beam_mass_damping(m, *body));
-    (*body)->gyroscopic = m->body->gyroscopic;
-    memcpy((*body)->gravity, m->body->gravity, sizeof m->body->gravity);
-    return SPAR_OK;
-}
-
-static void put_damping_in_force(spar_member *m, const double mu[6], spari_body *body) {
+/* Puts the damping in force on all ranks, or on none. status: of this rank so far. */
+static int agree_on_damping(spar_member *m, const char *call, const spari_agreed *must_agree, int count,
+                            const double mu[6], double alpha, int status) {
+    spari_body *body = NULL;
+    double before = m->beam ? m->beam->mass_damping : 0;
+    if (status == SPAR_OK) {
+        m->beam->mass_damping = alpha;
+        status = spari_beam_build(m, 0, mu, &body);
+        status = status == SPAR_OK ? spari_beam_mass_damping(m, body) : status;
+    }
+    status = spari_member_enter(m, call, must_agree, count, status);
+    if (status != SPAR_OK) {
+        if (m->beam) {
+            m->beam->mass_damping = before;
+        }
+        spari_body_free(body);
+        return spari_named(m->session, call, status);
+    }
+    body->gyroscopic = m->body->gyroscopic;
+    memcpy(body->gravity, m->body->gravity, sizeof body->gravity);
     spari_body_free(m->body);
     m->body = body;
     memcpy(m->beam->mu, mu, sizeof m->beam->mu);
@@ -229,26 +239,19 @@ static void put_damping_in_force(spar_member *m, const double mu[6], spari_body 
     if (spari_fidelity_is_here(m)) {
         m->row->renew(m);
     }
+    return SPAR_OK;
 }
 
 int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const double ratio[2], double mu[6]) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
-    double found[6];
-    spari_body *body = NULL;
-    int status = check_modes(beam, 2, mode, ratio);
+    double found[6], alpha = beam->beam ? beam->beam->mass_damping : 0;
+    int status = check_modes(beam, 2, mode, ratio), given = mode && ratio;
     status = status == SPAR_OK ? find_mu(beam, mode, ratio, found) : status;
-    status = status == SPAR_OK ? make_body(beam, found, &body) : status;
-    int given = mode && ratio;
     const spari_agreed must_agree[] = {
         spari_whole("mode[0]", given ? mode[0] : 0), spari_whole("mode[1]", given ? mode[1] : 0),
         spari_real("ratio[0]", given ? ratio[0] : 0), spari_real("ratio[1]", given ? ratio[1] : 0)};
-    status = spari_member_enter(beam, __func__, must_agree, 4, status);
-    if (status != SPAR_OK) {
-        spari_body_free(body);
-        return spari_named(beam->session, __func__, status);
-    }
-    put_damping_in_force(beam, found, body);
+    SPARI_TRY(agree_on_damping(beam, __func__, must_agree, 4, found, alpha, status));
     spari_give(mu, found, 6);
     return SPAR_OK;
 }
@@ -353,8 +356,7 @@ static int fit_damping(spar_member *m, int64_t n, const int64_t *mode, const dou
 int spar_beam_fit_damping(spar_member *beam, int64_t n, const int64_t *mode, const double *ratio, double *achieved) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
-    double mu[6], alpha = 0, before = beam->beam ? beam->beam->mass_damping : 0, *found = NULL;
-    spari_body *body = NULL;
+    double mu[6], alpha = 0, *found = NULL;
     int status = n >= 1 && n <= MOST_FITTED
                      ? check_modes(beam, n, mode, ratio)
                      : spari_fail(beam->session, SPAR_ERR_ARGUMENT, "member '%s': %lld modes; give 1 to %d", beam->name,
@@ -366,22 +368,11 @@ int spar_beam_fit_damping(spar_member *beam, int64_t n, const int64_t *mode, con
         status = spari_fail(beam->session, SPAR_ERR_MEMORY, "no memory for the damping of member '%s'", beam->name);
     }
     status = status == SPAR_OK ? fit_damping(beam, n, mode, ratio, mu, &alpha, found) : status;
-    if (status == SPAR_OK) {
-        beam->beam->mass_damping = alpha;
-        status = make_body(beam, mu, &body);
-    }
     const spari_agreed must_agree[] = {spari_whole("n", n), spari_hash("mode", modes), spari_hash("ratio", ratios)};
-    status = spari_member_enter(beam, __func__, must_agree, 3, status);
-    if (status != SPAR_OK) {
-        if (beam->beam) {
-            beam->beam->mass_damping = before;
-        }
-        spari_body_free(body);
-        free(found);
-        return spari_named(beam->session, __func__, status);
+    status = agree_on_damping(beam, __func__, must_agree, 3, mu, alpha, status);
+    if (status == SPAR_OK) {
+        spari_give(achieved, found, n);
     }
-    put_damping_in_force(beam, mu, body);
-    spari_give(achieved, found, n);
     free(found);
-    return SPAR_OK;
+    return status;
 }
