@@ -30,13 +30,13 @@ spari_condensed *spari_condensed_create(int ends, const int *node, int unknowns)
         memcpy(c->node, node, (size_t)ends * sizeof *node);
         find_interior(c);
     }
-    c->W = spari_zalloc(m * c->length + 1, sizeof *c->W);
-    c->rows = spari_zalloc(m * c->length + 1, sizeof *c->rows);
-    c->K = spari_zalloc(m * m, sizeof *c->K);
+    c->W = spari_zalloc(spari_condensed_state_size(c) + 1, sizeof *c->W);
+    c->rows = c->W + m * c->length;
+    c->K = c->rows + m * c->length;
     c->end_values = spari_zalloc(m, sizeof *c->end_values);
     c->row = spari_zalloc(unknowns, sizeof *c->row);
     c->column = spari_zalloc(unknowns, sizeof *c->column);
-    if (!c->node || !c->W || !c->rows || !c->K || !c->end_values || !c->row || !c->column) {
+    if (!c->node || !c->W || !c->end_values || !c->row || !c->column) {
         spari_condensed_free(c);
         return NULL;
     }
@@ -45,7 +45,7 @@ spari_condensed *spari_condensed_create(int ends, const int *node, int unknowns)
 
 void spari_condensed_free(spari_condensed *c) {
     if (c) {
-        SPARI_FREE(c->node, c->W, c->rows, c->K, c->end_values, c->row, c->column, c);
+        SPARI_FREE(c->node, c->W, c->end_values, c->row, c->column, c);
     }
 }
 
@@ -141,16 +141,10 @@ int64_t spari_condensed_state_size(const spari_condensed *c) {
 }
 
 void spari_condensed_save(const spari_condensed *c, double *state) {
-    size_t m = 6 * (size_t)c->ends, n = (size_t)c->length;
-    memcpy(state, c->W, m * n * sizeof *state);
-    memcpy(state + m * n, c->rows, m * n * sizeof *state);
-    memcpy(state + 2 * m * n, c->K, m * m * sizeof *state);
+    spari_give(state, c->W, spari_condensed_state_size(c));
 }
 
 void spari_condensed_load(spari_condensed *c, int fixed, const double *state) {
-    size_t m = 6 * (size_t)c->ends, n = (size_t)c->length;
     c->fixed = fixed;
-    memcpy(c->W, state, m * n * sizeof *state);
-    memcpy(c->rows, state + m * n, m * n * sizeof *state);
-    memcpy(c->K, state + 2 * m * n, m * m * sizeof *state);
+    spari_give(c->W, state, spari_condensed_state_size(c));
 }

@@ -7,11 +7,11 @@
 #include "linear.h"
 
 typedef struct spari_condensed {
-    int ends, n;          /* interface nodes; unknowns of the member, 6 per node */
-    int *node;            /* [ends] node numbers, increasing */
-    int first, length;    /* the unknowns from the first node between interface nodes to the last one */
-    int fixed;            /* number of first unknowns that a root condition constrains */
-    double *W;            /* [6 ends][length]: the columns K_ie, then K_ii^-1 K_ie; 0 at interface nodes */
+    int ends, n;       /* interface nodes; unknowns of the member, 6 per node */
+    int *node;         /* [ends] node numbers, increasing */
+    int first, length; /* the unknowns from the first node between interface nodes to the last one */
+    int fixed;         /* number of first unknowns that a root condition constrains */
+    double *W; /* [6 ends][length]: the columns K_ie, then K_ii^-1 K_ie; 0 at interface nodes. The next two follow. */
     double *rows;         /* [6 ends][length]: K_ei; 0 at interface nodes */
     double *K;            /* [6 ends][6 ends] */
     double *end_values;   /* [6 ends] workspace */
