@@ -173,23 +173,15 @@ static const spari_linear_kernels *kernels_here(void) {
     return spari_linear_kernels_for(8);
 }
 
-static void add_to_element(spari_linear *s, int element, const double *S) {
-    size_t m = (size_t)s->block;
+void spari_linear_add(spari_linear *s, int element, const double *S) {
+    size_t m = (size_t)s->block, e = (size_t)element, first = e * (m - (size_t)s->overlap);
     for (size_t j = 0; j < m; j++) {
-        double *column = s->parts + m * (m * (size_t)element + stand(s, j));
+        double *column = s->ends ? s->parts + m * (m * e + stand(s, j)) : entry(s, first, first + j);
+        SPARI_UNROLL
         for (size_t i = 0; i < m; i++) {
-            column[stand(s, i)] += S[m * i + j];
+            column[s->ends ? stand(s, i) : i] += S[m * i + j];
         }
     }
-}
-
-void spari_linear_add(spari_linear *s, int element, const double *S) {
-    size_t first = (size_t)element * (size_t)(s->block - s->overlap);
-    if (s->ends) {
-        add_to_element(s, element, S);
-        return;
-    }
-    kernels_here()->add(s->block, S, (int64_t)s->A.step - (s->swap ? 0 : 1), entry(s, first, first));
 }
 
 /* Range [from, to) of unknowns that may have entries with unknown i in A. */

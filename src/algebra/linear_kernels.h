@@ -8,7 +8,6 @@
 enum { SPARI_CORNER = 8, SPARI_CORNERS = 4 };
 
 typedef struct spari_linear_kernels {
-    void (*add)(int64_t m, const double *S, int64_t step, double *A);
     int (*factor_dense)(int64_t n, int64_t inner, double *A, int64_t step, int *swap, double *corners);
     int (*factor_band)(int64_t n, int64_t band, double *columns, int64_t step, int *swap);
     void (*corner)(int64_t n, int64_t j, int loaded, const double *A, int64_t step, double *corner);

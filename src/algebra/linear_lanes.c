@@ -12,29 +12,6 @@
 
 #include "../math/rotation_lanes.h"
 
-/* Columns [m] of A, `step` apart, += S [m][m] row by row; W rows of two columns at a time. */
-TARGET static void NAME(add_by_columns)(int64_t m, const double *S, int64_t step, double *A) {
-    int64_t i = 0;
-    for (; i + W <= m; i += W) {
-        int64_t j = 0;
-        for (; j + 2 <= m; j += 2) {
-            double *to = A + step * j + i;
-            L x[2];
-            NAME(pick_rows)(1, NULL, (int)m, 2, S + m * i + j, x);
-            NAME(put)(to, NAME(get)(to) + x[0]);
-            NAME(put)(to + step, NAME(get)(to + step) + x[1]);
-        }
-        for (int l = 0; l < W && j < m; l++) {
-            A[step * j + i + l] += S[m * (i + l) + j];
-        }
-    }
-    for (; i < m; i++) {
-        for (int64_t j = 0; j < m; j++) {
-            A[step * j + i] += S[m * i + j];
-        }
-    }
-}
-
 /* x[n] -= `count` columns of length n, `step` apart, times by[count]. */
 HERE void NAME(less_columns)(const int count, int64_t n, const double *columns, int64_t step, const double *by,
                              double *x) {
@@ -627,7 +604,6 @@ TARGET static void NAME(add_rows)(int64_t n, int64_t count, const double *rows, 
 }
 
 const spari_linear_kernels NAME(spari_linear_kernels) = {
-    .add = NAME(add_by_columns),
     .factor_dense = NAME(factor_dense),
     .factor_band = NAME(factor_band),
     .corner = NAME(invert_corner),
