@@ -41,50 +41,24 @@ void spari_trial_settings_free(spari_trial_settings *trial_settings) {
 
 /* ---- save and restore ---- */
 
-/* Fields of a session that a run changes, beside its settings, which have a table. */
-#define SPARI_SAVED(field)                                                                                             \
-    { offsetof(spar_session, field), sizeof((spar_session *)NULL)->field }
-static const struct {
-    size_t at, size;
-} saved[] = {SPARI_SAVED(failures),
-             SPARI_SAVED(callbacks.log),
-             SPARI_SAVED(callbacks.log_context),
-             SPARI_SAVED(coupling.stale),
-             SPARI_SAVED(clock.time),
-             SPARI_SAVED(clock.rest),
-             SPARI_SAVED(clock.dt),
-             SPARI_SAVED(clock.dt_last),
-             SPARI_SAVED(clock.uneven),
-             SPARI_SAVED(clock.step),
-             SPARI_SAVED(state.iteration),
-             SPARI_SAVED(state.phase),
-             SPARI_SAVED(state.past),
-             SPARI_SAVED(state.order),
-             SPARI_SAVED(state.iterating),
-             SPARI_SAVED(clock.started),
-             SPARI_SAVED(state.failed),
-             SPARI_SAVED(callbacks.in_progress),
-             SPARI_SAVED(state.static_solution),
-             SPARI_SAVED(state.trial),
-             SPARI_SAVED(ranks.calls_differ),
-             SPARI_SAVED(gravity_before)};
-
-static void copy_field(spar_session *to, const spar_session *from, size_t at, size_t size) {
-    memcpy((char *)to + at, (const char *)from + at, size);
-}
-
+/* What a run changes in a session itself, or a callback of the host. */
 static void copy_saved(spar_session *to, const spar_session *from) {
-    for (size_t k = 0; k < sizeof saved / sizeof *saved; k++) {
-        copy_field(to, from, saved[k].at, saved[k].size);
-    }
-    for (int k = 0; k < from->setting_count; k++) {
-        const spari_setting *of = from->settings + k;
-        copy_field(to, from, of->field, of->kind == SPARI_IS_REAL ? sizeof(double) : sizeof(int));
-    }
+    to->failures = from->failures;
+    to->ranks.calls_differ = from->ranks.calls_differ;
+    to->ranks.reproducible = from->ranks.reproducible;
+    to->callbacks = from->callbacks;
+    to->integrator = from->integrator;
+    to->newton = from->newton;
+    to->coupling = from->coupling;
+    to->tolerance = from->tolerance;
+    to->clock = from->clock;
+    to->state = from->state;
+    memcpy(to->gravity, from->gravity, sizeof to->gravity);
+    memcpy(to->gravity_before, from->gravity_before, sizeof to->gravity_before);
 }
 
 typedef struct snapshot {
-    spar_session session;    /* the saved fields of it */
+    spar_session session;    /* copy_saved of it */
     spari_exchange exchange; /* private data of the session that are saved meanwhile */
     spari_coupling *coupling;
     spar_member *members;                /* [member_count] old members; */
@@ -102,9 +76,7 @@ static void snapshot_free(const snapshot *t) {
 /* After a failure the session is unchanged, with nothing to restore. */
 static int snapshot_create(spar_session *s, snapshot *t) {
     spari_own *own = s->own;
-    *t = (snapshot){.session = {.settings = s->settings, .setting_count = s->setting_count},
-                    .exchange = own->exchange,
-                    .coupling = own->coupling};
+    *t = (snapshot){.exchange = own->exchange, .coupling = own->coupling};
     copy_saved(&t->session, s);
     for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
         t->fluid_count++;
