@@ -486,7 +486,7 @@ static void solve_for_loads(const spari_constraint *l, const spari_interface *v,
 /* The motion of the interface nodes that closes the gaps while their clusters stay. Returns whether it is not zero. */
 static int find_gaps(spari_assembly *a) {
     int any = 0;
-    for (int n = 0; n < a->interfaces; n++) {
+    for (int n = 0; n < a->interfaces && a->clusters; n++) {
         spari_interface *v = a->interface + a->order[n];
         const spari_constraint *l = a->constraint + v->constraint;
         memset(v->gap, 0, sizeof v->gap);
@@ -505,13 +505,13 @@ static int find_gaps(spari_assembly *a) {
     return any;
 }
 
-/* The remaining gaps of a constraint, of its constrained motions in order. */
-static void gaps_left(const spari_assembly *a, const spari_constraint *l, double left[6]) {
+/* The remaining gaps of a constraint, of its constrained motions in order. gaps: nodes move in their clusters. */
+static void gaps_left(const spari_assembly *a, const spari_constraint *l, int gaps, double left[6]) {
     int constrained = 0;
     for (int k = 0; k < 6; k++) {
         if (spari_constraint_holds(l, k)) {
             double gap = l->gap[k];
-            for (int side = 0; side < 2; side++) {
+            for (int side = 0; side < 2 && gaps; side++) {
                 const double *of = l->node[side] < 0 ? NULL : a->interface[l->node[side]].gap;
                 for (int i = 0; of && i < 6; i++) {
                     gap -= l->rows[k][6 * side + i] * of[i];
@@ -523,7 +523,7 @@ static void gaps_left(const spari_assembly *a, const spari_constraint *l, double
 }
 
 /* The right-hand side, of the forces y that the interface nodes' balance has too many. */
-static void load_system(spari_assembly *a, const double *y) {
+static void load_system(spari_assembly *a, const double *y, int gaps) {
     memset(a->b, 0, (size_t)spari_blocks_rows(a->system) * sizeof *a->b);
     for (int i = 0; i < a->interfaces; i++) {
         const spari_interface *v = a->interface + i;
@@ -531,7 +531,9 @@ static void load_system(spari_assembly *a, const double *y) {
         if (b) {
             double f[6];
             memcpy(f, y + 6 * i, sizeof f);
-            carry_force(v->arm, 1, f);
+            if (v->cluster != i) {
+                carry_force(v->arm, 1, f);
+            }
             for (int k = fixed_in(a, v); k < 6; k++) {
                 b[k] -= f[k];
             }
@@ -539,7 +541,7 @@ static void load_system(spari_assembly *a, const double *y) {
         if (v->cluster == i && v->constraint >= 0) {
             const spari_constraint *l = a->constraint + v->constraint;
             double left[6];
-            gaps_left(a, l, left);
+            gaps_left(a, l, gaps, left);
             for (int k = 0; k < spari_constraint_count(l); k++) {
                 b[6 + k] = -l->scale * left[k];
             }
@@ -551,7 +553,7 @@ static void load_system(spari_assembly *a, const double *y) {
         if (l->block < 0) {
             continue;
         }
-        gaps_left(a, l, left);
+        gaps_left(a, l, gaps, left);
         for (int k = 0; k < spari_constraint_count(l); k++) {
             a->b[spari_blocks_first(a->system, l->block) + k] = -l->scale * left[k];
         }
@@ -572,23 +574,26 @@ static void show_motion(const spari_assembly *a, double *x) {
         const spari_interface *v = a->interface + i;
         const double *b = v->cluster < 0 ? NULL : a->b + spari_blocks_first(a->system, v->block);
         double *to = x + 6 * i;
-        memset(to, 0, sizeof v->gap);
-        if (b) {
+        if (v->cluster == i) {
+            memcpy(to, b, 6 * sizeof *to);
+        } else if (b) {
             spari_cross(b + 3, v->arm, to);
             for (int k = 0; k < 3; k++) {
                 to[k] += b[k];
                 to[3 + k] = b[3 + k];
             }
+        } else {
+            memset(to, 0, 6 * sizeof *to);
         }
     }
 }
 
-/* Corrections of the multipliers in the system. Subtracts their forces from the unbalanced forces y. */
+/* Corrections of the multipliers in the system. Subtracts their forces from the unbalanced forces y (NULL: none). */
 static void read_multipliers(spari_constraint *l, const double *b, double *y) {
     int constrained = 0;
     for (int k = 0; k < 6; k++) {
         double by = l->correction[k] = spari_constraint_holds(l, k) ? l->scale * b[constrained++] : 0;
-        for (int side = 0; side < 2 && by != 0; side++) {
+        for (int side = 0; side < 2 && y && by != 0; side++) {
             double *at = l->node[side] < 0 ? NULL : y + 6 * l->node[side];
             for (int i = 0; at && i < 6; i++) {
                 at[i] -= l->rows[k][6 * side + i] * by;
@@ -598,7 +603,7 @@ static void read_multipliers(spari_constraint *l, const double *b, double *y) {
 }
 
 /* Corrections of the multipliers of clusters, which balance the remaining forces y on their nodes, from the ends of
-   the tree on. */
+   the tree on. y NULL: there are none. */
 static void find_constraint_loads(spari_assembly *a, double *y) {
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
@@ -643,7 +648,7 @@ static int solve_reduced(spari_assembly *a, double cv, int loads) {
         }
         add_forces_of(a, a->x, a->y);
     }
-    load_system(a, a->y);
+    load_system(a, a->y, gaps);
     if (spari_blocks_solve(a->system, a->b)) {
         return 1;
     }
@@ -652,7 +657,7 @@ static int solve_reduced(spari_assembly *a, double cv, int loads) {
         add_forces_of(a, a->x, a->y);
     }
     if (loads) {
-        find_constraint_loads(a, a->y);
+        find_constraint_loads(a, a->clusters ? a->y : NULL);
     }
     for (int i = 0; i < n && gaps; i++) {
         a->x[i] += a->interface[i / 6].gap[i % 6];
