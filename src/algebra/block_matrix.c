@@ -9,10 +9,11 @@
 #include <string.h>
 
 /* A block row and column in elimination order: the diagonal [size][size], and the entries shared with later blocks,
-   as a row of blocks U [size][rows] and a column of blocks L [rows][size]. */
+   as a row of blocks U [size][rows] and a column of blocks L [rows][size]. Of a later block these are its first
+   `shared` rows and columns. */
 typedef struct block_panel {
     int unit; /* block number before ordering */
-    int size, first, rows;
+    int size, shared, first, rows;
     int near, nears; /* begin and length of the list of later blocks */
     double *D, *U, *L;
     int *pivot;
@@ -302,7 +303,7 @@ static int eliminate_next(block_graph *g) {
 /* ---- memory ---- */
 
 /* Orders the blocks, with their lists of later blocks, which are positions at the end. 0 or 1. */
-static int find_order(spari_blocks *m, block_graph *g, const int *size) {
+static int find_order(spari_blocks *m, block_graph *g, const int *size, const int *shared) {
     int capacity = 0, used = 0;
     for (int p = 0; p < m->n; p++) {
         int v = eliminate_next(g);
@@ -310,7 +311,12 @@ static int find_order(spari_blocks *m, block_graph *g, const int *size) {
             return 1;
         }
         block_panel *panel = m->panel + p;
-        *panel = (block_panel){.unit = v, .size = size[v], .first = m->start[v], .near = used, .nears = g->count[v]};
+        *panel = (block_panel){.unit = v,
+                               .size = size[v],
+                               .shared = shared ? shared[v] : size[v],
+                               .first = m->start[v],
+                               .near = used,
+                               .nears = g->count[v]};
         m->position[v] = p;
         if (used + panel->nears > capacity) {
             capacity = 2 * (used + panel->nears);
@@ -336,7 +342,7 @@ static int place_entries(spari_blocks *m) {
         qsort(m->near + panel->near, (size_t)panel->nears, sizeof *m->near, compare_numbers);
         for (int k = panel->near; k < panel->near + panel->nears; k++) {
             m->offset[k] = panel->rows;
-            panel->rows += m->panel[m->near[k]].size;
+            panel->rows += m->panel[m->near[k]].shared;
         }
         m->entries += panel->size * (panel->size + 2 * (int64_t)panel->rows);
     }
@@ -357,8 +363,9 @@ static int place_entries(spari_blocks *m) {
     return 0;
 }
 
-spari_blocks *spari_blocks_create(int n, const int *size, int64_t coupled_count, const spari_block_pair *coupled,
-                                  int64_t before_count, const spari_block_pair *before) {
+spari_blocks *spari_blocks_create(int n, const int *size, const int *shared, int64_t coupled_count,
+                                  const spari_block_pair *coupled, int64_t before_count,
+                                  const spari_block_pair *before) {
     spari_blocks *m = spari_zalloc(1, sizeof *m);
     block_graph g = {0};
     if (!m) {
@@ -374,8 +381,8 @@ spari_blocks *spari_blocks_create(int n, const int *size, int64_t coupled_count,
         m->start[i] = m->rows;
         m->rows += size[i];
     }
-    failed = failed || graph_create(&g, n, coupled_count, coupled, before_count, before) || find_order(m, &g, size) ||
-             place_entries(m);
+    failed = failed || graph_create(&g, n, coupled_count, coupled, before_count, before) ||
+             find_order(m, &g, size, shared) || place_entries(m);
     graph_free(&g);
     if (failed) {
         spari_blocks_free(m);
@@ -458,15 +465,15 @@ static void update_later(spari_blocks *m, const block_panel *panel) {
     for (int k = panel->near; k < panel->near + panel->nears; k++) {
         block_panel *a = m->panel + m->near[k];
         int at = m->offset[k], to = a->near;
-        less_product(a->size, a->size, s, panel->L + at * s, s, panel->U + at, panel->rows, a->D, a->size);
+        less_product(a->shared, a->shared, s, panel->L + at * s, s, panel->U + at, panel->rows, a->D, a->size);
         for (int l = k + 1; l < panel->near + panel->nears; l++) {
             while (m->near[to] != m->near[l]) {
                 to++;
             }
-            int bt = m->offset[l], b = m->panel[m->near[l]].size;
-            less_product(a->size, b, s, panel->L + at * s, s, panel->U + bt, panel->rows, a->U + m->offset[to],
+            int bt = m->offset[l], b = m->panel[m->near[l]].shared;
+            less_product(a->shared, b, s, panel->L + at * s, s, panel->U + bt, panel->rows, a->U + m->offset[to],
                          a->rows);
-            less_product(b, a->size, s, panel->L + bt * s, s, panel->U + at, panel->rows,
+            less_product(b, a->shared, s, panel->L + bt * s, s, panel->U + at, panel->rows,
                          a->L + (int64_t)m->offset[to] * a->size, a->size);
         }
     }
@@ -516,7 +523,7 @@ int spari_blocks_solve(spari_blocks *m, double *x) {
         WITH_LENGTH(solve_one_of, s, panel->D, panel->pivot, own);
         for (int k = panel->near; k < panel->near + panel->nears; k++) {
             const block_panel *a = m->panel + m->near[k];
-            less_rows(a->size, s, panel->L + m->offset[k] * s, s, own, x + a->first);
+            less_rows(a->shared, s, panel->L + m->offset[k] * s, s, own, x + a->first);
         }
     }
     for (int p = m->n - 1; p >= 0; p--) {
@@ -524,7 +531,7 @@ int spari_blocks_solve(spari_blocks *m, double *x) {
         double *own = x + panel->first;
         for (int k = panel->near; k < panel->near + panel->nears; k++) {
             const block_panel *a = m->panel + m->near[k];
-            less_rows(panel->size, a->size, panel->U + m->offset[k], panel->rows, x + a->first, own);
+            less_rows(panel->size, a->shared, panel->U + m->offset[k], panel->rows, x + a->first, own);
         }
         for (int k = 0; k < panel->size; k++) {
             sum += 0 * own[k];

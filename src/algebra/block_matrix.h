@@ -13,10 +13,12 @@ typedef struct spari_block_pair {
 
 /* Creates a matrix. NULL: no memory.
    n, size: number of diagonal blocks, and rows of each (> 0)
+   shared: how many first rows and columns of each block have entries in blocks that are eliminated earlier; NULL: all
    coupled: pairs (a, b) of blocks that may have entries, also at (b, a); repetitions are allowed
    before: pairs (a, b): a is eliminated before b; there must be no cycle */
-spari_blocks *spari_blocks_create(int n, const int *size, int64_t coupled_count, const spari_block_pair *coupled,
-                                  int64_t before_count, const spari_block_pair *before);
+spari_blocks *spari_blocks_create(int n, const int *size, const int *shared, int64_t coupled_count,
+                                  const spari_block_pair *coupled, int64_t before_count,
+                                  const spari_block_pair *before);
 void spari_blocks_free(spari_blocks *matrix);
 /* Rows of the matrix, and first row of block i. */
 int spari_blocks_rows(const spari_blocks *matrix);

@@ -308,7 +308,7 @@ static int make_matrix(spari_shifted *a, const constraint_groups *c) {
         }
         couple_unknowns(a, &t, seen);
         add_multipliers(a, c, &t);
-        a->matrix = spari_blocks_create(t.n, t.size, t.coupled_count, t.coupled, t.before_count, t.before);
+        a->matrix = spari_blocks_create(t.n, t.size, NULL, t.coupled_count, t.coupled, t.before_count, t.before);
         a->x = spari_zalloc((int64_t)a->n + a->rank + 1, sizeof *a->x);
     }
     free(t.size);

@@ -185,13 +185,15 @@ static void add_pair(spari_block_pair *pair, int64_t *count, int a, int b) {
     }
 }
 
-/* Numbers the blocks, clusters first; their sizes. */
-static int count_blocks(spari_assembly *a, int *size) {
+/* Numbers the blocks, clusters first; their sizes, and the rows that earlier blocks share with them. The multipliers of
+   a cluster are coupled to the cluster before it in the tree alone, which is eliminated later. */
+static int count_blocks(spari_assembly *a, int *size, int *shared) {
     int n = 0;
     for (int i = 0; i < a->interfaces; i++) {
         spari_interface *v = a->interface + i;
         if (v->cluster == i) {
             size[n] = 6 + (v->constraint >= 0 ? spari_constraint_count(a->constraint + v->constraint) : 0);
+            shared[n] = 6;
             v->block = n++;
         }
     }
@@ -200,7 +202,7 @@ static int count_blocks(spari_assembly *a, int *size) {
         int holds = spari_constraint_count(l);
         l->block = -1;
         if (l->role == SPARI_CONSTRAINT_LOOP && holds > 0) {
-            size[n] = holds;
+            size[n] = shared[n] = holds;
             l->block = n++;
             a->loops = 1;
         }
@@ -258,13 +260,13 @@ static int make_blocks(spari_assembly *a) {
         int64_t ends = a->component[i].condensed->ends;
         most += ends * (ends - 1) / 2;
     }
-    int *size = spari_zalloc(a->interfaces + a->constraints + 1, sizeof *size);
+    int blocks = a->interfaces + a->constraints + 1, *size = spari_zalloc(2 * (int64_t)blocks, sizeof *size);
     spari_block_pair *coupled = spari_zalloc(most + 1, sizeof *coupled),
                      *before = spari_zalloc(2 * (int64_t)a->constraints + a->interfaces + 1, sizeof *before);
     if (size && coupled && before) {
-        int n = count_blocks(a, size);
+        int n = count_blocks(a, size, size + blocks);
         couple_blocks(a, coupled, &count, before, &befores);
-        a->system = spari_blocks_create(n, size, count, coupled, befores, before);
+        a->system = spari_blocks_create(n, size, size + blocks, count, coupled, befores, before);
     }
     free(size);
     free(coupled);
