@@ -149,6 +149,7 @@ static void add_stiffness(spari_assembly *a, int v, int w, double f, const doubl
 static void rotate_part(spari_component *p) {
     const spari_condensed *c = p->condensed;
     int m = 6 * c->ends;
+    spari_component_find_rotations(p);
     for (int e = 0; e < c->ends; e++) {
         double R[9];
         matrix_of_rotation(spari_component_rotation(p, c->node[e]), R);

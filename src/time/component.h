@@ -147,6 +147,8 @@ double spari_component_motion(const spari_component *p);
 /* Subtracts the corrections, times v, a and b, from the velocities, accelerations and algorithmic accelerations at the
    end. */
 void spari_component_shift_rates(spari_component *p, double v, double a, double b);
+/* Finds the rotations of the nodes since the tangent was formed, if the reduced residual did not need them. */
+void spari_component_find_rotations(const spari_component *p);
 /* The rotation of a node since the tangent was formed. */
 static inline const double *spari_component_rotation(const spari_component *p, int node) {
     return p->solver->rotation + 4 * node;

@@ -11,6 +11,7 @@
 #include "node_kinematics.h"
 #include "substep_motion.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -199,6 +200,36 @@ static double rotate_back(const spari_component *p) {
     return spari_solver_most(p->solver);
 }
 
+/* Whether all nodes are interface nodes, as in a rigid body. Its forces and corrections then stay in global axes: the
+   system rotates the tangent. */
+static int is_all_ends(const spari_component *p) {
+    return p->condensed && p->condensed->length == 0;
+}
+
+/* As rotate_back. */
+static double size_of_residual(const spari_component *p) {
+    const spari_solver *s = p->solver;
+    double most = 0, poison = 0;
+    if (!is_all_ends(p)) {
+        return rotate_back(p);
+    }
+    for (int k = 0; k < 6 * s->n; k++) {
+        double size = fabs(s->r[k]);
+        most = size > most ? size : most;
+        poison += 0 * size;
+    }
+    return isfinite(poison) ? most : INFINITY;
+}
+
+void spari_component_find_rotations(const spari_component *p) {
+    const spari_solver *s = p->solver;
+    for (int i = 0; i < s->n && is_all_ends(p); i++) {
+        double back[4];
+        spari_quat_conj(s->tangent_q + 4 * i, back);
+        spari_quat_mul(p->state->q + 7 * i + 3, back, s->rotation + 4 * i);
+    }
+}
+
 static int form_tangent(const spari_component *p, const spari_state *at) {
     spari_solver *s = p->solver;
     const spari_scheme *c = &p->scheme;
@@ -212,7 +243,7 @@ static int tangent_of_nodes(spari_component *p) {
     if (form_tangent(p, &p->stage.ends.absolute)) {
         return 1;
     }
-    (void)rotate_back(p); /* the axes of the tangent are new */
+    (void)size_of_residual(p); /* the axes of the tangent are new */
     spari_anderson_begin(s->anderson);
     return 0;
 }
@@ -226,6 +257,12 @@ static int nodes_serve(const spari_component *p) {
 int spari_component_reduce(spari_component *p, int rotated, double *x) {
     const spari_condensed *c = p->condensed;
     spari_solver *s = p->solver;
+    if (is_all_ends(p)) {
+        for (int k = 0; k < 6 * s->n; k++) {
+            x[k] = k < c->fixed ? 0 : s->r[k];
+        }
+        return 0;
+    }
     if (!rotated) {
         (void)rotate_back(p);
     }
@@ -241,6 +278,9 @@ int spari_component_reduce(spari_component *p, int rotated, double *x) {
 
 void spari_component_clear(spari_component *p) {
     spari_solver *s = p->solver;
+    if (is_all_ends(p)) {
+        return;
+    }
     (void)rotate_back(p); /* for the rotations */
     memset(s->dx, 0, (size_t)(6 * s->n) * sizeof *s->dx);
 }
@@ -253,6 +293,10 @@ static void rotate_forth(spari_component *p) {
 void spari_component_expand(spari_component *p, const double *x) {
     const spari_condensed *c = p->condensed;
     spari_solver *s = p->solver;
+    if (is_all_ends(p)) {
+        memcpy(s->dx, x, (size_t)(6 * s->n) * sizeof *x);
+        return;
+    }
     for (int k = 0; k < 6 * c->ends; k += 3) {
         int node = c->node[k / 6];
         spari_rotate_back(spari_component_rotation(p, node), x + k, s->dx + 6 * node + k % 6);
@@ -528,7 +572,7 @@ const spari_component_row spari_component_body = {
     .end = end_nodes,
     .predict = predict_nodes,
     .balance = balance_nodes,
-    .residual_size = rotate_back,
+    .residual_size = size_of_residual,
     .tangent = tangent_of_nodes,
     .serves = nodes_serve,
     .correction_size = correction_of_nodes,
