@@ -114,25 +114,8 @@ static int form(spari_assembly *a) {
     return 0;
 }
 
-/* Subtracts the corrections, all shortened by the same factor. Returns their size before. */
-static double correct(spari_assembly *a, double longest) {
-    double largest = 0;
-    for (int i = 0; i < a->components; i++) {
-        largest = fmax(largest, a->component[i].correction_size);
-    }
-    double cut = largest > longest ? longest / largest : 1;
-    for (int i = 0; i < a->components; i++) {
-        spari_component *p = a->component + i;
-        spari_component_correct(p, cut);
-        p->motion = spari_component_motion(p);
-    }
-    spari_constraints_correct_loads(a, cut);
-    return largest;
-}
-
-/* Projects the rates onto the constraints; positions stay. It corrects the part of the rates' gaps that the last
-   position correction leaves. *size: at least the size of this correction. */
-static int correct_rates(spari_assembly *a, double cut, double *size) {
+/* Sets the gaps to the part of the rates' gaps that the position correction leaves. Returns whether there is any. */
+static int find_rate_gaps(spari_assembly *a) {
     double most = 0;
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
@@ -143,18 +126,38 @@ static int correct_rates(spari_assembly *a, double cut, double *size) {
             most = fmax(most, fabs(l->gap[k]));
         }
     }
-    if (!(most > 0)) {
-        return 0;
+    return most > 0;
+}
+
+/* Subtracts the corrections, all shortened by the same factor so that none is larger than `longest`. If the step
+   constrains rates, also projects them onto the constraints; positions stay. *size: that of the correction before,
+   at least that of the projection. Returns 0 or 1. */
+static int correct(spari_assembly *a, double longest, double *size) {
+    double largest = 0;
+    for (int i = 0; i < a->components; i++) {
+        largest = fmax(largest, a->component[i].correction_size);
     }
-    if (spari_system_close_gaps(a, a->component[0].scheme.cv)) {
+    double cut = largest > longest ? longest / largest : 1;
+    spari_constraints_correct_loads(a, cut);
+    int rates = a->constrains_rates && find_rate_gaps(a);
+    if (rates && spari_system_solve_gaps(a, a->component[0].scheme.cv, 1)) {
         return 1;
     }
     for (int i = 0; i < a->components; i++) {
-        const spari_scheme *c = &a->component[i].scheme;
-        *size = fmax(*size, a->component[i].row->correction_size(a->component + i));
-        spari_component_shift_rates(a->component + i, cut * c->rate, cut * c->cm, cut * c->cb);
+        spari_component *p = a->component + i;
+        const spari_scheme *c = &p->scheme;
+        p->motion = spari_component_correct(p, cut);
+        if (rates) {
+            spari_component_clear(p);
+            spari_component_expand(p, a->x + p->at);
+            largest = fmax(largest, p->row->correction_size(p));
+            spari_component_shift_rates(p, cut * c->rate, cut * c->cm, cut * c->cb);
+        }
     }
-    spari_constraints_correct_loads(a, cut);
+    if (rates) {
+        spari_constraints_correct_loads(a, cut);
+    }
+    *size = largest;
     return 0;
 }
 
@@ -244,12 +247,7 @@ static const char *iterate_newton(void *self, double longest, spari_iterate *it)
         return "found a singular tangent";
     }
     a->factored = 1;
-    if (spari_system_solve_reduced(a, a->component[0].scheme.cv)) {
-        return "found a singular tangent";
-    }
-    it->correction = correct(a, longest);
-    double cut = it->correction > longest ? longest / it->correction : 1;
-    if (a->constrains_rates && correct_rates(a, cut, &it->correction)) {
+    if (spari_system_solve_reduced(a, a->component[0].scheme.cv) || correct(a, longest, &it->correction)) {
         return "found a singular tangent";
     }
     a->moved += it->correction;

@@ -630,9 +630,13 @@ static void find_constraint_loads(spari_assembly *a, double *y) {
     }
 }
 
+static int system_serves(const spari_assembly *a, double cv) {
+    return a->system_serves && !(fabs(a->cv - cv) > 0);
+}
+
 /* Solves with the condensed residuals of the components in x. loads: the corrections of the multipliers too. */
 static int solve_reduced(spari_assembly *a, double cv, int loads) {
-    if (!a->system_serves || fabs(a->cv - cv) > 0) {
+    if (!system_serves(a, cv)) {
         a->system_serves = 0;
         if (factor_system(a, cv)) {
             return 1;
@@ -717,33 +721,23 @@ int spari_system_solve(spari_assembly *a, double cv) {
     return spari_system_reduce(a, 0) || spari_system_solve_reduced(a, cv);
 }
 
-static int close_gaps(spari_assembly *a, double cv, int loads) {
-    for (int i = 0; i < a->components; i++) {
-        spari_component *p = a->component + i;
-        spari_component_clear(p);
-        memset(a->x + p->at, 0, (size_t)(6 * p->condensed->ends) * sizeof *a->x);
+int spari_system_solve_gaps(spari_assembly *a, double cv, int loads) {
+    for (int i = 0; i < a->components && !system_serves(a, cv); i++) {
+        spari_component_clear(a->component + i); /* for the rotations */
     }
+    memset(a->x, 0, (size_t)(6 * a->interfaces) * sizeof *a->x);
     return solve_reduced(a, cv, loads);
-}
-
-int spari_system_close_gaps(spari_assembly *a, double cv) {
-    if (close_gaps(a, cv, 1)) {
-        return 1;
-    }
-    for (int i = 0; i < a->components; i++) {
-        spari_component_expand(a->component + i, a->x + a->component[i].at);
-    }
-    return 0;
 }
 
 int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acceleration) {
     if (a->constraints == 0) {
         return 0;
     }
-    if (close_gaps(a, cv, 0)) {
+    if (spari_system_solve_gaps(a, cv, 0)) {
         return 1;
     }
     for (int i = 0; i < a->components; i++) {
+        spari_component_clear(a->component + i);
         spari_component_expand(a->component + i, a->x + a->component[i].at);
         spari_component_shift_rates(a->component + i, v, acceleration, 0);
     }

@@ -92,8 +92,10 @@ int spari_system_solve(spari_assembly *a, double cv);
    residuals come first, because the system uses the rotations of the components that they find. */
 int spari_system_reduce(spari_assembly *a, int rotated);
 int spari_system_solve_reduced(spari_assembly *a, double cv);
-/* The same for the gaps alone, without forces. */
-int spari_system_close_gaps(spari_assembly *a, double cv);
+/* Solves for the gaps alone, without forces. x has the motion of the interface nodes; spari_component_clear and
+   spari_component_expand compute the corrections of a component from its part. loads: whether those of the multipliers
+   are needed. */
+int spari_system_solve_gaps(spari_assembly *a, double cv, int loads);
 /* The same for the rates at the end: shifts velocities by v, and accelerations by `acceleration`, times the
    corrections. Without constraints it does nothing. */
 int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acceleration);

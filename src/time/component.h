@@ -140,10 +140,8 @@ int spari_component_reduce(spari_component *p, int rotated, double *x);
 void spari_component_clear(spari_component *p);
 /* Computes the corrections of all unknowns from those of the ends. */
 void spari_component_expand(spari_component *p, const double *x);
-/* Subtracts the part `cut` of the corrections. */
-void spari_component_correct(spari_component *p, double cut);
-/* The size of the motion in the step. */
-double spari_component_motion(const spari_component *p);
+/* Subtracts the part `cut` of the corrections. Returns the size of the motion in the step. */
+double spari_component_correct(spari_component *p, double cut);
 /* Subtracts the corrections, times v, a and b, from the velocities, accelerations and algorithmic accelerations at the
    end. */
 void spari_component_shift_rates(spari_component *p, double v, double a, double b);

@@ -309,13 +309,14 @@ static double correction_of_nodes(const spari_component *p) {
     return spari_alpha_size(p->solver, p->solver->dx);
 }
 
-void spari_component_correct(spari_component *p, double cut) {
+double spari_component_correct(spari_component *p, double cut) {
     spari_solver *s = p->solver;
     for (int k = 0; k < 6 * s->n && cut < 1; k++) {
         s->dx[k] *= cut;
     }
-    (void)spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, NULL, INFINITY, s->increment, s->dx);
     s->newton++;
+    return p->stage.ends.root_motion +
+           spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, NULL, INFINITY, s->increment, s->dx).motion;
 }
 
 /* ---- an iteration of a member without joints ---- */
@@ -381,10 +382,6 @@ static void end_solution_of_nodes(spari_component *p, int iterations, int fresh)
 
 static int tangent_after_step(spari_component *p) {
     return p->solver->factored ? 0 : form_tangent(p, &p->solver->to);
-}
-
-double spari_component_motion(const spari_component *p) {
-    return spari_alpha_size(p->solver, p->solver->increment) + p->stage.ends.root_motion;
 }
 
 void spari_component_shift_rates(spari_component *p, double v, double a, double b) {
