@@ -39,6 +39,10 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
     const int64_t spans = (n + SPARI_SPAN - 1) / SPARI_SPAN;
     ok = ok && (s->most = spari_zalloc(2 * spans, sizeof(double)));
     s->most_by = ok ? s->most + spans : NULL;
+    if (n > 1) { /* the forces of one node cost less than to compare states */
+        ok = ok && (s->start.state = spari_zalloc(25 * n, sizeof(double)));
+        s->start.forces = ok ? s->start.state + 19 * n : NULL;
+    }
     ok = ok && (s->anderson = spari_anderson_create(n));
     ok = ok && (s->linear = spari_linear_create(body->elements, (int)m, 6));
     if (!ok) {
@@ -80,6 +84,7 @@ void spari_solver_free(spari_solver *s) {
     free(s->tangent_q);
     free(s->rotation);
     free(s->best);
+    free(s->start.state);
     free(s->most);
     spari_anderson_free(s->anderson);
     spari_linear_free(s->linear);
@@ -115,6 +120,7 @@ void spari_solver_poison(spari_solver *s) {
 void spari_solver_begin(spari_solver *s) {
     s->begun = (spari_reuse){s->factored, s->tangent_cm, s->tangent_cv, s->served, s->spent, s->trace};
     spari_snapshot_open(&s->before, 1);
+    s->start.known = 0;
 }
 
 static int64_t before_size(const spari_solver *s) {
@@ -323,6 +329,7 @@ void spari_solver_load(spari_solver *s, const double *state) {
     s->power = state[9], s->power_begin = state[10];
     s->served = (int64_t)state[12], s->spent = (int64_t)state[13];
     s->trace.rate = state[14], s->trace.left = state[15];
+    s->start.known = 0;
     memcpy(s->begin.q, state += STATE_HEAD, 25 * n * sizeof *state);
     memcpy(s->to.q, state += 25 * n, 25 * n * sizeof *state);
     memcpy(s->tangent_q, state += 25 * n, 4 * n * sizeof *state);

@@ -28,6 +28,15 @@ typedef struct spari_reuse {
     spari_trace trace;     /* of Newton; strict: its rate is not used */
 } spari_reuse;
 
+/* Forces at the starting values of Newton. These values follow from the motion at t^n, so each iteration of a coupling
+   begins with the same forces. */
+typedef struct spari_start_forces {
+    int at_start;           /* the next forces are those of starting values */
+    int known;              /* what follows is known, of the step under way */
+    double *state, *forces; /* [n][19] q, v and a, and [n][6]; NULL: not kept */
+    double gravity[3], scale, power;
+} spari_start_forces;
+
 typedef struct spari_solver spari_solver;
 struct spari_solver {
     const spari_body *body;
@@ -54,10 +63,11 @@ struct spari_solver {
     double *rotation;              /* [n][4] their rotation since */
     int64_t served, spent;         /* solutions with it, and what they and the tangent itself took, in iterations */
     double power, power_begin;     /* that damping takes out, at the last forces computed and at t^n */
-    spari_trace trace;             /* of Newton; strict: its rate is not used */
-    spari_reuse begun;             /* the same at the beginning of the step, */
-    spari_snapshot before;         /* and its factors */
-    int64_t newton, factors;       /* totals: iterations, factorisations */
+    spari_start_forces start;
+    spari_trace trace;       /* of Newton; strict: its rate is not used */
+    spari_reuse begun;       /* the same at the beginning of the step, */
+    spari_snapshot before;   /* and its factors */
+    int64_t newton, factors; /* totals: iterations, factorisations */
 };
 
 /* The solver keeps references to `body` and `offset_loads` (NULL: none). */

@@ -120,9 +120,17 @@ void spari_component_keep_rates(spari_component *p, int back) {
 
 /* ---- an iteration ---- */
 
+/* Whether a coupling may solve the step again from the same starting values. */
+static int starts_again(const spari_component *p) {
+    const spar_session *s = p->member->session;
+    return p->solver->start.state && p->scheme.rule == SPARI_ALPHA && s->integrator.substeps == 1 &&
+           s->coupling.scheme != SPAR_COUPLING_EXPLICIT;
+}
+
 static int predict_nodes(spari_component *p, spari_guess stays) {
     double *x = p->solver->increment;
     spari_anderson_begin(p->solver->anderson);
+    p->solver->start.at_start = starts_again(p);
     if (p->scheme.still) {
         spari_alpha_carry(p->solver, p->member, &p->scheme, &p->stage.root, p->stage.rotation, &p->stage.ends, x);
         return stays != SPARI_KEEP_SHAPE;
@@ -141,14 +149,35 @@ void spari_component_impose_root(spari_component *p) {
     spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, p->solver->increment);
 }
 
-static double balance_nodes(spari_component *p) {
-    spari_solver *s = p->solver;
+/* Forces of the body, and their scale, at a state whose q, v and a are one block. */
+static double body_forces(spari_solver *s, const spari_state *at, int still) {
     const spari_body *body = s->body;
-    const spari_state *at = &p->stage.ends.absolute;
-    const int still = p->scheme.still;
-    spari_component_impose_root(p);
+    spari_start_forces *k = &s->start;
+    const size_t state = (size_t)(19 * s->n) * sizeof *at->q, forces = (size_t)(6 * s->n) * sizeof *s->r;
+    const int at_start = k->at_start;
+    k->at_start = 0;
+    if (at_start && k->known && memcmp(k->gravity, body->gravity, sizeof k->gravity) == 0 &&
+        memcmp(k->state, at->q, state) == 0) {
+        memcpy(s->r, k->forces, forces);
+        s->power = k->power;
+        return k->scale;
+    }
     double scale =
         spari_body_residual(body, at->q, still && !body->D ? NULL : at->v, still ? NULL : at->a, 1, s->r, &s->power);
+    if (at_start) {
+        memcpy(k->gravity, body->gravity, sizeof k->gravity);
+        memcpy(k->state, at->q, state);
+        memcpy(k->forces, s->r, forces);
+        k->scale = scale, k->power = s->power, k->known = 1;
+    }
+    return scale;
+}
+
+static double balance_nodes(spari_component *p) {
+    spari_solver *s = p->solver;
+    const spari_state *at = &p->stage.ends.absolute;
+    spari_component_impose_root(p);
+    double scale = body_forces(s, at, p->scheme.still);
     spari_solver_spread(s, subtract_loads, s);
     if (spari_solver_has_applied(s, p->member)) {
         scale = fmax(scale, spari_applied_residual(p->member, at->q, 1, s->r));
@@ -605,6 +634,7 @@ void spari_body_remass(spar_member *m) {
     spari_solver *s = solver_of(m);
     if (s) {
         s->factored = 0;
+        s->start.known = 0;
     }
 }
 
