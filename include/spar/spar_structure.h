@@ -157,7 +157,8 @@ SPAR_API int spar_beam_set_masses(spar_member *beam, int64_t n, const double *et
 SPAR_API int spar_beam_get_masses(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *mass);
 /* Springs to the ground along the beam: soil around a pile, a rail's bed. The force per unit length is stiffness times
    the displacement from the reference configuration, along axes that do not rotate. The tangent is exact. Foundation
-   forces are part of spar_member_get_loads, reactions and work, the stored energy of spar_member_get_energy.
+   forces are part of spar_member_get_loads and of reactions. Their energy is stored (SPAR_ENERGY_FOUNDATION), and no
+   part of SPAR_WORK_LOADS.
      n: in, stations, 0 to 10000, 0: none (default)
      eta[n]: in, not decreasing in [0,1]; two stations at one eta are a jump
      stiffness[n][3]: in, N/m^2, >= 0, along the section's axes in the reference configuration; linear between stations,

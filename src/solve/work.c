@@ -49,17 +49,25 @@ static double dot6(const double *a, const double *b) {
     return spari_dot(a, b) + spari_dot(a + 3, b + 3);
 }
 
+/* Adds the applied loads without the foundation, whose energy is stored (SPAR_ENERGY_FOUNDATION). */
+static void add_applied(const spar_member *m, const double *q, double *load) {
+    spari_applied_nodal(m, q, load);
+    if (m->load.foundation) {
+        spari_foundation_nodal(m, q, -1, load);
+    }
+}
+
 void spari_work_step(spar_member *m) {
     spari_work *w = m->work;
     int64_t n = m->nodes;
     double d[6], reaction[6] = {0};
     const double *dead = spari_dead_before(m);
     memset(w->load, 0, (size_t)(6 * n) * sizeof *w->load);
-    if (spari_carries_loads(m)) {
+    if (m->load.applied) {
         spari_applied_at(m, 1);
-        spari_applied_nodal(m, m->now.q, w->load);
+        add_applied(m, m->now.q, w->load);
         spari_applied_at(m, 0);
-        spari_applied_nodal(m, m->after.q, w->load);
+        add_applied(m, m->after.q, w->load);
     }
     for (int64_t i = 0; i < n; i++) {
         double fluid[6], kept[6],
