@@ -43,21 +43,15 @@ typedef struct anderson_pass {
     double *x, by[2];
 } anderson_pass;
 
-/* After two corrections without mixing (the second is in w[0]): forms the first pair. */
-static void make_first_pair(const spari_anderson *m, int64_t from, int64_t to) {
-    const double *x = m->w[0];
-    for (int64_t i = from; i < to; i++) {
-        m->d[0][i] = x[i] - m->z[i];
-        m->z[i] = m->c[i] = x[i];
-    }
-}
-
 static void look_at_span(void *context, int64_t from, int64_t to) {
     const anderson_pass *t = context;
-    if (t->m->seen == 2) {
-        make_first_pair(t->m, from, to);
+    const spari_anderson *m = t->m;
+    /* after two corrections without mixing (the second is in w[0]): the first pair */
+    for (int64_t i = from; i < to && m->seen == 2; i++) {
+        m->d[0][i] = m->w[0][i] - m->z[i];
+        m->z[i] = m->c[i] = m->w[0][i];
     }
-    t->kernels->look(t->m, t->x, from, to, t->m->sums + SPARI_MIXED_SUMS * (from / SPAN));
+    t->kernels->look(m, t->x, from, to, m->sums + SPARI_MIXED_SUMS * (from / SPAN));
 }
 
 static void mix_span(void *context, int64_t from, int64_t to) {
@@ -77,16 +71,6 @@ static void exchange(double **a) {
     a[1] = there;
 }
 
-/* Adds the sums of the spans in their order. */
-static void add_up(const spari_anderson *m, double sums[SPARI_MIXED_SUMS]) {
-    memcpy(sums, m->sums, SPARI_MIXED_SUMS * sizeof *sums);
-    for (int64_t k = 1; k < spans_of(m->unknowns); k++) {
-        for (int i = 0; i < SPARI_MIXED_SUMS; i++) {
-            sums[i] += m->sums[SPARI_MIXED_SUMS * k + i];
-        }
-    }
-}
-
 /* Below this ratio of successive corrections mixing saves nothing and is skipped. The first pair has a higher limit,
    because it contains the second-order part of the first correction, which is large. */
 static const double slow = 0.03, slow_at_first = 0.2;
@@ -99,7 +83,12 @@ static int is_within_a_pair(double x) {
    coefficient exceeds 1, which contradicts a contracting tangent. Uses no pair if that fails too. */
 static void find_parts(const spari_anderson *m, double by[2]) {
     double sums[SPARI_MIXED_SUMS];
-    add_up(m, sums);
+    memcpy(sums, m->sums, sizeof sums);
+    for (int64_t k = 1; k < spans_of(m->unknowns); k++) { /* in the order of the spans */
+        for (int i = 0; i < SPARI_MIXED_SUMS; i++) {
+            sums[i] += m->sums[SPARI_MIXED_SUMS * k + i];
+        }
+    }
     double newer = sums[0], both = sums[1], older = sums[2], z_newer = sums[3], z_older = sums[4];
     double area = newer * older - both * both, least = m->seen == 2 ? slow_at_first : slow;
     by[0] = by[1] = 0;

@@ -134,8 +134,7 @@ spari_band *spari_band_create(int n, int64_t entries, const int *row, const int 
     b->x = spari_zalloc(n, sizeof *b->x);
     int bad =
         !b->place || !b->swap || !b->x || make_graph(&g, entries, row, column, apart) || order_graph(&g, b->place);
-    free(g.begin);
-    free(g.next);
+    SPARI_FREE(g.begin, g.next);
     for (int64_t i = 0; i < entries && !bad; i++) {
         int apart_by = abs(b->place[*at_entry(row, i, apart)] - b->place[*at_entry(column, i, apart)]);
         b->width = apart_by > b->width ? apart_by : b->width;
@@ -150,11 +149,7 @@ spari_band *spari_band_create(int n, int64_t entries, const int *row, const int 
 
 void spari_band_free(spari_band *b) {
     if (b) {
-        free(b->place);
-        free(b->swap);
-        free(b->A);
-        free(b->x);
-        free(b);
+        SPARI_FREE(b->place, b->swap, b->A, b->x, b);
     }
 }
 

@@ -146,13 +146,6 @@ typedef struct block_graph {
     int *head, *next, *last, *key, least; /* available blocks by degree, as doubly linked lists */
 } block_graph;
 
-static void graph_free(block_graph *g) {
-    for (int i = 0; g->near && i < g->n; i++) {
-        free(g->near[i]);
-    }
-    SPARI_FREE(g->near, g->count, g->waits, g->later, g->later_at, g->head, g->next, g->last, g->key);
-}
-
 static int compare_numbers(const void *a, const void *b) {
     int x = *(const int *)a, y = *(const int *)b;
     return (x > y) - (x < y);
@@ -383,7 +376,10 @@ spari_blocks *spari_blocks_create(int n, const int *size, const int *shared, int
     }
     failed = failed || graph_create(&g, n, coupled_count, coupled, before_count, before) ||
              find_order(m, &g, size, shared) || place_entries(m);
-    graph_free(&g);
+    for (int i = 0; g.near && i < n; i++) {
+        free(g.near[i]);
+    }
+    SPARI_FREE(g.near, g.count, g.waits, g.later, g.later_at, g.head, g.next, g.last, g.key);
     if (failed) {
         spari_blocks_free(m);
         return NULL;
@@ -393,14 +389,7 @@ spari_blocks *spari_blocks_create(int n, const int *size, const int *shared, int
 
 void spari_blocks_free(spari_blocks *m) {
     if (m) {
-        free(m->position);
-        free(m->start);
-        free(m->panel);
-        free(m->near);
-        free(m->offset);
-        free(m->pivot);
-        free(m->entry);
-        free(m);
+        SPARI_FREE(m->position, m->start, m->panel, m->near, m->offset, m->pivot, m->entry, m);
     }
 }
 

@@ -118,17 +118,8 @@ spari_linear *spari_linear_create(int elements, int block, int overlap) {
 void spari_linear_free(spari_linear *s) {
     if (s) {
         spari_linear_free(s->ends);
-        free(s->parts);
-        free(s->part_swap);
-        free(s->z);
-        free(s->ends_x);
-        free(s->bad);
-        free(s->A.block);
-        free(s->swap);
-        free(s->workspace);
-        free(s->band_swap);
-        spari_linear_unwatch(s);
-        free(s);
+        SPARI_FREE(s->parts, s->part_swap, s->z, s->ends_x, s->bad, s->A.block, s->swap, s->workspace, s->band_swap,
+                   s->symmetric, s);
     }
 }
 

@@ -12,9 +12,7 @@ int spari_pencil_create(spari_pencil *p, int unknowns) {
 }
 
 void spari_pencil_free(spari_pencil *p) {
-    free(p->entry);
-    free(p->constraint);
-    free(p->left);
+    SPARI_FREE(p->entry, p->constraint, p->left);
     *p = (spari_pencil){0};
 }
 

@@ -10,7 +10,6 @@
 #include "schur.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Maximum of block rows times size; maximum of states; relative thresholds of singular values. */
@@ -25,9 +24,7 @@ typedef struct hankel {
 } hankel;
 
 void spari_decay_free(spari_decay *d) {
-    free(d->z);
-    free(d->left);
-    free(d->right);
+    SPARI_FREE(d->z, d->left, d->right);
     *d = (spari_decay){0};
 }
 

@@ -5,7 +5,6 @@
 #include "eigen.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST = SPARI_SECANTS_MOST };
@@ -43,10 +42,7 @@ spari_secants *spari_secants_create(int64_t n, int most) {
 
 void spari_secants_free(spari_secants *s) {
     if (s) {
-        free(s->q);
-        free(s->p);
-        free(s->u);
-        free(s);
+        SPARI_FREE(s->q, s->p, s->u, s);
     }
 }
 

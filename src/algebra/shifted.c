@@ -237,8 +237,7 @@ static int find_loop_rows(constraint_groups *c, int *number, int *row) {
     for (int i = 0; i < rank; i++) {
         c->kept[row[order[i]]] = 1;
     }
-    free(G);
-    free(order);
+    SPARI_FREE(G, order);
     return rank >= 0 ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
@@ -311,10 +310,7 @@ static int make_matrix(spari_shifted *a, const constraint_groups *c) {
         a->matrix = spari_blocks_create(t.n, t.size, NULL, t.coupled_count, t.coupled, t.before_count, t.before);
         a->x = spari_zalloc((int64_t)a->n + a->rank + 1, sizeof *a->x);
     }
-    free(t.size);
-    free(seen);
-    free(t.coupled);
-    free(t.before);
+    SPARI_FREE(t.size, seen, t.coupled, t.before);
     if (!a->matrix || !a->x) {
         return SPAR_ERR_MEMORY;
     }

@@ -48,15 +48,6 @@ typedef struct spectrum {
     double rounding;           /* rounding error of lambda if the matrix is singular at the requested shift; else 0 */
 } spectrum;
 
-static void spectrum_free(spectrum *a) {
-    free(a->d);
-    free(a->multiplier);
-    free(a->Q);
-    free(a->at);
-    free(a->workspace);
-    spari_band_free(a->band);
-}
-
 /* ---- scaling ---- */
 
 /* Scales the unknowns by the roots of their masses, so that sums of squares are energies in any units. Massless
@@ -476,6 +467,7 @@ int spari_spectrum(spari_pencil *p, int n, double complex shift, int how, int *f
     }
     status = status == SPAR_OK ? make_band(&a) : status;
     status = status == SPAR_OK ? solve_spectrum(&a, n, shift, how, found, value, x) : status;
-    spectrum_free(&a);
+    SPARI_FREE(a.d, a.multiplier, a.Q, a.at, a.workspace);
+    spari_band_free(a.band);
     return status;
 }

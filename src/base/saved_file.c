@@ -99,12 +99,6 @@ static uint64_t get_word(const unsigned char *from) {
     return word;
 }
 
-static void words_from_disc(uint64_t *words, int64_t n) {
-    for (int64_t i = 0; i < n; i++) {
-        words[i] = get_word((const unsigned char *)(words + i));
-    }
-}
-
 /* ---- the check sum ---- */
 
 static const uint64_t crc_polynomial = UINT64_C(0xC96C5795D7870F42); /* reflected: the highest bit is x^0 */
@@ -211,11 +205,6 @@ static int measure_file(FILE *f, const char *path, uint64_t *n, char *why, size_
     return SPAR_OK;
 }
 
-static int no_memory_to_read(const char *path, char *why, size_t size) {
-    (void)snprintf(why, size, "no memory to read '%s'", path);
-    return SPAR_ERR_MEMORY;
-}
-
 /* Checks the heading and the size of the file. */
 static int read_heading(spari_loading *source, char *why, size_t size) {
     unsigned char head[HEAD_BYTES];
@@ -233,7 +222,8 @@ static int read_heading(spari_loading *source, char *why, size_t size) {
 int spari_loading_open(spari_loading *source, const char *path, char *why, size_t size) {
     *source = (spari_loading){.path = strdup(path)};
     if (!source->path) {
-        return no_memory_to_read(path, why, size);
+        (void)snprintf(why, size, "no memory to read '%s'", path);
+        return SPAR_ERR_MEMORY;
     }
     int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a pipe would block until somebody writes */
     source->stream = fd >= 0 ? fdopen(fd, "rb") : NULL;
@@ -270,7 +260,9 @@ static int read_raw(spari_loading *source, int64_t offset, size_t n, void *bytes
 
 int spari_loading_read(spari_loading *source, int64_t at, int64_t n, uint64_t *words, char *why, size_t size) {
     SPARI_TRY(read_raw(source, offset_of_word(at), 8 * (size_t)n, words, why, size));
-    words_from_disc(words, n);
+    for (int64_t i = 0; i < n; i++) {
+        words[i] = get_word((const unsigned char *)(words + i));
+    }
     return SPAR_OK;
 }
 

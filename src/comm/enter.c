@@ -12,11 +12,6 @@ static int enter(spar_session *s, const char *call, const spari_agreed *must_agr
     return result;
 }
 
-static spari_agreed agreed_of(const spar_session *s, const spari_setting *of) {
-    double x = spari_setting_value(s, of);
-    return of->kind == SPARI_IS_REAL ? spari_real(of->name, x) : spari_whole(of->name, (int64_t)x);
-}
-
 int spari_enter(spar_session *s, const char *call, int status) {
     return enter(s, call, NULL, 0, status);
 }
@@ -29,8 +24,10 @@ int spari_enter_agreed(spar_session *s, const char *call, const spari_agreed *mu
     }
     assert(count + s->setting_count <= SPARI_MOST_AGREED);
     for (int i = 0; i < s->setting_count; i++) {
-        if (s->settings[i].flags & SPARI_AGREED) {
-            all[n++] = agreed_of(s, s->settings + i);
+        const spari_setting *of = s->settings + i;
+        double x = spari_setting_value(s, of);
+        if (of->flags & SPARI_AGREED) {
+            all[n++] = of->kind == SPARI_IS_REAL ? spari_real(of->name, x) : spari_whole(of->name, (int64_t)x);
         }
     }
     for (int i = 0; i < count; i++) {

@@ -7,10 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-static int whole_below(double x, double end) {
-    return x >= 0 && x < end && x == floor(x);
-}
-
 typedef struct state_passage {
     enum { COUNT, SAVE, LOAD } job;
     double *state;
@@ -39,7 +35,7 @@ static void pass_finite(state_passage *t, double *x) {
 static void pass_whole(state_passage *t, int *x, double end) {
     double number = *x;
     pass_reals(t, &number, 1);
-    t->bad |= t->job == LOAD && !whole_below(number, end);
+    t->bad |= t->job == LOAD && !(number >= 0 && number < end && number == floor(number));
     if (t->job == LOAD && !t->bad) {
         *x = (int)number;
     }

@@ -295,10 +295,6 @@ static void pass_growth(passage *t, spari_growth *g) {
     pass(t, &g->log_last, 1);
 }
 
-static int64_t motion_words(const spar_session *s, const spari_coupling *c) {
-    return c->accelerator && spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0;
-}
-
 static void pass_accelerator(passage *t, const spar_session *s, spari_coupling *c) {
     int64_t n = t->mode == WRITE ? spari_accelerator_state_size(c->accelerator) : 0;
     pass(t, &n, 1);
@@ -312,7 +308,7 @@ static void pass_accelerator(passage *t, const spar_session *s, spari_coupling *
         t->image->failed |= !state || !spari_accelerator_load(c->accelerator, state, n);
     }
     pass(t, c->predicted, c->n);
-    pass(t, c->motion, motion_words(s, c));
+    pass(t, c->motion, spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0);
 }
 
 /* c: created with the settings of the image; never only checked */

@@ -114,16 +114,6 @@ static int begin_file(spar_session *s, save_plan *p, const spari_image own[PARTS
     return SPAR_OK;
 }
 
-/* Rank 0 moves the file to its final path, or removes it. */
-static int end_file(spar_session *s, save_plan *p, int status) {
-    if (status != SPAR_OK) {
-        spari_file_drop(&p->file.file);
-        return status;
-    }
-    status = spari_saving_end(&p->file, p->why, sizeof p->why);
-    return status == SPAR_OK ? SPAR_OK : spari_fail(s, status, "%s", p->why);
-}
-
 static int write_file(spar_session *s, const spari_image own[PARTS], const char *path) {
     save_plan *p = spari_zalloc(1, sizeof *p);
     int root = spari_comm_rank(s->ranks.comm) == 0;
@@ -138,7 +128,12 @@ static int write_file(spar_session *s, const spari_image own[PARTS], const char 
         status = collect(s, p, own, DIRECTORY);
         status = status == SPAR_OK ? spari_agree(s, root ? begin_file(s, p, own, path) : SPAR_OK) : status;
         status = status == SPAR_OK ? collect(s, p, own, STATES) : status;
-        status = p->file.file.stream ? end_file(s, p, status) : status;
+        if (p->file.file.stream && status == SPAR_OK) { /* to its final path, or nowhere */
+            status = spari_saving_end(&p->file, p->why, sizeof p->why);
+            status = status == SPAR_OK ? SPAR_OK : spari_fail(s, status, "%s", p->why);
+        } else if (p->file.file.stream) {
+            spari_file_drop(&p->file.file);
+        }
         status = spari_agree(s, status);
     }
     if (p) {

@@ -10,7 +10,6 @@
 #include "../exchange/rank_loads_and_motion.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double common_amplitude = 1e-5;
@@ -69,18 +68,13 @@ static int find_structure(spar_session *s, const coupled_ask *ask, coupled *c) {
     return SPAR_OK;
 }
 
-static int check_fluid(spar_session *s, const spari_reduced *r) {
-    SPARI_REQUIRE(
-        s, r->misfit <= most_misfit, SPAR_ERR_NUMERIC,
-        "after the motion the fluid's loads do not decay like those of a linear system, relative error %.1e: give more "
-        "steps of memory, a fluid with tighter tolerance or initially at rest, or a larger amplitude",
-        r->misfit);
-    return SPAR_OK;
-}
-
 static int find_eigenvalues(spar_session *s, const coupled_ask *ask, coupled *c) {
     int found = 0, status = spari_reduced_prepare(&c->reduced);
-    SPARI_TRY(status == SPAR_OK ? check_fluid(s, &c->reduced) : SPAR_OK);
+    SPARI_REQUIRE(
+        s, status != SPAR_OK || c->reduced.misfit <= most_misfit, SPAR_ERR_NUMERIC,
+        "after the motion the fluid's loads do not decay like those of a linear system, relative error %.1e: give more "
+        "steps of memory, a fluid with tighter tolerance or initially at rest, or a larger amplitude",
+        c->reduced.misfit);
     if (status == SPAR_OK) {
         status = spari_reduced_solve(&c->reduced, (int)ask->n, ask->shift, &found, c->value, c->x);
     }

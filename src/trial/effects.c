@@ -231,25 +231,11 @@ static void leave_row_out(const spar_session *s, int r, spari_trial_settings *tr
     }
 }
 
-/* Failures after which the other rows can still be tried. */
-static int is_of_the_run(int status) {
-    return status == SPAR_ERR_NUMERIC || status == SPAR_ERR_USER || status == SPAR_ERR_STATE ||
-           status == SPAR_ERR_UNSUPPORTED;
-}
-
 /* Compares the time of one solution, because a run that starts out of equilibrium iterates more, which is not the
    cost of the effect. Exception: rows that change the number of solutions. */
 static double cost_of_row(const spari_record *record, int r) {
     int of_coupling = r == SPAR_ROW_PREDICTOR || r == SPAR_ROW_ITERATION;
     return of_coupling || record->solutions == 0 ? record->seconds : record->seconds / (double)record->solutions;
-}
-
-static void tell_failure(spar_session *s, const char *call, int r) {
-    char text[SPARI_MESSAGE_SIZE + 100];
-    if (s->callbacks.log) {
-        (void)snprintf(text, sizeof text, "%s: without %s the run fails: %s", call, rows[r].name, s->message);
-        spari_log(s, SPAR_LOG_INFO, text);
-    }
 }
 
 enum { REPEATS = 3 }; /* times are the smallest of this many runs, with and without in turn */
@@ -307,8 +293,11 @@ static int try_row_out(spar_session *s, const char *call, const spari_run *run, 
         }
     }
     spari_trial_settings_free(&trial_settings);
-    if (is_of_the_run(status)) {
-        tell_failure(s, call, r);
+    if (status == SPAR_ERR_NUMERIC || status == SPAR_ERR_USER || status == SPAR_ERR_STATE ||
+        status == SPAR_ERR_UNSUPPORTED) { /* the other rows can still be tried */
+        char text[SPARI_MESSAGE_SIZE + 100];
+        (void)snprintf(text, sizeof text, "%s: without %s the run fails: %s", call, rows[r].name, s->message);
+        spari_log(s, SPAR_LOG_INFO, text);
         out->fails = 1;
         out->motion = out->reaction = 0;
         return SPAR_OK;

@@ -13,7 +13,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Positions along a beam; a member of one node has its position and three lever arms. RECENT: points of a cubic. */
@@ -157,15 +156,6 @@ static int look_at_sections(const spar_session *s, double *force) {
     return SPAR_OK;
 }
 
-static void look_at_reactions(const spar_session *s, double *workspace, double *reaction) {
-    for (const spar_member *m = s->members; m; m = m->next, reaction += 6) {
-        spari_member_reaction_in(m, workspace, reaction);
-        for (int c = 3; c < 6; c++) {
-            reaction[c] /= spari_member_length(m);
-        }
-    }
-}
-
 /* ---- memory ---- */
 
 static int64_t width(const spari_record *r) {
@@ -260,7 +250,13 @@ static void interpolate(spari_record *r, int64_t i, double from, double to) {
 static int look_at_goals(const spari_record *r, spar_session *s, double *now) {
     int status = SPAR_OK;
     if (r->goals & SPARI_GOAL(SPARI_OF_REACTION)) {
-        look_at_reactions(s, r->workspace, now + r->first[SPARI_OF_REACTION]);
+        double *reaction = now + r->first[SPARI_OF_REACTION];
+        for (const spar_member *m = s->members; m; m = m->next, reaction += 6) {
+            spari_member_reaction_in(m, r->workspace, reaction);
+            for (int c = 3; c < 6; c++) {
+                reaction[c] /= spari_member_length(m);
+            }
+        }
         look_at_joints(s, now + r->first[SPARI_OF_JOINT]);
     }
     if (r->goals & SPARI_GOAL(SPARI_OF_LOAD)) {

@@ -182,23 +182,18 @@ static void watch_loads(const spar_session *s, int64_t i, int64_t steps, spari_r
     }
 }
 
-/* One step, with its cost. */
-static int step_once(spar_session *s, const spari_run *run, spari_record *r) {
-    int iterations = 0;
-    clock_t since = clock();
-    int status = spar_step(s, run->dt, run->solve, run->solve_context, &iterations);
-    r->seconds += (double)(clock() - since) / CLOCKS_PER_SEC;
-    r->solutions += iterations;
-    return status;
-}
-
 static int march(spar_session *s, const spari_run *run, spari_record *r) {
     double size[4] = {0};
     for (int64_t i = 1; i <= run->steps; i++) {
         SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->before_context));
-        SPARI_TRY(step_once(s, run, r));
+        int iterations = 0;
+        const clock_t since = clock();
+        int status = spar_step(s, run->dt, run->solve, run->solve_context, &iterations);
+        r->seconds += (double)(clock() - since) / CLOCKS_PER_SEC;
+        r->solutions += iterations;
+        SPARI_TRY(status);
         if (run->watch) { /* it may lack memory on one rank alone */
-            int status = run->watch(s, run->watcher);
+            status = run->watch(s, run->watcher);
             SPARI_TRY(spari_agree(s, status));
         }
         watch_loads(s, i, run->steps, r, size);
