@@ -5,30 +5,24 @@
 
 #include <string.h>
 
-/* Finds the unknowns from the first node that is no interface node to the last one. */
-static void find_interior(spari_condensed *c) {
-    int first = 0, last = c->n / 6;
-    while (first < c->ends && c->node[first] == first) {
-        first++;
-    }
-    for (int k = c->ends - 1; k >= 0 && c->node[k] == last - 1; k--) {
-        last--;
-    }
-    c->first = 6 * first;
-    c->length = last > first ? 6 * (last - first) : 0;
-}
-
 spari_condensed *spari_condensed_create(int ends, const int *node, int unknowns) {
     spari_condensed *c = spari_zalloc(1, sizeof *c);
     int64_t m = 6 * (int64_t)ends;
+    int first = 0, last = unknowns / 6;
     if (!c) {
         return NULL;
     }
+    while (first < ends && node[first] == first) {
+        first++;
+    }
+    for (int k = ends - 1; k >= 0 && node[k] == last - 1; k--) {
+        last--;
+    }
+    c->first = 6 * first, c->length = last > first ? 6 * (last - first) : 0;
     c->ends = ends, c->n = unknowns;
     c->node = spari_zalloc(ends, sizeof *c->node);
     if (c->node) {
         memcpy(c->node, node, (size_t)ends * sizeof *node);
-        find_interior(c);
     }
     c->W = spari_zalloc(spari_condensed_state_size(c) + 1, sizeof *c->W);
     c->rows = c->W + m * c->length;

@@ -181,24 +181,19 @@ static void reach_of(const spari_linear *s, size_t i, size_t *from, size_t *to) 
     *to = !s->swap && i + s->band + 1 < s->n ? i + s->band + 1 : s->n;
 }
 
-static void read_elements(const spari_linear *s, size_t at, double *row, double *column) {
-    size_t first, last, m = (size_t)s->block;
-    elements_of(s, at, &first, &last);
-    for (size_t e = first; e <= last; e++) {
-        size_t from = e * (m - (size_t)s->overlap);
-        for (size_t j = 0; j < m; j++) {
-            row[from + j] += *part_entry(s, e, at - from, j);
-            column[from + j] += *part_entry(s, e, j, at - from);
-        }
-    }
-}
-
 void spari_linear_read(const spari_linear *s, int i, double *row, double *column) {
-    size_t at = (size_t)i, from, to;
+    size_t at = (size_t)i, from, to, first = 0, last = 0, m = (size_t)s->block;
     memset(row, 0, s->n * sizeof *row);
     memset(column, 0, s->n * sizeof *column);
     if (s->ends) {
-        read_elements(s, at, row, column);
+        elements_of(s, at, &first, &last);
+        for (size_t e = first; e <= last; e++) {
+            from = e * (m - (size_t)s->overlap);
+            for (size_t j = 0; j < m; j++) {
+                row[from + j] += *part_entry(s, e, at - from, j);
+                column[from + j] += *part_entry(s, e, j, at - from);
+            }
+        }
         return;
     }
     reach_of(s, at, &from, &to);
@@ -208,22 +203,17 @@ void spari_linear_read(const spari_linear *s, int i, double *row, double *column
     }
 }
 
-static void fix_elements(spari_linear *s, size_t at) {
-    size_t first, last, m = (size_t)s->block;
-    elements_of(s, at, &first, &last);
-    for (size_t e = first; e <= last; e++) {
-        size_t i = at - e * (m - (size_t)s->overlap);
-        for (size_t j = 0; j < m; j++) {
-            *part_entry(s, e, i, j) = *part_entry(s, e, j, i) = 0;
-        }
-        *part_entry(s, e, i, i) = e == first;
-    }
-}
-
 void spari_linear_fix(spari_linear *s, int i) {
-    size_t at = (size_t)i, from, to;
+    size_t at = (size_t)i, from, to, first = 0, last = 0, m = (size_t)s->block;
     if (s->ends) {
-        fix_elements(s, at);
+        elements_of(s, at, &first, &last);
+        for (size_t e = first; e <= last; e++) {
+            size_t own = at - e * (m - (size_t)s->overlap);
+            for (size_t j = 0; j < m; j++) {
+                *part_entry(s, e, own, j) = *part_entry(s, e, j, own) = 0;
+            }
+            *part_entry(s, e, own, own) = e == first;
+        }
         return;
     }
     reach_of(s, at, &from, &to);
@@ -370,24 +360,14 @@ int spari_linear_factor(spari_linear *s) {
     return factor_matrix(s);
 }
 
-static int sign_of_elements(const spari_linear *s) {
-    size_t m = (size_t)s->block;
-    int sign = 1;
-    for (size_t k = 0; k < s->own * (size_t)s->elements; k++) {
-        size_t i = k % s->own, e = k / s->own;
-        sign = (s->parts[m * m * e + (m + 1) * i] < 0) != (s->part_swap[k] != (int)i + 1) ? -sign : sign;
-    }
-    return sign;
-}
-
 int spari_linear_sign(const spari_linear *s) {
-    if (s->ends) {
-        return sign_of_elements(s) * spari_linear_sign(s->ends);
-    }
-    int sign = 1;
-    for (size_t i = 0; i < (s->swap ? s->order_of : s->n); i++) {
-        size_t from = (size_t)(s->swap ? s->swap[i] - 1 : s->band_swap[i]);
-        sign = (*entry(s, i, i) < 0) != (from != i) ? -sign : sign;
+    size_t m = (size_t)s->block, count = s->ends ? s->own * (size_t)s->elements : s->swap ? s->order_of : s->n;
+    int sign = s->ends ? spari_linear_sign(s->ends) : 1;
+    for (size_t k = 0; k < count; k++) {
+        size_t i = s->ends ? k % s->own : k, e = s->ends ? k / s->own : 0;
+        double pivot = s->ends ? s->parts[m * m * e + (m + 1) * i] : *entry(s, i, i);
+        size_t from = (size_t)(s->ends ? s->part_swap[k] - 1 : s->swap ? s->swap[i] - 1 : s->band_swap[i]);
+        sign = (pivot < 0) != (from != i) ? -sign : sign;
     }
     return sign;
 }
@@ -403,7 +383,7 @@ void spari_linear_unwatch(spari_linear *s) {
     s->symmetric = NULL;
 }
 
-/* Entry (i, j), in A or in an element. */
+/* Entry (i, j), in A or in elements. */
 static double value_at(const spari_linear *s, size_t i, size_t j) {
     size_t first, last, of_first, of_last;
     if (!s->ends) {

@@ -120,22 +120,14 @@ static void pass_kept(passage *t, double *words, int64_t n) {
     }
 }
 
-/* Checks a motion: finite numbers, and unit quaternions. */
-static void check_pose_words(passage *t, const double *words, int width, int64_t n) {
-    int ok = words && spari_first_nonfinite(words, width * n) < 0;
-    for (int64_t i = 0; i < n && ok && width == 7; i++) {
-        const double *q = words + 7 * i + 3;
-        double size = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-        ok = size > 0.5 && size < 2;
-    }
-    t->image->failed |= !ok;
-}
-
+/* A motion: finite numbers, and unit quaternions. */
 static void pass_motion(passage *t, double *words, int width, int64_t n) {
     const double *there = (const double *)(const void *)(t->image->word + t->image->at);
-    pass(t, words, width * n);
-    if (t->mode == CHECK) {
-        check_pose_words(t, t->image->failed ? NULL : there, width, n);
+    pass_numbers(t, words, width * n);
+    for (int64_t i = 0; i < n && t->mode == CHECK && !t->image->failed && width == 7; i++) {
+        const double *q = there + 7 * i + 3;
+        double size = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        t->image->failed = !(size > 0.5 && size < 2);
     }
 }
 

@@ -268,13 +268,16 @@ static int run_told(spar_session *s, const spari_run *run, const spari_trial_set
 static int try_row_out(spar_session *s, const char *call, const spari_run *run, int r, const spari_record *base,
                        run_tally *runs, spari_effect *out) {
     double with = cost_of_row(base, r), without = INFINITY;
-    spari_trial_settings trial_settings;
-    SPARI_TRY(spari_trial_settings_create(s, &trial_settings));
-    int status = SPAR_OK;
-    for (int k = 0; k < REPEATS && status == SPAR_OK; k++) {
+    spari_trial_settings plain, left_out = {.member = NULL};
+    SPARI_TRY(spari_trial_settings_create(s, &plain));
+    int status = spari_trial_settings_create(s, &left_out);
+    if (status == SPAR_OK) {
+        leave_row_out(s, r, &left_out);
+    }
+    for (int k = 0; k < 2 * REPEATS && status == SPAR_OK; k++) {
         spari_record record;
-        leave_row_out(s, r, &trial_settings);
-        status = run_told(s, run, &trial_settings, runs, &record);
+        const int without_it = k % 2 == 0;
+        status = run_told(s, run, without_it ? &left_out : &plain, runs, &record);
         if (status == SPAR_OK && k == 0) {
             out->motion = spari_record_distance(&record, base, SPARI_OF_MOTION);
             out->reaction = spari_record_distance(&record, base, SPARI_OF_REACTION);
@@ -282,17 +285,12 @@ static int try_row_out(spar_session *s, const char *call, const spari_run *run, 
                 out->size = spari_record_load(&record, base);
             }
         }
-        without = status == SPAR_OK ? fmin(without, cost_of_row(&record, r)) : without;
+        double *least = without_it ? &without : &with;
+        *least = status == SPAR_OK ? fmin(*least, cost_of_row(&record, r)) : *least;
         spari_record_free(&record);
-        spari_trial_settings_free(&trial_settings);
-        status = status == SPAR_OK ? spari_trial_settings_create(s, &trial_settings) : status;
-        if (status == SPAR_OK) {
-            status = run_told(s, run, &trial_settings, runs, &record);
-            with = fmin(with, cost_of_row(&record, r));
-            spari_record_free(&record);
-        }
     }
-    spari_trial_settings_free(&trial_settings);
+    spari_trial_settings_free(&plain);
+    spari_trial_settings_free(&left_out);
     if (status == SPAR_ERR_NUMERIC || status == SPAR_ERR_USER || status == SPAR_ERR_STATE ||
         status == SPAR_ERR_UNSUPPORTED) { /* the other rows can still be tried */
         char text[SPARI_MESSAGE_SIZE + 100];
@@ -321,19 +319,6 @@ static int asked_anywhere(spar_session *s, int *asked) {
     return SPAR_OK;
 }
 
-static int try_rows(spar_session *s, const char *call, const spari_run *run, const spari_record *base,
-                    const double size[SPAR_ROW_COUNT], int asked, run_tally *runs, spari_effect *table) {
-    int status = SPAR_OK;
-    for (int r = 0; r < SPAR_ROW_COUNT && status == SPAR_OK; r++) {
-        runs->left = count_runs(s, r, asked);
-        if (row_in_force(s, r, asked)) {
-            table[r] = (spari_effect){.in_force = 1, .size = size[r]};
-            status = try_row_out(s, call, run, r, base, runs, table + r);
-        }
-    }
-    return status;
-}
-
 static int fill_rows(spar_session *s, const char *call, const spari_run *run, spari_effect *table) {
     double size[SPAR_ROW_COUNT] = {0};
     sizes seen = {{0}, 0};
@@ -351,7 +336,13 @@ static int fill_rows(spar_session *s, const char *call, const spari_run *run, sp
     size[SPAR_ROW_PREDICTOR] = base.report[SPAR_REPORT_ERROR];
     size[SPAR_ROW_ITERATION] = base.report[SPAR_REPORT_ADDED_MASS];
     status = status == SPAR_OK ? asked_anywhere(s, &asked) : status;
-    status = status == SPAR_OK ? try_rows(s, call, run, &base, size, asked, &runs, table) : status;
+    for (int r = 0; r < SPAR_ROW_COUNT && status == SPAR_OK; r++) {
+        runs.left = count_runs(s, r, asked);
+        if (row_in_force(s, r, asked)) {
+            table[r] = (spari_effect){.in_force = 1, .size = size[r]};
+            status = try_row_out(s, call, run, r, &base, &runs, table + r);
+        }
+    }
     spari_record_free(&base);
     return status;
 }
