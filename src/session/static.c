@@ -59,30 +59,35 @@ static const double *used(const spar_member *m) {
     return m->load.used;
 }
 
-static int solve_assembly_static(spari_assembly *a, const double *(*fluid)(const spar_member *), int load_steps,
-                                 int onward, const spar_session *s) {
-    SPARI_TRY(spari_assembly_static(a, fluid, load_steps, onward));
-    for (const spar_member *m = s->members; m; m = m->next) {
-        SPARI_TRY(m->assembly == a ? spari_member_check_rotations(m) : SPAR_OK);
+/* Solves the motion `after`, on the owners. only: one member with all that joints connect to it; NULL: all members. */
+static int solve_all(spar_session *s, const spar_member *only, const double *(*fluid)(const spar_member *),
+                     int load_steps, int onward) {
+    int status = SPAR_OK;
+    for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
+        if (!is_with(only, m) || m->assembly || !spari_fidelity_has_equilibrium(m) || !spari_fidelity_is_here(m)) {
+            continue;
+        }
+        if (m->row->equilibrium) {
+            m->row->equilibrium(m);
+        } else {
+            status = spari_lone_static(m, fluid, load_steps, onward);
+        }
+        status = status == SPAR_OK ? spari_member_check_rotations(m) : status;
+    }
+    for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
+        if (only && only->assembly != a) {
+            continue;
+        }
+        status = spari_assembly_static(a, fluid, load_steps, onward);
+        for (const spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
+            status = m->assembly == a ? spari_member_check_rotations(m) : SPAR_OK;
+        }
+    }
+    SPARI_TRY(spari_session_share_motion(s, status));
+    for (spar_member *m = s->members; m && !only; m = m->next) {
+        spari_member_solved(m, m->load.used);
     }
     return SPAR_OK;
-}
-
-/* Solves the motion `after` of a member, on its owner. */
-static int solve_member_static(spar_member *m, const double *(*fluid)(const spar_member *), int load_steps,
-                               int onward) {
-    if (m->assembly) {
-        return solve_assembly_static(m->assembly, fluid, load_steps, onward, m->session);
-    }
-    if (!spari_fidelity_has_equilibrium(m) || !spari_fidelity_is_here(m)) {
-        return SPAR_OK;
-    }
-    if (m->row->equilibrium) {
-        m->row->equilibrium(m);
-    } else {
-        SPARI_TRY(spari_lone_static(m, fluid, load_steps, onward));
-    }
-    return spari_member_check_rotations(m);
 }
 
 static void copy_loads(const spar_member *m, const double *from, double *to) {
@@ -90,7 +95,7 @@ static void copy_loads(const spar_member *m, const double *from, double *to) {
 }
 
 /* Saves or loads the solver data of the owner's members, each with its length in front, to be restored if there is no
-   equilibrium. Returns the length of all. only: one member with all that joints connect to it; NULL: all members. */
+   equilibrium. Returns the length of all. only: as in solve_all. */
 enum { COUNT, SAVE, LOAD };
 static int64_t pass_state(spar_session *s, const spar_member *only, int mode, double *at) {
     int64_t n = 0;
@@ -129,28 +134,24 @@ static int save_state(spar_session *s, const spar_member *only, double **saved_s
     return SPAR_OK;
 }
 
-/* Makes the motion `after`, under `fluid` loads, the state at t^n. */
-static void commit_member(spar_member *m, const double *fluid) {
-    m->state.dissipated_step = 0;
-    spari_member_solved(m, fluid);
-    spari_member_commit_state(m);
-    memcpy(m->session->gravity_before, m->session->gravity, sizeof m->session->gravity_before);
-}
-
-static int find_member_equilibrium(spar_member *m, int load_steps) {
-    spar_session *s = m->session;
-    if (!s->clock.started) {
-        SPARI_TRY(spari_session_exchange_loads(s, NULL));
-        for (spar_member *with = s->members; with; with = with->next) {
-            if (is_with(m, with)) {
-                spari_session_take_loads(s, with, with->load.pushed);
-            }
+/* Makes the motion `after`, under the pushed loads, the state at t^n. */
+static void commit(spar_session *s, const spar_member *only) {
+    for (spar_member *m = s->members; m; m = m->next) {
+        if (is_with(only, m)) {
+            m->state.dissipated_step = 0;
+            spari_member_solved(m, m->load.pushed);
+            spari_member_commit_state(m);
+            memcpy(s->gravity_before, s->gravity, sizeof s->gravity_before);
         }
     }
-    return spari_session_share_motion(s, solve_member_static(m, pushed, load_steps, 0));
+    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
+        if (!only || only->assembly == a) {
+            spari_assembly_commit_state(a);
+        }
+    }
 }
 
-/* Restores everything. only: as in pass_state. */
+/* Restores everything. only: as in solve_all. */
 static void discard_static(spar_session *s, const spar_member *only, double *saved_state) {
     for (spar_member *m = s->members; m; m = m->next) {
         if (is_with(only, m)) {
@@ -164,16 +165,15 @@ static void discard_static(spar_session *s, const spar_member *only, double *sav
     }
 }
 
-/* Accepts the equilibrium as the state at t^n. */
-static void commit_with(spar_member *member) {
-    for (spar_member *m = member->session->members; m; m = m->next) {
+static int find_member_equilibrium(spar_member *member, int load_steps) {
+    spar_session *s = member->session;
+    SPARI_TRY(s->clock.started ? SPAR_OK : spari_session_exchange_loads(s, NULL));
+    for (spar_member *m = s->members; m && !s->clock.started; m = m->next) {
         if (is_with(member, m)) {
-            commit_member(m, m->load.pushed);
+            spari_session_take_loads(s, m, m->load.pushed);
         }
     }
-    if (member->assembly) {
-        spari_assembly_commit_state(member->assembly);
-    }
+    return solve_all(s, member, pushed, load_steps, 0);
 }
 
 int spar_member_solve_static(spar_member *member, int load_steps) {
@@ -194,7 +194,7 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
         }
         status = find_member_equilibrium(member, load_steps);
         if (status == SPAR_OK) {
-            commit_with(member);
+            commit(s, member);
         } else {
             discard_static(s, member, saved_state);
         }
@@ -235,36 +235,6 @@ static int begin_static(spar_session *s) {
     s->clock.started = s->state.static_solution = 1;
     s->state.phase = SPARI_SOLVED;
     spari_coupling_begin(s);
-    return SPAR_OK;
-}
-
-static void commit_all(spar_session *s) {
-    for (spar_member *m = s->members; m; m = m->next) {
-        copy_loads(m, m->load.pushed, m->load.history[0]);
-        copy_loads(m, m->load.pushed, m->load.before);
-        m->state.motion_given = 0;
-        commit_member(m, m->load.pushed);
-    }
-    for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
-        spari_assembly_commit_state(a);
-    }
-    spari_fluids_each(s, spari_fluid_commit_state);
-    s->state.past = 0; /* the past is no basis for extrapolation */
-}
-
-/* Solves the shapes under the loads in use. */
-static int solve_all(spar_session *s, int load_steps, int onward) {
-    int status = SPAR_OK;
-    for (spar_member *m = s->members; m && status == SPAR_OK; m = m->next) {
-        status = m->assembly ? SPAR_OK : solve_member_static(m, used, load_steps, onward);
-    }
-    for (spari_assembly *a = s->assemblies; a && status == SPAR_OK; a = spari_assembly_next(a)) {
-        status = solve_assembly_static(a, used, load_steps, onward, s);
-    }
-    SPARI_TRY(spari_session_share_motion(s, status));
-    for (spar_member *m = s->members; m; m = m->next) {
-        spari_member_solved(m, m->load.used);
-    }
     return SPAR_OK;
 }
 
@@ -336,7 +306,7 @@ static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve,
     int moved = 0;
     SPARI_TRY(spari_session_moved(s, &moved));
     if (moved) {
-        status = solve_all(s, 1, 1);
+        status = solve_all(s, NULL, used, 1, 1);
         SPARI_TRY(status == SPAR_OK ? status : not_solved(s, call, status));
     }
     SPARI_TRY(spari_session_exchange_loads(s, NULL));
@@ -345,18 +315,6 @@ static int ask_fluid(spar_session *s, const char *call, spar_fluid_solver solve,
     }
     s->state.iteration++;
     return SPAR_OK;
-}
-
-/* A change of the loads that returns amplified grows in time, even if an accelerated iteration converges. */
-static void warn_of_divergence(const spar_session *s, const char *call) {
-    int learns = spari_coupling_scheme_of(s->coupling.scheme)->learn != NULL;
-    double ratio = learns ? spari_accelerator_ratio(s->own->coupling->accelerator) : 0;
-    if (ratio < -1) {
-        spari_warn(s,
-                   "%s: the fluid amplifies a change of its loads by a factor of %.3g: the equilibrium is unstable "
-                   "(static divergence), and a run departs from it",
-                   call, -ratio);
-    }
 }
 
 /* Whether the shapes were solved with exactly the returned loads; otherwise puts these in use. */
@@ -372,7 +330,7 @@ static int stands_under_response(spar_session *s) {
 static int find_equilibrium(spar_session *s, const char *call, int load_steps, spar_fluid_solver solve, void *context) {
     int agreed = 0;
     while (!agreed) {
-        int status = solve_all(s, load_steps, s->state.iteration > 0);
+        int status = solve_all(s, NULL, used, load_steps, s->state.iteration > 0);
         if (status != SPAR_OK) {
             return not_solved(s, call, status);
         }
@@ -391,8 +349,15 @@ static int find_equilibrium(spar_session *s, const char *call, int load_steps, s
             SPARI_TRY(spari_coupling_next(s));
         }
     }
-    warn_of_divergence(s, call);
-    int status = stands_under_response(s) ? SPAR_OK : solve_all(s, load_steps, 1);
+    int learns = spari_coupling_scheme_of(s->coupling.scheme)->learn != NULL;
+    double ratio = learns ? spari_accelerator_ratio(s->own->coupling->accelerator) : 0;
+    if (ratio < -1) { /* such a change grows in time, even if an accelerated iteration converges */
+        spari_warn(s,
+                   "%s: the fluid amplifies a change of its loads by a factor of %.3g: the equilibrium is unstable "
+                   "(static divergence), and a run departs from it",
+                   call, -ratio);
+    }
+    int status = stands_under_response(s) ? SPAR_OK : solve_all(s, NULL, used, load_steps, 1);
     return status == SPAR_OK ? SPAR_OK : not_solved(s, call, status);
 }
 
@@ -416,7 +381,14 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
     status = status == SPAR_OK ? find_equilibrium(s, __func__, load_steps, solve, context) : status;
     SPARI_GIVE(iterations, s->state.iteration);
     if (status == SPAR_OK) {
-        commit_all(s);
+        for (spar_member *m = s->members; m; m = m->next) {
+            copy_loads(m, m->load.pushed, m->load.history[0]);
+            copy_loads(m, m->load.pushed, m->load.before);
+            m->state.motion_given = 0;
+        }
+        commit(s, NULL);
+        spari_fluids_each(s, spari_fluid_commit_state);
+        s->state.past = 0; /* the past is no basis for extrapolation */
         spari_coupling_keep(s);
     } else {
         discard_static(s, NULL, saved_state);
