@@ -48,16 +48,10 @@ static double complex transform(const spari_reduced *r, double complex s) {
     return sum;
 }
 
-/* A(s) [n][n] */
+/* A(s) [n][n] of a fluid with memory */
 static void find_response(const spari_reduced *r, double complex s, double complex *A) {
     int size = r->n * r->n;
     double complex back = cexp(-s * r->dt), factor = cexp(s * r->dt * SPARI_PULSE_MIDDLE), pulse = transform(r, s);
-    if (r->memory == 0) {
-        for (int i = 0; i < size; i++) {
-            A[i] = r->A[0][i] + s * (r->A[1][i] + s * r->A[2][i]);
-        }
-        return;
-    }
     memset(A, 0, (size_t)size * sizeof *A);
     for (int k = 0; k < SPARI_PULSE; k++, factor *= back) {
         const double *load = r->response.load + (int64_t)size * k;
