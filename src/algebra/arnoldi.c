@@ -132,15 +132,6 @@ static int restart(krylov *k, int m, int p, int beside) {
     return 0;
 }
 
-/* Number of leading eigenvalues that have converged. */
-static int count_converged(const krylov *k, int m, int wanted) {
-    int count = 0;
-    while (count < wanted && count < m && cabs(k->b[count]) <= converged_at * cabs(k->S[(int64_t)(m + 1) * count])) {
-        count++;
-    }
-    return count;
-}
-
 /* Whether the search after locking has found nothing new; stores the moduli for the next. */
 static int nothing_new(krylov *k, int m, int count) {
     int same = 1;
@@ -168,7 +159,11 @@ static int search_subspaces(krylov *k, int wanted, int *count) {
         if (m < 0 || order_subspace(k, m)) {
             return -1;
         }
-        *count = count_converged(k, m, wanted);
+        for (*count = 0; *count < wanted && *count < m; ++*count) {
+            if (!(cabs(k->b[*count]) <= converged_at * cabs(k->S[(int64_t)(m + 1) * *count]))) {
+                break;
+            }
+        }
         int whole = m < k->most || m == k->of->rank;
         int all = *count == (wanted < m ? wanted : m);
         int last = pass + 1 == MOST_RESTARTS || searches == MOST_SEARCHES;

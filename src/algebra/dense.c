@@ -57,9 +57,14 @@ int spari_least_squares(int m, int n, double *A, int columns, double *b) {
 }
 
 /* G^T = Q R with pivoted columns. */
-static int pivot_rows(int h, int n, const double *G, double least, int *order, int want, double *Q, double *workspace,
-                      gsl_permutation *p) {
+int spari_independent_rows(int h, int n, double *G, double least, int *order, int want, double *Q) {
     int most = n < h ? n : h, rank = 0, sign;
+    double *workspace = spari_zalloc((int64_t)n * h + n + h, sizeof *workspace);
+    gsl_permutation p = {(size_t)h, spari_zalloc(h, sizeof *p.data)};
+    if (!workspace || !p.data) {
+        SPARI_FREE(workspace, p.data);
+        return -1;
+    }
     gsl_matrix_view a = spari_gsl_matrix(workspace, n, h);
     gsl_vector_view tau = spari_gsl_vector(workspace + (int64_t)n * h, most);
     gsl_vector_view norm = spari_gsl_vector(workspace + (int64_t)n * h + most, h);
@@ -71,27 +76,19 @@ static int pivot_rows(int h, int n, const double *G, double least, int *order, i
         double size = gsl_blas_dnrm2(&column.vector);
         gsl_vector_scale(&column.vector, size > 0 ? 1 / size : 0);
     }
-    SPARI_GSL((void)gsl_linalg_QRPT_decomp(&a.matrix, &tau.vector, p, &sign, &norm.vector));
+    SPARI_GSL((void)gsl_linalg_QRPT_decomp(&a.matrix, &tau.vector, &p, &sign, &norm.vector));
     while (rank < most && fabs(workspace[(int64_t)(h + 1) * rank]) > least) {
         rank++;
     }
     for (int i = 0; i < h; i++) {
-        order[i] = (int)p->data[i];
+        order[i] = (int)p.data[i];
     }
     for (int k = 0; k < want; k++) {
         gsl_vector_view unit = spari_gsl_vector(Q + (int64_t)n * k, n);
         gsl_vector_set_basis(&unit.vector, (size_t)k);
         SPARI_GSL((void)gsl_linalg_QR_Qvec(&a.matrix, &tau.vector, &unit.vector));
     }
-    return rank;
-}
-
-int spari_independent_rows(int h, int n, double *G, double least, int *order, int want, double *Q) {
-    double *workspace = spari_zalloc((int64_t)n * h + n + h, sizeof *workspace);
-    gsl_permutation p = {(size_t)h, spari_zalloc(h, sizeof *p.data)};
-    int rank = workspace && p.data ? pivot_rows(h, n, G, least, order, want, Q, workspace, &p) : -1;
-    free(workspace);
-    free(p.data);
+    SPARI_FREE(workspace, p.data);
     return rank;
 }
 #else

@@ -195,14 +195,6 @@ static void keep_ritz_vectors(lanczos *k, int p, int beside) {
     k->count = p + front;
 }
 
-static int leading_converged(const lanczos *k, int wanted) {
-    int count = 0;
-    while (count < wanted && count < k->done && k->left[count] <= converged * fabs(k->mu[count])) {
-        count++;
-    }
-    return count;
-}
-
 /* ---- none is missing ---- */
 
 /* Whether the first `wanted` Ritz values are all eigenvalues up to the last of them: 1; 0: one is missing; -1: the
@@ -235,10 +227,12 @@ static int search(lanczos *k, int wanted) {
             return SPAR_ERR_NUMERIC;
         }
         SPARI_TRY(ritz(k));
-        int whole = k->done == k->count;
-        int found = leading_converged(k, wanted);
-        if (whole) {
+        if (k->done == k->count) { /* the whole space */
             return SPAR_OK;
+        }
+        int found = 0;
+        while (found < wanted && found < k->done && k->left[found] <= converged * fabs(k->mu[found])) {
+            found++;
         }
         int complete = found == wanted ? none_missing(k, wanted) : 0;
         if (complete != 0) {
@@ -367,15 +361,6 @@ static int give_modes(lanczos *k, int n, double *square, double *x) {
     return SPAR_OK;
 }
 
-static int solve(lanczos *k, int n, double *square, double *x) {
-    if (first_shift(k)) {
-        return SPAR_ERR_STATE;
-    }
-    SPARI_TRY(lower_shift(k, n));
-    SPARI_TRY(search(k, n));
-    return give_modes(k, n, square, x);
-}
-
 int spari_lowest_modes(const spari_modes_problem *problem, int n, double *square, double *x, int *available) {
     spari_shifted a;
     lanczos k = {0};
@@ -386,7 +371,10 @@ int spari_lowest_modes(const spari_modes_problem *problem, int n, double *square
     }
     if (status == SPAR_OK && n > 0) {
         status = lanczos_create(&k, &a, n + (n > 8 * BLOCK ? n : 8 * BLOCK));
-        status = status == SPAR_OK ? solve(&k, n, square, x) : status;
+        status = status == SPAR_OK && first_shift(&k) ? SPAR_ERR_STATE : status;
+        status = status == SPAR_OK ? lower_shift(&k, n) : status;
+        status = status == SPAR_OK ? search(&k, n) : status;
+        status = status == SPAR_OK ? give_modes(&k, n, square, x) : status;
     }
     SPARI_FREE(k.V, k.H);
     spari_shifted_free(&a);

@@ -61,17 +61,6 @@ int spari_decay_solve(int n, double complex *A, int columns, double complex *b) 
     return 0;
 }
 
-/* Indices of the block rows and columns: 0, 1, .. and then increasingly distant, up to a third of the samples. The
-   last third of Y is predicted, which noise cannot be. */
-static void place_rows(hankel *h, int64_t count) {
-    int64_t last = count / 3 - 1;
-    for (int i = 0; i < h->rows; i++) {
-        double part = h->rows > 1 ? (double)i / (h->rows - 1) : 0;
-        int64_t at = (int64_t)(part * part * (double)last), next = i > 0 ? h->at[i - 1] + 1 : 0;
-        h->at[i] = at > next ? at : next;
-    }
-}
-
 static int hankel_create(hankel *h, int size, int64_t count) {
     int64_t rows = MOST_ROWS / size > 4 ? MOST_ROWS / size : 4, states = MOST_STATES;
     rows = rows < count / 3 ? rows : count / 3;
@@ -214,8 +203,14 @@ int spari_decay_fit(int size, int64_t count, const double *y, double noise, spar
     d->right = spari_zalloc((int64_t)MOST_STATES * size, sizeof *d->right);
     int status = hankel_create(&h, size, count);
     status = status == SPAR_OK && d->z && d->left && d->right ? SPAR_OK : SPAR_ERR_MEMORY;
+    /* Indices of the block rows and columns: 0, 1, .. and then increasingly distant, up to a third of the samples. The
+       last third of Y is predicted, which noise cannot be. */
+    for (int i = 0; i < h.rows && status == SPAR_OK; i++) {
+        double part = h.rows > 1 ? (double)i / (h.rows - 1) : 0;
+        int64_t at = (int64_t)(part * part * (double)(count / 3 - 1)), next = i > 0 ? h.at[i - 1] + 1 : 0;
+        h.at[i] = at > next ? at : next;
+    }
     if (status == SPAR_OK) {
-        place_rows(&h, count);
         status = decompose(&h, y);
     }
     if (status == SPAR_OK) {

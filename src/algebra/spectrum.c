@@ -103,8 +103,7 @@ static int find_holds(spectrum *a) {
             a->multiplier[order[a->rank]] = a->rank;
         }
     }
-    free(G);
-    free(order);
+    SPARI_FREE(G, order);
     return status;
 }
 
@@ -440,9 +439,7 @@ static int solve_spectrum(spectrum *a, int n, double complex shift, int how, int
         value[k] = choice[k].lambda;
         give_vector(a, found.z + all * choice[k].from, x + (int64_t)a->n * k);
     }
-    free(found.mu);
-    free(found.z);
-    free(choice);
+    SPARI_FREE(found.mu, found.z, choice);
     return status;
 }
 

@@ -140,21 +140,16 @@ static int is_of_this_process(const spari_thread_pool *c) {
     return c->process == getpid();
 }
 
-/* Ends the first `threads` threads, which are waiting. */
-static void end_workers(spari_thread_pool *c) {
-    atomic_store(&c->stop, 1);
-    wake_workers(c);
-    for (int k = 1; k < c->threads; k++) {
-        (void)pthread_join(c->workers[k].thread, NULL);
-    }
-    (void)pthread_cond_destroy(&c->ended);
-    (void)pthread_cond_destroy(&c->begun);
-    (void)pthread_mutex_destroy(&c->lock);
-}
-
 static void dismiss(spari_thread_pool *c) {
     if (is_of_this_process(c)) { /* a forked child has no threads to wait for */
-        end_workers(c);
+        atomic_store(&c->stop, 1);
+        wake_workers(c);
+        for (int k = 1; k < c->threads; k++) {
+            (void)pthread_join(c->workers[k].thread, NULL);
+        }
+        (void)pthread_cond_destroy(&c->ended);
+        (void)pthread_cond_destroy(&c->begun);
+        (void)pthread_mutex_destroy(&c->lock);
     }
     for (int k = 1; k < c->threads; k++) {
         spari_workspace_free(&c->workers[k].workspace);

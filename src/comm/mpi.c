@@ -255,31 +255,21 @@ static int mpi_sum_bins(spari_comm *comm, spari_bins *x, int64_t n, int status, 
     return x[n].part[0] == 0 ? SPAR_OK : mpi_agree(comm, status, message, size);
 }
 
-/* Too much for one MPI call: each rank's block is sent separately, in messages that fit. */
-static int share_in_turn(mpi_comm *c, double *x, const int64_t *first, char *message, size_t size) {
-    for (int r = 0; r < c->base.size; r++) {
-        for (int64_t at = first[r]; at < first[r + 1]; at += c->base.most) {
-            TRY_MPI(MPI_Bcast(x + at, upto_most(&c->base, first[r + 1] - at), MPI_DOUBLE, r, c->handle));
-        }
-    }
-    return SPAR_OK;
-}
-
-static int share_at_once(mpi_comm *c, double *x, const int64_t *first, char *message, size_t size) {
-    for (int r = 0; r < c->base.size; r++) {
-        c->offsets[r] = (int)first[r];
-        c->counts[r] = (int)(first[r + 1] - first[r]);
-    }
-    TRY_MPI(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, x, c->counts, c->offsets, MPI_DOUBLE, c->handle));
-    return SPAR_OK;
-}
-
 static int mpi_share(spari_comm *comm, double *x, const int64_t *first, int status, char *message, size_t size) {
     mpi_comm *c = (mpi_comm *)comm;
     SPARI_TRY(check_up(c, message, size));
     x[first[comm->rank + 1] - 1] = status != SPAR_OK;
-    SPARI_TRY(first[comm->size] > comm->most ? share_in_turn(c, x, first, message, size)
-                                             : share_at_once(c, x, first, message, size));
+    const int at_once = first[comm->size] <= comm->most; /* else each rank's block in messages that fit */
+    for (int r = 0; r < comm->size; r++) {
+        for (int64_t at = first[r]; at < first[r + 1] && !at_once; at += comm->most) {
+            TRY_MPI(MPI_Bcast(x + at, upto_most(comm, first[r + 1] - at), MPI_DOUBLE, r, c->handle));
+        }
+        c->offsets[r] = (int)first[r];
+        c->counts[r] = (int)(first[r + 1] - first[r]);
+    }
+    if (at_once) {
+        TRY_MPI(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, x, c->counts, c->offsets, MPI_DOUBLE, c->handle));
+    }
     for (int r = 0; r < comm->size; r++) {
         if (x[first[r + 1] - 1] != 0) {
             return tell_all(c, r, status, message, size);

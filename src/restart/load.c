@@ -340,7 +340,7 @@ static int prepare(spar_session *s, reading *l) {
 /* ---- the states ---- */
 
 /* Sends each to the ranks that have allocated it. */
-static int fetch_solvers(spar_session *s, reading *l) {
+static int load_solvers(spar_session *s, reading *l) {
     int broken = 0;
     for (int64_t i = 0; i < l->solver_count; i++) {
         const solver_record *r = l->solvers + i;
@@ -356,7 +356,8 @@ static int fetch_solvers(spar_session *s, reading *l) {
     for (const spar_member *m = s->members; m; m = m->next, k++) {
         broken |= spari_fidelity_state_size(m) > 0 && !l->solution[k];
     }
-    return broken ? spari_saved_broken(s) : SPAR_OK;
+    int status = l->status != SPAR_OK ? tell_why(s, l, l->status) : broken ? spari_saved_broken(s) : SPAR_OK;
+    return spari_agree(s, status);
 }
 
 /* Next words of a record, in the buffer, to the fluids that read from it. */
@@ -395,11 +396,6 @@ static int fetch_fluid(spar_session *s, reading *l, const fluid_record *r, int64
         }
     }
     return broken ? spari_saved_broken(s) : SPAR_OK;
-}
-
-static int load_solvers(spar_session *s, reading *l) {
-    int status = fetch_solvers(s, l);
-    return spari_agree(s, l->status != SPAR_OK ? tell_why(s, l, l->status) : status);
 }
 
 static int take_fluids(spar_session *s, reading *l) {

@@ -75,17 +75,6 @@ static void predict_nodes_loads(void *context, int64_t from, int64_t to) {
     }
 }
 
-/* Extrapolates the loads by the polynomial of `order` through t^n, t^{n-1}, t^{n-2}. Order 1 is (T11) of
-   docs/explanation/theory.md. */
-static void predict_loads(spar_member *m, int order, double dt, const double last[2]) {
-    load_extrapolation t = {.m = m, .order = order};
-    spari_predictor(order, dt, last, t.w);
-    spari_member_spread(m, m->nodes, predict_nodes_loads, &t);
-    if (m->added) {
-        spari_added_predict(m, t.w, dt);
-    }
-}
-
 /* A step as it begins for a member. */
 typedef struct step_begun {
     const spar_session *s;
@@ -100,7 +89,14 @@ static void begin_member(spar_member *m, const void *context) {
         const double rest[6] = {0};
         m->drive[1] = spari_pose_of(m->drive[0].q, rest, rest);
     }
-    predict_loads(m, t->order, t->dt, t->s->clock.dt_last);
+    /* the loads by the polynomial of `order` through t^n, t^{n-1}, t^{n-2}; order 1 is (T11) of
+       docs/explanation/theory.md */
+    load_extrapolation loads = {.m = m, .order = t->order};
+    spari_predictor(t->order, t->dt, t->s->clock.dt_last, loads.w);
+    spari_member_spread(m, m->nodes, predict_nodes_loads, &loads);
+    if (m->added) {
+        spari_added_predict(m, loads.w, t->dt);
+    }
     spari_learned_begin(m);
     spari_member_begin(m);
 }
