@@ -47,9 +47,13 @@ static void look_at_span(void *context, int64_t from, int64_t to) {
     const anderson_pass *t = context;
     const spari_anderson *m = t->m;
     /* after two corrections without mixing (the second is in w[0]): the first pair */
-    for (int64_t i = from; i < to && m->seen == 2; i++) {
-        m->d[0][i] = m->w[0][i] - m->z[i];
-        m->z[i] = m->c[i] = m->w[0][i];
+    if (m->seen == 2) {
+        const double *x = m->w[0];
+        double *d = m->d[0], *z = m->z, *c = m->c;
+        for (int64_t i = from; i < to; i++) {
+            d[i] = x[i] - z[i];
+            z[i] = c[i] = x[i];
+        }
     }
     t->kernels->look(m, t->x, from, to, m->sums + SPARI_MIXED_SUMS * (from / SPAN));
 }
