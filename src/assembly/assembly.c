@@ -195,15 +195,21 @@ static int tangent_serves(const spari_assembly *a) {
 static const double near_factored = 0.01;
 enum { LEAST_PATIENCE = 3, MOST_PATIENCE = 8 };
 
+/* Whether the step under way has formed its tangents. Rates are projected onto the constraints in the metric of the
+   tangents, so a coupling may not converge if every other iteration has new ones. */
+static int formed_in_step(const spari_assembly *a) {
+    return a->session->integrator.substeps == 1 && (!a->factored_begun || a->before.saved);
+}
+
 /* Updates the reuse of the tangents after a solution (see system.h) of so many iterations. took: iterations of the
    solution that formed them; 0: this one did. New tangents cost about ten iterations and serve many solutions. They
-   are formed if they would save more than one iteration. */
-static int tangents_after(int iterations, int took) {
+   are formed if they would save more than one iteration, but not twice in a step. */
+static int tangents_after(const spari_assembly *a, int iterations, int took) {
     int patience = took < LEAST_PATIENCE ? LEAST_PATIENCE : took < MOST_PATIENCE ? took + 1 : MOST_PATIENCE;
     if (took == 0) {
         return iterations;
     }
-    return iterations <= patience ? took : 0;
+    return iterations <= patience || formed_in_step(a) ? took : 0;
 }
 
 static int begin_attempt(void *self, int reused) {
@@ -270,7 +276,7 @@ static void end_solution(void *self, int iterations, int fresh) {
     if (t->a->constraints == 0) {
         p->row->end_solution(p, iterations, fresh);
     } else {
-        t->a->factored = tangents_after(iterations, fresh ? 0 : t->took);
+        t->a->factored = tangents_after(t->a, iterations, fresh ? 0 : t->took);
     }
 }
 
