@@ -11,6 +11,7 @@
 #include "eigen.h"
 #include "shifted.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -250,7 +251,7 @@ static int search(lanczos *k, int wanted) {
    of a singular matrix may succeed by rounding.) Rows are scaled by the roots of their stiffness. */
 static int has_loose_motion(lanczos *k) {
     enum { STEPS = 4 };
-    const double only_rounding = 1e-12;
+    const double only_rounding = 1e-11;
     const spari_shifted *a = k->of;
     double left = 0, size = 0, *x = k->V, *y = k->Z;
     for (int i = 0; i < k->n; i++) {
@@ -299,8 +300,27 @@ static int first_shift(lanczos *k) {
     return a->highest > 0 || !definite_at(a, 1); /* 1: an unconstrained rigid body */
 }
 
+/* What rounding of the stiffness may change of omega^2 of the first Ritz vectors: eps |x| |K| |x| for unit mass. */
+static double rounding_of_stiffness(lanczos *k) {
+    const spari_shifted *a = k->of;
+    double most = 0, *x = k->workspace;
+    for (int j = 0; j < BLOCK && j < k->done; j++) {
+        double sum = 0;
+        SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasTrans, k->done, k->n, 1, k->V, k->n, k->S + (int64_t)k->done * j, 1,
+                               0, x, 1));
+        for (int i = 0; i < k->n; i++) {
+            for (int64_t e = a->begin[i]; e < a->begin[i + 1]; e++) {
+                sum += fabs(x[i] * a->k[e] * x[a->column[e]]);
+            }
+        }
+        most = fmax(most, DBL_EPSILON * sum);
+    }
+    return most;
+}
+
 /* Lowers the shift to the size of the wanted omega^2, as a few products show them. A shift far above hides the low
-   modes; one far below makes mu of rigid motions so large that rounding hides the other modes. 0 or a status. */
+   modes; one far below makes mu of rigid motions so large that rounding hides the other modes. Rounding of the
+   stiffness is a tenth of `accepted` of the shift at most. 0 or a status. */
 static int lower_shift(lanczos *k, int wanted) {
     enum { LOOKS = 6 };
     for (int look = 0; look < LOOKS && k->of->sigma > 0; look++) {
@@ -318,6 +338,7 @@ static int lower_shift(lanczos *k, int wanted) {
             }
         }
         next = fmax(next, 2 * below);
+        next = next > 0 ? fmax(next, 10 / accepted * rounding_of_stiffness(k)) : 0;
         if (!(next > 0) || next > 0.3 * sigma) {
             break;
         }
