@@ -61,12 +61,7 @@ static int predict(void *self, spari_guess stays) {
 
 /* A position gap below this counts as zero: in a step h, it causes an acceleration of gap / h^2, 1 m/s^2 for 1e-8 s. */
 static double rounding_of(const spari_constraint *l) {
-    double size = 0;
-    for (int side = 0; side < 2; side++) {
-        size = fmax(size, spari_norm(l->pose[side].x));
-        size = fmax(size, l->component[side] ? spari_member_length(l->component[side]->member) : 0);
-    }
-    return 8 * DBL_EPSILON * size;
+    return 8 * DBL_EPSILON * fmax(l->reach, fmax(spari_norm(l->pose[0].x), spari_norm(l->pose[1].x)));
 }
 
 /* Gaps of all constraints at the latest iterate. */
@@ -77,6 +72,7 @@ static void update_gaps(spari_assembly *a, double s, double dt) {
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
         spari_constraint_find(l, s, dt, 1);
+        spari_constraint_find_force(l);
         double rounding = rounding_of(l);
         for (int k = 0; k < 6; k++) {
             double gap = spari_constraint_holds(l, k) ? spari_constraint_gap(l, k) : 0;
@@ -446,6 +442,7 @@ static void start_residual(spari_assembly *a, double cm) {
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
         spari_constraint_find(l, 0, 0, 1);
+        spari_constraint_find_force(l);
         spari_constraint_set_acceleration_gaps(l);
         for (int k = 0; k < 6; k++) {
             l->gap[k] /= cm;

@@ -8,6 +8,7 @@
 #include "owners.h"
 #include "system.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -84,6 +85,9 @@ static void take_joint(spari_assembly *a, spar_joint *j) {
     spari_constraint *l = a->constraint + a->constraints;
     l->joint = j;
     l->component[0] = part_of(a, j->member[0]), l->component[1] = part_of(a, j->member[1]);
+    for (int side = 0; side < 2; side++) {
+        l->reach = l->component[side] ? fmax(l->reach, spari_member_length(j->member[side])) : l->reach;
+    }
     j->constraint = a->constraints++;
     j->constrained = spari_joint_constrained(j);
 }

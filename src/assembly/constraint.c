@@ -64,6 +64,10 @@ void spari_constraint_find(spari_constraint *l, double s, double dt, double fact
     find_rates(l, dt, factor);
 }
 
+void spari_constraint_find_force(spari_constraint *l) {
+    spari_kinematics_forces(l->B, l->joint->after.load, l->force);
+}
+
 void spari_constraint_find_rates(spari_constraint *l, double dt, double factor) {
     for (int side = 0; side < 2; side++) {
         const spari_component *p = l->component[side];

@@ -21,18 +21,21 @@ typedef struct spari_constraint {
     int node[2];                   /* interface nodes; -1: prescribed motion */
     spari_constraint_role role;
     int block;          /* in the system, if it closes a loop */
+    double reach;       /* length of the longer one of its components */
     spari_driven drive; /* prescribed motion of the joint at the end of the substep, */
     spari_driven to;    /* and on the way there */
     spari_relative begin;
     spari_node_pose pose[2];
     double v[12], a[12], B[6][12];
+    double force[12];             /* of the joint on its nodes, by spari_constraint_find_force */
     int springs;                  /* springs and dampers act */
     double joint_tangent[12][12]; /* geometric stiffness of its load, in the axes of the reused tangents */
     double gap[6], correction[6]; /* of the constraints; of the multipliers */
-    /* As the system was formed: B, a stiffness that scales its rows, whether it has a tangent, and that. */
+    /* As the system was formed: B of the constrained motions, a stiffness that scales its rows, whether it has a
+       tangent, the largest entry of that, and, if the assembly has clusters, that. */
     double rows[6][12], scale;
     int stiff;
-    double K[12][12];
+    double stiffest, K[12][12];
 } spari_constraint;
 
 /* Whether motion k is constrained. */
@@ -53,6 +56,8 @@ static inline int spari_constraint_count(const spari_constraint *l) {
 void spari_constraint_find(spari_constraint *l, double s, double dt, double factor);
 /* The same after only the velocities of its components have changed. */
 void spari_constraint_find_rates(spari_constraint *l, double dt, double factor);
+/* Computes the forces on the nodes from the present loads. */
+void spari_constraint_find_force(spari_constraint *l);
 /* rate := B v */
 void spari_constraint_times(double B[6][12], const double v[12], double rate[6]);
 /* The error of constrained motion k, and of its rate. */

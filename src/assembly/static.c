@@ -57,6 +57,7 @@ static double balance_static(spari_assembly *a, double f, double *residual_size)
         spari_constraint *l = a->constraint + i;
         const spar_joint *j = l->joint;
         spari_constraint_find(l, 1, 1, f);
+        spari_constraint_find_force(l);
         for (int k = 0; k < 6; k++) {
             l->drive.z[k] = j->now.z[k] + f * (j->drive[1].z[k] - j->now.z[k]);
             l->gap[k] = spari_constraint_holds(l, k) ? spari_constraint_gap(l, k) : 0;

@@ -19,6 +19,16 @@ static const double *rotation_of_side(const spari_constraint *l, int side) {
 /* out [3][3] of row stride `to` := R K Q^T, K of row stride `from` */
 static void rotate_block(const double R[9], const double Q[9], int from, const double *K, int to, double *out) {
     double half[9];
+    int any = 0;
+    for (int i = 0; i < 9; i++) {
+        any = any || K[from * (i / 3) + i % 3] != 0;
+    }
+    for (int i = 0; i < 9 && !any; i++) {
+        out[to * (i / 3) + i % 3] = 0;
+    }
+    if (!any) {
+        return;
+    }
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
             const double *row = K + from * i;
@@ -204,18 +214,21 @@ static void add_rigid_load(spari_assembly *a, const spari_constraint *l) {
 
 /* Adds joint_tangent, springs and dampers of the constraint. */
 static void add_constraint_stiffness(spari_assembly *a, spari_constraint *l, double cv) {
+    double own[12][12], (*K)[12] = a->clusters ? l->K : own;
     l->stiff = 0;
+    l->stiffest = 0;
     if (is_rigid(l)) {
         add_rigid_load(a, l);
         return;
     }
-    constraint_tangent(l, cv, l->K);
-    for (int i = 0; i < 144 && !l->stiff; i++) {
-        l->stiff = l->K[i / 12][i % 12] != 0;
+    constraint_tangent(l, cv, K);
+    for (int i = 0; i < 144; i++) {
+        l->stiff = l->stiff || K[i / 12][i % 12] != 0;
+        l->stiffest = larger(l->stiffest, fabs(K[i / 12][i % 12]));
     }
     for (int n = 0; n < 4 && l->stiff; n++) {
         int i = n / 2, j = n % 2;
-        add_stiffness(a, l->node[i], l->node[j], -1, &l->K[6 * i][6 * j], 12);
+        add_stiffness(a, l->node[i], l->node[j], -1, &K[6 * i][6 * j], 12);
     }
 }
 
@@ -236,10 +249,7 @@ static int rows_of_side(const spari_assembly *a, const spari_constraint *l, int 
 
 /* The largest stiffness of the clusters that a constraint connects, and its own. */
 static double scale_of_constraint(spari_assembly *a, const spari_constraint *l) {
-    double scale = 0;
-    for (int i = 0; i < 144 && l->stiff; i++) {
-        scale = larger(scale, fabs(l->K[i / 12][i % 12]));
-    }
+    double scale = l->stiffest;
     for (int side = 0; side < 2; side++) {
         const spari_interface *v = l->node[side] < 0 ? NULL : a->interface + l->node[side];
         if (v && v->cluster >= 0) {
@@ -390,7 +400,12 @@ static void fill_system(spari_assembly *a, double cv, double penalty) {
 /* Forms the system of the components and constraints at the present positions. Returns 0 or 1. */
 static int form_system(spari_assembly *a, double cv, double penalty) {
     for (int i = 0; i < a->constraints; i++) {
-        memcpy(a->constraint[i].rows, a->constraint[i].B, sizeof a->constraint[i].rows);
+        spari_constraint *l = a->constraint + i;
+        for (int k = 0; k < 6; k++) {
+            if (spari_constraint_holds(l, k)) {
+                memcpy(l->rows[k], l->B[k], sizeof l->rows[k]);
+            }
+        }
     }
     if (find_clusters(a)) {
         return 1;
@@ -675,12 +690,10 @@ void spari_constraints_add_forces(const spari_assembly *a, spari_component *p) {
         return;
     }
     for (int n = 0; n < p->member->joint_count; n++) {
-        spari_constraint *l = a->constraint + p->member->joints[n]->constraint;
-        double f[12];
-        spari_kinematics_forces(l->B, l->joint->after.load, f);
+        const spari_constraint *l = a->constraint + p->member->joints[n]->constraint;
         for (int side = 0; side < 2; side++) {
             for (int k = 0; k < 6 && l->component[side] == p; k++) {
-                p->solver->r[6 * l->joint->unique[side] + k] -= f[6 * side + k];
+                p->solver->r[6 * l->joint->unique[side] + k] -= l->force[6 * side + k];
             }
         }
     }

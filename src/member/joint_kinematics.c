@@ -186,9 +186,9 @@ void spari_kinematics_motion(const spari_joint_kinematics *t, const spari_node_p
 }
 
 void spari_kinematics_forces(double B[6][12], const double load[6], double f[12]) {
-    for (int j = 0; j < 12; j++) {
-        f[j] = 0;
-        for (int k = 0; k < 6; k++) {
+    memset(f, 0, 12 * sizeof *f);
+    for (int k = 0; k < 6; k++) {
+        for (int j = 0; j < 12 && load[k] != 0; j++) {
             f[j] += B[k][j] * load[k];
         }
     }
