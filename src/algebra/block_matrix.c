@@ -2,6 +2,7 @@
 #include "block_matrix.h"
 
 #include "../base/status.h"
+#include "../math/lanes.h"
 #include "inertia.h"
 
 #include <math.h>
@@ -32,9 +33,41 @@ struct spari_blocks {
     int64_t entries;
 };
 
+/* Of a function that is called with constant lengths. */
+#define KNOWN inline SPARI_ALWAYS_INLINE
+
 /* ---- one dense block ---- */
 
-static int factor_block(int n, double *A, int *pivot) {
+/* Calls f with a known length n where that is common: six unknowns, alone or with the multipliers of a joint, or those
+   of a joint that closes a loop. Such loops are several times faster, and sum in the same order. */
+#define WITH_LENGTH(f, n, ...)                                                                                         \
+    ((n) == 3    ? f(3, __VA_ARGS__)                                                                                   \
+     : (n) == 6  ? f(6, __VA_ARGS__)                                                                                   \
+     : (n) == 9  ? f(9, __VA_ARGS__)                                                                                   \
+     : (n) == 11 ? f(11, __VA_ARGS__)                                                                                  \
+                 : f(n, __VA_ARGS__))
+
+/* Calls f with a known width for columns c of a row, six or fewer at once: f keeps them in registers. */
+#define IN_COLUMNS(n, call)                                                                                            \
+    for (int c = 0, width = 0; c < (n); c += width) {                                                                  \
+        width = (n)-c >= 6 ? 6 : (n)-c >= 3 ? 3 : 1;                                                                   \
+        if (width == 6) {                                                                                              \
+            call(6);                                                                                                   \
+        } else if (width == 3) {                                                                                       \
+            call(3);                                                                                                   \
+        } else {                                                                                                       \
+            call(1);                                                                                                   \
+        }                                                                                                              \
+    }
+
+/* y -= f x */
+static KNOWN void less_row(int n, double f, const double *x, double *y) {
+    for (int j = 0; j < n; j++) {
+        y[j] -= f * x[j];
+    }
+}
+
+static KNOWN int factor_block_of(int n, double *A, int *pivot) {
     for (int k = 0; k < n; k++) {
         int best = k;
         for (int i = k + 1; i < n; i++) {
@@ -52,87 +85,111 @@ static int factor_block(int n, double *A, int *pivot) {
         }
         for (int i = k + 1; i < n; i++) {
             double f = A[i * n + k] /= p;
-            for (int j = k + 1; j < n && f != 0; j++) {
-                A[i * n + j] -= f * A[k * n + j];
+            if (f != 0) {
+                less_row(n - k - 1, f, A + k * n + k + 1, A + i * n + k + 1);
             }
         }
     }
     return 0;
 }
 
-/* Calls f with a known length n where that is common: six unknowns, alone or with the multipliers of a joint, or those
-   of a joint that closes a loop. Such loops are several times faster, and sum in the same order. */
-#define WITH_LENGTH(f, n, ...)                                                                                         \
-    ((n) == 3    ? f(3, __VA_ARGS__)                                                                                   \
-     : (n) == 6  ? f(6, __VA_ARGS__)                                                                                   \
-     : (n) == 9  ? f(9, __VA_ARGS__)                                                                                   \
-     : (n) == 11 ? f(11, __VA_ARGS__)                                                                                  \
-                 : f(n, __VA_ARGS__))
+static int factor_block(int n, double *A, int *pivot) {
+    return WITH_LENGTH(factor_block_of, n, A, pivot);
+}
 
-/* y [m] -= A [m][k] x [k] */
-static inline void less_rows_of(int k, int m, const double *A, int stride, const double *x, double *y) {
-    for (int i = 0; i < m; i++, A += stride) {
-        double left = y[i];
-        for (int l = 0; l < k; l++) {
-            left -= A[l] * x[l];
+/* Two columns at once. */
+#if defined(__GNUC__)
+typedef double column_pair __attribute__((vector_size(16)));
+static KNOWN column_pair less_times(column_pair y, double f, column_pair x) {
+    return y - f * x;
+}
+#else
+typedef struct column_pair {
+    double of[2];
+} column_pair;
+static KNOWN column_pair less_times(column_pair y, double f, column_pair x) {
+    return (column_pair){{y.of[0] - f * x.of[0], y.of[1] - f * x.of[1]}};
+}
+#endif
+
+/* The r columns of y and x are one or two. */
+static KNOWN void less_rows_of(int k, int r, int m, const double *A, int stride, const double *x, double *y) {
+    for (int i = 0; i < m; i++, A += stride, y += r) {
+        if (r == 1) {
+            double left = *y;
+            for (int l = 0; l < k; l++) {
+                left -= A[l] * x[l];
+            }
+            *y = left;
+        } else {
+            column_pair left, by;
+            memcpy(&left, y, sizeof left);
+            for (int l = 0; l < k; l++) {
+                memcpy(&by, x + 2 * l, sizeof by);
+                left = less_times(left, A[l], by);
+            }
+            memcpy(y, &left, sizeof left);
         }
-        y[i] = left;
     }
 }
 
-static void less_rows(int m, int k, const double *A, int stride, const double *x, double *y) {
-    WITH_LENGTH(less_rows_of, k, m, A, stride, x, y);
+/* y [m][r] -= A [m][k] x [k][r] */
+static KNOWN void less_rows(int r, int m, int k, const double *A, int stride, const double *x, double *y) {
+    WITH_LENGTH(less_rows_of, k, r, m, A, stride, x, y);
 }
 
-static inline void solve_one_of(int n, const double *A, const int *pivot, double *x) {
+static KNOWN void solve_few_of(int n, int r, const double *A, const int *pivot, double *x) {
     for (int k = 0; k < n; k++) {
-        double kept = x[k];
-        x[k] = x[pivot[k]], x[pivot[k]] = kept;
+        for (int c = 0; c < r; c++) {
+            double kept = x[k * r + c];
+            x[k * r + c] = x[pivot[k] * r + c], x[pivot[k] * r + c] = kept;
+        }
     }
+    SPARI_UNROLL
     for (int k = 1; k < n; k++) {
-        double sum = x[k];
-        for (int i = 0; i < k; i++) {
-            sum -= A[k * n + i] * x[i];
-        }
-        x[k] = sum;
+        less_rows_of(k, r, 1, A + k * n, n, x, x + k * r);
     }
+    SPARI_UNROLL
     for (int k = n - 1; k >= 0; k--) {
-        double sum = x[k];
-        for (int i = k + 1; i < n; i++) {
-            sum -= A[k * n + i] * x[i];
+        less_rows_of(n - 1 - k, r, 1, A + k * n + k + 1, n, x + (k + 1) * r, x + k * r);
+        for (int c = 0; c < r; c++) {
+            x[k * r + c] /= A[k * n + k];
         }
-        x[k] = sum / A[k * n + k];
     }
 }
 
-static void solve_block(int n, const double *A, const int *pivot, int count, double *x, int x_stride) {
+/* Some columns of the solution of a factored block. */
+static KNOWN void solve_columns(int width, int n, const double *A, const int *pivot, double *x, int stride) {
     for (int k = 0; k < n; k++) {
-        double *row = x + k * x_stride, *other = x + pivot[k] * x_stride;
-        for (int c = 0; c < count && pivot[k] != k; c++) {
-            double kept = row[c];
-            row[c] = other[c], other[c] = kept;
+        for (int c = 0; c < width && pivot[k] != k; c++) {
+            double kept = x[k * stride + c];
+            x[k * stride + c] = x[pivot[k] * stride + c], x[pivot[k] * stride + c] = kept;
         }
     }
     for (int k = 0; k < n; k++) {
-        for (int i = k + 1; i < n; i++) {
-            double f = A[i * n + k];
-            for (int c = 0; c < count && f != 0; c++) {
-                x[i * x_stride + c] -= f * x[k * x_stride + c];
-            }
+        double row[6];
+        memcpy(row, x + k * stride, (size_t)width * sizeof *row);
+        for (int i = 0; i < k; i++) {
+            less_row(width, A[k * n + i], x + i * stride, row);
         }
+        memcpy(x + k * stride, row, (size_t)width * sizeof *row);
     }
     for (int k = n - 1; k >= 0; k--) {
-        double *row = x + k * x_stride, p = 1 / A[k * n + k];
+        double row[6], p = 1 / A[k * n + k];
+        memcpy(row, x + k * stride, (size_t)width * sizeof *row);
         for (int i = k + 1; i < n; i++) {
-            double f = A[k * n + i];
-            for (int c = 0; c < count && f != 0; c++) {
-                row[c] -= f * x[i * x_stride + c];
-            }
+            less_row(width, A[k * n + i], x + i * stride, row);
         }
-        for (int c = 0; c < count; c++) {
-            row[c] *= p;
+        for (int c = 0; c < width; c++) {
+            x[k * stride + c] = row[c] * p;
         }
     }
+}
+
+static void solve_block(int n, const double *A, const int *pivot, int count, double *x, int stride) {
+#define SOLVE(width) solve_columns(width, n, A, pivot, x + c, stride)
+    IN_COLUMNS(count, SOLVE)
+#undef SOLVE
 }
 
 /* ---- ordering ---- */
@@ -429,23 +486,23 @@ double *spari_blocks_at(spari_blocks *m, int i, int j, int *stride) {
 
 /* ---- factors ---- */
 
-/* C [m][n] -= A [m][k] B [k][n], with row strides sa, sb, sc */
-static inline void less_product_of(int n, int m, int k, const double *A, int sa, const double *B, int sb, double *C,
-                                   int sc) {
+static KNOWN void less_product_of(int n, int m, int k, const double *A, int sa, const double *B, int sb, double *C,
+                                  int sc) {
     for (int i = 0; i < m; i++) {
-        double *row = C + i * sc;
+        double row[6];
+        memcpy(row, C + i * sc, (size_t)n * sizeof *row);
         for (int l = 0; l < k; l++) {
-            double f = A[i * sa + l];
-            const double *b = B + l * sb;
-            for (int j = 0; j < n; j++) {
-                row[j] -= f * b[j];
-            }
+            less_row(n, A[i * sa + l], B + l * sb, row);
         }
+        memcpy(C + i * sc, row, (size_t)n * sizeof *row);
     }
 }
 
+/* C [m][n] -= A [m][k] B [k][n], with row strides sa, sb, sc */
 static void less_product(int m, int n, int k, const double *A, int sa, const double *B, int sb, double *C, int sc) {
-    WITH_LENGTH(less_product_of, n, m, k, A, sa, B, sb, C, sc);
+#define PRODUCT(width) less_product_of(width, m, k, A, sa, B + c, sb, C + c, sc)
+    IN_COLUMNS(n, PRODUCT)
+#undef PRODUCT
 }
 
 /* Updates the later blocks with L D^-1 U of a factored panel; U then holds D^-1 U. */
@@ -503,28 +560,32 @@ double spari_blocks_least_pivot(const spari_blocks *m) {
     return m->least;
 }
 
-int spari_blocks_solve(spari_blocks *m, double *x) {
+static KNOWN int solve_in(const spari_blocks *m, int r, double *x) {
     double sum = 0;
     for (int p = 0; p < m->n; p++) {
         const block_panel *panel = m->panel + p;
-        double *own = x + panel->first;
+        double *own = x + r * panel->first;
         int s = panel->size;
-        WITH_LENGTH(solve_one_of, s, panel->D, panel->pivot, own);
+        WITH_LENGTH(solve_few_of, s, r, panel->D, panel->pivot, own);
         for (int k = panel->near; k < panel->near + panel->nears; k++) {
             const block_panel *a = m->panel + m->near[k];
-            less_rows(a->shared, s, panel->L + m->offset[k] * s, s, own, x + a->first);
+            less_rows(r, a->shared, s, panel->L + m->offset[k] * s, s, own, x + r * a->first);
         }
     }
     for (int p = m->n - 1; p >= 0; p--) {
         const block_panel *panel = m->panel + p;
-        double *own = x + panel->first;
+        double *own = x + r * panel->first;
         for (int k = panel->near; k < panel->near + panel->nears; k++) {
             const block_panel *a = m->panel + m->near[k];
-            less_rows(panel->size, a->shared, panel->U + m->offset[k], panel->rows, x + a->first, own);
+            less_rows(r, panel->size, a->shared, panel->U + m->offset[k], panel->rows, x + r * a->first, own);
         }
-        for (int k = 0; k < panel->size; k++) {
+        for (int k = 0; k < r * panel->size; k++) {
             sum += 0 * own[k];
         }
     }
     return !isfinite(sum);
+}
+
+int spari_blocks_solve(spari_blocks *m, int columns, double *x) {
+    return columns == 1 ? solve_in(m, 1, x) : solve_in(m, 2, x);
 }

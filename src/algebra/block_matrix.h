@@ -35,7 +35,8 @@ double spari_blocks_least_pivot(const spari_blocks *matrix);
    (Sylvester's law of inertia), which have 12 rows at most. */
 void spari_blocks_watch(spari_blocks *matrix, int on);
 int spari_blocks_negative(const spari_blocks *matrix);
-/* x := A^-1 x. Returns 0, or 1 if a number is not finite. */
-int spari_blocks_solve(spari_blocks *matrix, double *x);
+/* x := A^-1 x, x [rows][columns]: one column, or two, which give the same bits as each alone. Returns 0, or 1 if a
+   number is not finite. */
+int spari_blocks_solve(spari_blocks *matrix, int columns, double *x);
 
 #endif

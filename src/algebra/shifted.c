@@ -345,7 +345,7 @@ static int below_by_reduction(spari_shifted *a) {
     for (int i = 0; i < a->less && s != 0; i++) {
         memcpy(a->x, a->W + (int64_t)a->n * i, (size_t)a->n * sizeof *a->x);
         memset(a->x + a->n, 0, (size_t)a->rank * sizeof *a->x);
-        (void)spari_blocks_solve(a->matrix, a->x);
+        (void)spari_blocks_solve(a->matrix, 1, a->x);
         for (int j = 0; j < a->less; j++) {
             double sum = i == j ? -1 / s : 0;
             for (int k = 0; k < a->n; k++) {
@@ -390,7 +390,7 @@ int spari_shifted_factor(spari_shifted *a, double sigma) {
 int spari_shifted_solve(spari_shifted *a, double *x) {
     memcpy(a->x, x, (size_t)a->n * sizeof *x);
     memset(a->x + a->n, 0, (size_t)a->rank * sizeof *x);
-    int bad = spari_blocks_solve(a->matrix, a->x);
+    int bad = spari_blocks_solve(a->matrix, 1, a->x);
     memcpy(x, a->x, (size_t)a->n * sizeof *x);
     return bad;
 }

@@ -64,8 +64,21 @@ static double rounding_of(const spari_constraint *l) {
     return 8 * DBL_EPSILON * fmax(l->reach, fmax(spari_norm(l->pose[0].x), spari_norm(l->pose[1].x)));
 }
 
+/* The part of the rates' gaps that closing the gaps leaves. Returns whether there is any. */
+static int find_rate_gap(const spari_assembly *a, spari_constraint *l) {
+    int any = 0;
+    for (int k = 0; k < 6; k++) {
+        l->rate_gap[k] = spari_constraint_holds(l, k)
+                             ? spari_constraint_rate_gap(l, k) / a->component[0].scheme.rate - l->gap[k]
+                             : 0;
+        any = any || fabs(l->rate_gap[k]) > 0;
+    }
+    return any;
+}
+
 /* Gaps of all constraints at the latest iterate. */
 static void update_gaps(spari_assembly *a, double s, double dt) {
+    a->rates_off = 0;
     for (int i = 0; i < a->components; i++) {
         spari_component_impose_root(a->component + i);
     }
@@ -78,6 +91,7 @@ static void update_gaps(spari_assembly *a, double s, double dt) {
             double gap = spari_constraint_holds(l, k) ? spari_constraint_gap(l, k) : 0;
             l->gap[k] = copysign(fmax(fabs(gap) - (k < 3 ? rounding : 8 * DBL_EPSILON), 0), gap);
         }
+        a->rates_off = (a->constrains_rates && find_rate_gap(a, l)) || a->rates_off;
     }
 }
 
@@ -110,21 +124,6 @@ static int form(spari_assembly *a) {
     return 0;
 }
 
-/* Sets the gaps to the part of the rates' gaps that the position correction leaves. Returns whether there is any. */
-static int find_rate_gaps(spari_assembly *a) {
-    double most = 0;
-    for (int i = 0; i < a->constraints; i++) {
-        spari_constraint *l = a->constraint + i;
-        for (int k = 0; k < 6; k++) {
-            l->gap[k] = spari_constraint_holds(l, k)
-                            ? spari_constraint_rate_gap(l, k) / a->component[0].scheme.rate - l->gap[k]
-                            : 0;
-            most = fmax(most, fabs(l->gap[k]));
-        }
-    }
-    return most > 0;
-}
-
 /* Subtracts the corrections, all shortened by the same factor so that none is larger than `longest`. If the step
    constrains rates, also projects them onto the constraints; positions stay. *size: that of the correction before,
    at least that of the projection. Returns 0 or 1. */
@@ -135,8 +134,8 @@ static int correct(spari_assembly *a, double longest, double *size) {
     }
     double cut = largest > longest ? longest / largest : 1;
     spari_constraints_correct_loads(a, cut);
-    int rates = a->constrains_rates && find_rate_gaps(a);
-    if (rates && spari_system_solve_gaps(a, a->component[0].scheme.cv, 1)) {
+    const int rates = a->rates_off;
+    if (rates && spari_system_solve_rates(a, a->component[0].scheme.cv)) {
         return 1;
     }
     for (int i = 0; i < a->components; i++) {
@@ -249,7 +248,8 @@ static const char *iterate_newton(void *self, double longest, spari_iterate *it)
         return "found a singular tangent";
     }
     a->factored = 1;
-    if (spari_system_solve_reduced(a, a->component[0].scheme.cv) || correct(a, longest, &it->correction)) {
+    if (spari_system_solve_reduced(a, a->component[0].scheme.cv, a->rates_off) ||
+        correct(a, longest, &it->correction)) {
         return "found a singular tangent";
     }
     a->moved += it->correction;

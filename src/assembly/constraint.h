@@ -31,6 +31,7 @@ typedef struct spari_constraint {
     int springs;                  /* springs and dampers act */
     double joint_tangent[12][12]; /* geometric stiffness of its load, in the axes of the reused tangents */
     double gap[6], correction[6]; /* of the constraints; of the multipliers */
+    double rate_gap[6];           /* of the rates, beyond what closing the gaps changes; over the scheme's rate */
     /* As the system was formed: B of the constrained motions, a stiffness that scales its rows, whether it has a
        tangent, the largest entry of that, and, if the assembly has clusters, that. */
     double rows[6][12], scale;

@@ -222,10 +222,14 @@ static void add_constraint_stiffness(spari_assembly *a, spari_constraint *l, dou
         return;
     }
     constraint_tangent(l, cv, K);
-    for (int i = 0; i < 144; i++) {
-        l->stiff = l->stiff || K[i / 12][i % 12] != 0;
-        l->stiffest = larger(l->stiffest, fabs(K[i / 12][i % 12]));
+    double stiffest = 0;
+    for (int i = 0; i < 12; i++) {
+        for (int j = 0; j < 12; j++) {
+            stiffest = larger(stiffest, fabs(K[i][j]));
+        }
     }
+    l->stiffest = stiffest;
+    l->stiff = stiffest > 0;
     for (int n = 0; n < 4 && l->stiff; n++) {
         int i = n / 2, j = n % 2;
         add_stiffness(a, l->node[i], l->node[j], -1, &K[6 * i][6 * j], 12);
@@ -522,11 +526,11 @@ static int find_gaps(spari_assembly *a) {
 }
 
 /* The remaining gaps of a constraint, of its constrained motions in order. gaps: nodes move in their clusters. */
-static void gaps_left(const spari_assembly *a, const spari_constraint *l, int gaps, double left[6]) {
+static void gaps_left(const spari_assembly *a, const spari_constraint *l, const double *all, int gaps, double left[6]) {
     int constrained = 0;
     for (int k = 0; k < 6; k++) {
         if (spari_constraint_holds(l, k)) {
-            double gap = l->gap[k];
+            double gap = all[k];
             for (int side = 0; side < 2 && gaps; side++) {
                 const double *of = l->node[side] < 0 ? NULL : a->interface[l->node[side]].gap;
                 for (int i = 0; of && i < 6; i++) {
@@ -538,28 +542,33 @@ static void gaps_left(const spari_assembly *a, const spari_constraint *l, int ga
     }
 }
 
-/* The right-hand side, of the forces y that the interface nodes' balance has too many. */
-static void load_system(spari_assembly *a, const double *y, int gaps) {
-    memset(a->b, 0, (size_t)spari_blocks_rows(a->system) * sizeof *a->b);
+/* Column c of the right-hand side or of the solution in a block: number k stands at a->columns * k. */
+static double *column_of(const spari_assembly *a, int block, int c) {
+    return a->b + a->columns * (int64_t)spari_blocks_first(a->system, block) + c;
+}
+
+/* Column c of the right-hand side: of the gaps and the forces y that the interface nodes' balance has too many, or of
+   the rates' gaps (y NULL). */
+static void load_system(spari_assembly *a, const double *y, int gaps, int c) {
     for (int i = 0; i < a->interfaces; i++) {
         const spari_interface *v = a->interface + i;
-        double *b = v->cluster < 0 ? NULL : a->b + spari_blocks_first(a->system, v->block);
-        if (b) {
+        double *b = v->cluster < 0 ? NULL : column_of(a, v->block, c);
+        if (b && y) {
             double f[6];
             memcpy(f, y + 6 * i, sizeof f);
             if (v->cluster != i) {
                 carry_force(v->arm, 1, f);
             }
             for (int k = fixed_in(a, v); k < 6; k++) {
-                b[k] -= f[k];
+                b[a->columns * k] -= f[k];
             }
         }
         if (v->cluster == i && v->constraint >= 0) {
             const spari_constraint *l = a->constraint + v->constraint;
             double left[6];
-            gaps_left(a, l, gaps, left);
+            gaps_left(a, l, c ? l->rate_gap : l->gap, gaps, left);
             for (int k = 0; k < spari_constraint_count(l); k++) {
-                b[6 + k] = -l->scale * left[k];
+                b[a->columns * (6 + k)] = -l->scale * left[k];
             }
         }
     }
@@ -569,46 +578,44 @@ static void load_system(spari_assembly *a, const double *y, int gaps) {
         if (l->block < 0) {
             continue;
         }
-        gaps_left(a, l, gaps, left);
+        gaps_left(a, l, c ? l->rate_gap : l->gap, gaps, left);
         for (int k = 0; k < spari_constraint_count(l); k++) {
-            a->b[spari_blocks_first(a->system, l->block) + k] = -l->scale * left[k];
+            column_of(a, l->block, c)[a->columns * k] = -l->scale * left[k];
         }
         for (int side = 0; side < 2; side++) {
             int constrained = rows_of_side(a, l, side, rows);
             for (int k = 0; k < 6 * constrained; k++) {
                 int block = a->interface[l->node[side]].block;
-                a->b[spari_blocks_first(a->system, block) + k % 6] +=
+                column_of(a, block, c)[a->columns * (k % 6)] +=
                     a->penalty * l->scale * rows[k / 6][k % 6] * left[k / 6];
             }
         }
     }
 }
 
-/* The motion of the interface nodes with their clusters. */
-static void show_motion(const spari_assembly *a, double *x) {
+/* The motion of the interface nodes with their clusters, of column c. */
+static void show_motion(const spari_assembly *a, int c, double *x) {
     for (int i = 0; i < a->interfaces; i++) {
         const spari_interface *v = a->interface + i;
-        const double *b = v->cluster < 0 ? NULL : a->b + spari_blocks_first(a->system, v->block);
-        double *to = x + 6 * i;
-        if (v->cluster == i) {
-            memcpy(to, b, 6 * sizeof *to);
-        } else if (b) {
-            spari_cross(b + 3, v->arm, to);
+        const double *b = v->cluster < 0 ? NULL : column_of(a, v->block, c);
+        double *to = x + 6 * i, arm[3];
+        for (int k = 0; k < 6; k++) {
+            to[k] = b ? b[a->columns * k] : 0;
+        }
+        if (b && v->cluster != i) {
+            spari_cross(to + 3, v->arm, arm);
             for (int k = 0; k < 3; k++) {
-                to[k] += b[k];
-                to[3 + k] = b[3 + k];
+                to[k] += arm[k];
             }
-        } else {
-            memset(to, 0, 6 * sizeof *to);
         }
     }
 }
 
 /* Corrections of the multipliers in the system. Subtracts their forces from the unbalanced forces y (NULL: none). */
-static void read_multipliers(spari_constraint *l, const double *b, double *y) {
+static void read_multipliers(spari_constraint *l, const double *b, int stride, double *y) {
     int constrained = 0;
     for (int k = 0; k < 6; k++) {
-        double by = l->correction[k] = spari_constraint_holds(l, k) ? l->scale * b[constrained++] : 0;
+        double by = l->correction[k] = spari_constraint_holds(l, k) ? l->scale * b[stride * constrained++] : 0;
         for (int side = 0; side < 2 && y && by != 0; side++) {
             double *at = l->node[side] < 0 ? NULL : y + 6 * l->node[side];
             for (int i = 0; at && i < 6; i++) {
@@ -620,12 +627,12 @@ static void read_multipliers(spari_constraint *l, const double *b, double *y) {
 
 /* Corrections of the multipliers of clusters, which balance the remaining forces y on their nodes, from the ends of
    the tree on. y NULL: there are none. */
-static void find_constraint_loads(spari_assembly *a, double *y) {
+static void find_constraint_loads(spari_assembly *a, double *y, int c) {
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
         memset(l->correction, 0, sizeof l->correction);
         if (l->block >= 0) {
-            read_multipliers(l, a->b + spari_blocks_first(a->system, l->block), y);
+            read_multipliers(l, column_of(a, l->block, c), a->columns, y);
         }
     }
     for (int n = a->interfaces - 1; n >= 0; n--) {
@@ -635,7 +642,7 @@ static void find_constraint_loads(spari_assembly *a, double *y) {
         }
         spari_constraint *l = a->constraint + v->constraint;
         if (v->cluster == a->order[n]) {
-            read_multipliers(l, a->b + spari_blocks_first(a->system, v->block) + 6, y);
+            read_multipliers(l, column_of(a, v->block, c) + 6 * a->columns, a->columns, y);
             continue;
         }
         solve_for_loads(l, v, y + 6 * a->order[n], l->correction);
@@ -649,8 +656,9 @@ static int system_serves(const spari_assembly *a, double cv) {
     return a->system_serves && !(fabs(a->cv - cv) > 0);
 }
 
-/* Solves with the condensed residuals of the components in x. loads: the corrections of the multipliers too. */
-static int solve_reduced(spari_assembly *a, double cv, int loads) {
+/* Solves with the condensed residuals of the components in x. loads: the corrections of the multipliers too. rates:
+   solves for the rates' gaps too, in the other column. */
+static int solve_reduced(spari_assembly *a, double cv, int loads, int rates) {
     if (!system_serves(a, cv)) {
         a->system_serves = 0;
         if (factor_system(a, cv)) {
@@ -668,16 +676,21 @@ static int solve_reduced(spari_assembly *a, double cv, int loads) {
         }
         add_forces_of(a, a->x, a->y);
     }
-    load_system(a, a->y, gaps);
-    if (spari_blocks_solve(a->system, a->b)) {
+    a->columns = rates ? 2 : 1;
+    memset(a->b, 0, (size_t)(a->columns * spari_blocks_rows(a->system)) * sizeof *a->b);
+    load_system(a, a->y, gaps, 0);
+    if (rates) {
+        load_system(a, NULL, 0, 1);
+    }
+    if (spari_blocks_solve(a->system, a->columns, a->b)) {
         return 1;
     }
-    show_motion(a, a->x);
+    show_motion(a, 0, a->x);
     if (a->clusters && loads) {
         add_forces_of(a, a->x, a->y);
     }
     if (loads) {
-        find_constraint_loads(a, a->clusters ? a->y : NULL);
+        find_constraint_loads(a, a->clusters ? a->y : NULL, 0);
     }
     for (int i = 0; i < n && gaps; i++) {
         a->x[i] += a->interface[i / 6].gap[i % 6];
@@ -718,8 +731,8 @@ int spari_system_reduce(spari_assembly *a, int rotated) {
     return 0;
 }
 
-int spari_system_solve_reduced(spari_assembly *a, double cv) {
-    if (solve_reduced(a, cv, 1)) {
+int spari_system_solve_reduced(spari_assembly *a, double cv, int rates) {
+    if (solve_reduced(a, cv, 1, rates && !a->clusters)) {
         return 1;
     }
     for (int i = 0; i < a->components; i++) {
@@ -731,7 +744,7 @@ int spari_system_solve_reduced(spari_assembly *a, double cv) {
 }
 
 int spari_system_solve(spari_assembly *a, double cv) {
-    return spari_system_reduce(a, 0) || spari_system_solve_reduced(a, cv);
+    return spari_system_reduce(a, 0) || spari_system_solve_reduced(a, cv, 0);
 }
 
 int spari_system_solve_gaps(spari_assembly *a, double cv, int loads) {
@@ -739,7 +752,19 @@ int spari_system_solve_gaps(spari_assembly *a, double cv, int loads) {
         spari_component_clear(a->component + i); /* for the rotations */
     }
     memset(a->x, 0, (size_t)(6 * a->interfaces) * sizeof *a->x);
-    return solve_reduced(a, cv, loads);
+    return solve_reduced(a, cv, loads, 0);
+}
+
+int spari_system_solve_rates(spari_assembly *a, double cv) {
+    if (a->clusters) { /* the gaps of nodes in their clusters are those of one column only */
+        for (int i = 0; i < a->constraints; i++) {
+            memcpy(a->constraint[i].gap, a->constraint[i].rate_gap, sizeof a->constraint[i].gap);
+        }
+        return spari_system_solve_gaps(a, cv, 1);
+    }
+    show_motion(a, 1, a->x);
+    find_constraint_loads(a, NULL, 1);
+    return 0;
 }
 
 int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acceleration) {
@@ -787,7 +812,7 @@ static void scale_motion(spari_assembly *a) {
     for (int pass = 0; pass < 2; pass++) {
         for (int i = 0; i < a->interfaces; i++) {
             const spari_interface *v = a->interface + i;
-            double *b = v->cluster == i ? a->b + spari_blocks_first(a->system, v->block) : NULL;
+            double *b = v->cluster == i ? column_of(a, v->block, 0) : NULL;
             for (int k = 0; k < 6 && b; k++) {
                 largest = pass ? largest : fmax(largest, fabs(b[k]));
                 b[k] /= pass && largest > 0 ? largest : 1;
@@ -800,7 +825,7 @@ static void scale_motion(spari_assembly *a) {
     for (int i = 0; i < a->constraints; i++) {
         const spari_constraint *l = a->constraint + i;
         for (int k = 0; l->block >= 0 && k < spari_constraint_count(l); k++) {
-            a->b[spari_blocks_first(a->system, l->block) + k] = 0;
+            column_of(a, l->block, 0)[k] = 0;
         }
     }
 }
@@ -810,6 +835,7 @@ static void scale_motion(spari_assembly *a) {
 static int free_motion(spari_assembly *a) {
     int n = spari_blocks_rows(a->system);
     a->system_serves = 0;
+    a->columns = 1;
     if (form_system(a, 0, 8)) {
         return 1;
     }
@@ -828,12 +854,12 @@ static int free_motion(spari_assembly *a) {
     }
     for (int pass = 0; pass < 2; pass++) {
         scale_motion(a);
-        if (spari_blocks_solve(a->system, a->b)) {
+        if (spari_blocks_solve(a->system, 1, a->b)) {
             return 1;
         }
     }
     scale_motion(a);
-    show_motion(a, a->x);
+    show_motion(a, 0, a->x);
     return 0;
 }
 

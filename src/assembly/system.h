@@ -56,7 +56,9 @@ struct spari_assembly {
     double shift;         /* additional stiffness of every motion of a cluster, N/m; at rest */
     spari_blocks *system;
     double *x, *y; /* [interfaces][6] */
-    double *b;     /* of the system */
+    double *b;     /* of the system, [rows][columns]: for the gaps and forces, and for the rates' gaps */
+    int columns;
+    int rates_off; /* there are rates' gaps */
     double *rates; /* 6 of each node of the largest component */
 };
 
@@ -89,9 +91,13 @@ void spari_system_keep_joint_tangents(spari_assembly *a);
    the components follow their nodes. cv: as for the tangents. Returns 0 or 1. */
 int spari_system_solve(spari_assembly *a, double cv);
 /* The same in two parts: the condensed residuals (rotated: as for spari_component_reduce), and the solution. The
-   residuals come first, because the system uses the rotations of the components that they find. */
+   residuals come first, because the system uses the rotations of the components that they find. rates:
+   spari_system_solve_rates will be called; both solutions read the factors once. */
 int spari_system_reduce(spari_assembly *a, int rotated);
-int spari_system_solve_reduced(spari_assembly *a, double cv);
+int spari_system_solve_reduced(spari_assembly *a, double cv, int rates);
+/* After this with `rates`: x and the corrections of the multipliers become those that close the rates' gaps, as by
+   spari_system_solve_gaps. */
+int spari_system_solve_rates(spari_assembly *a, double cv);
 /* Solves for the gaps alone, without forces. x has the motion of the interface nodes; spari_component_clear and
    spari_component_expand compute the corrections of a component from its part. loads: whether those of the multipliers
    are needed. */

@@ -289,7 +289,7 @@ int spari_system_create(spari_assembly *a) {
     }
     a->x = spari_zalloc(n + 1, sizeof *a->x);
     a->y = spari_zalloc(n + 1, sizeof *a->y);
-    a->b = spari_zalloc(spari_blocks_rows(a->system) + 1, sizeof *a->b);
+    a->b = spari_zalloc(2 * (int64_t)spari_blocks_rows(a->system) + 2, sizeof *a->b);
     a->rates = spari_zalloc(6 * most, sizeof *a->rates);
     return a->x && a->y && a->b && a->rates ? SPAR_OK : SPAR_ERR_MEMORY;
 }
