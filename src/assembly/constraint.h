@@ -14,29 +14,28 @@ typedef enum spari_constraint_role {
     SPARI_CONSTRAINT_LOOP
 } spari_constraint_role;
 
-/* A constraint: the equations of a joint in an assembly. */
+/* A constraint: the equations of a joint in an assembly. The data of an iteration come first. */
 typedef struct spari_constraint {
     spar_joint *joint;
     spari_component *component[2]; /* NULL: the ground, or a node with prescribed motion */
     int node[2];                   /* interface nodes; -1: prescribed motion */
     spari_constraint_role role;
-    int block;          /* in the system, if it closes a loop */
-    double reach;       /* length of the longer one of its components */
-    spari_driven drive; /* prescribed motion of the joint at the end of the substep, */
-    spari_driven to;    /* and on the way there */
-    spari_relative begin;
-    spari_node_pose pose[2];
-    double v[12], a[12], B[6][12];
-    double force[12];             /* of the joint on its nodes, by spari_constraint_find_force */
+    int block;                    /* in the system, if it closes a loop */
     int springs;                  /* springs and dampers act */
-    double joint_tangent[12][12]; /* geometric stiffness of its load, in the axes of the reused tangents */
+    int stiff;                    /* as the system was formed: whether it has a tangent, */
+    double scale, stiffest;       /* a stiffness that scales its rows, and the largest entry of the tangent */
     double gap[6], correction[6]; /* of the constraints; of the multipliers */
     double rate_gap[6];           /* of the rates, beyond what closing the gaps changes; over the scheme's rate */
-    /* As the system was formed: B of the constrained motions, a stiffness that scales its rows, whether it has a
-       tangent, the largest entry of that, and, if the assembly has clusters, that. */
-    double rows[6][12], scale;
-    int stiff;
-    double stiffest, K[12][12];
+    double reach;                 /* length of the longer one of its components */
+    spari_node_pose pose[2];
+    double force[12]; /* on its nodes, by spari_constraint_find_force */
+    double v[12], a[12], B[6][12];
+    double rows[6][12];           /* B of the constrained motions, as the system was formed */
+    double joint_tangent[12][12]; /* geometric stiffness of its load, in the axes of the reused tangents */
+    double K[12][12];             /* the tangent as the system was formed, if the assembly has clusters */
+    spari_driven drive;           /* prescribed motion of the joint at the end of the substep, */
+    spari_driven to;              /* and on the way there */
+    spari_relative begin;
 } spari_constraint;
 
 /* Whether motion k is constrained. */

@@ -19,32 +19,33 @@ typedef struct spari_driven {
     double z[6], rate[6], acceleration[6];
 } spari_driven;
 
+/* The data of an iteration come first, so that a large assembly reads few cache lines. */
 struct spar_joint {
     spar_session *session;
+    spar_member *member[2]; /* a and b; b NULL: the ground */
+    int64_t seat[2];        /* nodes whose motion moves the ends: those given, or the root if one body carries a beam */
+    int unique[2];          /* the same as unique nodes; after the members are committed */
+    int constrained;        /* mask of constrained motions: not free, or driven, and not redundant */
+    int driven;             /* mask of driven free motions */
+    spari_joint_kinematics kinematics; /* lever arms and axes: once they are known */
+    int sprung, slack;                 /* slack: a link that only pulls */
+    double length;                     /* unstretched length of a link */
+    double left;                       /* remaining fraction of the step at the current stage */
+    double given[6], before[6];        /* spar_joint_set_load, and its value in the last accepted step */
+    double preload[6];                 /* on the free motions, as stiffness and damping */
+    spari_relative after, now;         /* at t^{n+1} and t^n */
+    spari_driven drive[2];             /* at t^n and t^{n+1} */
+    double stiffness[36], damping[36];
+
     spar_joint *next; /* in order of creation, the same on every rank */
     char *name;
-    spar_member *member[2]; /* a and b; b NULL: the ground */
     int64_t node[2];
-    int64_t seat[2]; /* nodes whose motion moves the ends: those given, or the root if one body carries a beam */
-    int unique[2];   /* the same as unique nodes; after the members are committed */
-    int placed;      /* seats, lever arms and axes are known */
-    int constraint;  /* its place among the constraints of the assembly */
-    spari_joint_kinematics kinematics; /* lever arms and axes: likewise */
+    int placed;     /* seats, lever arms and axes are known */
+    int constraint; /* its place among the constraints of the assembly */
     int frame_given;
     double position[3], axes[4]; /* of spar_joint_set_frame */
     double point[2][3];          /* end points of a link */
-
-    int sprung, slack;                             /* slack: a link that only pulls */
-    double stiffness[36], damping[36], preload[6]; /* on the free motions */
-    double length;                                 /* unstretched length of a link */
-    double given[6], before[6];                    /* spar_joint_set_load, and its value in the last accepted step */
-    double left;                                   /* remaining fraction of the step at the current stage */
-    int driven;                                    /* mask of driven free motions */
-    spari_driven drive[2];                         /* at t^n and t^{n+1} */
     int drive_given;
-    int constrained; /* mask of constrained motions: not free, or driven, and not redundant */
-
-    spari_relative now, after; /* at t^n and t^{n+1} */
     double account[3]; /* energy dissipated by dampers, supplied by drives and by the host's load, up to t^n; if kept */
     spari_relative described; /* `now` before the consistent initial conditions were computed; while `balanced` */
     int balanced;

@@ -38,36 +38,37 @@ typedef struct spari_start_forces {
 } spari_start_forces;
 
 typedef struct spari_solver spari_solver;
+/* The data of an iteration come first, so that a large assembly reads few cache lines. */
 struct spari_solver {
     const spari_body *body;
     spari_offset_loads *offset_loads; /* of a body that carries a rigid beam, with its loads along the line; or NULL */
     int n;                            /* unique nodes */
-    spari_state begin;                /* at t^n */
-    spari_state from, to;             /* a substep's ends; after a solve `to` is t^{n+1} */
-    double *block[3];                 /* the memory of the three */
-    spari_state own[2]; /* ends of a substep relative to a driven root or a rigid motion; NULL: none so far */
-    double *increment;  /* [n][6] u - u_n and the rotation vector of q q_n^-1 */
-    double *tinv;       /* [n][9] inverse tangent operator of the rotation vector */
-    spari_steps steps;
     double *r, *dx;
-    double *stage_v;        /* [n][6] velocities at the end of a trapezoidal stage */
-    double *best;           /* static: state to go back to */
-    double *most, *most_by; /* [spans of nodes] the largest of each (spari_solver_most), and of their corrections */
-    spari_linear *linear;
-    spari_anderson *anderson;   /* of the corrections of one solution */
+    double *increment;    /* [n][6] u - u_n and the rotation vector of q q_n^-1 */
+    spari_state to, from; /* a substep's ends; after a solve `to` is t^{n+1} */
+    spari_steps steps;
+    double *most, *most_by;     /* [spans of nodes] the largest of each (spari_solver_most), and of their corrections */
+    double *tangent_q;          /* [n][4] rotation of the nodes when it was formed */
+    double *rotation;           /* [n][4] their rotation since */
+    double power, power_begin;  /* that damping takes out, at the last forces computed and at t^n */
+    int64_t newton, factors;    /* totals: iterations, factorisations */
+    double *stage_v;            /* [n][6] velocities at the end of a trapezoidal stage */
     spari_condensed *condensed; /* of a member that joints tie to others; NULL: none */
+    spari_linear *linear;
+    spari_anderson *anderson; /* of the corrections of one solution */
+    double *tinv;             /* [n][9] inverse tangent operator of the rotation vector */
+    double *best;             /* static: state to go back to */
+    spari_state begin;        /* at t^n */
+    spari_state own[2];       /* ends of a substep relative to a driven root or a rigid motion; NULL: none so far */
+    double *block[3];         /* the memory of the three states */
     /* the factored tangent, reused while it contracts */
     int factored;
     double tangent_cm, tangent_cv; /* its coefficients */
-    double *tangent_q;             /* [n][4] rotation of the nodes when it was formed */
-    double *rotation;              /* [n][4] their rotation since */
     int64_t served, spent;         /* solutions with it, and what they and the tangent itself took, in iterations */
-    double power, power_begin;     /* that damping takes out, at the last forces computed and at t^n */
     spari_start_forces start;
-    spari_trace trace;       /* of Newton; strict: its rate is not used */
-    spari_reuse begun;       /* the same at the beginning of the step, */
-    spari_snapshot before;   /* and its factors */
-    int64_t newton, factors; /* totals: iterations, factorisations */
+    spari_trace trace;     /* of Newton; strict: its rate is not used */
+    spari_reuse begun;     /* the same at the beginning of the step, */
+    spari_snapshot before; /* and its factors */
 };
 
 /* The solver keeps references to `body` and `offset_loads` (NULL: none). */

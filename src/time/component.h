@@ -81,25 +81,26 @@ typedef struct spari_component_row {
 
 extern const spari_component_row spari_component_body, spari_component_floating;
 
-/* A component and its substep. */
+/* A component and its substep. The data of an iteration come first, so that a large assembly reads few cache lines. */
 typedef struct spari_component {
     spar_member *member;
     const spari_component_row *row;
-    spari_solver *solver;      /* NULL: it is linear, or another rank solves it */
-    struct spari_frame *frame; /* if it is linear */
-    const spari_body *body;
-    spari_steps *steps;
-    spari_trace *trace;         /* of Newton, without ends */
+    spari_solver *solver;       /* NULL: it is linear, or another rank solves it */
     spari_condensed *condensed; /* condensed to its ends */
-    double *K;                  /* the condensed tangent [6 ends][6 ends], global axes, as the system was formed */
-    int at;                     /* index of its first unknown in the system */
-    const spari_state *state;   /* motion of the nodes */
-    spari_scheme alpha, scheme; /* of a substep, and of the stage under way */
-    spari_stage stage;
-    const spari_rotating_frame *rotating; /* equilibrium in a rotating frame; NULL: in one at rest */
-    double moved_in_step;                 /* of a component without ends: the motion of the stage; 0: not known */
+    const spari_body *body;
+    const spari_state *state; /* motion of the nodes */
+    int at;                   /* index of its first unknown in the system */
     /* Of the latest correction: its size, the motion in the step, and the remaining correction that is allowed. */
     double correction_size, motion, allowed;
+    spari_scheme scheme; /* of the stage under way */
+    spari_stage stage;
+    spari_scheme alpha;        /* of a substep */
+    double *K;                 /* the condensed tangent [6 ends][6 ends], global axes, as the system was formed */
+    struct spari_frame *frame; /* if it is linear */
+    spari_steps *steps;
+    spari_trace *trace;                   /* of Newton, without ends */
+    const spari_rotating_frame *rotating; /* equilibrium in a rotating frame; NULL: in one at rest */
+    double moved_in_step;                 /* of a component without ends: the motion of the stage; 0: not known */
     int moved, owner_before; /* during creation: the rank that had the member before, and the solution of this rank */
     void *solution_before;
 } spari_component;
