@@ -3,33 +3,10 @@
 
 #include "../base/environment.h"
 
-#include <stdlib.h>
-#include <string.h>
-
-/* Keeps the record for later comparisons; *record is then empty. Collective. */
-static int keep_record(spar_trial *t, spari_record *record) {
-    spar_session *s = t->session;
-    spari_record *kept = spari_zalloc(1, sizeof *kept);
-    int status = kept ? SPAR_OK : spari_fail(s, SPAR_ERR_MEMORY, "no memory for the record of a trial run");
-    status = spari_agree(s, status);
-    if (status != SPAR_OK) {
-        free(kept);
-        return status;
-    }
-    if (t->kept) {
-        spari_record_free(t->kept);
-        free(t->kept);
-    }
-    *kept = *record;
-    *record = (spari_record){0};
-    t->kept = kept;
-    return SPAR_OK;
-}
-
 static int check_comparison(spar_trial *t, const char *call, int compare) {
     spar_session *s = t->session;
     SPARI_TRY(spari_trial_ready_for_runs(t, call));
-    SPARI_REQUIRE(s, !compare || (t->kept && t->kept->members == s->member_count), SPAR_ERR_STATE,
+    SPARI_REQUIRE(s, !compare || (t->kept.value && t->kept.members == s->member_count), SPAR_ERR_STATE,
                   "%s: there is no earlier run of these members to compare with; call with compare = 0 first", call);
     return SPAR_OK;
 }
@@ -46,19 +23,17 @@ static int run_once(spar_trial *t, int compare) {
         status = record.own;
     }
     spari_trial_settings_free(&trial_settings);
-    const double error[] = {status == SPAR_OK && compare ? spari_record_distance(&record, t->kept, SPARI_OF_MOTION) : 0,
-                            status == SPAR_OK && compare ? spari_record_distance(&record, t->kept, SPARI_OF_REACTION)
-                                                         : 0,
-                            status == SPAR_OK && compare ? spari_record_load(&record, t->kept) : 0};
-    const double seconds = record.seconds;
-    const int64_t evaluations = record.solutions;
-    if (status == SPAR_OK && !compare) {
-        status = keep_record(t, &record);
-    }
     if (status == SPAR_OK) {
         t->ran = 1;
-        t->motion = error[0], t->reaction = error[1], t->load = error[2];
-        t->seconds = seconds, t->evaluations = evaluations;
+        t->motion = compare ? spari_record_distance(&record, &t->kept, SPARI_OF_MOTION) : 0;
+        t->reaction = compare ? spari_record_distance(&record, &t->kept, SPARI_OF_REACTION) : 0;
+        t->load = compare ? spari_record_load(&record, &t->kept) : 0;
+        t->seconds = record.seconds, t->evaluations = record.solutions;
+    }
+    if (status == SPAR_OK && !compare) { /* for later comparisons */
+        spari_record_free(&t->kept);
+        t->kept = record;
+        record = (spari_record){0};
     }
     spari_record_free(&record);
     return status;

@@ -7,7 +7,6 @@
 #include "../member/check_arguments.h"
 
 #include <assert.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_TRIALS = 15 }; /* of advice, unless the host allows more */
@@ -15,10 +14,7 @@ enum { MOST_TRIALS = 15 }; /* of advice, unless the host allows more */
 /* ---- life ---- */
 
 static void free_trial(spar_trial *t) {
-    if (t->kept) {
-        spari_record_free(t->kept);
-        free(t->kept);
-    }
+    spari_record_free(&t->kept);
     SPARI_FREE(t->advised.beam, t);
 }
 

@@ -59,8 +59,8 @@ struct spar_trial {
     int ran;                            /* there are results of spar_trial_run */
     double motion, reaction, load, seconds;
     int64_t evaluations;
-    spari_record *kept; /* the run that others are compared with; NULL: none */
-    int reported;       /* there are results of spar_trial_report_effects */
+    spari_record kept; /* the run that others are compared with; empty: none */
+    int reported;      /* there are results of spar_trial_report_effects */
     spari_effect effect[SPAR_ROW_COUNT];
     spari_advised advised;
 };

@@ -69,10 +69,6 @@ typedef struct snapshot {
     spari_moved_loads *carried; /* [fluid_count] room for those with other nodes */
 } snapshot;
 
-static void snapshot_free(const snapshot *t) {
-    SPARI_FREE(t->members, t->fluids, t->carried);
-}
-
 /* After a failure the session is unchanged, with nothing to restore. */
 static int snapshot_create(spar_session *s, snapshot *t) {
     spari_own *own = s->own;
@@ -87,7 +83,7 @@ static int snapshot_create(spar_session *s, snapshot *t) {
     int status = t->members && t->fluids && t->carried ? spari_joints_save_snapshot(s, &t->joint_snapshot)
                                                        : spari_fail(s, SPAR_ERR_MEMORY, "no memory for a trial run");
     if (status != SPAR_OK) {
-        snapshot_free(t);
+        SPARI_FREE(t->members, t->fluids, t->carried);
         return status;
     }
     own->coupling = NULL;
@@ -151,7 +147,7 @@ static void restore_session(spar_session *s, snapshot *t) {
     SPARI_FREE(s->own->exchange.pack, s->own->exchange.first, s->own->exchange.motion);
     copy_saved(s, &t->session);
     s->own->exchange = t->exchange, s->own->coupling = t->coupling;
-    snapshot_free(t);
+    SPARI_FREE(t->members, t->fluids, t->carried);
     spari_fluid_release_gone(s);
 }
 
