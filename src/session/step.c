@@ -286,8 +286,20 @@ static void shift_history(spar_member *m, const void *session) {
     spari_history_shift(m->load.history, 6 * m->nodes, s->coupling.predictor, m->load.pushed);
 }
 
-static void accept_member(spar_member *m, const void *unused) {
-    (void)unused;
+/* Loads that move nothing have no weight in the stop test of the coupling, and may be those predicted. In reactions and
+   work the loads pushed last replace them: at the constrained root, and at all nodes of a member without unknowns. */
+static void take_idle_loads(spar_member *m) {
+    const int moves = m->row->unknowns && m->row->unknowns(m) > 0;
+    const int64_t idle = !m->row->reaction ? 0 : moves ? spari_member_constrained(m) : 6 * m->nodes;
+    for (int64_t i = 0; i < idle; i++) {
+        m->load.solved[1][i] = m->load.dead[i] + m->load.pushed[i];
+    }
+}
+
+static void accept_member(spar_member *m, const void *session) {
+    if (((const spar_session *)session)->state.phase == SPARI_CHECKED) {
+        take_idle_loads(m);
+    }
     spari_member_accept(m);
 }
 
@@ -330,7 +342,7 @@ int spar_step_accept(spar_session *session) {
     spari_joints_each(s, spari_work_of_joint);
     spari_threads_each(s, shift_history, s);
     spari_step_control_accept(s);
-    spari_threads_each(s, accept_member, NULL);
+    spari_threads_each(s, accept_member, s);
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
         spari_assembly_accept(a);
     }
