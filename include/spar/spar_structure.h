@@ -195,8 +195,9 @@ SPAR_API int spar_beam_get_damping(const spar_member *beam, double mu[6]);
 /* Mass-proportional damping: a force of -alpha times mass times velocity. The velocity is relative to the rigid motion
    of the root, so the rotation of a blade as a whole is not damped. If the root is free, pinned or moved by joints,
    it is the absolute velocity, and the momentum of a free beam decays as exp(-alpha t). A mode with angular
-   frequency omega has the damping ratio alpha / (2 omega). The force is an external one in the root's reaction. It
-   has no effect on rigid or prescribed beams with fixed or driven roots, and without INERTIA.
+   frequency omega has the damping ratio alpha / (2 omega). The force is an external one in the root's reaction. Its
+   work on the rigid motion of a driven root is in no account of energy. It has no effect on rigid or prescribed beams
+   with fixed or driven roots, and without INERTIA.
      alpha: in, 1/s, >= 0, 0: none (default)
    SPAR_ERR_UNSUPPORTED at the commit: a rigid beam with a free or pinned root. */
 SPAR_API int spar_beam_set_mass_damping(spar_member *beam, double alpha);
