@@ -278,6 +278,27 @@ static int has_loose_motion(lanczos *k) {
     return !(left > only_rounding * size);
 }
 
+/* Largest sum of |K_ij| / sqrt(M_ii M_jj) over j: of loads on a rigid body K may have nothing on its diagonal. */
+static double highest_of_rows(lanczos *k) {
+    const spari_shifted *a = k->of;
+    double highest = 0, *mass = k->workspace;
+    for (int i = 0; i < k->n; i++) {
+        mass[i] = 0;
+        for (int64_t e = a->begin[i]; e < a->begin[i + 1]; e++) {
+            mass[i] = a->column[e] == i ? a->m[e] : mass[i];
+        }
+    }
+    for (int i = 0; i < k->n; i++) {
+        double sum = 0;
+        for (int64_t e = a->begin[i]; e < a->begin[i + 1]; e++) {
+            const double product = mass[i] * mass[a->column[e]];
+            sum += product > 0 ? fabs(a->k[e]) / sqrt(product) : 0;
+        }
+        highest = fmax(highest, sum);
+    }
+    return highest;
+}
+
 static int definite_at(spari_shifted *a, double sigma) {
     return !spari_shifted_factor(a, sigma) && a->below == 0;
 }
@@ -294,6 +315,12 @@ static int first_shift(lanczos *k) {
     }
     for (double f = 1e-6; f < 1e4 && a->highest > 0; f *= 10) {
         if (definite_at(a, f * a->highest)) {
+            return 0;
+        }
+    }
+    const double highest = highest_of_rows(k);
+    for (double f = 1; f < 1e4 && highest > a->highest; f *= 10) {
+        if (definite_at(a, f * highest)) {
             return 0;
         }
     }

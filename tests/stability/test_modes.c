@@ -310,6 +310,33 @@ static void test_free_and_curved(void **state) {
     }
 }
 
+/* A free body under a follower force F at its centre of mass: the symmetric part of the load's stiffness couples
+   displacements and rotations and has nothing on the diagonal: omega^2 = +-|F| / (2 sqrt(m J)), each twice, and twice
+   0. The same in any orientation, where rounding comes upon the diagonal; 1e-9 of the largest. */
+static void test_followed_body(void **state) {
+    (void)state;
+    const double m = 3, J = 2, J3[3] = {J, J, J}, centre[3] = {0, 0, 0}, way[3] = {0.3, -0.4, 1.2}; /* of length 1.3 */
+    for (int k = 0; k < 12; k++) {
+        const double F = pow(10, k / 2 - 3), turn[3] = {0.7 * (k % 2), 0.2 * k, -0.5 * k};
+        const double largest = sqrt(1.3 * F / (2 * sqrt(m * J))) / two_pi, wanted[6] = {-1, -1, 0, 0, 1, 1};
+        double M[36], q[4], f[6];
+        scene_mass(M, m, centre, J3);
+        spari_quat_exp(turn, q);
+        spar_session *s = scene_session();
+        spar_member *b = NULL;
+        OK(s, spar_rigid_create(s, "b", NULL, q, M, &b));
+        OK(s, spar_member_commit(b));
+        OK(s, spar_member_set_load(b, 0, SPAR_LOAD_FOLLOWER, (double[6]){F * way[0], F * way[1], F * way[2], 0, 0, 0}));
+        OK(s, spar_member_solve_modes(b, 6, f, NULL));
+        for (int i = 0; i < 6; i++) {
+            NEAR(f[i], wanted[i] * largest, (wanted[i] == 0 ? 1e-6 : 1e-9) * largest);
+        }
+        OK(s, spar_member_solve_modes(b, 1, f, NULL));
+        NEAR(f[0], -largest, 1e-9 * largest);
+        spar_session_destroy(&s);
+    }
+}
+
 /* The eigenvalue solver never ends on matrices that are no numbers: they are refused before. Nor may it on entries
    whose squares are none; those are only another unit of force: frequencies go with the root of the stiffness. */
 static void test_modes_beyond_numbers(void **state) {
@@ -455,17 +482,12 @@ static void test_jacket(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rotating_cantilever),
-        cmocka_unit_test(test_timoshenko),
-        cmocka_unit_test(test_steady_turn),
-        cmocka_unit_test(test_placement),
-        cmocka_unit_test(test_mass_normalised),
-        cmocka_unit_test(test_turning_tangent),
-        cmocka_unit_test(test_free_and_buckled),
-        cmocka_unit_test(test_free_and_curved),
-        cmocka_unit_test(test_modes_beyond_numbers),
-        cmocka_unit_test(test_identical_beams),
-        cmocka_unit_test(test_jacket),
+        cmocka_unit_test(test_rotating_cantilever), cmocka_unit_test(test_timoshenko),
+        cmocka_unit_test(test_steady_turn),         cmocka_unit_test(test_placement),
+        cmocka_unit_test(test_mass_normalised),     cmocka_unit_test(test_turning_tangent),
+        cmocka_unit_test(test_free_and_buckled),    cmocka_unit_test(test_free_and_curved),
+        cmocka_unit_test(test_followed_body),       cmocka_unit_test(test_modes_beyond_numbers),
+        cmocka_unit_test(test_identical_beams),     cmocka_unit_test(test_jacket),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
