@@ -191,26 +191,48 @@ static void node_fields(const double *xr, const double *q, const double *v, cons
     }
 }
 
+/* Nodes whose fields are summed at once. */
+enum { TOGETHER = 8 };
+
+/* to [n][SPARI_FIELDS] += columns [n][count] of the matrix modal [n][n] times g [count][SPARI_FIELDS], the first
+   `fields` of them, a number that the compiler knows. */
+static inline void add_nodes(const int fields, int n, int count, const double *modal, const double *g, double *to) {
+    for (int k = 0; k < n; k++, modal += n, to += SPARI_FIELDS) {
+        double sum[SPARI_FIELDS];
+        memcpy(sum, to, (size_t)fields * sizeof *to);
+        for (int l = 0; l < count; l++) {
+            for (int f = 0; f < fields; f++) {
+                sum[f] += modal[l] * g[l * SPARI_FIELDS + f];
+            }
+        }
+        memcpy(to, sum, (size_t)fields * sizeof *to);
+    }
+}
+
 void spari_field_fill(int elements, int per_element, const double *modal, int consistent, int upto, const double *xr,
                       const double *q, const double *v, const double *a, double *c) {
     static const int width[] = {SPARI_F_SPIN, SPARI_F_ACCEL, SPARI_FIELDS};
-    double chained[4 * SPARI_MAX_NODES], g[SPARI_FIELDS];
-    ptrdiff_t block = (ptrdiff_t)per_element * SPARI_FIELDS;
-    consistent = consistent && per_element > 1; /* with one node both kinds are equal */
-    for (int e = 0; e < elements; e++) {
-        ptrdiff_t node = (ptrdiff_t)e * per_element;
-        double *to = c + e * block;
-        for (int k = 0; k < per_element; k++) {
-            memset(to + (ptrdiff_t)k * SPARI_FIELDS, 0, sizeof *to * (size_t)width[upto]);
+    double chained[4 * SPARI_MAX_NODES], g[TOGETHER * SPARI_FIELDS];
+    const int P = per_element;
+    consistent = consistent && P > 1; /* with one node both kinds are equal */
+    for (int e = 0; e < elements; e++, c += (ptrdiff_t)P * SPARI_FIELDS) {
+        for (int k = 0; k < P; k++) {
+            memset(c + (ptrdiff_t)k * SPARI_FIELDS, 0, sizeof *c * (size_t)width[upto]);
         }
-        spari_chain(per_element, q + 7 * node + 3, 7, chained);
-        for (int l = 0; l < per_element; l++, node++) {
-            node_fields(xr + 3 * node, q + 7 * node, v + 6 * node, a + 6 * node, chained + 4 * l, consistent, upto, g);
-            for (int k = 0; k < per_element; k++) {
-                double m = modal[k * per_element + l];
-                for (int f = 0; f < width[upto]; f++) {
-                    to[k * SPARI_FIELDS + f] += m * g[f];
-                }
+        spari_chain(P, q + 7 * (ptrdiff_t)e * P + 3, 7, chained);
+        for (int from = 0; from < P; from += TOGETHER) {
+            int count = P - from < TOGETHER ? P - from : TOGETHER;
+            for (int l = 0; l < count; l++) {
+                ptrdiff_t node = (ptrdiff_t)e * P + from + l;
+                node_fields(xr + 3 * node, q + 7 * node, v + 6 * node, a + 6 * node, chained + 4 * (from + l),
+                            consistent, upto, g + (ptrdiff_t)l * SPARI_FIELDS);
+            }
+            if (upto < SPARI_UPTO_RATE) {
+                add_nodes(SPARI_F_SPIN, P, count, modal + from, g, c);
+            } else if (upto < SPARI_UPTO_ACCEL) {
+                add_nodes(SPARI_F_ACCEL, P, count, modal + from, g, c);
+            } else {
+                add_nodes(SPARI_FIELDS, P, count, modal + from, g, c);
             }
         }
     }
