@@ -1,6 +1,7 @@
 /* Components whose unknowns are the motions of their nodes: exact beams, rigid bodies and rigid beams. See
    component.h. */
 #include "../base/session.h"
+#include "../comm/comm.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied_loads.h"
@@ -120,11 +121,11 @@ void spari_component_keep_rates(spari_component *p, int back) {
 
 /* ---- an iteration ---- */
 
-/* Whether a coupling may solve the step again from the same starting values. */
+/* Whether a coupling may solve the step again from the same starting values. Fluids may be on other ranks. */
 static int starts_again(const spari_component *p) {
     const spar_session *s = p->member->session;
     return p->solver->start.state && p->scheme.rule == SPARI_ALPHA && s->integrator.substeps == 1 &&
-           s->coupling.scheme != SPAR_COUPLING_EXPLICIT;
+           s->coupling.scheme != SPAR_COUPLING_EXPLICIT && (s->fluids || spari_comm_size(s->ranks.comm) > 1);
 }
 
 static int predict_nodes(spari_component *p, spari_guess stays) {
