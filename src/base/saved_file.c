@@ -152,7 +152,9 @@ void spari_saving_put(spari_saving *saving, uint64_t *words, int64_t n) {
     for (int64_t i = 0; i < n; i++) {
         put_word((unsigned char *)(words + i), words[i]);
     }
-    put_summed(saving, words, 8 * (size_t)n);
+    if (n > 0) { /* a session without members has no states: NULL */
+        put_summed(saving, words, 8 * (size_t)n);
+    }
 }
 
 static int64_t offset_of_word(int64_t word) {
