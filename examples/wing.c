@@ -97,16 +97,12 @@ static void solve_flow(const mesh *m) {
 static spar_member *create_wing(spar_session *s) {
     const double eta[2] = {0, 1}, axis[6] = {0, 0, 0, span, 0, 0}, damping[6] = {2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3};
     const double m = 35.71, aft = 0.1 * chord; /* the mass centre lies behind the line */
-    const double section[SPAR_SECTION_COUNT] = {[SPAR_SECTION_EA] = 1e9,
-                                                [SPAR_SECTION_GA_Y] = 2e8,
-                                                [SPAR_SECTION_GA_Z] = 2e8,
-                                                [SPAR_SECTION_GJ] = torsion,
-                                                [SPAR_SECTION_EI_Y] = 9.77e6,
-                                                [SPAR_SECTION_EI_Z] = 1e9,
-                                                [SPAR_SECTION_MASS] = m,
-                                                [SPAR_SECTION_MASS_Y] = aft,
-                                                [SPAR_SECTION_INERTIA_Y] = 0.1,
-                                                [SPAR_SECTION_INERTIA_Z] = 8.54 - m * aft * aft};
+    const double section[SPAR_SECTION_COUNT] = {
+        [SPAR_SECTION_EA] = 1e9,        [SPAR_SECTION_GA_Y] = 2e8,
+        [SPAR_SECTION_GA_Z] = 2e8,      [SPAR_SECTION_GJ] = torsion,
+        [SPAR_SECTION_EI_Y] = 9.77e6,   [SPAR_SECTION_EI_Z] = 1e9,
+        [SPAR_SECTION_MASS] = m,        [SPAR_SECTION_MASS_Y] = aft,
+        [SPAR_SECTION_INERTIA_Y] = 0.1, [SPAR_SECTION_INERTIA_Z] = 8.54 - m * aft * aft};
     double K[36], M[36];
     check(NULL, spar_section_build(SPAR_SECTION_COUNT, section, K, M));
     spar_member *wing = NULL;

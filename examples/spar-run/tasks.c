@@ -124,6 +124,7 @@ static int by_frequency(const void *a, const void *b) {
 static int solve_damped(spar_member *member, int64_t n, double *pair) {
     int status = spar_member_solve_eigenvalues(member, n, NULL, pair, NULL, NULL);
     if (status == SPAR_OK) {
+        /* NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): run_fail returns what it is given */
         qsort(pair, (size_t)n, 2 * sizeof *pair, by_frequency);
     }
     for (int64_t i = 0; status == SPAR_OK && i < n; i++) {

@@ -121,7 +121,7 @@ static int look_up_active(const spari_annuli *a, spari_newton_lanes *w) {
 void spari_momentum_solve(spari_annuli *a, int lanes) {
     const spari_momentum_kernels *kernels = spari_momentum_kernels_for(lanes);
     spari_newton_lanes w = {.active = {0}};
-    int lifts[SPARI_ANNULI], tip = 0, hub = 0;
+    int lifts[SPARI_ANNULI] = {0}, tip = 0, hub = 0;
     kernels->free_flow(a, &w);
     for (int l = 0; l < a->count; l++) {
         look_up_lift(a, &w, l);

@@ -145,7 +145,7 @@ int spar_aero_report_effects(spar_aero *aero, spar_trial *trial) {
     int status = check_arguments(session, aero, __func__);
     SPARI_TRY(spari_aero_named(session, __func__, try_all(session, trial, aero, status, __func__, made)));
     spari_aero_put_message_back(session, message);
-    memcpy(aero->effect, made, sizeof made);
+    memcpy(aero->effect, made, sizeof made); /* NOLINT(clang-analyzer-core.NonNullParamChecker): checked above */
     aero->reported = 1;
     return SPAR_OK;
 }

@@ -205,9 +205,10 @@ int spari_decay_fit(int size, int64_t count, const double *y, double noise, spar
     status = status == SPAR_OK && d->z && d->left && d->right ? SPAR_OK : SPAR_ERR_MEMORY;
     /* Indices of the block rows and columns: 0, 1, .. and then increasingly distant, up to a third of the samples. The
        last third of Y is predicted, which noise cannot be. */
+    const int64_t last = count / 3 - 1;
     for (int i = 0; i < h.rows && status == SPAR_OK; i++) {
         double part = h.rows > 1 ? (double)i / (h.rows - 1) : 0;
-        int64_t at = (int64_t)(part * part * (double)(count / 3 - 1)), next = i > 0 ? h.at[i - 1] + 1 : 0;
+        int64_t at = (int64_t)(part * part * (double)last), next = i > 0 ? h.at[i - 1] + 1 : 0;
         h.at[i] = at > next ? at : next;
     }
     if (status == SPAR_OK) {

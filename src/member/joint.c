@@ -42,6 +42,7 @@ static int reserve_joint(spar_member *m) {
         return 0;
     }
     int capacity = 2 * m->joint_capacity + 2;
+    /* NOLINTNEXTLINE(bugprone-sizeof-expression): an array of pointers */
     spar_joint **more = realloc(m->joints, (size_t)capacity * sizeof *more);
     if (!more) {
         return 1;

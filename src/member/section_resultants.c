@@ -204,7 +204,9 @@ static void sum_elements(spari_beyond *b) {
     const int P = m->mesh.per_element;
     for (int e = m->mesh.elements - 1; e >= 0; e--) {
         double *sum = b->sum + 6 * (int64_t)e;
-        memcpy(sum, sum + 6, 6 * sizeof *sum);
+        for (int k = 0; k < 6; k++) {
+            sum[k] = sum[6 + k];
+        }
         for (int64_t i = (int64_t)e * P; i < (int64_t)(e + 1) * P; i++) {
             add_about(b->x, b->x + 3 * i, b->spread + 6 * i, sum);
             add_about(b->x, b->x + 3 * i, b->point + 6 * i, sum);

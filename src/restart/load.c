@@ -257,15 +257,17 @@ static int find_takers(spar_session *s, reading *l) {
     double *has = spari_zalloc(l->keys * ranks + 1, sizeof *has);
     l->taker = spari_zalloc(l->keys, sizeof *l->taker);
     int status = agree_on_memory(s, has && l->taker);
-    for (int64_t i = 0; i < l->fluid_count && status == SPAR_OK; i++) {
+    if (status != SPAR_OK || !has) {
+        free(has);
+        return status;
+    }
+    for (int64_t i = 0; i < l->fluid_count; i++) {
         const fluid_record *r = l->fluids + i;
         for (const spar_fluid *f = s->fluids; f && has[r->key * ranks + rank] == 0; f = spari_fluid_next(f)) {
             has[r->key * ranks + rank] = is_record_of(l, r, f);
         }
     }
-    if (status == SPAR_OK) {
-        status = spari_sum(s, has, l->keys * ranks);
-    }
+    status = spari_sum(s, has, l->keys * ranks);
     for (int64_t i = 0; i < l->fluid_count && status == SPAR_OK; i++) {
         int *taker = l->taker + l->fluids[i].key;
         for (*taker = 0; *taker < ranks && has[l->fluids[i].key * ranks + *taker] == 0;) {

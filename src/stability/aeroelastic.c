@@ -113,6 +113,8 @@ static int solve_coupled(spar_session *s, const char *call, coupled_ask *ask, do
         ask->fluid.shape = c.nodes;
         ask->fluid.rate = c.rate;
         status = spari_fluid_response_find(s, call, &ask->fluid, &c.reduced.response);
+        ask->fluid.motions = NULL; /* these live here alone */
+        ask->fluid.shape = NULL;
     }
     if (status == SPAR_OK) {
         status = find_eigenvalues(s, ask, &c);

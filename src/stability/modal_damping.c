@@ -229,6 +229,7 @@ static int agree_on_damping(spar_member *m, const char *call, const spari_agreed
         spari_body_free(body);
         return spari_named(m->session, call, status);
     }
+    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): built above, since the status is SPAR_OK */
     body->gyroscopic = m->body->gyroscopic;
     memcpy(body->gravity, m->body->gravity, sizeof body->gravity);
     spari_body_free(m->body);

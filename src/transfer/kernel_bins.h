@@ -1,6 +1,6 @@
 /* Loads as reproducible sums, which do not depend on the order of the nodes, for one vector width. Included by
-   transfer_lanes.c, with its macros. A node's share of the load is computed per lane without fused operations, so its bits
-   are the same at every width. */
+   transfer_lanes.c, with its macros. A node's share of the load is computed per lane without fused operations, so its
+   bits are the same at every width. */
 
 /* Shape functions phi_l at the nodes of a run, row by row; xi: their coordinates. */
 HERE void NAME(shape_rows)(int modes, int count, const double *modal, const double *xi, double (*phi)[SPARI_ROW]) {

@@ -330,7 +330,8 @@ static void test_tolerance(void **state) {
     double off = difference(&there, &advised, tips, 1, 1);
     print_message("tolerance 0.03: the tips are off by %.4f of their way, in %d steps\n", off, advised.rows - 1);
     assert_true(off < 1.5 * 0.03);
-    FILE *file = fopen("rotor_advised/advice.csv", "r"); /* a decade more accuracy has a smaller error, and costs more */
+    FILE *file =
+        fopen("rotor_advised/advice.csv", "r"); /* a decade more accuracy has a smaller error, and costs more */
     assert_non_null(file);
     char line[256];
     double error[3] = {0, 0, 0}, cost[3] = {0, 0, 0};

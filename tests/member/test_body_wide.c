@@ -4,7 +4,7 @@
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi" /* such vectors are never passed, all is inlined */
 #endif
-#include "member/lanes.c"
 #include "member/element_lanes.c"
+#include "member/lanes.c"
 
 #include "test_body.c"

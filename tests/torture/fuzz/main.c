@@ -394,7 +394,8 @@ static sum sum_of(const options *o, int index) {
     }
     int flags = fuzz_calls[index].flags;
     const int rare = (flags & FUZZ_TRIAL) && s.refused < 300; /* some trials succeed once in fifty tries and less */
-    s.lacks = (s.ok == 0 && !(flags & FUZZ_NEVER) && !rare) || (s.refused == 0 && !(flags & (FUZZ_TEXT | FUZZ_HARNESS)));
+    s.lacks =
+        (s.ok == 0 && !(flags & FUZZ_NEVER) && !rare) || (s.refused == 0 && !(flags & (FUZZ_TEXT | FUZZ_HARNESS)));
     return s;
 }
 
