@@ -217,19 +217,128 @@ static double size_of_joint(const spari_joint_kinematics *t, const spari_node_po
     return size > 0 ? size : 1;
 }
 
+/* The parts of a joint's forces B^T load, in global axes. For a link the moments are 0. */
+typedef struct joint_forces {
+    joint_end end[2];
+    double reach[3];            /* from node b to the point where the force acts on b */
+    double force[3], moment[3]; /* on a */
+    double H[9];                /* derivative of the moment with respect to the relative rotation of a */
+    double along[3], over;      /* of a link: its direction, and its tension over its length */
+} joint_forces;
+
+/* H := R G R^T, G the derivative of D^T load with respect to a small rotation of a relative to b, in b's axes. */
+static void moment_tangent(const spari_joint_kinematics *t, const double r[4], const double R[9], const double load[3],
+                           double H[9]) {
+    const double by = 1e-5; /* central differences: relative error 1e-10 */
+    double G[9] = {0};
+    for (int j = 0; j < 3; j++) {
+        for (int side = 0; side < 2; side++) {
+            double psi[3] = {0}, p[4], z[3], D[9], moment[3];
+            psi[j] = side ? -by : by;
+            spari_quat_exp(psi, p);
+            spari_quat_mul(p, r, p);
+            rotations(t, p, z, D);
+            spari_matrix_times_back(D, load, moment);
+            for (int i = 0; i < 3; i++) {
+                G[3 * i + j] += moment[i] / (2 * psi[j]);
+            }
+        }
+    }
+    for (int i = 0; i < 9; i++) {
+        const double *row = R + 3 * (i / 3), *column = R + 3 * (i % 3);
+        double half[3];
+        spari_matrix_times(G, column, half);
+        H[i] = spari_dot(row, half);
+    }
+}
+
+static void find_joint_forces(const spari_joint_kinematics *t, const spari_node_pose *a, const spari_node_pose *b,
+                              const double load[6], joint_forces *f) {
+    double w[3], back[4], r[4], z[3], D[9], R[9];
+    memset(f, 0, sizeof *f);
+    carry_end(t, 0, a, &f->end[0]);
+    carry_end(t, 1, b, &f->end[1]);
+    for (int k = 0; k < 3; k++) {
+        f->reach[k] = a->x[k] + f->end[0].arm[k] - b->x[k];
+        w[k] = f->reach[k] - f->end[1].arm[k];
+    }
+    if (t->line) {
+        double length = spari_norm(w);
+        for (int k = 0; k < 3 && length > 0; k++) {
+            f->over = load[0] / length;
+            f->along[k] = w[k] / length;
+            f->force[k] = load[0] * f->along[k];
+        }
+        memcpy(f->reach, f->end[1].arm, sizeof f->reach);
+        return;
+    }
+    spari_quat_matrix(f->end[1].axes, R);
+    spari_matrix_times(R, load, f->force);
+    if (load[3] == 0 && load[4] == 0 && load[5] == 0) {
+        return;
+    }
+    spari_quat_conj(f->end[1].axes, back);
+    spari_quat_mul(back, f->end[0].axes, r);
+    rotations(t, r, z, D);
+    spari_matrix_times_back(D, load + 3, f->moment);
+    spari_matrix_times(R, f->moment, f->moment);
+    moment_tangent(t, r, R, load + 3, f->H);
+}
+
+static void add_product(const double a[3], const double b[3], double sign, double to[3]) {
+    double c[3];
+    spari_cross(a, b, c);
+    for (int k = 0; k < 3; k++) {
+        to[k] += sign * c[k];
+    }
+}
+
+/* df := the change of the forces with small displacements u and rotations p of the nodes */
+static void change_of_forces(const joint_forces *f, int line, double u[2][3], double p[2][3], double df[12]) {
+    double way[3], rotation[3], *force = df, *moment = df + 3, *moment_b = df + 9;
+    memset(df, 0, 12 * sizeof *df);
+    for (int k = 0; k < 3; k++) {
+        way[k] = u[0][k] - u[1][k];
+        rotation[k] = p[0][k] - p[1][k];
+    }
+    add_product(p[0], f->end[0].arm, 1, way);
+    if (line) { /* the force changes its direction with the ends */
+        add_product(p[1], f->end[1].arm, -1, way);
+        double length = spari_dot(f->along, way), arm[3] = {0};
+        for (int k = 0; k < 3; k++) {
+            force[k] = f->over * (way[k] - length * f->along[k]);
+        }
+        add_product(p[1], f->end[1].arm, 1, arm);
+        add_product(arm, f->force, -1, moment_b);
+    } else { /* the force has b's axes, and acts on b at a's point */
+        add_product(p[1], f->force, 1, force);
+        add_product(way, f->force, -1, moment_b);
+        spari_matrix_times(f->H, rotation, moment);
+        add_product(p[1], f->moment, 1, moment);
+        for (int k = 0; k < 3; k++) {
+            moment_b[k] -= moment[k];
+        }
+    }
+    double arm[3] = {0};
+    add_product(p[0], f->end[0].arm, 1, arm);
+    add_product(arm, f->force, 1, moment);
+    add_product(f->end[0].arm, force, 1, moment);
+    add_product(f->reach, force, -1, moment_b);
+    for (int k = 0; k < 3; k++) {
+        df[6 + k] = -force[k];
+    }
+}
+
 void spari_kinematics_tangent(const spari_joint_kinematics *t, const spari_node_pose *a, const spari_node_pose *b,
                               const double load[6], double K[12][12]) {
-    const double rotation = 1e-5, way = rotation * size_of_joint(t, a, b);
+    joint_forces f;
+    find_joint_forces(t, a, b, load, &f);
     for (int j = 0; j < 12; j++) {
-        double f[2][12], z[6], B[6][12], by = j % 6 < 3 ? way : rotation;
-        for (int side = 0; side < 2; side++) {
-            spari_node_pose at = *a, bt = *b;
-            nudge(&at, &bt, j, side ? -by : by);
-            spari_kinematics_motion(t, &at, &bt, z, B);
-            spari_kinematics_forces(B, load, f[side]);
-        }
+        double u[2][3] = {{0}}, p[2][3] = {{0}}, df[12];
+        (j % 6 < 3 ? u : p)[j / 6][j % 3] = 1;
+        change_of_forces(&f, t->line, u, p, df);
         for (int i = 0; i < 12; i++) {
-            K[i][j] += (f[0][i] - f[1][i]) / (2 * by);
+            K[i][j] += df[i];
         }
     }
 }
