@@ -120,7 +120,8 @@ static int form(spari_assembly *a) {
             return 1;
         }
     }
-    spari_system_keep_joint_tangents(a);
+    a->formed = a->stepping;
+    a->system_serves = 0;
     return 0;
 }
 
@@ -193,7 +194,7 @@ enum { LEAST_PATIENCE = 3, MOST_PATIENCE = 8 };
 /* Whether the step under way has formed its tangents. Rates are projected onto the constraints in the metric of the
    tangents, so a coupling may not converge if every other iteration has new ones. */
 static int formed_in_step(const spari_assembly *a) {
-    return a->session->integrator.substeps == 1 && (!a->factored_begun || a->before.saved);
+    return a->session->integrator.substeps == 1 && (!a->factored_begun || a->formed);
 }
 
 /* Updates the reuse of the tangents after a solution (see system.h) of so many iterations. took: iterations of the
@@ -483,7 +484,7 @@ static int start_all(spari_assembly *a) {
         spari_constraint_find(a->constraint + i, 0, 0, 1);
         begin_drive(a->constraint + i);
     }
-    spari_system_keep_joint_tangents(a);
+    a->system_serves = 0;
     singular = singular || project(a, 0, 0);
     for (int k = 0; k <= START_REFINEMENTS && !singular; k++) {
         start_residual(a, cm);

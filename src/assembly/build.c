@@ -351,7 +351,6 @@ void spari_assemblies_drop(spari_assembly *all) {
         spari_assembly *a = all;
         all = a->next;
         spari_system_free(a);
-        spari_snapshot_free(&a->before);
         free(a->component);
         free(a->constraint);
         free(a);

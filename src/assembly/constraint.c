@@ -111,7 +111,7 @@ int spari_constraint_fixed_side(const spari_constraint *l) {
     return -1;
 }
 
-void spari_constraint_rotate_dampers(spari_constraint *l, const double w[3]) {
+void spari_constraint_rotate_dampers(const spari_constraint *l, const double w[3], double K[12][12]) {
     const spar_joint *j = l->joint;
     int side = spari_constraint_fixed_side(l), given = spari_joint_constrained(j);
     double R[6][12], W[9];
@@ -129,7 +129,7 @@ void spari_constraint_rotate_dampers(spari_constraint *l, const double w[3]) {
         int p = pq / 6, q = pq % 6;
         double d = (given >> p & 1) || (given >> q & 1) ? 0 : j->damping[pq];
         for (int i = 0; i < 144 && d != 0; i++) {
-            l->joint_tangent[i / 12][i % 12] -= d * l->B[p][i / 12] * R[q][i % 12];
+            K[i / 12][i % 12] -= d * l->B[p][i / 12] * R[q][i % 12];
         }
     }
 }

@@ -5,9 +5,6 @@
 #include "../member/joint.h"
 #include "../time/component.h"
 
-/* Numbers in `joint_tangent` of a constraint. */
-enum { SPARI_JOINT_TANGENT = 144 };
-
 typedef enum spari_constraint_role {
     SPARI_CONSTRAINT_SPRING,
     SPARI_CONSTRAINT_TREE,
@@ -30,11 +27,10 @@ typedef struct spari_constraint {
     spari_node_pose pose[2];
     double force[12]; /* on its nodes, by spari_constraint_find_force */
     double v[12], a[12], B[6][12];
-    double rows[6][12];           /* B of the constrained motions, as the system was formed */
-    double joint_tangent[12][12]; /* geometric stiffness of its load, in the axes of the reused tangents */
-    double K[12][12];             /* the tangent as the system was formed, if the assembly has clusters */
-    spari_driven drive;           /* prescribed motion of the joint at the end of the substep, */
-    spari_driven to;              /* and on the way there */
+    double rows[6][12]; /* B of the constrained motions, as the system was formed */
+    double K[12][12];   /* the tangent as the system was formed, if the assembly has clusters */
+    spari_driven drive; /* prescribed motion of the joint at the end of the substep, */
+    spari_driven to;    /* and on the way there */
     spari_relative begin;
 } spari_constraint;
 
@@ -67,8 +63,7 @@ double spari_constraint_rate_gap(const spari_constraint *l, int k);
 void spari_constraint_set_acceleration_gaps(spari_constraint *l);
 /* The side that is the ground or has prescribed motion; -1: none. */
 int spari_constraint_fixed_side(const spari_constraint *l);
-/* Adds the dampers to joint_tangent where the other side rotates steadily with w: there velocities depend on
-   positions. */
-void spari_constraint_rotate_dampers(spari_constraint *l, const double w[3]);
+/* Adds the dampers to K where the other side rotates steadily with w: there velocities depend on positions. */
+void spari_constraint_rotate_dampers(const spari_constraint *l, const double w[3], double K[12][12]);
 
 #endif

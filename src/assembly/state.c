@@ -51,32 +51,27 @@ double spari_assembly_remaining(const spari_assembly *a) {
 void spari_assembly_begin(spari_assembly *a) {
     a->factored_begun = a->factored;
     a->trace_begun = a->trace;
-    spari_snapshot_open(&a->before, 1);
+    a->stepping = 1, a->formed = 0;
 }
 
 void spari_assembly_accept(spari_assembly *a) {
-    spari_snapshot_close(&a->before);
+    a->stepping = a->formed = 0;
 }
 
 void spari_assembly_reject(spari_assembly *a) {
-    if (!a->before.open) {
-        return;
-    }
-    a->factored = a->before.saved >= 0 ? a->factored_begun : 0;
-    a->trace = a->trace_begun;
-    const double *from = a->before.saved > 0 ? a->before.data : NULL;
-    for (int i = 0; i < a->constraints && from; i++, from += SPARI_JOINT_TANGENT) {
-        memcpy(a->constraint[i].joint_tangent, from, sizeof a->constraint[i].joint_tangent);
+    if (a->stepping) {
+        a->factored = a->factored_begun;
+        a->trace = a->trace_begun;
     }
 }
 
 /* ---- save and load ---- */
 
-enum { HEAD = 7 };
+enum { HEAD = 9 };
 
-/* Of a factored system: the condensed members, and joint_tangent of the constraints. */
+/* Of a factored system: the condensed members. */
 static int64_t factors_size(const spari_assembly *a) {
-    int64_t n = (int64_t)SPARI_JOINT_TANGENT * a->constraints;
+    int64_t n = 0;
     for (int i = 0; i < a->components; i++) {
         n += spari_condensed_state_size(a->component[i].condensed);
     }
@@ -85,7 +80,7 @@ static int64_t factors_size(const spari_assembly *a) {
 
 int64_t spari_assembly_state_size(const spari_assembly *a) {
     int64_t factors = a->factored ? factors_size(a) : 0;
-    return !a->here || a->components == 0 ? 0 : HEAD + factors + spari_snapshot_size(&a->before);
+    return !a->here || a->components == 0 ? 0 : HEAD + factors;
 }
 
 void spari_assembly_save(const spari_assembly *a, double *state) {
@@ -96,34 +91,37 @@ void spari_assembly_save(const spari_assembly *a, double *state) {
     state[4] = a->factored_begun;
     state[5] = a->trace_begun.rate;
     state[6] = a->trace_begun.left;
+    state[7] = a->stepping;
+    state[8] = a->formed;
     state += HEAD;
     for (int i = 0; i < a->components && a->factored; i++) {
         spari_condensed_save(a->component[i].condensed, state);
         state += spari_condensed_state_size(a->component[i].condensed);
     }
-    for (int i = 0; i < a->constraints && a->factored; i++, state += SPARI_JOINT_TANGENT) {
-        memcpy(state, a->constraint[i].joint_tangent, sizeof a->constraint[i].joint_tangent);
-    }
-    spari_snapshot_save(&a->before, state);
 }
 
 static int is_iterations(double x) {
     return x >= 0 && x < INT_MAX && x == floor(x);
 }
 
+static int is_flag(double x) {
+    return x == 0 || x == 1;
+}
+
 int spari_assembly_is_state(const spari_assembly *a, const double *state, int64_t count) {
     if (count < HEAD || state[1] != a->components || !is_iterations(state[0]) || !spari_trace_is(state + 2) ||
-        !is_iterations(state[4]) || !spari_trace_is(state + 5)) {
+        !is_iterations(state[4]) || !spari_trace_is(state + 5) || !is_flag(state[7]) || !is_flag(state[8])) {
         return 0;
     }
-    int64_t own = HEAD + (state[0] == 0 ? 0 : factors_size(a));
-    return count >= own && spari_snapshot_is(state + own, count - own, (int64_t)SPARI_JOINT_TANGENT * a->constraints);
+    return count == HEAD + (state[0] == 0 ? 0 : factors_size(a));
 }
 
 void spari_assembly_load(spari_assembly *a, const double *state) {
     a->factored = state ? (int)state[0] : 0;
     a->trace = (spari_trace){state ? state[2] : 0, state ? state[3] : 0};
-    a->factored_begun = state ? (int)state[4] : 0;
+    a->stepping = state && state[7] != 0;
+    a->formed = state && state[8] != 0;
+    a->factored_begun = state && (a->factored || a->formed) ? (int)state[4] : 0; /* with the condensed members */
     a->trace_begun = (spari_trace){state ? state[5] : 0, state ? state[6] : 0};
     a->solved = 0;
     state = state ? state + HEAD : NULL;
@@ -131,12 +129,5 @@ void spari_assembly_load(spari_assembly *a, const double *state) {
         spari_condensed *c = a->component[i].condensed;
         spari_condensed_load(c, spari_member_constrained(a->component[i].member), state);
         state += spari_condensed_state_size(c);
-    }
-    for (int i = 0; i < a->constraints && a->factored; i++, state += SPARI_JOINT_TANGENT) {
-        memcpy(a->constraint[i].joint_tangent, state, sizeof a->constraint[i].joint_tangent);
-    }
-    spari_snapshot_close(&a->before);
-    if (state) {
-        spari_snapshot_load(&a->before, state, a->factored);
     }
 }

@@ -81,7 +81,7 @@ static int solve_static(spari_assembly *a, double f) {
             return 1;
         }
     }
-    spari_system_keep_joint_tangents(a);
+    a->system_serves = 0;
     return spari_assembly_solve(a, 0);
 }
 
@@ -385,7 +385,7 @@ static int find_equilibrium_of(equilibrium *t, int load_steps, int onward) {
         done = follow_loads(t, load_steps, &why);
     }
     a->factored = 0;
-    spari_snapshot_close(&a->before);
+    a->stepping = a->formed = 0;
     if (done < 1) {
         return refuse_equilibrium(t, done, why);
     }

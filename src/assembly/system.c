@@ -11,11 +11,6 @@ static inline double larger(double x, double y) {
     return y > x ? y : x;
 }
 
-static const double *rotation_of_side(const spari_constraint *l, int side) {
-    const spari_component *p = l->component[side];
-    return p ? spari_component_rotation(p, l->joint->unique[side]) : NULL;
-}
-
 /* out [3][3] of row stride `to` := R K Q^T, K of row stride `from` */
 static void rotate_block(const double R[9], const double Q[9], int from, const double *K, int to, double *out) {
     double half[9];
@@ -53,27 +48,6 @@ static int is_rigid(const spari_constraint *l) {
     return l->role == SPARI_CONSTRAINT_TREE && spari_constraint_count(l) == 6;
 }
 
-void spari_system_keep_joint_tangents(spari_assembly *a) {
-    double *before =
-        a->factored_begun ? spari_snapshot_take(&a->before, (int64_t)SPARI_JOINT_TANGENT * a->constraints) : NULL;
-    for (int i = 0; i < a->constraints && before; i++, before += SPARI_JOINT_TANGENT) {
-        memcpy(before, a->constraint[i].joint_tangent, sizeof a->constraint[i].joint_tangent);
-    }
-    a->system_serves = 0;
-    for (int i = 0; i < a->constraints; i++) {
-        spari_constraint *l = a->constraint + i;
-        memset(l->joint_tangent, 0, sizeof l->joint_tangent);
-        if (is_rigid(l)) {
-            continue;
-        }
-        spari_kinematics_tangent(&l->joint->kinematics, &l->pose[0], &l->pose[1], l->joint->after.load,
-                                 l->joint_tangent);
-        if (a->rotates) {
-            spari_constraint_rotate_dampers(l, a->rotating.rotation.w);
-        }
-    }
-}
-
 /* K -= B^T (stiffness + cv damping) B of the free motions */
 static void release_springs(const spari_constraint *l, double cv, double K[12][12]) {
     const spar_joint *j = l->joint;
@@ -99,15 +73,12 @@ static void release_springs(const spari_constraint *l, double cv, double K[12][1
     }
 }
 
-/* K[12][12] := the constraint's part of the tangent: joint_tangent, springs and dampers. */
-static void constraint_tangent(const spari_constraint *l, double cv, double K[12][12]) {
-    double R[2][9];
-    matrix_of_rotation(rotation_of_side(l, 0), R[0]);
-    matrix_of_rotation(rotation_of_side(l, 1), R[1]);
-    for (int i = 0; i < 12; i += 3) {
-        for (int k = 0; k < 12; k += 3) {
-            rotate_block(R[i / 6], R[k / 6], 12, &l->joint_tangent[i][k], 12, &K[i][k]);
-        }
+/* K[12][12] := the constraint's part of the tangent: the geometric stiffness of its load, springs and dampers. */
+static void constraint_tangent(const spari_assembly *a, const spari_constraint *l, double cv, double K[12][12]) {
+    memset(K, 0, 12 * sizeof *K);
+    spari_kinematics_tangent(&l->joint->kinematics, &l->pose[0], &l->pose[1], l->joint->after.load, K);
+    if (a->rotates) {
+        spari_constraint_rotate_dampers(l, a->rotating.rotation.w, K);
     }
     if (l->springs) {
         release_springs(l, cv, K);
@@ -212,7 +183,7 @@ static void add_rigid_load(spari_assembly *a, const spari_constraint *l) {
     }
 }
 
-/* Adds joint_tangent, springs and dampers of the constraint. */
+/* Adds the constraint's part of the tangent. */
 static void add_constraint_stiffness(spari_assembly *a, spari_constraint *l, double cv) {
     double own[12][12], (*K)[12] = a->clusters ? l->K : own;
     l->stiff = 0;
@@ -221,7 +192,7 @@ static void add_constraint_stiffness(spari_assembly *a, spari_constraint *l, dou
         add_rigid_load(a, l);
         return;
     }
-    constraint_tangent(l, cv, K);
+    constraint_tangent(a, l, cv, K);
     double stiffest = 0;
     for (int i = 0; i < 12; i++) {
         for (int j = 0; j < 12; j++) {

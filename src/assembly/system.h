@@ -38,14 +38,14 @@ struct spari_assembly {
     spari_rotating_frame rotating;
     int interfaces;
     spari_interface *interface;
-    int *order;         /* of the interface nodes: parents first */
-    int clusters;       /* whether any of them has the unknowns of another */
-    int loops;          /* whether constraints close loops */
-    int solved;         /* the components and constraints are at the end of a step */
-    spari_trace trace;  /* of Newton; with strict tolerances its rate is not used */
-    int factored_begun; /* these two at the beginning of the step, and the constraints' joint_tangent */
+    int *order;           /* of the interface nodes: parents first */
+    int clusters;         /* whether any of them has the unknowns of another */
+    int loops;            /* whether constraints close loops */
+    int solved;           /* the components and constraints are at the end of a step */
+    spari_trace trace;    /* of Newton; with strict tolerances its rate is not used */
+    int stepping, formed; /* a step has begun; it has formed tangents */
+    int factored_begun;   /* these two at the beginning of the step */
     spari_trace trace_begun;
-    spari_snapshot before;
     int factored;         /* 0: there are no tangents; else how many iterations the solution needed that formed them */
     int constrains_rates; /* the step's equations constrain velocities too */
     int rotates_far;      /* joints rotate far in a substep */
@@ -84,8 +84,6 @@ int spari_system_count_negative(const spari_assembly *a);
 /* Names the motion with the least stiffness, of a joint or of a member. text stays if the motion is not known.
    Destroys the factors. */
 void spari_system_name_free(spari_assembly *a, char *text, int size);
-/* Computes joint_tangent of the constraints, for the tangents of the components that have just been formed. */
-void spari_system_keep_joint_tangents(spari_assembly *a);
 /* Solves for the corrections of the components, and of the multipliers (`correction`), that remove the components'
    residuals and the constraints' gaps. The constraints are those of the present positions; the reused tangents of
    the components follow their nodes. cv: as for the tangents. Returns 0 or 1. */
