@@ -33,7 +33,8 @@ target_sources(benchmarks_coupling PRIVATE "${PROJECT_SOURCE_DIR}/tests/support/
 target_include_directories(benchmarks_coupling PRIVATE "${PROJECT_SOURCE_DIR}/tests")
 
 # The peers: what of Kynema-FMB is installed where KynemaFMB_ROOT says (it ends the configuration where its own packages
-# are not found, so it is not looked for unasked); nothing is fetched or built. BeamDyn's driver is looked for on the PATH as the
+# are not found, so it is not looked for unasked); nothing is fetched or built. It moves beams (peers) and a whole turbine
+# (peers_turbine). BeamDyn's driver is looked for on the PATH as the
 # program runs. Quadrature and tables of a member are the library's own, which the shared one hides.
 target_sources(benchmarks_peers PRIVATE "${PROJECT_SOURCE_DIR}/benchmarks/peer_codes.c")
 set_target_properties(benchmarks_peers PROPERTIES
@@ -43,15 +44,21 @@ get_property(spar_languages GLOBAL PROPERTY ENABLED_LANGUAGES)
 if("CXX" IN_LIST spar_languages AND (KynemaFMB_ROOT OR KynemaFMB_DIR))
   find_package(KynemaFMB QUIET)
   if(TARGET KynemaFMB::kynema_fmb_library)
-    add_executable(benchmarks_peers_kynema "${PROJECT_SOURCE_DIR}/benchmarks/peers_kynema.cpp")
-    set_target_properties(benchmarks_peers_kynema PROPERTIES OUTPUT_NAME peers_kynema
-      RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/benchmarks")
-    target_link_libraries(benchmarks_peers_kynema PRIVATE KynemaFMB::kynema_fmb_library)
-    add_dependencies(benchmarks_peers benchmarks_peers_kynema)
+    foreach(peer IN ITEMS peers peers_turbine)
+      string(REPLACE "peers" "peers_kynema" program ${peer})
+      add_executable(benchmarks_${program} "${PROJECT_SOURCE_DIR}/benchmarks/${program}.cpp")
+      set_target_properties(benchmarks_${program} PROPERTIES OUTPUT_NAME ${program}
+        RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/benchmarks")
+      target_link_libraries(benchmarks_${program} PRIVATE KynemaFMB::kynema_fmb_library)
+      add_dependencies(benchmarks_${peer} benchmarks_${program})
+    endforeach()
   endif()
 endif()
 if(SPAR_BUILD_TESTS)
   add_test(NAME benchmark_peers COMMAND benchmarks_peers --curves box3)
   set_tests_properties(benchmark_peers PROPERTIES LABELS unit
     PASS_REGULAR_EXPRESSION "Kynema-FMB: (not )?here.*BeamDyn: (not )?here.*box3: 1 blade.*spar +-0.*dt 0.005 s.*1e-05 +[0-9.]+ +[0-9.]+e-.*1e-01 m +spar")
+  add_test(NAME benchmark_peers_turbine COMMAND benchmarks_peers_turbine --rounds 1 50)
+  set_tests_properties(benchmark_peers_turbine PROPERTIES LABELS unit
+    PASS_REGULAR_EXPRESSION "Kynema-FMB: (not )?here.*spar +the tip at 2 s, as dt goes to 0: 0.4634.*0.04 +spar +[89][.][0-9]+e-03 m")
 endif()
