@@ -9,15 +9,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { SIX = 6 }; /* unknowns of a tied block */
+
 /* A block row and column in elimination order: the diagonal [size][size], and the entries shared with later blocks,
-   as a row of blocks U [size][rows] and a column of blocks L [rows][size]. Of a later block these are its first
-   `shared` rows and columns. */
+   as a row of blocks U [size][rows] and a column of blocks L [rows][size]. If it is tied, factoring makes them those
+   of its components, first the held ones. */
 typedef struct block_panel {
     int unit; /* block number before ordering */
-    int size, shared, first, rows;
-    int near, nears; /* begin and length of the list of later blocks */
+    int size, first, rows;
+    int near, nears;       /* begin and length of the list of later blocks */
+    int held, to;          /* number of held components, and position of the block they depend on (-1: none) */
+    int based[2];          /* whether the bases of the tie are not the identity */
+    int mixed, order[SIX]; /* whether the factors have the components in another order; this order */
     double *D, *U, *L;
     int *pivot;
+    spari_tie *tie;
 } block_panel;
 
 struct spari_blocks {
@@ -38,14 +44,10 @@ struct spari_blocks {
 
 /* ---- one dense block ---- */
 
-/* Calls f with a known length n where that is common: six unknowns, alone or with the multipliers of a joint, or those
-   of a joint that closes a loop. Such loops are several times faster, and sum in the same order. */
+/* Calls f with a known length n where that is common: three components or multipliers, five of a hinge, six unknowns.
+   Such loops are several times faster, and sum in the same order. */
 #define WITH_LENGTH(f, n, ...)                                                                                         \
-    ((n) == 3    ? f(3, __VA_ARGS__)                                                                                   \
-     : (n) == 6  ? f(6, __VA_ARGS__)                                                                                   \
-     : (n) == 9  ? f(9, __VA_ARGS__)                                                                                   \
-     : (n) == 11 ? f(11, __VA_ARGS__)                                                                                  \
-                 : f(n, __VA_ARGS__))
+    ((n) == 3 ? f(3, __VA_ARGS__) : (n) == 5 ? f(5, __VA_ARGS__) : (n) == 6 ? f(6, __VA_ARGS__) : f(n, __VA_ARGS__))
 
 /* Calls f with a known width for columns c of a row, six or fewer at once: f keeps them in registers. */
 #define IN_COLUMNS(n, call)                                                                                            \
@@ -67,34 +69,44 @@ static KNOWN void less_row(int n, double f, const double *x, double *y) {
     }
 }
 
-static KNOWN int factor_block_of(int n, double *A, int *pivot) {
+/* Blocks A [n][n] of row stride s. */
+static KNOWN int factor_block_of(int n, int s, double *A, int *pivot) {
     for (int k = 0; k < n; k++) {
         int best = k;
         for (int i = k + 1; i < n; i++) {
-            best = fabs(A[i * n + k]) > fabs(A[best * n + k]) ? i : best;
+            best = fabs(A[i * s + k]) > fabs(A[best * s + k]) ? i : best;
         }
         pivot[k] = best;
         for (int j = 0; j < n && best != k; j++) {
-            double kept = A[k * n + j];
-            A[k * n + j] = A[best * n + j];
-            A[best * n + j] = kept;
+            double kept = A[k * s + j];
+            A[k * s + j] = A[best * s + j];
+            A[best * s + j] = kept;
         }
-        double p = A[k * n + k];
+        double p = A[k * s + k];
         if (!(fabs(p) > 0) || !isfinite(p)) {
             return 1;
         }
         for (int i = k + 1; i < n; i++) {
-            double f = A[i * n + k] /= p;
+            double f = A[i * s + k] /= p;
             if (f != 0) {
-                less_row(n - k - 1, f, A + k * n + k + 1, A + i * n + k + 1);
+                less_row(n - k - 1, f, A + k * s + k + 1, A + i * s + k + 1);
             }
         }
     }
     return 0;
 }
 
-static int factor_block(int n, double *A, int *pivot) {
-    return WITH_LENGTH(factor_block_of, n, A, pivot);
+/* The whole block, or the part of a tied one. */
+static KNOWN int factor_whole(int n, double *A, int *pivot) {
+    return factor_block_of(n, n, A, pivot);
+}
+
+static KNOWN int factor_part(int n, double *A, int *pivot) {
+    return factor_block_of(n, SIX, A, pivot);
+}
+
+static int factor_block(int n, int s, double *A, int *pivot) {
+    return s == n ? WITH_LENGTH(factor_whole, n, A, pivot) : WITH_LENGTH(factor_part, n, A, pivot);
 }
 
 /* Two columns at once. */
@@ -138,7 +150,7 @@ static KNOWN void less_rows(int r, int m, int k, const double *A, int stride, co
     WITH_LENGTH(less_rows_of, k, r, m, A, stride, x, y);
 }
 
-static KNOWN void solve_few_of(int n, int r, const double *A, const int *pivot, double *x) {
+static KNOWN void solve_few_of(int n, int r, int s, const double *A, const int *pivot, double *x) {
     for (int k = 0; k < n; k++) {
         for (int c = 0; c < r; c++) {
             double kept = x[k * r + c];
@@ -147,19 +159,23 @@ static KNOWN void solve_few_of(int n, int r, const double *A, const int *pivot, 
     }
     SPARI_UNROLL
     for (int k = 1; k < n; k++) {
-        less_rows_of(k, r, 1, A + k * n, n, x, x + k * r);
+        less_rows_of(k, r, 1, A + k * s, s, x, x + k * r);
     }
     SPARI_UNROLL
     for (int k = n - 1; k >= 0; k--) {
-        less_rows_of(n - 1 - k, r, 1, A + k * n + k + 1, n, x + (k + 1) * r, x + k * r);
+        less_rows_of(n - 1 - k, r, 1, A + k * s + k + 1, s, x + (k + 1) * r, x + k * r);
         for (int c = 0; c < r; c++) {
-            x[k * r + c] /= A[k * n + k];
+            x[k * r + c] /= A[k * s + k];
         }
     }
 }
 
+static KNOWN void solve_few(int n, int r, const double *A, const int *pivot, double *x) {
+    solve_few_of(n, r, n, A, pivot, x);
+}
+
 /* Some columns of the solution of a factored block. */
-static KNOWN void solve_columns(int width, int n, const double *A, const int *pivot, double *x, int stride) {
+static KNOWN void solve_columns(int width, int n, int s, const double *A, const int *pivot, double *x, int stride) {
     for (int k = 0; k < n; k++) {
         for (int c = 0; c < width && pivot[k] != k; c++) {
             double kept = x[k * stride + c];
@@ -170,15 +186,15 @@ static KNOWN void solve_columns(int width, int n, const double *A, const int *pi
         double row[6];
         memcpy(row, x + k * stride, (size_t)width * sizeof *row);
         for (int i = 0; i < k; i++) {
-            less_row(width, A[k * n + i], x + i * stride, row);
+            less_row(width, A[k * s + i], x + i * stride, row);
         }
         memcpy(x + k * stride, row, (size_t)width * sizeof *row);
     }
     for (int k = n - 1; k >= 0; k--) {
-        double row[6], p = 1 / A[k * n + k];
+        double row[6], p = 1 / A[k * s + k];
         memcpy(row, x + k * stride, (size_t)width * sizeof *row);
         for (int i = k + 1; i < n; i++) {
-            less_row(width, A[k * n + i], x + i * stride, row);
+            less_row(width, A[k * s + i], x + i * stride, row);
         }
         for (int c = 0; c < width; c++) {
             x[k * stride + c] = row[c] * p;
@@ -186,8 +202,8 @@ static KNOWN void solve_columns(int width, int n, const double *A, const int *pi
     }
 }
 
-static void solve_block(int n, const double *A, const int *pivot, int count, double *x, int stride) {
-#define SOLVE(width) solve_columns(width, n, A, pivot, x + c, stride)
+static void solve_block(int n, int s, const double *A, const int *pivot, int count, double *x, int stride) {
+#define SOLVE(width) solve_columns(width, n, s, A, pivot, x + c, stride)
     IN_COLUMNS(count, SOLVE)
 #undef SOLVE
 }
@@ -304,10 +320,10 @@ static int graph_create(block_graph *g, int n, int64_t coupled_count, const spar
     return 0;
 }
 
-/* Merges the neighbours of u and v, without u and v. 0 or 1. */
-static int merge_neighbours(block_graph *g, int u, int v) {
-    const int *a = g->near[u], *b = g->near[v];
-    int na = g->count[u], nb = g->count[v], i = 0, k = 0, n = 0, *both = spari_zalloc(na + nb, sizeof *both);
+/* Merges the neighbours of u and a list b [nb], without u and v. 0 or 1. */
+static int merge_neighbours(block_graph *g, int u, int v, int nb, const int *b) {
+    const int *a = g->near[u];
+    int na = g->count[u], i = 0, k = 0, n = 0, *both = spari_zalloc(na + nb, sizeof *both);
     while (both && (i < na || k < nb)) {
         int x = k >= nb || (i < na && a[i] <= b[k]) ? a[i] : b[k];
         i += i < na && a[i] == x;
@@ -322,20 +338,25 @@ static int merge_neighbours(block_graph *g, int u, int v) {
     return !both;
 }
 
-/* Eliminates the next block; its neighbours become neighbours of each other. -1: no memory. */
-static int eliminate_next(block_graph *g) {
+/* Eliminates the next block; its neighbours become neighbours of each other and of the block that it is tied to. -1: no
+   memory. */
+static int eliminate_next(block_graph *g, const spari_block_tie *tie) {
     while (g->least < g->n && g->head[g->least] < 0) {
         g->least++;
     }
     int v = g->head[g->least];
     take_ready(g, v);
     g->waits[v] = -1;
+    int to = tie && tie[v].held[0] + tie[v].held[1] > 0 ? tie[v].to : -1; /* it is not ready, for v is before it */
+    if (to >= 0 && merge_neighbours(g, to, v, g->count[v], g->near[v])) {
+        return -1;
+    }
     for (int k = 0; k < g->count[v]; k++) {
         int u = g->near[v][k], ready = g->waits[u] == 0;
         if (ready) {
             take_ready(g, u);
         }
-        if (merge_neighbours(g, u, v)) {
+        if (merge_neighbours(g, u, v, g->count[v], g->near[v]) || (to >= 0 && merge_neighbours(g, u, v, 1, &to))) {
             return -1;
         }
         if (ready) {
@@ -352,21 +373,32 @@ static int eliminate_next(block_graph *g) {
 
 /* ---- memory ---- */
 
+/* Held components come first. */
+static void order_components(block_panel *p, const int held[2]) {
+    for (int i = 0, n = 0; i < 2 * SIX; i++) {
+        int k = i % SIX;
+        if ((k % 3 < held[k / 3]) == (i < SIX)) {
+            p->order[n++] = k;
+        }
+    }
+    p->held = held[0] + held[1];
+    p->based[0] = held[0] > 0, p->based[1] = held[1] > 0;
+    p->mixed = held[0] < 3 && held[1] > 0;
+}
+
 /* Orders the blocks, with their lists of later blocks, which are positions at the end. 0 or 1. */
-static int find_order(spari_blocks *m, block_graph *g, const int *size, const int *shared) {
+static int find_order(spari_blocks *m, block_graph *g, const int *size, const spari_block_tie *tie) {
     int capacity = 0, used = 0;
     for (int p = 0; p < m->n; p++) {
-        int v = eliminate_next(g);
+        int v = eliminate_next(g, tie);
         if (v < 0) {
             return 1;
         }
         block_panel *panel = m->panel + p;
-        *panel = (block_panel){.unit = v,
-                               .size = size[v],
-                               .shared = shared ? shared[v] : size[v],
-                               .first = m->start[v],
-                               .near = used,
-                               .nears = g->count[v]};
+        *panel = (block_panel){.unit = v, .size = size[v], .first = m->start[v], .near = used, .nears = g->count[v]};
+        if (tie) {
+            order_components(panel, tie[v].held);
+        }
         m->position[v] = p;
         if (used + panel->nears > capacity) {
             capacity = 2 * (used + panel->nears);
@@ -383,7 +415,16 @@ static int find_order(spari_blocks *m, block_graph *g, const int *size, const in
     for (int k = 0; k < used; k++) {
         m->near[k] = m->position[m->near[k]];
     }
+    for (int p = 0; p < m->n; p++) {
+        block_panel *panel = m->panel + p;
+        int to = panel->held ? tie[panel->unit].to : -1;
+        panel->to = to >= 0 ? m->position[to] : -1;
+    }
     return !m->offset;
+}
+
+static int64_t tie_entries(const block_panel *p) {
+    return p->held ? (int64_t)(sizeof(spari_tie) / sizeof(double)) + SIX * (int64_t)p->held : 0;
 }
 
 static int place_entries(spari_blocks *m) {
@@ -392,9 +433,9 @@ static int place_entries(spari_blocks *m) {
         qsort(m->near + panel->near, (size_t)panel->nears, sizeof *m->near, compare_numbers);
         for (int k = panel->near; k < panel->near + panel->nears; k++) {
             m->offset[k] = panel->rows;
-            panel->rows += m->panel[m->near[k]].shared;
+            panel->rows += m->panel[m->near[k]].size;
         }
-        m->entries += panel->size * (panel->size + 2 * (int64_t)panel->rows);
+        m->entries += tie_entries(panel) + panel->size * (panel->size + 2 * (int64_t)panel->rows);
     }
     m->entry = spari_zalloc(m->entries + 1, sizeof *m->entry);
     m->pivot = spari_zalloc(m->rows + 1, sizeof *m->pivot);
@@ -405,7 +446,8 @@ static int place_entries(spari_blocks *m) {
     for (int p = 0; p < m->n; p++) {
         block_panel *panel = m->panel + p;
         panel->pivot = m->pivot + panel->first;
-        panel->D = at;
+        panel->tie = panel->held ? (spari_tie *)at : NULL;
+        panel->D = at + tie_entries(panel);
         panel->U = panel->D + panel->size * panel->size;
         panel->L = panel->U + (int64_t)panel->size * panel->rows;
         at = panel->L + (int64_t)panel->size * panel->rows;
@@ -413,7 +455,7 @@ static int place_entries(spari_blocks *m) {
     return 0;
 }
 
-spari_blocks *spari_blocks_create(int n, const int *size, const int *shared, int64_t coupled_count,
+spari_blocks *spari_blocks_create(int n, const int *size, const spari_block_tie *tie, int64_t coupled_count,
                                   const spari_block_pair *coupled, int64_t before_count,
                                   const spari_block_pair *before) {
     spari_blocks *m = spari_zalloc(1, sizeof *m);
@@ -430,9 +472,10 @@ spari_blocks *spari_blocks_create(int n, const int *size, const int *shared, int
     for (int i = 0; i < n && !failed; i++) {
         m->start[i] = m->rows;
         m->rows += size[i];
+        m->rows += tie ? tie[i].held[0] + tie[i].held[1] : 0;
     }
     failed = failed || graph_create(&g, n, coupled_count, coupled, before_count, before) ||
-             find_order(m, &g, size, shared) || place_entries(m);
+             find_order(m, &g, size, tie) || place_entries(m);
     for (int i = 0; g.near && i < n; i++) {
         free(g.near[i]);
     }
@@ -459,7 +502,15 @@ int spari_blocks_first(const spari_blocks *m, int i) {
 }
 
 void spari_blocks_zero(spari_blocks *m) {
-    memset(m->entry, 0, (size_t)m->entries * sizeof *m->entry);
+    for (int p = 0; p < m->n; p++) {
+        const block_panel *panel = m->panel + p;
+        int64_t count = panel->size * (panel->size + 2 * (int64_t)panel->rows);
+        memset(panel->D, 0, (size_t)count * sizeof *m->entry);
+    }
+}
+
+spari_tie *spari_blocks_tie(spari_blocks *m, int i) {
+    return m->panel[m->position[i]].tie;
 }
 
 /* First row of the later block q in a panel. */
@@ -473,8 +524,8 @@ static int offset_of(const spari_blocks *m, const block_panel *panel, int q) {
     return m->offset[low];
 }
 
-double *spari_blocks_at(spari_blocks *m, int i, int j, int *stride) {
-    int p = m->position[i], q = m->position[j];
+/* Block (p, q) by positions. */
+static KNOWN double *block_at(const spari_blocks *m, int p, int q, int *stride) {
     const block_panel *panel = m->panel + (p < q ? p : q);
     if (p == q) {
         *stride = panel->size;
@@ -484,45 +535,162 @@ double *spari_blocks_at(spari_blocks *m, int i, int j, int *stride) {
     return p < q ? panel->U + offset_of(m, panel, q) : panel->L + (int64_t)panel->size * offset_of(m, panel, p);
 }
 
+double *spari_blocks_at(spari_blocks *m, int i, int j, int *stride) {
+    return block_at(m, m->position[i], m->position[j], stride);
+}
+
 /* ---- factors ---- */
 
-static KNOWN void less_product_of(int n, int m, int k, const double *A, int sa, const double *B, int sb, double *C,
-                                  int sc) {
+static KNOWN void less_product_of(int k, int n, int m, const double *A, int sa, int ta, const double *B, int sb,
+                                  double *C, int sc) {
     for (int i = 0; i < m; i++) {
         double row[6];
         memcpy(row, C + i * sc, (size_t)n * sizeof *row);
         for (int l = 0; l < k; l++) {
-            less_row(n, A[i * sa + l], B + l * sb, row);
+            less_row(n, A[i * sa + l * ta], B + l * sb, row);
         }
         memcpy(C + i * sc, row, (size_t)n * sizeof *row);
     }
 }
 
-/* C [m][n] -= A [m][k] B [k][n], with row strides sa, sb, sc */
-static void less_product(int m, int n, int k, const double *A, int sa, const double *B, int sb, double *C, int sc) {
-#define PRODUCT(width) less_product_of(width, m, k, A, sa, B + c, sb, C + c, sc)
+/* C [m][n] -= A [m][k] B [k][n], with row strides sa, sb, sc, and ta between the columns of A */
+static void less_product_by(int m, int n, int k, const double *A, int sa, int ta, const double *B, int sb, double *C,
+                            int sc) {
+#define PRODUCT(width) WITH_LENGTH(less_product_of, k, width, m, A, sa, ta, B + c, sb, C + c, sc)
     IN_COLUMNS(n, PRODUCT)
 #undef PRODUCT
 }
 
-/* Updates the later blocks with L D^-1 U of a factored panel; U then holds D^-1 U. */
+static void less_product(int m, int n, int k, const double *A, int sa, const double *B, int sb, double *C, int sc) {
+    less_product_by(m, n, k, A, sa, 1, B, sb, C, sc);
+}
+
+/* Updates the later blocks with L D^-1 U of a factored panel; U then holds D^-1 U. Of a tied one these are the parts of
+   the components that are not held. */
 static void update_later(spari_blocks *m, const block_panel *panel) {
-    int s = panel->size;
+    int s = panel->size, h = panel->held, n = panel->rows;
+    const double *U = panel->U + h * (int64_t)n, *L = panel->L + h;
     for (int k = panel->near; k < panel->near + panel->nears; k++) {
         block_panel *a = m->panel + m->near[k];
         int at = m->offset[k], to = a->near;
-        less_product(a->shared, a->shared, s, panel->L + at * s, s, panel->U + at, panel->rows, a->D, a->size);
+        less_product(a->size, a->size, s - h, L + at * s, s, U + at, n, a->D, a->size);
         for (int l = k + 1; l < panel->near + panel->nears; l++) {
             while (m->near[to] != m->near[l]) {
                 to++;
             }
-            int bt = m->offset[l], b = m->panel[m->near[l]].shared;
-            less_product(a->shared, b, s, panel->L + at * s, s, panel->U + bt, panel->rows, a->U + m->offset[to],
-                         a->rows);
-            less_product(b, a->shared, s, panel->L + bt * s, s, panel->U + at, panel->rows,
-                         a->L + (int64_t)m->offset[to] * a->size, a->size);
+            int bt = m->offset[l], b = m->panel[m->near[l]].size;
+            less_product(a->size, b, s - h, L + at * s, s, U + bt, n, a->U + m->offset[to], a->rows);
+            less_product(b, a->size, s - h, L + bt * s, s, U + at, n, a->L + (int64_t)m->offset[to] * a->size, a->size);
         }
     }
+}
+
+/* ---- ties ---- */
+
+/* y := A^T x of r columns, A [3][3]; sa, ta: strides of A, exchanged for A x. */
+static KNOWN void turn(int r, const double *A, int sa, int ta, double *x, int stride) {
+    for (int c = 0; c < r; c++) {
+        const double a = x[c], b = x[stride + c], d = x[2 * stride + c];
+        for (int i = 0; i < 3; i++) {
+            x[i * stride + c] = A[ta * i] * a + A[sa + ta * i] * b + A[2 * sa + ta * i] * d;
+        }
+    }
+}
+
+/* x [6][r] in the order of the factors, or back. */
+static KNOWN void reorder(int r, const block_panel *p, int back, double *x, int stride) {
+    double from[SIX][SIX];
+    for (int i = 0; i < SIX; i++) {
+        memcpy(from[i], x + i * stride, (size_t)r * sizeof *x);
+    }
+    for (int i = 0; i < SIX; i++) {
+        memcpy(x + (back ? p->order[i] : i) * stride, from[back ? i : p->order[i]], (size_t)r * sizeof *x);
+    }
+}
+
+/* f [6][r] := the components of the forces f, first the held ones. */
+static KNOWN void to_components(int r, const block_panel *p, double *f, int stride) {
+    const double *d = p->tie->arm;
+    for (int c = 0; c < r; c++) {
+        const double x = f[c], y = f[stride + c], z = f[2 * stride + c];
+        f[3 * stride + c] += d[1] * z - d[2] * y;
+        f[4 * stride + c] += d[2] * x - d[0] * z;
+        f[5 * stride + c] += d[0] * y - d[1] * x;
+    }
+    for (int part = 0; part < 2; part++) {
+        if (p->based[part]) {
+            turn(r, p->tie->basis[part], 3, 1, f + 3 * part * stride, stride);
+        }
+    }
+    if (p->mixed) {
+        reorder(r, p, 0, f, stride);
+    }
+}
+
+/* x [6][r] := the displacement and rotation that have the components x. */
+static KNOWN void from_components(int r, const block_panel *p, double *x) {
+    const double *d = p->tie->arm;
+    if (p->mixed) {
+        reorder(r, p, 1, x, r);
+    }
+    for (int part = 0; part < 2; part++) {
+        if (p->based[part]) {
+            turn(r, p->tie->basis[part], 1, 3, x + 3 * part * r, r);
+        }
+    }
+    for (int c = 0; c < r; c++) {
+        const double a = x[3 * r + c], b = x[4 * r + c], e = x[5 * r + c];
+        x[c] += b * d[2] - e * d[1];
+        x[r + c] += e * d[0] - a * d[2];
+        x[2 * r + c] += a * d[1] - b * d[0];
+    }
+}
+
+/* The entries of a tied block, of its components. */
+static void change_to_components(block_panel *p) {
+#define CHANGE(width) to_components(width, p, p->U + c, p->rows)
+    to_components(6, p, p->D, SIX);
+    IN_COLUMNS(p->rows, CHANGE)
+#undef CHANGE
+    for (int i = 0; i < SIX; i++) {
+        to_components(1, p, p->D + SIX * i, 1);
+    }
+    for (int i = 0; i < p->rows; i++) {
+        to_components(1, p, p->L + SIX * (int64_t)i, 1);
+    }
+}
+
+/* The held components y = gap - N x take their entries to x, the unknowns of block `to`. */
+static void carry_held(spari_blocks *m, const block_panel *p) {
+    int h = p->held, n = m->panel[p->to].size, stride;
+    const double *N = p->tie->rows[0];
+    double less[SIX * SIX] = {0}, *D = block_at(m, p->to, p->to, &stride);
+    less_product(h, SIX, h, p->D, SIX, N, SIX, less, SIX);
+    less_product_by(n, SIX, h, N, 1, SIX, less, SIX, D, stride);
+    for (int k = p->near; k < p->near + p->nears; k++) {
+        int q = m->near[k], rows = m->panel[q].size, at = m->offset[k];
+        double *A = block_at(m, p->to, q, &stride);
+        less_product_by(n, rows, h, N, 1, SIX, p->U + at, p->rows, A, stride);
+        A = block_at(m, q, p->to, &stride);
+        less_product(rows, n, h, p->L + at * SIX, SIX, N, SIX, A, stride);
+    }
+}
+
+/* Eliminates the components that are not held, then the held ones. */
+static int factor_tied(spari_blocks *m, block_panel *p) {
+    int h = p->held, free = SIX - h, n = p->rows;
+    double *S = p->D + (SIX + 1) * h, *left = p->D + SIX * h;
+    change_to_components(p);
+    m->negative += m->watched ? spari_inertia_negative(free, S, SIX) : 0;
+    if (factor_block(free, SIX, S, p->pivot)) {
+        return 1;
+    }
+    solve_block(free, SIX, S, p->pivot, h, left, SIX);
+    solve_block(free, SIX, S, p->pivot, n, p->U + (int64_t)h * n, n);
+    less_product(h, h, free, p->D + h, SIX, left, SIX, p->D, SIX);
+    less_product(h, n, free, p->D + h, SIX, p->U + (int64_t)h * n, n, p->U, n);
+    less_product(n, h, free, p->L + h, SIX, left, SIX, p->L, SIX);
+    return 0;
 }
 
 void spari_blocks_watch(spari_blocks *m, int on) {
@@ -533,24 +701,32 @@ int spari_blocks_negative(const spari_blocks *m) {
     return m->negative;
 }
 
+static int factor_untied(spari_blocks *m, block_panel *p) {
+    if (m->watched && p->size <= SPARI_INERTIA) {
+        m->negative += spari_inertia_negative(p->size, p->D, p->size);
+    }
+    if (factor_block(p->size, p->size, p->D, p->pivot)) {
+        return 1;
+    }
+    solve_block(p->size, p->size, p->D, p->pivot, p->rows, p->U, p->rows);
+    return 0;
+}
+
 int spari_blocks_factor(spari_blocks *m) {
     m->least = INFINITY;
     m->negative = 0;
     for (int p = 0; p < m->n; p++) {
         block_panel *panel = m->panel + p;
-        if (m->watched && panel->size <= SPARI_INERTIA) {
-            m->negative += spari_inertia_negative(panel->size, panel->D, panel->size);
-        }
-        if (factor_block(panel->size, panel->D, panel->pivot)) {
+        if (panel->held ? factor_tied(m, panel) : factor_untied(m, panel)) {
             m->least = 0;
             return 1;
         }
-        for (int k = 0; k < panel->size; k++) {
+        for (int k = panel->held; k < panel->size; k++) {
             m->least = fmin(m->least, fabs(panel->D[k * panel->size + k]));
         }
-        if (panel->rows > 0) {
-            solve_block(panel->size, panel->D, panel->pivot, panel->rows, panel->U, panel->rows);
-            update_later(m, panel);
+        update_later(m, panel);
+        if (panel->to >= 0) {
+            carry_held(m, panel);
         }
     }
     return 0;
@@ -560,26 +736,81 @@ double spari_blocks_least_pivot(const spari_blocks *m) {
     return m->least;
 }
 
-static KNOWN int solve_in(const spari_blocks *m, int r, double *x) {
-    double sum = 0;
-    for (int p = 0; p < m->n; p++) {
-        const block_panel *panel = m->panel + p;
-        double *own = x + r * panel->first;
-        int s = panel->size;
-        WITH_LENGTH(solve_few_of, s, r, panel->D, panel->pivot, own);
-        for (int k = panel->near; k < panel->near + panel->nears; k++) {
-            const block_panel *a = m->panel + m->near[k];
-            less_rows(r, a->shared, s, panel->L + m->offset[k] * s, s, own, x + r * a->first);
+/* x_later -= L own, of `count` unknowns of the panel from `from` on */
+static KNOWN void less_later(const spari_blocks *m, const block_panel *p, int r, int from, int count, const double *own,
+                             double *x) {
+    for (int k = p->near; k < p->near + p->nears; k++) {
+        const block_panel *a = m->panel + m->near[k];
+        less_rows(r, a->size, count, p->L + m->offset[k] * p->size + from, p->size, own, x + r * a->first);
+    }
+}
+
+/* y -= U x_later, of `count` rows from `from` on */
+static KNOWN void less_of_later(const spari_blocks *m, const block_panel *p, int r, int from, int count,
+                                const double *x, double *y) {
+    for (int k = p->near; k < p->near + p->nears; k++) {
+        const block_panel *a = m->panel + m->near[k];
+        less_rows(r, count, a->size, p->U + from * (int64_t)p->rows + m->offset[k], p->rows, x + r * a->first, y);
+    }
+}
+
+/* h: p->held. Forward: of the forces f and the gaps, the part of the held components goes to the later blocks. */
+static KNOWN void begin_tied(int h, const spari_blocks *m, const block_panel *p, int r, double *x) {
+    double *own = x + r * p->first, *free = own + r * h, *gap = own + r * SIX;
+    to_components(r, p, own, r);
+    solve_few_of(SIX - h, r, SIX, p->D + (SIX + 1) * h, p->pivot, free);
+    less_rows_of(SIX - h, r, h, p->D + h, SIX, free, own);
+    less_rows_of(h, r, h, p->D, SIX, gap, own);
+    less_later(m, p, r, h, SIX - h, free, x);
+    less_later(m, p, r, 0, h, gap, x);
+    double *to = p->to < 0 ? NULL : x + r * m->panel[p->to].first;
+    for (int k = 0; k < h && to; k++) {
+        for (int i = 0; i < SIX; i++) {
+            for (int c = 0; c < r; c++) {
+                to[i * r + c] -= p->tie->rows[k][i] * own[k * r + c];
+            }
         }
     }
-    for (int p = m->n - 1; p >= 0; p--) {
-        const block_panel *panel = m->panel + p;
-        double *own = x + r * panel->first;
-        for (int k = panel->near; k < panel->near + panel->nears; k++) {
-            const block_panel *a = m->panel + m->near[k];
-            less_rows(r, panel->size, a->shared, panel->U + m->offset[k], panel->rows, x + r * a->first, own);
+}
+
+/* Backward. */
+static KNOWN void end_tied(int h, const spari_blocks *m, const block_panel *p, int r, double *x) {
+    double *own = x + r * p->first, *free = own + r * h, *gap = own + r * SIX, held[2 * SIX] = {0};
+    if (p->to >= 0) {
+        less_rows_of(SIX, r, h, p->tie->rows[0], SIX, x + r * m->panel[p->to].first, held);
+    }
+    less_rows_of(h, r, h, p->D, SIX, held, own);
+    less_of_later(m, p, r, 0, SIX, x, own);
+    for (int k = 0; k < r * h; k++) {
+        double force = -own[k];
+        own[k] = held[k] + gap[k];
+        gap[k] = force;
+    }
+    less_rows_of(h, r, SIX - h, p->D + SIX * h, SIX, own, free);
+    from_components(r, p, own);
+}
+
+static KNOWN int solve_in(const spari_blocks *m, int r, double *x) {
+    double sum = 0;
+    for (int i = 0; i < m->n; i++) {
+        const block_panel *p = m->panel + i;
+        double *own = x + r * p->first;
+        if (p->held) {
+            WITH_LENGTH(begin_tied, p->held, m, p, r, x);
+        } else {
+            WITH_LENGTH(solve_few, p->size, r, p->D, p->pivot, own);
+            less_later(m, p, r, 0, p->size, own, x);
         }
-        for (int k = 0; k < r * panel->size; k++) {
+    }
+    for (int i = m->n - 1; i >= 0; i--) {
+        const block_panel *p = m->panel + i;
+        double *own = x + r * p->first;
+        if (p->held) {
+            WITH_LENGTH(end_tied, p->held, m, p, r, x);
+        } else {
+            less_of_later(m, p, r, 0, p->size, x, own);
+        }
+        for (int k = 0; k < r * (p->size + p->held); k++) {
             sum += 0 * own[k];
         }
     }

@@ -114,9 +114,11 @@ static void add_stiffness(spari_assembly *a, int v, int w, double f, const doubl
         for (int j = 0; j < 6; j++) {
             moved[6 * i + j] = f * K[stride * i + j];
         }
+    }
+    for (int i = 0; i < 6 && a->clusters; i++) { /* else arms are 0 */
         carry_force(column->arm, 1, moved + 6 * i);
     }
-    for (int j = 0; j < 6; j++) {
+    for (int j = 0; j < 6 && a->clusters; j++) {
         carry_force(row->arm, 6, moved + j);
     }
     for (int i = fixed_in(a, row); i < 6; i++) {
@@ -193,14 +195,10 @@ static void add_constraint_stiffness(spari_assembly *a, spari_constraint *l, dou
         return;
     }
     constraint_tangent(a, l, cv, K);
-    double stiffest = 0;
-    for (int i = 0; i < 12; i++) {
-        for (int j = 0; j < 12; j++) {
-            stiffest = larger(stiffest, fabs(K[i][j]));
-        }
+    for (int i = 0; i < 144; i++) {
+        l->stiffest = larger(l->stiffest, fabs(K[i / 12][i % 12]));
     }
-    l->stiffest = stiffest;
-    l->stiff = stiffest > 0;
+    l->stiff = l->stiffest > 0;
     for (int n = 0; n < 4 && l->stiff; n++) {
         int i = n / 2, j = n % 2;
         add_stiffness(a, l->node[i], l->node[j], -1, &K[6 * i][6 * j], 12);
@@ -238,8 +236,8 @@ static double scale_of_constraint(spari_assembly *a, const spari_constraint *l) 
     return scale > 0 ? scale : a->scale;
 }
 
-/* The multipliers of a constraint stand in block `own` from row `first` on. */
-static void add_constraint(spari_assembly *a, const spari_constraint *l, int own, int first) {
+/* The multipliers of a constraint that closes a loop have a block of their own. */
+static void add_constraint(spari_assembly *a, const spari_constraint *l) {
     for (int side = 0; side < 2; side++) {
         double rows[6][6];
         int constrained = rows_of_side(a, l, side, rows), across, down;
@@ -247,12 +245,12 @@ static void add_constraint(spari_assembly *a, const spari_constraint *l, int own
             continue;
         }
         int block = a->interface[l->node[side]].block;
-        double *left = spari_blocks_at(a->system, own, block, &across),
-               *above = spari_blocks_at(a->system, block, own, &down);
+        double *left = spari_blocks_at(a->system, l->block, block, &across),
+               *above = spari_blocks_at(a->system, block, l->block, &down);
         for (int k = 0; k < constrained; k++) {
             for (int j = 0; j < 6; j++) {
-                left[across * (first + k) + j] -= l->scale * rows[k][j];
-                above[down * j + first + k] -= l->scale * rows[k][j];
+                left[across * k + j] -= l->scale * rows[k][j];
+                above[down * j + k] -= l->scale * rows[k][j];
             }
         }
     }
@@ -295,6 +293,57 @@ static int invert_rotation(const double *A, int stride, double E[9]) {
     return !(fabs(det) > 0);
 }
 
+/* y: of length 1, perpendicular to x and b. */
+static void unit_across(const double x[3], const double b[3], double y[3]) {
+    spari_cross(x, b, y);
+    double size = spari_norm(y);
+    for (int i = 0; i < 3; i++) {
+        y[i] /= size;
+    }
+}
+
+/* The displacements (part 0) or rotations that change one row each of a constraint, for its node on one side: columns
+   of the basis, first those of the held ones. Where rows are not held or there are none, others that are perpendicular
+   to the held ones stand for them. 0 or 1. */
+static int find_basis(const spari_constraint *l, int side, int part, double basis[9]) {
+    const spar_joint *j = l->joint;
+    int held = j->constrained >> 3 * part & 7, known = part == 0 && !j->kinematics.line ? 7 : held;
+    double G[3][3];
+    for (int k = 0; k < 3; k++) {
+        memcpy(G[k], l->B[3 * part + k] + 6 * side + 3 * part, sizeof G[k]);
+    }
+    for (int k = 0; k < 3 && held; k++) {
+        int next = (k + 1) % 3, last = (k + 2) % 3;
+        if (known >> k & 1) {
+            continue;
+        }
+        if ((known >> next & 1) && (known >> last & 1)) {
+            unit_across(G[next], G[last], G[k]);
+        } else {
+            const double *only = G[known >> next & 1 ? next : last];
+            double axis[3] = {0};
+            axis[fabs(only[0]) < 0.7 * spari_norm(only) ? 0 : 1] = 1;
+            unit_across(only, axis, G[k]);
+        }
+        known |= 1 << k;
+    }
+    int first = 0, after = (held & 1) + (held >> 1 & 1) + (held >> 2 & 1);
+    double E[9];
+    for (int i = 0; i < 9; i++) {
+        E[i] = G[i % 3][i / 3]; /* the inverse, if they are orthonormal: those of displacements */
+    }
+    if (part == 1 && held && invert_rotation(G[0], 3, E)) {
+        return 1;
+    }
+    for (int k = 0; k < 3; k++) {
+        int column = held >> k & 1 ? first++ : after++;
+        for (int i = 0; i < 3; i++) {
+            basis[3 * i + column] = E[3 * i + k];
+        }
+    }
+    return 0;
+}
+
 /* The clusters, by the constraints as they stand. 0 or 1. */
 static int find_clusters(spari_assembly *a) {
     for (int n = 0; n < a->interfaces; n++) {
@@ -314,6 +363,20 @@ static int find_clusters(spari_assembly *a) {
         }
     }
     return 0;
+}
+
+/* Ties a cluster to its parent, at the point where the constraint holds displacements. 0 or 1. */
+static int tie_cluster(spari_assembly *a, const spari_interface *v) {
+    const spari_constraint *l = a->constraint + v->constraint;
+    spari_tie *tie = spari_blocks_tie(a->system, v->block);
+    int at = l->joint->kinematics.line ? v->side : 0;
+    double arm[3];
+    spari_rotate(l->pose[at].q, l->joint->kinematics.arm[at], arm);
+    for (int k = 0; k < 3; k++) {
+        tie->arm[k] = l->pose[v->side].x[k] - (l->pose[at].x[k] + arm[k]);
+    }
+    rows_of_side(a, l, 1 - v->side, tie->rows);
+    return find_basis(l, v->side, 0, tie->basis[0]) || find_basis(l, v->side, 1, tie->basis[1]);
 }
 
 /* Adds the shift to every motion of the clusters, rotations times the members' lengths. */
@@ -345,22 +408,19 @@ static void fill_system(spari_assembly *a, double cv, double penalty) {
     }
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
-        if (l->joint->constrained && (l->role == SPARI_CONSTRAINT_LOOP || spari_constraint_count(l) < 6)) {
+        if (l->block >= 0) {
             l->scale = scale_of_constraint(a, l);
         }
     }
     for (int i = 0; i < a->constraints; i++) {
-        spari_constraint *l = a->constraint + i;
+        const spari_constraint *l = a->constraint + i;
         if (l->block >= 0) {
             add_penalty(a, l, penalty);
-            add_constraint(a, l, l->block, 0);
+            add_constraint(a, l);
         }
     }
     for (int i = 0; i < a->interfaces; i++) {
         const spari_interface *v = a->interface + i;
-        if (v->cluster == i && v->constraint >= 0) {
-            add_constraint(a, a->constraint + v->constraint, v->block, 6);
-        }
         for (int k = 0; k < v->fixed && v->cluster == i; k++) {
             int stride;
             double *block = spari_blocks_at(a->system, v->block, v->block, &stride);
@@ -386,7 +446,12 @@ static int form_system(spari_assembly *a, double cv, double penalty) {
         return 1;
     }
     fill_system(a, cv, penalty);
-    return 0;
+    int singular = 0;
+    for (int i = 0; i < a->interfaces; i++) {
+        const spari_interface *v = a->interface + i;
+        singular = (v->cluster == i && v->constraint >= 0 && tie_cluster(a, v)) || singular;
+    }
+    return singular;
 }
 
 /* Forms and factors the system. With one penalty a block may be singular by chance, but not with two different ones.
@@ -539,7 +604,7 @@ static void load_system(spari_assembly *a, const double *y, int gaps, int c) {
             double left[6];
             gaps_left(a, l, c ? l->rate_gap : l->gap, gaps, left);
             for (int k = 0; k < spari_constraint_count(l); k++) {
-                b[a->columns * (6 + k)] = -l->scale * left[k];
+                b[a->columns * (6 + k)] = left[k];
             }
         }
     }
@@ -582,11 +647,12 @@ static void show_motion(const spari_assembly *a, int c, double *x) {
     }
 }
 
-/* Corrections of the multipliers in the system. Subtracts their forces from the unbalanced forces y (NULL: none). */
-static void read_multipliers(spari_constraint *l, const double *b, int stride, double *y) {
+/* Corrections of the multipliers, by `scale` those in the system. Subtracts their forces from the unbalanced forces y
+ * (NULL: none). */
+static void read_multipliers(spari_constraint *l, double scale, const double *b, int stride, double *y) {
     int constrained = 0;
     for (int k = 0; k < 6; k++) {
-        double by = l->correction[k] = spari_constraint_holds(l, k) ? l->scale * b[stride * constrained++] : 0;
+        double by = l->correction[k] = spari_constraint_holds(l, k) ? scale * b[stride * constrained++] : 0;
         for (int side = 0; side < 2 && y && by != 0; side++) {
             double *at = l->node[side] < 0 ? NULL : y + 6 * l->node[side];
             for (int i = 0; at && i < 6; i++) {
@@ -603,7 +669,7 @@ static void find_constraint_loads(spari_assembly *a, double *y, int c) {
         spari_constraint *l = a->constraint + i;
         memset(l->correction, 0, sizeof l->correction);
         if (l->block >= 0) {
-            read_multipliers(l, column_of(a, l->block, c), a->columns, y);
+            read_multipliers(l, l->scale, column_of(a, l->block, c), a->columns, y);
         }
     }
     for (int n = a->interfaces - 1; n >= 0; n--) {
@@ -613,7 +679,7 @@ static void find_constraint_loads(spari_assembly *a, double *y, int c) {
         }
         spari_constraint *l = a->constraint + v->constraint;
         if (v->cluster == a->order[n]) {
-            read_multipliers(l, column_of(a, v->block, c) + 6 * a->columns, a->columns, y);
+            read_multipliers(l, 1, column_of(a, v->block, c) + 6 * a->columns, a->columns, y);
             continue;
         }
         solve_for_loads(l, v, y + 6 * a->order[n], l->correction);
@@ -758,9 +824,9 @@ double spari_system_weakest_pivot(const spari_assembly *a) {
 }
 
 int spari_system_count_negative(const spari_assembly *a) {
-    int multipliers = spari_blocks_rows(a->system);
-    for (int i = 0; i < a->interfaces; i++) {
-        multipliers -= a->interface[i].cluster == i ? 6 : 0;
+    int multipliers = 0;
+    for (int i = 0; i < a->constraints; i++) {
+        multipliers += a->constraint[i].block >= 0 ? spari_constraint_count(a->constraint + i) : 0;
     }
     return spari_blocks_negative(a->system) - multipliers;
 }

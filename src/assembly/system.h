@@ -2,10 +2,10 @@
    constraints.
 
    Constraints form a tree of interface nodes, whose root is the ground. Nodes that constraints of six motions
-   connect move as one rigid body, a cluster, and share six unknowns. A constraint of fewer motions has its
-   multipliers in the block of the cluster that it connects to the tree. This block is eliminated before its
-   parent's, and the remaining system is that in relative coordinates (Featherstone, Rigid Body Dynamics Algorithms
-   (2008), 8.7). Only constraints that close loops have blocks of their own. */
+   connect move as one rigid body, a cluster, and share six unknowns. A constraint of fewer motions ties the cluster to
+   its parent in the tree (block_matrix.h): the system is that in relative coordinates (Featherstone, Rigid Body
+   Dynamics Algorithms (2008), 8.7). Only constraints that close loops have blocks of their own, for their
+   multipliers. */
 #ifndef SPARI_SYSTEM_H
 #define SPARI_SYSTEM_H
 

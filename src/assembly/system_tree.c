@@ -185,16 +185,24 @@ static void add_pair(spari_block_pair *pair, int64_t *count, int a, int b) {
     }
 }
 
-/* Numbers the blocks, clusters first; their sizes, and the rows that earlier blocks share with them. The multipliers of
-   a cluster are coupled to the cluster before it in the tree alone, which is eliminated later. */
-static int count_blocks(spari_assembly *a, int *size, int *shared) {
+/* Numbers the blocks, clusters first; their sizes and ties. */
+static int count_blocks(spari_assembly *a, int *size, spari_block_tie *tie) {
     int n = 0;
     for (int i = 0; i < a->interfaces; i++) {
         spari_interface *v = a->interface + i;
         if (v->cluster == i) {
-            size[n] = 6 + (v->constraint >= 0 ? spari_constraint_count(a->constraint + v->constraint) : 0);
-            shared[n] = 6;
+            size[n] = 6;
             v->block = n++;
+        }
+    }
+    for (int i = 0; i < a->interfaces; i++) {
+        const spari_interface *v = a->interface + i;
+        if (v->cluster == i && v->constraint >= 0) {
+            spari_block_tie *of = tie + v->block;
+            of->to = block_of_node(a, v->parent);
+            for (int k = 0; k < 6; k++) {
+                of->held[k / 3] += spari_constraint_holds(a->constraint + v->constraint, k);
+            }
         }
     }
     for (int i = 0; i < a->constraints; i++) {
@@ -202,7 +210,7 @@ static int count_blocks(spari_assembly *a, int *size, int *shared) {
         int holds = spari_constraint_count(l);
         l->block = -1;
         if (l->role == SPARI_CONSTRAINT_LOOP && holds > 0) {
-            size[n] = shared[n] = holds;
+            size[n] = holds;
             l->block = n++;
             a->loops = 1;
         }
@@ -260,17 +268,16 @@ static int make_blocks(spari_assembly *a) {
         int64_t ends = a->component[i].condensed->ends;
         most += ends * (ends - 1) / 2;
     }
-    int blocks = a->interfaces + a->constraints + 1, *size = spari_zalloc(2 * (int64_t)blocks, sizeof *size);
+    int blocks = a->interfaces + a->constraints + 1, *size = spari_zalloc(blocks, sizeof *size);
+    spari_block_tie *tie = spari_zalloc(blocks, sizeof *tie);
     spari_block_pair *coupled = spari_zalloc(most + 1, sizeof *coupled),
                      *before = spari_zalloc(2 * (int64_t)a->constraints + a->interfaces + 1, sizeof *before);
-    if (size && coupled && before) {
-        int n = count_blocks(a, size, size + blocks);
+    if (size && tie && coupled && before) {
+        int n = count_blocks(a, size, tie);
         couple_blocks(a, coupled, &count, before, &befores);
-        a->system = spari_blocks_create(n, size, size + blocks, count, coupled, befores, before);
+        a->system = spari_blocks_create(n, size, tie, count, coupled, befores, before);
     }
-    free(size);
-    free(coupled);
-    free(before);
+    SPARI_FREE(size, tie, coupled, before);
     return a->system ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
