@@ -17,10 +17,11 @@ enum { SIX = 6 }; /* unknowns of a tied block */
 typedef struct block_panel {
     int unit; /* block number before ordering */
     int size, first, rows;
-    int near, nears;       /* begin and length of the list of later blocks */
-    int held, to;          /* number of held components, and position of the block they depend on (-1: none) */
-    int based[2];          /* whether the bases of the tie are not the identity */
-    int mixed, order[SIX]; /* whether the factors have the components in another order; this order */
+    int near, nears;         /* begin and length of the list of later blocks */
+    int all_rows, all_nears; /* rows and nears, which are 0 while U and L have no entries */
+    int held, to;            /* number of held components, and position of the block they depend on (-1: none) */
+    int based[2];            /* whether the bases of the tie are not the identity */
+    int mixed, order[SIX];   /* whether the factors have the components in another order; this order */
     double *D, *U, *L;
     int *pivot;
     spari_tie *tie;
@@ -395,7 +396,12 @@ static int find_order(spari_blocks *m, block_graph *g, const int *size, const sp
             return 1;
         }
         block_panel *panel = m->panel + p;
-        *panel = (block_panel){.unit = v, .size = size[v], .first = m->start[v], .near = used, .nears = g->count[v]};
+        *panel = (block_panel){.unit = v,
+                               .size = size[v],
+                               .first = m->start[v],
+                               .near = used,
+                               .nears = g->count[v],
+                               .all_nears = g->count[v]};
         if (tie) {
             order_components(panel, tie[v].held);
         }
@@ -435,6 +441,7 @@ static int place_entries(spari_blocks *m) {
             m->offset[k] = panel->rows;
             panel->rows += m->panel[m->near[k]].size;
         }
+        panel->all_rows = panel->rows;
         m->entries += tie_entries(panel) + panel->size * (panel->size + 2 * (int64_t)panel->rows);
     }
     m->entry = spari_zalloc(m->entries + 1, sizeof *m->entry);
@@ -503,14 +510,22 @@ int spari_blocks_first(const spari_blocks *m, int i) {
 
 void spari_blocks_zero(spari_blocks *m) {
     for (int p = 0; p < m->n; p++) {
-        const block_panel *panel = m->panel + p;
-        int64_t count = panel->size * (panel->size + 2 * (int64_t)panel->rows);
-        memset(panel->D, 0, (size_t)count * sizeof *m->entry);
+        block_panel *panel = m->panel + p;
+        memset(panel->D, 0, (size_t)(panel->size * panel->size) * sizeof *m->entry);
+        panel->rows = panel->nears = 0;
     }
 }
 
 spari_tie *spari_blocks_tie(spari_blocks *m, int i) {
     return m->panel[m->position[i]].tie;
+}
+
+/* U and L of a panel will have entries. */
+static inline void couple_panel(block_panel *p) {
+    if (p->nears < p->all_nears) {
+        p->rows = p->all_rows, p->nears = p->all_nears;
+        memset(p->U, 0, 2 * (size_t)p->size * (size_t)p->rows * sizeof *p->U);
+    }
 }
 
 /* First row of the later block q in a panel. */
@@ -526,11 +541,12 @@ static int offset_of(const spari_blocks *m, const block_panel *panel, int q) {
 
 /* Block (p, q) by positions. */
 static KNOWN double *block_at(const spari_blocks *m, int p, int q, int *stride) {
-    const block_panel *panel = m->panel + (p < q ? p : q);
+    block_panel *panel = m->panel + (p < q ? p : q);
     if (p == q) {
         *stride = panel->size;
         return panel->D;
     }
+    couple_panel(panel);
     *stride = p < q ? panel->rows : panel->size;
     return p < q ? panel->U + offset_of(m, panel, q) : panel->L + (int64_t)panel->size * offset_of(m, panel, p);
 }
@@ -573,6 +589,9 @@ static void update_later(spari_blocks *m, const block_panel *panel) {
     for (int k = panel->near; k < panel->near + panel->nears; k++) {
         block_panel *a = m->panel + m->near[k];
         int at = m->offset[k], to = a->near;
+        if (k + 1 < panel->near + panel->nears) {
+            couple_panel(a);
+        }
         less_product(a->size, a->size, s - h, L + at * s, s, U + at, n, a->D, a->size);
         for (int l = k + 1; l < panel->near + panel->nears; l++) {
             while (m->near[to] != m->near[l]) {

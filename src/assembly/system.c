@@ -160,28 +160,83 @@ static void add_part(spari_assembly *a, spari_component *p) {
     }
 }
 
-/* Inside a cluster, the load rotates with its nodes, which are d apart. Its moment on the cluster is 0, and has the
-   derivative (theta x d) x f = (d f^T - d . f) theta. */
-static void add_rigid_load(spari_assembly *a, const spari_constraint *l) {
-    const spari_interface *v = moving(a, l->node[0] < 0 ? l->node[1] : l->node[0]);
-    double d[3], f[3], along = 0;
+/* The force of a constraint's displacements on a. */
+static void find_pull(spari_constraint *l) {
+    for (int i = 0; i < 3; i++) {
+        l->pull[i] = 0;
+        for (int k = 0; k < 3; k++) {
+            l->pull[i] += l->B[k][i] * l->joint->after.load[k];
+        }
+    }
+}
+
+/* Adds the stiffness `sign` d(d x f) of a force f with fixed axes on a lever arm d that rotates with node v: the
+   derivative of its moment is (theta x d) x f = (f . theta) d - (d . f) theta. */
+static void add_turning_arm(spari_assembly *a, const spari_interface *v, double sign, const double d[3],
+                            const double f[3]) {
     int stride;
+    double *block = spari_blocks_at(a->system, v->block, v->block, &stride), along = spari_dot(d, f);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            block[stride * (3 + i) + 3 + j] += sign * (d[i] * f[j] - (i == j ? along : 0));
+        }
+    }
+}
+
+/* Inside a cluster, the load rotates with its nodes, which are d apart. Its moment on the cluster is 0, but not the
+   derivative of it. */
+static void add_rigid_load(spari_assembly *a, spari_constraint *l) {
+    const spari_interface *v = moving(a, l->node[0] < 0 ? l->node[1] : l->node[0]);
+    double d[3];
     if (!v) {
         return;
     }
+    find_pull(l);
     for (int i = 0; i < 3; i++) {
         d[i] = l->pose[0].x[i] - l->pose[1].x[i];
-        f[i] = 0;
-        for (int k = 0; k < 3; k++) {
-            f[i] += l->B[k][i] * l->joint->after.load[k];
-        }
-        along += d[i] * f[i];
     }
-    double *block = spari_blocks_at(a->system, v->block, v->block, &stride);
+    add_turning_arm(a, v, 1, d, l->pull);
+}
+
+/* The load of a ball has the axes of b, and acts on b along a lever arm to a's point. On the motions that the rows C
+   of the constraint allow, this is the same as a force f with fixed axes on lever arms of both nodes. The tangent is
+   that of such a force and C^T N + M C, with N theta_b = C_a (f x theta_b) and M z = -f x C_a^T z, a moment on b.
+   The system has the former, which does not couple the nodes. N adds to the multipliers, M to the right-hand side. */
+static void add_ball(spari_assembly *a, spari_constraint *l) {
+    double d[2][3];
+    find_pull(l);
+    spari_rotate(l->pose[0].q, l->joint->kinematics.arm[0], d[0]);
     for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            block[stride * (3 + i) + 3 + j] += d[i] * f[j] - (i == j ? along : 0);
+        d[1][i] = l->pose[0].x[i] + d[0][i] - l->pose[1].x[i];
+    }
+    for (int side = 0; side < 2; side++) {
+        const spari_interface *v = moving(a, l->node[side]);
+        if (v) {
+            add_turning_arm(a, v, side ? 1 : -1, d[side], l->pull);
         }
+    }
+}
+
+static int is_ball(const spari_assembly *a, const spari_constraint *l) {
+    const double *moment = l->joint->after.load + 3;
+    return !a->clusters && l->role == SPARI_CONSTRAINT_TREE && l->joint->constrained == 7 && !l->springs &&
+           moment[0] == 0 && moment[1] == 0 && moment[2] == 0;
+}
+
+/* The moment on b of the gaps z of a ball. Its loads by the rotation of b. */
+static void moment_of_gaps(const spari_constraint *l, const double z[3], double moment[3]) {
+    double way[3];
+    for (int i = 0; i < 3; i++) {
+        way[i] = z[0] * l->rows[0][i] + z[1] * l->rows[1][i] + z[2] * l->rows[2][i];
+    }
+    spari_cross(l->pull, way, moment);
+}
+
+static void add_loads_of_rotation(spari_constraint *l, const double rotation[3]) {
+    double change[3];
+    spari_cross(l->pull, rotation, change);
+    for (int k = 0; k < 3; k++) {
+        l->correction[k] += spari_dot(l->rows[k], change);
     }
 }
 
@@ -190,8 +245,9 @@ static void add_constraint_stiffness(spari_assembly *a, spari_constraint *l, dou
     double own[12][12], (*K)[12] = a->clusters ? l->K : own;
     l->stiff = 0;
     l->stiffest = 0;
-    if (is_rigid(l)) {
-        add_rigid_load(a, l);
+    l->ball = is_ball(a, l);
+    if (l->ball || is_rigid(l)) {
+        (l->ball ? add_ball : add_rigid_load)(a, l);
         return;
     }
     constraint_tangent(a, l, cv, K);
@@ -606,6 +662,13 @@ static void load_system(spari_assembly *a, const double *y, int gaps, int c) {
             for (int k = 0; k < spari_constraint_count(l); k++) {
                 b[a->columns * (6 + k)] = left[k];
             }
+            if (l->ball && moving(a, l->node[1])) {
+                double moment[3], *to = column_of(a, a->interface[l->node[1]].block, c) + 3 * a->columns;
+                moment_of_gaps(l, left, moment);
+                for (int k = 0; k < 3; k++) {
+                    to[a->columns * k] += moment[k];
+                }
+            }
         }
     }
     for (int i = 0; i < a->constraints; i++) {
@@ -680,6 +743,9 @@ static void find_constraint_loads(spari_assembly *a, double *y, int c) {
         spari_constraint *l = a->constraint + v->constraint;
         if (v->cluster == a->order[n]) {
             read_multipliers(l, 1, column_of(a, v->block, c) + 6 * a->columns, a->columns, y);
+            if (l->ball && l->node[1] >= 0) {
+                add_loads_of_rotation(l, a->x + 6 * l->node[1] + 3);
+            }
             continue;
         }
         solve_for_loads(l, v, y + 6 * a->order[n], l->correction);

@@ -108,6 +108,9 @@ static void fill(scene *s, int symmetric, double inertia) {
     spari_blocks_zero(s->matrix);
     for (int p = 0; p < s->pairs; p++) {
         int a = s->coupled[p].a, b = s->coupled[p].b;
+        if (rand() % 4 == 0) { /* none after all */
+            continue;
+        }
         for (int n = 0; n < s->size[a] * s->size[b]; n++) {
             int i = n / s->size[b], j = n % s->size[b];
             double x = uniform(), y = symmetric ? x : uniform();
