@@ -206,7 +206,8 @@ enum {
    A step is iterated until the change of the fluid's loads is below atol + rtol |loads|. Both are weighed by the motion
    that they cause (option coupling.norm), moments by the member's length.
      scheme: in, SPAR_COUPLING_*; default SPAR_COUPLING_IQN_ILS
-     atol: in, N, >= 0; default 1e-9
+     atol: in, N, >= 0; default 1e-9. Where spar knows the flexibility, the default counts only if the remaining loads
+           move nothing (1e-12 of a member's length); another value counts always
      rtol: in, >= 0; default 1e-6
      max_iterations: in, >= 1; after that many spar_step_check answers SPAR_ERR_NUMERIC, or accepts (option
            coupling.unconverged); default 50 */

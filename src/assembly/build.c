@@ -95,10 +95,7 @@ static void take_joint(spari_assembly *a, spar_joint *j) {
 static double mass_of_all(const spari_assembly *a) {
     double sum = 0;
     for (int i = 0; i < a->components; i++) {
-        const spari_body *b = a->component[i].member->body;
-        for (int64_t k = 0; k < b->slot[b->elements] && b->mass; k++) {
-            sum += b->weight[k] * *SPARI_BLOCK(b->mass, 10, k);
-        }
+        sum += spari_body_mass(a->component[i].member->body);
     }
     return sum;
 }

@@ -5,6 +5,7 @@
 #include "../exchange/session_private.h"
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
+#include "../member/body.h"
 #include "../member/structure.h"
 #include "motion_norm.h"
 
@@ -462,6 +463,63 @@ static int measure_residual(spar_session *s, double size, double *residual) {
     return SPAR_OK;
 }
 
+/* The absolute tolerance unless the host gives another (session/settings.c), N; and a motion that counts as none,
+   lengths relative to the member, or rad. */
+static const double DEFAULT_ATOL = 1e-9, NEGLIGIBLE = 1e-12;
+
+/* The smallest force that moves a member by such a motion, for solutions without steps: by its largest stiffness, or
+   its mass in a step. INFINITY: not known. */
+static double negligible_force(const spar_session *s) {
+    double least = INFINITY, dt = s->clock.dt;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        double scale = m->body ? m->body->stiffest : 0;
+        if (scale == 0 && m->body && dt > 0) {
+            scale = spari_body_mass(m->body) * m->body->length / (dt * dt);
+        }
+        least = scale > 0 ? fmin(least, scale) : least;
+    }
+    return NEGLIGIBLE * least;
+}
+
+/* *moves: whether the residual moves a node by more than that. 0 where spar does not know the flexibility. All ranks.
+ */
+static int moves_nodes(spar_session *s, int *moves) {
+    const spari_coupling *c = s->own->coupling;
+    const double *image = c->image, *unit = c->unit;
+    double most = 0, farthest;
+    if (!c->weighed && c->weighs) {
+        SPARI_TRY(spari_motion_norm_miss(s, c->n, c->image, c->workspace, &farthest));
+    }
+    for (const spar_member *m = s->members; m && c->weighs; image += 6 * m->nodes, unit++, m = m->next) {
+        for (int64_t i = 0; i < 6 * m->nodes; i++) { /* stacked, rotations are multiplied by the length */
+            most = fmax(most, fabs(image[i]) * (i % 6 < 3 || c->weighed ? *unit : 1));
+        }
+    }
+    *moves = most > NEGLIGIBLE;
+    return SPAR_OK;
+}
+
+/* Whether the residual is within the tolerances. For a small structure the default of the absolute one may exceed all
+   loads, so it counts only if the residual moves nothing. */
+static int is_small(spar_session *s, double residual, double size, int *small) {
+    int moves = 0;
+    *small = residual <= s->coupling.rtol * size || residual <= rounding_of_added_mass(s);
+    if (*small || residual > s->coupling.atol + s->coupling.rtol * size) {
+        return SPAR_OK;
+    }
+    if (fabs(s->coupling.atol - DEFAULT_ATOL) > 0) {
+        *small = 1;
+        return SPAR_OK;
+    }
+    if (s->state.static_solution) {
+        *small = residual <= negligible_force(s);
+        return SPAR_OK;
+    }
+    SPARI_TRY(moves_nodes(s, &moves));
+    *small = !moves;
+    return SPAR_OK;
+}
+
 int spari_coupling_compare(spar_session *s, int *agreed) {
     spari_coupling *c = s->own->coupling;
     double residual, size;
@@ -479,9 +537,8 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
     if (c->estimates) {
         SPARI_TRY(spari_motion_norm_miss(s, c->n, c->image, c->workspace, c->report + SPAR_REPORT_MOTION_ERROR));
     }
-    const double allowed = s->coupling.atol + s->coupling.rtol * size;
-    *agreed = (residual <= allowed || residual <= rounding_of_added_mass(s)) &&
-              (!motion || c->moved <= s->coupling.motion_atol + s->coupling.motion_rtol * c->travelled);
+    SPARI_TRY(is_small(s, residual, size, agreed));
+    *agreed = *agreed && (!motion || c->moved <= s->coupling.motion_atol + s->coupling.motion_rtol * c->travelled);
     return SPAR_OK;
 }
 

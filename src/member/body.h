@@ -90,6 +90,8 @@ static inline double *spari_body_matrix(const spari_body *body) {
 }
 /* Call this when phi, dphi and the properties of all points are set. */
 void spari_body_complete(spari_body *body);
+/* kg */
+double spari_body_mass(const spari_body *body);
 void spari_body_free(spari_body *body);
 
 /* Sums over elements are processed in tiles of this many elements, odd tiles after even ones. Neighbouring tiles

@@ -162,6 +162,14 @@ void spari_body_sweep(const spari_body *body, spari_body_work work, void *contex
     }
 }
 
+double spari_body_mass(const spari_body *b) {
+    double sum = 0;
+    for (int64_t k = 0; k < b->slot[b->elements] && b->mass; k++) {
+        sum += b->weight[k] * *SPARI_BLOCK(b->mass, 10, k);
+    }
+    return sum;
+}
+
 void spari_body_free(spari_body *body) {
     if (!body) {
         return;
