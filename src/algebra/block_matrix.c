@@ -45,10 +45,14 @@ struct spari_blocks {
 
 /* ---- one dense block ---- */
 
-/* Calls f with a known length n where that is common: three components or multipliers, five of a hinge, six unknowns.
-   Such loops are several times faster, and sum in the same order. */
+/* Calls f with a known length n where that is common: three components or multipliers, one and five of a hinge, six
+   unknowns. Such loops are several times faster, and sum in the same order. */
 #define WITH_LENGTH(f, n, ...)                                                                                         \
-    ((n) == 3 ? f(3, __VA_ARGS__) : (n) == 5 ? f(5, __VA_ARGS__) : (n) == 6 ? f(6, __VA_ARGS__) : f(n, __VA_ARGS__))
+    ((n) == 1   ? f(1, __VA_ARGS__)                                                                                    \
+     : (n) == 3 ? f(3, __VA_ARGS__)                                                                                    \
+     : (n) == 5 ? f(5, __VA_ARGS__)                                                                                    \
+     : (n) == 6 ? f(6, __VA_ARGS__)                                                                                    \
+                : f(n, __VA_ARGS__))
 
 /* Calls f with a known width for columns c of a row, six or fewer at once: f keeps them in registers. */
 #define IN_COLUMNS(n, call)                                                                                            \
@@ -741,7 +745,8 @@ int spari_blocks_factor(spari_blocks *m) {
             return 1;
         }
         for (int k = panel->held; k < panel->size; k++) {
-            m->least = fmin(m->least, fabs(panel->D[k * panel->size + k]));
+            double pivot = fabs(panel->D[k * panel->size + k]);
+            m->least = pivot < m->least ? pivot : m->least;
         }
         update_later(m, panel);
         if (panel->to >= 0) {

@@ -105,25 +105,26 @@ static int fixed_in(const spari_assembly *a, const spari_interface *v) {
 /* Adds f times the stiffness K between interface nodes v and w to the system. */
 static void add_stiffness(spari_assembly *a, int v, int w, double f, const double *K, int stride) {
     const spari_interface *row = moving(a, v), *column = moving(a, w);
+    double moved[36];
+    int to;
     if (!row || !column) {
         return;
     }
-    int to, first = fixed_in(a, column);
-    double *block = spari_blocks_at(a->system, row->block, column->block, &to), moved[36];
-    for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) {
-            moved[6 * i + j] = f * K[stride * i + j];
+    if (a->clusters) { /* else lever arms are 0 */
+        for (int i = 0; i < 6; i++) {
+            memcpy(moved + 6 * i, K + stride * i, 6 * sizeof *moved);
+            carry_force(column->arm, 1, moved + 6 * i);
         }
+        for (int j = 0; j < 6; j++) {
+            carry_force(row->arm, 6, moved + j);
+        }
+        K = moved, stride = 6;
     }
-    for (int i = 0; i < 6 && a->clusters; i++) { /* else arms are 0 */
-        carry_force(column->arm, 1, moved + 6 * i);
-    }
-    for (int j = 0; j < 6 && a->clusters; j++) {
-        carry_force(row->arm, 6, moved + j);
-    }
+    double *block = spari_blocks_at(a->system, row->block, column->block, &to);
+    int first = fixed_in(a, column);
     for (int i = fixed_in(a, row); i < 6; i++) {
         for (int j = first; j < 6; j++) {
-            block[to * i + j] += moved[6 * i + j];
+            block[to * i + j] += f * K[stride * i + j];
         }
     }
 }
@@ -251,8 +252,10 @@ static void add_constraint_stiffness(spari_assembly *a, spari_constraint *l, dou
         return;
     }
     constraint_tangent(a, l, cv, K);
-    for (int i = 0; i < 144; i++) {
-        l->stiffest = larger(l->stiffest, fabs(K[i / 12][i % 12]));
+    for (int i = 0; i < 12; i++) {
+        for (int j = 0; j < 12; j++) {
+            l->stiffest = larger(l->stiffest, fabs(K[i][j]));
+        }
     }
     l->stiff = l->stiffest > 0;
     for (int n = 0; n < 4 && l->stiff; n++) {
@@ -327,9 +330,11 @@ static void add_penalty(spari_assembly *a, const spari_constraint *l, double pen
         }
         double *block =
             spari_blocks_at(a->system, a->interface[l->node[i]].block, a->interface[l->node[j]].block, &stride);
-        for (int k = 0; k < 36 * constrained[i]; k++) {
-            int row = k / 6 % 6, column = k % 6;
-            block[stride * row + column] += penalty * l->scale * rows[i][k / 36][row] * rows[j][k / 36][column];
+        for (int k = 0; k < 6 * constrained[i]; k++) {
+            double by = penalty * l->scale * rows[i][k / 6][k % 6], *to = block + stride * (k % 6);
+            for (int column = 0; column < 6; column++) {
+                to[column] += by * rows[j][k / 6][column];
+            }
         }
     }
 }
@@ -617,8 +622,9 @@ static int find_gaps(spari_assembly *a) {
     return any;
 }
 
-/* The remaining gaps of a constraint, of its constrained motions in order. gaps: nodes move in their clusters. */
-static void gaps_left(const spari_assembly *a, const spari_constraint *l, const double *all, int gaps, double left[6]) {
+/* The remaining gaps of a constraint, of its constrained motions in order; their number. gaps: nodes move in their
+   clusters. */
+static int gaps_left(const spari_assembly *a, const spari_constraint *l, const double *all, int gaps, double left[6]) {
     int constrained = 0;
     for (int k = 0; k < 6; k++) {
         if (spari_constraint_holds(l, k)) {
@@ -632,6 +638,7 @@ static void gaps_left(const spari_assembly *a, const spari_constraint *l, const 
             left[constrained++] = gap;
         }
     }
+    return constrained;
 }
 
 /* Column c of the right-hand side or of the solution in a block: number k stands at a->columns * k. */
@@ -639,55 +646,69 @@ static double *column_of(const spari_assembly *a, int block, int c) {
     return a->b + a->columns * (int64_t)spari_blocks_first(a->system, block) + c;
 }
 
+/* Adds the force f on an interface node to column c of the right-hand side. */
+static inline void load_node(const spari_assembly *a, const spari_interface *v, double f[6], int c) {
+    double *b = column_of(a, v->block, c);
+    const int fixed = fixed_in(a, v), stride = a->columns;
+    if (a->clusters) {
+        carry_force(v->arm, 1, f);
+    }
+    for (int k = 0; k < 6; k++, b += stride) {
+        *b += k < fixed ? 0 : f[k];
+    }
+}
+
+/* The gaps of a constraint of the tree. */
+static void load_tie(const spari_assembly *a, const spari_constraint *l, int block, int gaps, int c) {
+    const spari_interface *other = moving(a, l->node[1]);
+    double left[6], f[6] = {0}, *b = column_of(a, block, c) + 6 * a->columns;
+    int constrained = gaps_left(a, l, c ? l->rate_gap : l->gap, gaps, left);
+    for (int k = 0; k < constrained; k++) {
+        b[a->columns * k] = left[k];
+    }
+    if (l->ball && other) {
+        moment_of_gaps(l, left, f + 3);
+        load_node(a, other, f, c);
+    }
+}
+
+/* The gaps of a constraint that closes a loop, and the forces of its penalty. */
+static void load_loop(const spari_assembly *a, const spari_constraint *l, int gaps, int c) {
+    double left[6], f[12] = {0}, *b = column_of(a, l->block, c);
+    (void)gaps_left(a, l, c ? l->rate_gap : l->gap, gaps, left);
+    for (int k = 0, n = 0; k < 6; k++) {
+        if (spari_constraint_holds(l, k)) {
+            double by = l->scale * left[n];
+            b[a->columns * n++] = -by;
+            for (int i = 0; i < 12; i++) {
+                f[i] += a->penalty * by * l->rows[k][i];
+            }
+        }
+    }
+    for (int side = 0; side < 2; side++) {
+        const spari_interface *v = moving(a, l->node[side]);
+        if (v) {
+            load_node(a, v, f + 6 * side, c);
+        }
+    }
+}
+
 /* Column c of the right-hand side: of the gaps and the forces y that the interface nodes' balance has too many, or of
    the rates' gaps (y NULL). */
 static void load_system(spari_assembly *a, const double *y, int gaps, int c) {
     for (int i = 0; i < a->interfaces; i++) {
         const spari_interface *v = a->interface + i;
-        double *b = v->cluster < 0 ? NULL : column_of(a, v->block, c);
-        if (b && y) {
-            double f[6];
-            memcpy(f, y + 6 * i, sizeof f);
-            if (v->cluster != i) {
-                carry_force(v->arm, 1, f);
-            }
-            for (int k = fixed_in(a, v); k < 6; k++) {
-                b[a->columns * k] -= f[k];
-            }
+        if (v->cluster >= 0 && y) {
+            double f[6] = {-y[6 * i], -y[6 * i + 1], -y[6 * i + 2], -y[6 * i + 3], -y[6 * i + 4], -y[6 * i + 5]};
+            load_node(a, v, f, c);
         }
         if (v->cluster == i && v->constraint >= 0) {
-            const spari_constraint *l = a->constraint + v->constraint;
-            double left[6];
-            gaps_left(a, l, c ? l->rate_gap : l->gap, gaps, left);
-            for (int k = 0; k < spari_constraint_count(l); k++) {
-                b[a->columns * (6 + k)] = left[k];
-            }
-            if (l->ball && moving(a, l->node[1])) {
-                double moment[3], *to = column_of(a, a->interface[l->node[1]].block, c) + 3 * a->columns;
-                moment_of_gaps(l, left, moment);
-                for (int k = 0; k < 3; k++) {
-                    to[a->columns * k] += moment[k];
-                }
-            }
+            load_tie(a, a->constraint + v->constraint, v->block, gaps, c);
         }
     }
     for (int i = 0; i < a->constraints; i++) {
-        const spari_constraint *l = a->constraint + i;
-        double left[6], rows[6][6];
-        if (l->block < 0) {
-            continue;
-        }
-        gaps_left(a, l, c ? l->rate_gap : l->gap, gaps, left);
-        for (int k = 0; k < spari_constraint_count(l); k++) {
-            column_of(a, l->block, c)[a->columns * k] = -l->scale * left[k];
-        }
-        for (int side = 0; side < 2; side++) {
-            int constrained = rows_of_side(a, l, side, rows);
-            for (int k = 0; k < 6 * constrained; k++) {
-                int block = a->interface[l->node[side]].block;
-                column_of(a, block, c)[a->columns * (k % 6)] +=
-                    a->penalty * l->scale * rows[k / 6][k % 6] * left[k / 6];
-            }
+        if (a->constraint[i].block >= 0) {
+            load_loop(a, a->constraint + i, gaps, c);
         }
     }
 }
