@@ -30,6 +30,44 @@ static void add_forces(const spari_body *body, int tile, int from, int to, void 
     }
 }
 
+/* Forces of a rigid body of one node, as inertia_gravity_lanes.h has them for a point. Returns their size. */
+static double forces_of_one(const spari_body *body, const spari_regime *how, const double *q, const double *v,
+                            const double *a, double r[6]) {
+    const double *mass = body->mass, *rotation = q + 3;
+    const double m = mass[0], mc[3] = {mass[SPARI_LANES], mass[2 * SPARI_LANES], mass[3 * SPARI_LANES]};
+    const int moves = how->shown == SPARI_ACCELERATED;
+    double net[3], h[3], y[3] = {0}, moment[3], force[3];
+    for (int i = 0; i < 3; i++) {
+        net[i] = (moves ? a[i] : 0) - how->weight[i];
+    }
+    spari_rotate_back(rotation, net, h);
+    spari_cross(mc, h, moment);
+    if (moves) {
+        double A[3], W[3], JA[3], JW[3], x[3], z[3];
+        spari_rotate_back(rotation, a + 3, A);
+        symmetric_times_one(mass + SPARI_LANES * 4, A, JA);
+        spari_cross(A, mc, y);
+        if (body->gyroscopic) {
+            spari_rotate_back(rotation, v + 3, W);
+            symmetric_times_one(mass + SPARI_LANES * 4, W, JW);
+            spari_cross(W, mc, x);
+            spari_cross(W, x, z);
+            spari_cross(W, JW, x);
+        }
+        for (int i = 0; i < 3; i++) {
+            y[i] += body->gyroscopic ? z[i] : 0;
+            moment[i] += JA[i] + (body->gyroscopic ? x[i] : 0);
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        force[i] = body->weight[0] * (m * h[i] + y[i]);
+        moment[i] *= body->weight[0];
+    }
+    spari_rotate(rotation, force, r);
+    spari_rotate(rotation, moment, r + 3);
+    return spari_norm(force) + spari_norm(moment) / body->length;
+}
+
 /* Power of mass-proportional damping: twice mass_damping times the kinetic energy of the motion relative to the first
  * node. */
 static double mass_damping_power(const spari_body *body, const double *q, const double *v) {
@@ -50,6 +88,12 @@ double spari_body_residual(const spari_body *body, const double *q, const double
                            double *r, double *power) {
     force_state s = {.how = spari_point_regime(body, v, a, factor), .q = q, .v = v, .a = a, .r = r};
     double scale = 0, damped = 0;
+    if (body->unique == 1 && s.how.shown != SPARI_MASSLESS && !body->C) {
+        if (power) {
+            *power = 0;
+        }
+        return forces_of_one(body, &s.how, q, v, a, r);
+    }
     spari_thread_pool_spread(body->pool ? *body->pool : NULL, body->unique, CLEARED, clear_forces, r);
     spari_body_sweep(body, add_forces, &s);
     for (int64_t tile = 0; tile < spari_body_tiles(body); tile++) {
