@@ -660,40 +660,57 @@ static double potential_of(const spar_joint *j, double left, const double z[6]) 
     return sum;
 }
 
-/* Of all members and joints; not known where something is driven. */
+/* Whether the work on all members and joints is known: not where something is driven, or a node of a joint has
+   prescribed motion. */
+static int knows_work(const spari_assembly *a) {
+    for (int i = 0; i < a->components; i++) {
+        const spari_component *p = a->component + i;
+        if (p->frame || p->member->root == SPAR_ROOT_DRIVEN || p->member->added || p->solver->offset_loads) {
+            return 0;
+        }
+    }
+    for (int i = 0; i < a->constraints; i++) {
+        const spari_constraint *l = a->constraint + i;
+        const spar_joint *j = l->joint;
+        int given = (!l->component[0] && j->member[0]) || (!l->component[1] && j->member[1]);
+        if (given || j->driven || j->kinematics.line) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Of all members and joints. */
 static int gains_of_all(void *self, const spari_part *part) {
     spari_assembly *a = self;
     double gain = 0, size = 0;
     int near = 1;
-    for (int i = 0; i < a->components; i++) {
-        spari_component *p = a->component + i;
-        if (p->frame || p->member->root == SPAR_ROOT_DRIVEN || p->member->added || p->solver->offset_loads) {
-            return 0;
-        }
-        near = near && spari_stage_is_near(p->solver, p->member, p->scheme.h);
+    if (!knows_work(a)) {
+        return 0;
     }
-    for (int i = 0; i < a->constraints && !near; i++) {
+    for (int i = 0; i < a->components && near; i++) {
+        const spari_component *p = a->component + i;
+        near = spari_stage_is_near(p->solver, p->member, p->scheme.h);
+    }
+    if (near) {
+        return 0;
+    }
+    for (int i = 0; i < a->constraints; i++) {
         const spari_constraint *l = a->constraint + i;
         const spar_joint *j = l->joint;
-        for (int side = 0; side < 2; side++) {
-            near = near || (!l->component[side] && j->member[side]);
-        }
-        if (j->driven || j->kinematics.line || near) {
-            return 0;
-        }
         double left = 1 - 0.5 * (part->from + part->to),
                correction_size = potential_of(j, left, j->after.z) - potential_of(j, left, l->begin.z);
         gain += correction_size;
         size += fabs(correction_size);
     }
-    for (int i = 0; i < a->components && !near; i++) {
+    for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
         double more, of;
         spari_stage_energy(p->solver, p->member, part, &more, &of);
         gain += more;
         size += of;
     }
-    return !near && gain > SPARI_GAIN * size;
+    return gain > SPARI_GAIN * size;
 }
 
 static void enter_all(void *self, const spari_part *part) {
