@@ -37,7 +37,6 @@ enum { NAME = 160 };
 typedef struct newton_step {
     spari_assembly *a;
     double s, dt;
-    int took; /* of the tangents that it began with */
 } newton_step;
 
 /* Whether any component has starting values of this kind; the others keep their velocities then. */
@@ -189,7 +188,9 @@ static int tangent_serves(const spari_assembly *a) {
 /* If all components have moved by less than near_factored (rad; lengths relative to the member), the factored system
    is used again. Its contraction rate is about this number. */
 static const double near_factored = 0.01;
-enum { LEAST_PATIENCE = 3, MOST_PATIENCE = 8 };
+
+/* A solution of so many iterations keeps its tangents. New ones cost about PRICE iterations. */
+enum { PATIENCE = 3, PRICE = 13 };
 
 /* Whether the step under way has formed its tangents. Rates are projected onto the constraints in the metric of the
    tangents, so a coupling may not converge if every other iteration has new ones. */
@@ -197,20 +198,22 @@ static int formed_in_step(const spari_assembly *a) {
     return a->session->integrator.substeps == 1 && (!a->factored_begun || a->formed);
 }
 
-/* Updates the reuse of the tangents after a solution (see system.h) of so many iterations. took: iterations of the
-   solution that formed them; 0: this one did. New tangents cost about ten iterations and serve many solutions. They
-   are formed if they would save more than one iteration, but not twice in a step. */
-static int tangents_after(const spari_assembly *a, int iterations, int took) {
-    int patience = took < LEAST_PATIENCE ? LEAST_PATIENCE : took < MOST_PATIENCE ? took + 1 : MOST_PATIENCE;
-    if (took == 0) {
-        return iterations;
+/* Whether the tangents are reused after a solution of so many iterations. fresh: they were formed in it. As for a
+   member without joints (time/component_body.c), new tangents are formed once a solution costs more than the mean of
+   those that the tangents have served, with the cost of the tangents, but not twice in a step. */
+static int serve_on(spari_assembly *a, int iterations, int fresh) {
+    if (fresh) { /* the first iterations may have used other tangents */
+        a->reuse.served = 1;
+        a->reuse.spent = PRICE + (iterations < PATIENCE ? iterations : PATIENCE);
+        return 1;
     }
-    return iterations <= patience || formed_in_step(a) ? took : 0;
+    a->reuse.served++;
+    a->reuse.spent += iterations;
+    return iterations <= PATIENCE || iterations * a->reuse.served <= a->reuse.spent || formed_in_step(a);
 }
 
 static int begin_attempt(void *self, int reused) {
     newton_step *t = self;
-    t->took = t->a->factored;
     t->a->factored = reused && tangent_serves(t->a);
     t->a->system_serves = 0; /* the beginning of a solution must not depend on earlier solutions */
     return t->a->factored;
@@ -273,7 +276,7 @@ static void end_solution(void *self, int iterations, int fresh) {
     if (t->a->constraints == 0) {
         p->row->end_solution(p, iterations, fresh);
     } else {
-        t->a->factored = tangents_after(t->a, iterations, fresh ? 0 : t->took);
+        t->a->factored = serve_on(t->a, iterations, fresh);
     }
 }
 
@@ -317,7 +320,7 @@ static const char *attempts_of(spari_assembly *a, double s, double dt, int *iter
                                       iterate_newton, renew_tangents, end_solution},
                               alone = {INFINITY,       1e-6,           predict,     begin_attempt,
                                        iterate_newton, renew_tangents, end_solution};
-    newton_step step = {a, s, dt, 0};
+    newton_step step = {a, s, dt};
     const int serves = tangent_serves(a), most = a->session->newton.max;
     if (a->constraints > 0) {
         return spari_newton_solve(&tied, &step, serves, most, spari_newton_tolerance_begin(a->session, &a->trace),
@@ -343,7 +346,7 @@ static int guess_onward(void *self, spari_guess stays) {
 static const char *walk_drives_in(spari_assembly *a, double s, double dt, int parts, int *iterations) {
     static const spari_newton how = {SPARI_LONGEST,  LEAST_RATE,     guess_onward, begin_attempt,
                                      iterate_newton, renew_tangents, end_solution};
-    newton_step step = {a, s, dt, 0};
+    newton_step step = {a, s, dt};
     const char *wrong = NULL;
     (void)predict(&step, SPARI_KEEP_POSITION);
     for (int part = 1; part <= parts && !wrong; part++) {
@@ -813,7 +816,8 @@ int spari_assembly_advance(spari_assembly *a, double dt, int responses) {
     }
     a->solved = 1;
     if (responses && !a->factored && form_after(a) == 0) {
-        a->factored = LEAST_PATIENCE;
+        a->factored = 1;
+        a->reuse = (spari_tangent_reuse){0, PRICE};
     }
     return SPAR_OK;
 }

@@ -3,8 +3,6 @@
 #include "assembly.h"
 #include "system.h"
 
-#include <limits.h>
-#include <math.h>
 #include <string.h>
 
 enum { RELATIVE = sizeof(spari_relative) / sizeof(double), DRIVEN = sizeof(spari_driven) / sizeof(double) };
@@ -51,6 +49,7 @@ double spari_assembly_remaining(const spari_assembly *a) {
 void spari_assembly_begin(spari_assembly *a) {
     a->factored_begun = a->factored;
     a->trace_begun = a->trace;
+    a->reuse_begun = a->reuse;
     a->stepping = 1, a->formed = 0;
 }
 
@@ -62,12 +61,13 @@ void spari_assembly_reject(spari_assembly *a) {
     if (a->stepping) {
         a->factored = a->factored_begun;
         a->trace = a->trace_begun;
+        a->reuse = a->reuse_begun;
     }
 }
 
 /* ---- save and load ---- */
 
-enum { HEAD = 9 };
+enum { HEAD = 13 };
 
 /* Of a factored system: the condensed members. */
 static int64_t factors_size(const spari_assembly *a) {
@@ -93,6 +93,10 @@ void spari_assembly_save(const spari_assembly *a, double *state) {
     state[6] = a->trace_begun.left;
     state[7] = a->stepping;
     state[8] = a->formed;
+    state[9] = (double)a->reuse.served;
+    state[10] = (double)a->reuse.spent;
+    state[11] = (double)a->reuse_begun.served;
+    state[12] = (double)a->reuse_begun.spent;
     state += HEAD;
     for (int i = 0; i < a->components && a->factored; i++) {
         spari_condensed_save(a->component[i].condensed, state);
@@ -100,18 +104,19 @@ void spari_assembly_save(const spari_assembly *a, double *state) {
     }
 }
 
-static int is_iterations(double x) {
-    return x >= 0 && x < INT_MAX && x == floor(x);
-}
-
 static int is_flag(double x) {
     return x == 0 || x == 1;
 }
 
 int spari_assembly_is_state(const spari_assembly *a, const double *state, int64_t count) {
-    if (count < HEAD || state[1] != a->components || !is_iterations(state[0]) || !spari_trace_is(state + 2) ||
-        !is_iterations(state[4]) || !spari_trace_is(state + 5) || !is_flag(state[7]) || !is_flag(state[8])) {
+    if (count < HEAD || !is_flag(state[0]) || state[1] != a->components || !spari_trace_is(state + 2) ||
+        !is_flag(state[4]) || !spari_trace_is(state + 5) || !is_flag(state[7]) || !is_flag(state[8])) {
         return 0;
+    }
+    for (int k = 9; k < HEAD; k++) {
+        if (!spari_is_count(state[k])) {
+            return 0;
+        }
     }
     return count == HEAD + (state[0] == 0 ? 0 : factors_size(a));
 }
@@ -123,6 +128,8 @@ void spari_assembly_load(spari_assembly *a, const double *state) {
     a->formed = state && state[8] != 0;
     a->factored_begun = state && (a->factored || a->formed) ? (int)state[4] : 0; /* with the condensed members */
     a->trace_begun = (spari_trace){state ? state[5] : 0, state ? state[6] : 0};
+    a->reuse = (spari_tangent_reuse){state ? (int64_t)state[9] : 0, state ? (int64_t)state[10] : 0};
+    a->reuse_begun = (spari_tangent_reuse){state ? (int64_t)state[11] : 0, state ? (int64_t)state[12] : 0};
     a->solved = 0;
     state = state ? state + HEAD : NULL;
     for (int i = 0; i < a->components && a->factored; i++) {

@@ -26,6 +26,11 @@ typedef struct spari_interface {
     double E[9];    /* of a node in the cluster of another: its small rotation by the rotation of the constraint */
 } spari_interface;
 
+/* Solutions with the present tangents, and their cost with that of the tangents, in iterations. */
+typedef struct spari_tangent_reuse {
+    int64_t served, spent;
+} spari_tangent_reuse;
+
 struct spari_assembly {
     spar_session *session;
     spari_assembly *next;
@@ -44,9 +49,11 @@ struct spari_assembly {
     int solved;           /* the components and constraints are at the end of a step */
     spari_trace trace;    /* of Newton; with strict tolerances its rate is not used */
     int stepping, formed; /* a step has begun; it has formed tangents */
-    int factored_begun;   /* these two at the beginning of the step */
+    int factored_begun;   /* these three at the beginning of the step */
     spari_trace trace_begun;
-    int factored;         /* 0: there are no tangents; else how many iterations the solution needed that formed them */
+    spari_tangent_reuse reuse_begun;
+    int factored; /* there are tangents */
+    spari_tangent_reuse reuse;
     int constrains_rates; /* the step's equations constrain velocities too */
     int rotates_far;      /* joints rotate far in a substep */
     int system_serves;    /* the system below is factored, for the present tangents and this cv, */
