@@ -164,7 +164,7 @@ static double tolerance(const spari_assembly *a, double largest) {
     double size = 0, most = 0, worst = 0;
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
-        p->allowed = s->newton.strict ? 0 : spari_newton_tolerance(p->member, &p->scheme, p->motion);
+        p->allowed = s->newton.strict ? 0 : spari_newton_tolerance(p->member, &p->scheme, p->motion, a->held);
         size = fmax(size, p->motion);
         most = fmax(most, p->allowed);
     }
@@ -231,7 +231,7 @@ static const char *iterate_alone(spari_assembly *a, double longest, spari_iterat
     }
     a->factored = 1;
     it->correction = p->row->advance(p, longest, &motion);
-    it->tolerance = spari_newton_tolerance(p->member, &p->scheme, motion);
+    it->tolerance = spari_newton_tolerance(p->member, &p->scheme, motion, 0);
     it->small = it->correction < 1e-11 || residual_size <= 64 * DBL_EPSILON * p->body->stiffest;
     it->rounded = residual_size <= 16 * DBL_EPSILON * scale;
     return NULL;

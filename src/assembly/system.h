@@ -46,6 +46,7 @@ struct spari_assembly {
     int *order;           /* of the interface nodes: parents first */
     int clusters;         /* whether any of them has the unknowns of another */
     int loops;            /* whether constraints close loops */
+    int held;             /* whether constraints and roots leave no free motion but deformation */
     int solved;           /* the components and constraints are at the end of a step */
     spari_trace trace;    /* of Newton; with strict tolerances its rate is not used */
     int stepping, formed; /* a step has begun; it has formed tangents */
