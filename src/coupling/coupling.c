@@ -199,6 +199,9 @@ static void report_added_mass(spari_coupling *c) {
                                        c->report + SPAR_REPORT_ADDED_MASS_SPREAD);
 }
 
+/* What Newton may leave, relative to what the coupling is iterated to. */
+static const double newton_part = 1e-3;
+
 /* Newton's error returns as a load error, multiplied by mu in the motion norm; mu is the ratio of added mass to mass
    estimated from the loads, 1 without an estimate. This error must be small compared with the last changes of the
    iteration, a hundredth of the final one. This applies to the first solutions of a step too, because columns are
@@ -206,7 +209,7 @@ static void report_added_mass(spari_coupling *c) {
    heavy exact fluids, with a thousandth 5 (tests/support/flows.h). A fluid solution costs more than a Newton
    iteration. A mu below `least` is raised to it. */
 double spari_coupling_share(const spar_session *s) {
-    static const double part = 1e-3, least = 0.05;
+    static const double least = 0.05;
     const spari_coupling *c = s->own->coupling;
     if (!c->accelerator || c->idle) {
         return INFINITY;
@@ -215,7 +218,7 @@ double spari_coupling_share(const spar_session *s) {
     if (spari_coupling_wants_motion(s)) {
         goal = fmin(goal, s->coupling.motion_rtol);
     }
-    return part * goal / (mu > 0 ? fmax(mu, least) : 1);
+    return newton_part * goal / (mu > 0 ? fmax(mu, least) : 1);
 }
 
 void spari_coupling_begin(spar_session *s) {
@@ -366,8 +369,9 @@ static double rounding_of_accelerations(const spar_session *s) {
     return most > 0 ? DBL_EPSILON * place / (h * h * most) : 0;
 }
 
-/* Rounding error of the correction for added mass, [N]: loads cannot agree any better, and may be smaller than this. */
-static double rounding_of_added_mass(const spar_session *s) {
+/* Error of the correction for added mass, [N], by rounding and by what Newton leaves in the accelerations: loads cannot
+   agree any better, and may be smaller than this. */
+static double error_of_added_mass(const spar_session *s) {
     double f2 = 0;
     int k = 0;
     for (const spar_member *m = s->members; m; m = m->next, k++) {
@@ -377,7 +381,8 @@ static double rounding_of_added_mass(const spar_session *s) {
             f2 += f * f;
         }
     }
-    return f2 > 0 ? 8 * (DBL_EPSILON + rounding_of_accelerations(s)) * sqrt(f2) : 0;
+    const double rounding = 8 * (DBL_EPSILON + rounding_of_accelerations(s));
+    return f2 > 0 ? fmax(rounding, newton_part * s->coupling.rtol) * sqrt(f2) : 0;
 }
 
 static int not_converged(spar_session *s, const char *call) {
@@ -503,7 +508,7 @@ static int moves_nodes(spar_session *s, int *moves) {
    loads, so it counts only if the residual moves nothing. */
 static int is_small(spar_session *s, double residual, double size, int *small) {
     int moves = 0;
-    *small = residual <= s->coupling.rtol * size || residual <= rounding_of_added_mass(s);
+    *small = residual <= s->coupling.rtol * size || residual <= error_of_added_mass(s);
     if (*small || residual > s->coupling.atol + s->coupling.rtol * size) {
         return SPAR_OK;
     }
