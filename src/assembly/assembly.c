@@ -60,7 +60,7 @@ static int predict(void *self, spari_guess stays) {
 
 /* A position gap below this counts as zero: in a step h, it causes an acceleration of gap / h^2, 1 m/s^2 for 1e-8 s. */
 static double rounding_of(const spari_constraint *l) {
-    return 8 * DBL_EPSILON * fmax(l->reach, fmax(spari_norm(l->pose[0].x), spari_norm(l->pose[1].x)));
+    return 8 * DBL_EPSILON * spari_larger(l->reach, spari_larger(spari_norm(l->pose[0].x), spari_norm(l->pose[1].x)));
 }
 
 /* The part of the rates' gaps that closing the gaps leaves. Returns whether there is any. */
@@ -88,7 +88,7 @@ static void update_gaps(spari_assembly *a, double s, double dt) {
         double rounding = rounding_of(l);
         for (int k = 0; k < 6; k++) {
             double gap = spari_constraint_holds(l, k) ? spari_constraint_gap(l, k) : 0;
-            l->gap[k] = copysign(fmax(fabs(gap) - (k < 3 ? rounding : 8 * DBL_EPSILON), 0), gap);
+            l->gap[k] = copysign(spari_larger(0, fabs(gap) - (k < 3 ? rounding : 8 * DBL_EPSILON)), gap);
         }
         a->rates_off = (a->constrains_rates && find_rate_gap(a, l)) || a->rates_off;
     }
@@ -104,7 +104,7 @@ static double balance(spari_assembly *a, double *residual_size) {
         scale += p->row->balance(p);
         spari_constraints_add_forces(a, p);
         double left = p->row->residual_size(p);
-        *residual_size = fmax(*residual_size, left);
+        *residual_size = spari_larger(*residual_size, left);
         scale += 0 * left;
         if (a->factored && spari_component_reduce(p, 1, a->x + p->at)) {
             return NAN;
@@ -130,7 +130,7 @@ static int form(spari_assembly *a) {
 static int correct(spari_assembly *a, double longest, double *size) {
     double largest = 0;
     for (int i = 0; i < a->components; i++) {
-        largest = fmax(largest, a->component[i].correction_size);
+        largest = spari_larger(largest, a->component[i].correction_size);
     }
     double cut = largest > longest ? longest / largest : 1;
     spari_constraints_correct_loads(a, cut);
@@ -145,7 +145,7 @@ static int correct(spari_assembly *a, double longest, double *size) {
         if (rates) {
             spari_component_clear(p);
             spari_component_expand(p, a->x + p->at);
-            largest = fmax(largest, p->row->correction_size(p));
+            largest = spari_larger(largest, p->row->correction_size(p));
             spari_component_shift_rates(p, cut * c->rate, cut * c->cm, cut * c->cb);
         }
     }
@@ -165,11 +165,12 @@ static double tolerance(const spari_assembly *a, double largest) {
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
         p->allowed = s->newton.strict ? 0 : spari_newton_tolerance(p->member, &p->scheme, p->motion, a->held);
-        size = fmax(size, p->motion);
-        most = fmax(most, p->allowed);
+        size = spari_larger(size, p->motion);
+        most = spari_larger(most, p->allowed);
     }
     for (int i = 0; i < a->components && !s->newton.strict; i++) {
-        worst = fmax(worst, a->component[i].correction_size / fmax(a->component[i].allowed, 0.1 * most));
+        const spari_component *p = a->component + i;
+        worst = spari_larger(worst, p->correction_size / spari_larger(p->allowed, 0.1 * most));
     }
     int stage = a->component[0].scheme.rule != SPARI_ALPHA;
     double strict =
@@ -293,10 +294,10 @@ static int project(spari_assembly *a, double s, double dt) {
             }
             for (int k = 0; k < 6; k++) {
                 l->gap[k] = spari_constraint_holds(l, k) ? spari_constraint_rate_gap(l, k) : 0;
-                worst = fmax(worst, fabs(l->gap[k]));
+                worst = spari_larger(worst, fabs(l->gap[k]));
             }
             for (int k = 0; k < 12; k++) {
-                size = fmax(size, fabs(l->v[k]));
+                size = spari_larger(size, fabs(l->v[k]));
             }
         }
         if (worst <= 8 * DBL_EPSILON * size) {
@@ -572,7 +573,7 @@ enum { CHAIN = 8 };
 
 static int makes_a_chain(const spari_assembly *a) {
     int joints = 0;
-    for (int i = 0; i < a->constraints; i++) {
+    for (int i = 0; i < a->constraints && joints < CHAIN; i++) {
         int holds = spari_constraint_count(a->constraint + i);
         joints += holds > 1 && holds < 6;
     }

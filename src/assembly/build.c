@@ -157,7 +157,8 @@ static int check_members(const spar_joint *j) {
     return SPAR_OK;
 }
 
-/* The node of a beam that one rigid body carries: the joint holds that body, at an offset. */
+/* The node of a beam that one rigid body carries: the joint holds that body, at an offset. Copies the reference
+   positions of the nodes. */
 static void lead_to_components(spar_joint *j) {
     for (int side = 0; side < 2; side++) {
         const spar_member *m = j->member[side];
@@ -167,6 +168,9 @@ static void lead_to_components(spar_joint *j) {
             for (int k = 0; k < 3; k++) {
                 j->kinematics.arm[side][k] += m->xr[3 * j->node[side] + k] - m->xr[k];
             }
+        }
+        for (int k = 0; k < 3; k++) {
+            j->reference[side][k] = m ? m->xr[3 * j->seat[side] + k] : 0;
         }
     }
 }

@@ -12,34 +12,35 @@
    step. */
 static void find_side(spari_constraint *l, int side, double s, double dt) {
     const spar_joint *j = l->joint;
-    const spar_member *m = j->member[side];
+    const spari_component *of = l->component[side];
     spari_node_pose *p = &l->pose[side];
     spari_pose x = {.q = {0, 0, 0, 1, 0, 0, 0}};
-    if (l->component[side]) {
-        const spari_state *state = l->component[side]->state;
-        int u = j->unique[side];
-        x = spari_pose_of(state->q + 7 * u, state->v + 6 * u, state->a + 6 * u);
-    } else if (m) {
-        const spari_motion *now = &m->now, *after = &m->after; /* prescribed */
+    const double *q = x.q, *v = x.v, *a = x.a;
+    if (of) {
+        const int u = j->unique[side];
+        q = of->state->q + 7 * u, v = of->state->v + 6 * u, a = of->state->a + 6 * u;
+    } else if (j->member[side]) {
+        const spari_motion *now = &j->member[side]->now, *after = &j->member[side]->after; /* prescribed */
         const int64_t i = j->seat[side];
         const spari_pose from = spari_pose_of(now->q + 7 * i, now->v + 6 * i, now->a + 6 * i),
                          to = spari_pose_of(after->q + 7 * i, after->v + 6 * i, after->a + 6 * i);
         x = spari_drive_between(&from, &to, s, dt);
     }
     for (int k = 0; k < 3; k++) {
-        p->x[k] = x.q[k] + (m ? m->xr[3 * j->seat[side] + k] : 0);
+        p->x[k] = q[k] + j->reference[side][k];
     }
-    memcpy(p->q, x.q + 3, sizeof p->q);
-    memcpy(l->v + 6 * side, x.v, sizeof x.v);
-    memcpy(l->a + 6 * side, x.a, sizeof x.a);
+    memcpy(p->q, q + 3, sizeof p->q);
+    memcpy(l->v + 6 * side, v, sizeof x.v);
+    memcpy(l->a + 6 * side, a, sizeof x.a);
 }
 
 void spari_constraint_times(double B[6][12], const double v[12], double rate[6]) {
     for (int k = 0; k < 6; k++) {
-        rate[k] = 0;
+        double sum = 0;
         for (int i = 0; i < 12; i++) {
-            rate[k] += B[k][i] * v[i];
+            sum += B[k][i] * v[i];
         }
+        rate[k] = sum;
     }
 }
 

@@ -6,11 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* fmax without a call; x: not NaN */
-static inline double larger(double x, double y) {
-    return y > x ? y : x;
-}
-
 /* out [3][3] of row stride `to` := R K Q^T, K of row stride `from` */
 static void rotate_block(const double R[9], const double Q[9], int from, const double *K, int to, double *out) {
     double half[9];
@@ -157,7 +152,7 @@ static void add_part(spari_assembly *a, spari_component *p) {
         }
     }
     for (int i = 0; i < m; i++) {
-        a->scale = larger(a->scale, fabs(p->K[(m + 1) * i]));
+        a->scale = spari_larger(a->scale, fabs(p->K[(m + 1) * i]));
     }
 }
 
@@ -254,7 +249,7 @@ static void add_constraint_stiffness(spari_assembly *a, spari_constraint *l, dou
     constraint_tangent(a, l, cv, K);
     for (int i = 0; i < 12; i++) {
         for (int j = 0; j < 12; j++) {
-            l->stiffest = larger(l->stiffest, fabs(K[i][j]));
+            l->stiffest = spari_larger(l->stiffest, fabs(K[i][j]));
         }
     }
     l->stiff = l->stiffest > 0;
@@ -288,7 +283,7 @@ static double scale_of_constraint(spari_assembly *a, const spari_constraint *l) 
             int stride;
             const double *block = spari_blocks_at(a->system, v->block, v->block, &stride);
             for (int k = 0; k < 6; k++) {
-                scale = larger(scale, fabs(block[(stride + 1) * k]));
+                scale = spari_larger(scale, fabs(block[(stride + 1) * k]));
             }
         }
     }

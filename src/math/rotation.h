@@ -5,6 +5,11 @@
 
 #include <math.h>
 
+/* fmax without a call; x: not NaN */
+static inline double spari_larger(double x, double y) {
+    return y > x ? y : x;
+}
+
 static inline void spari_cross(const double a[3], const double b[3], double c[3]) {
     double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
     c[0] = x, c[1] = y, c[2] = z; /* c may be a or b */

@@ -28,6 +28,7 @@ struct spar_joint {
     int constrained;        /* mask of constrained motions: not free, or driven, and not redundant */
     int driven;             /* mask of driven free motions */
     spari_joint_kinematics kinematics; /* lever arms and axes: once they are known */
+    double reference[2][3];            /* reference positions of the seats; of the ground: 0 */
     int sprung, slack;                 /* slack: a link that only pulls */
     double length;                     /* unstretched length of a link */
     double left;                       /* remaining fraction of the step at the current stage */

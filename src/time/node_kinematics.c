@@ -1,6 +1,8 @@
 /* Generalised-alpha on nodes: chooses the kernels, and their nodes. */
 #include "node_kinematics_kernels.h"
 
+#include "../math/rotation.h"
+
 #include <math.h>
 
 /* For so many nodes: no wider than the number of nodes. */
@@ -19,7 +21,7 @@ static const spari_node_kernels *kernels_from(int lanes, int64_t from, int64_t t
 }
 
 static spari_node_size larger_of(spari_node_size a, spari_node_size b) {
-    return (spari_node_size){fmax(a.way, b.way), fmax(a.rotation, b.rotation)};
+    return (spari_node_size){spari_larger(a.way, b.way), spari_larger(a.rotation, b.rotation)};
 }
 
 static spari_node_size largest_of(int pass, const spari_node_work *t, int64_t from, int64_t to) {
