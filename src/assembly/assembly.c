@@ -528,8 +528,12 @@ void spari_assembly_forget(spari_assembly *a) {
 static void publish_component(spari_component *p, double *rates) {
     const spar_member *m = p->member;
     size_t size = (size_t)(6 * m->nodes) * sizeof *rates;
-    m->row->publish(p->member);
-    memcpy(rates, m->after.v, size);
+    if (m->row->whole) {
+        m->row->publish(p->member);
+        memcpy(rates, m->after.v, size);
+    } else {
+        spari_member_from_unique(m, 6, p->solver->to.v, rates);
+    }
     spari_component_keep_rates(p, 1);
     m->row->publish(p->member);
     memcpy(m->after.v, rates, size);
