@@ -30,7 +30,6 @@ typedef struct spari_constraint {
     double rows[6][12]; /* B of the constrained motions, as the system was formed */
     int ball;           /* as it was formed: whether the load of a ball is all that gives it a tangent, */
     double pull[3];     /* and this load, global axes */
-    double K[12][12];   /* the tangent as the system was formed, if the assembly has clusters */
     spari_driven drive; /* prescribed motion of the joint at the end of the substep, */
     spari_driven to;    /* and on the way there */
     spari_relative begin;

@@ -238,7 +238,7 @@ static void add_loads_of_rotation(spari_constraint *l, const double rotation[3])
 
 /* Adds the constraint's part of the tangent. */
 static void add_constraint_stiffness(spari_assembly *a, spari_constraint *l, double cv) {
-    double own[12][12], (*K)[12] = a->clusters ? l->K : own;
+    double own[12][12], (*K)[12] = a->clusters ? a->tangents[l - a->constraint] : own;
     l->stiff = 0;
     l->stiffest = 0;
     l->ball = is_ball(a, l);
@@ -558,7 +558,7 @@ static void add_forces_of(const spari_assembly *a, const double *u, double *y) {
         for (int n = 0; n < 4 && l->stiff; n++) {
             int row = l->node[n / 2], column = l->node[n % 2];
             if (row >= 0 && column >= 0) {
-                add_block_times(-1, &l->K[6 * (n / 2)][6 * (n % 2)], 12, u + 6 * column, y + 6 * row);
+                add_block_times(-1, &a->tangents[i][6 * (n / 2)][6 * (n % 2)], 12, u + 6 * column, y + 6 * row);
             }
         }
     }

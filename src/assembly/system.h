@@ -43,14 +43,15 @@ struct spari_assembly {
     spari_rotating_frame rotating;
     int interfaces;
     spari_interface *interface;
-    int *order;           /* of the interface nodes: parents first */
-    int clusters;         /* whether any of them has the unknowns of another */
-    int loops;            /* whether constraints close loops */
-    int held;             /* whether constraints and roots leave no free motion but deformation */
-    int solved;           /* the components and constraints are at the end of a step */
-    spari_trace trace;    /* of Newton; with strict tolerances its rate is not used */
-    int stepping, formed; /* a step has begun; it has formed tangents */
-    int factored_begun;   /* these three at the beginning of the step */
+    int *order;                 /* of the interface nodes: parents first */
+    int clusters;               /* whether any of them has the unknowns of another; if so, */
+    double (*tangents)[12][12]; /* [constraints] their tangents as the system was formed */
+    int loops;                  /* whether constraints close loops */
+    int held;                   /* whether constraints and roots leave no free motion but deformation */
+    int solved;                 /* the components and constraints are at the end of a step */
+    spari_trace trace;          /* of Newton; with strict tolerances its rate is not used */
+    int stepping, formed;       /* a step has begun; it has formed tangents */
+    int factored_begun;         /* these three at the beginning of the step */
     spari_trace trace_begun;
     spari_tangent_reuse reuse_begun;
     int factored; /* there are tangents */

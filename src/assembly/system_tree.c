@@ -315,7 +315,8 @@ int spari_system_create(spari_assembly *a) {
     a->y = spari_zalloc(n + 1, sizeof *a->y);
     a->b = spari_zalloc(2 * (int64_t)spari_blocks_rows(a->system) + 2, sizeof *a->b);
     a->rates = spari_zalloc(6 * most, sizeof *a->rates);
-    return a->x && a->y && a->b && a->rates ? SPAR_OK : SPAR_ERR_MEMORY;
+    a->tangents = a->clusters ? spari_zalloc(a->constraints, sizeof *a->tangents) : NULL;
+    return a->x && a->y && a->b && a->rates && (a->tangents || !a->clusters) ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
 void spari_system_free(spari_assembly *a) {
@@ -329,4 +330,5 @@ void spari_system_free(spari_assembly *a) {
     free(a->y);
     free(a->b);
     free(a->rates);
+    free(a->tangents);
 }
