@@ -450,6 +450,8 @@ static int measure_residual(spar_session *s, double size, double *residual) {
     double motion, whole;
     c->weighed = 0;
     c->idle = c->idle && size == 0;
+    /* loads that agree to rounding: what they move may be rounding too (those of a fixed root), without a ratio */
+    const int same = *residual <= 8 * DBL_EPSILON * size;
     if (c->idle) {
         return SPAR_OK;
     }
@@ -458,10 +460,11 @@ static int measure_residual(spar_session *s, double size, double *residual) {
         stack(s);
         const spari_norm_loads w = weighed(c);
         SPARI_TRY(spari_motion_norm(s, &w, &motion, &whole, &c->weighed));
+        motion = same ? 0 : motion;
         if (c->weighed && c->settled) {
             SPARI_TRY(unsettled(s, &motion));
         }
-        if (c->weighed) {
+        if (c->weighed && !(same && motion == 0)) {
             *residual = whole > 0 ? size * (motion / whole) : 0;
         }
     }
