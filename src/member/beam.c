@@ -565,7 +565,7 @@ static void fill_point(const spar_member *member, spari_body *b, int e, int i, d
     spari_beam_section_at(beam, beam->stiffness, eta, section);
     spari_beam_rotate_section(R, section, turned);
     spari_slot_put(b->C, 36, slot, turned);
-    for (int j = 0; j < 6; j++) {
+    for (int j = 0; j < 3; j++) {
         b->stiffest = fmax(b->stiffest, section[7 * j]);
     }
     if (b->D) { /* sqrt(mu_i mu_j) C_ij: positive semidefinite for any coupling, mu_i C_ii on the diagonal */
@@ -653,6 +653,17 @@ static int fill_body(const spar_member *member, int most, const double mu[6], sp
     return status;
 }
 
+/* Bending and torsion count as forces at the member's length, so that no unit of length matters. */
+static void find_stiffest(spari_body *b) {
+    for (int64_t slot = 0; slot < b->slot[b->elements]; slot++) {
+        double section[36];
+        spari_slot_get(b->C, 36, slot, section);
+        for (int j = 3; j < 6; j++) {
+            b->stiffest = fmax(b->stiffest, section[7 * j] / (b->length * b->length));
+        }
+    }
+}
+
 int spari_beam_build(const spar_member *member, int massive, const double mu[6], spari_body **body) {
     int *points = spari_zalloc(member->mesh.elements, sizeof *points), most = 0;
     int status = points ? count_points(member, points, &most) : no_memory_for(member, "its quadrature points");
@@ -676,6 +687,7 @@ int spari_beam_build(const spar_member *member, int massive, const double mu[6],
         spari_body_free(b);
         return status;
     }
+    find_stiffest(b);
     spari_body_complete(b);
     *body = b;
     return SPAR_OK;

@@ -45,7 +45,7 @@ typedef struct spari_body {
     double *seen;          /* [unique][6] workspace, likewise */
     int gyroscopic;
     double length;     /* size of the member for tolerances: arc length, or radius of gyration of a rigid body */
-    double stiffest;   /* force due to rounding of positions: largest stiffness, and moments divided by this size */
+    double stiffest;   /* force due to rounding of positions: largest stiffness, of moments over this size squared */
     double *lines;     /* memory of the blocks, without `pre` */
     double *tally;     /* [tiles][2] workspace of sums over elements */
     int64_t workspace; /* doubles of an element, at least 6 for each node of the body; its tangent stands behind */

@@ -3,6 +3,9 @@
    these units must agree, however small the forces are: to 1e-9, since the coupling is iterated as often everywhere. */
 #include "scene.h"
 
+#include "member/body.h"
+#include "member/structure.h"
+
 typedef struct unit {
     double length, mass, time; /* m, kg, s */
 } unit;
@@ -114,11 +117,24 @@ static void initial_accelerations(void **state) {
     agrees(0, INITIAL);
 }
 
+/* The force that rounding errors of Newton are relative to: EA here, in millimetres and kilometres too. */
+static void rounding(void **state) {
+    (void)state;
+    static const unit all[] = {{1, 1, 1}, {1e3, 1e-3, 1}, {1e-3, 1, 1}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        scene w;
+        create(&w, all[i], 1);
+        NEAR(w.member->body->stiffest * all[i].time * all[i].time / (all[i].mass * all[i].length), 1000, 1e-9);
+        spar_session_destroy(&w.session);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps),
         cmocka_unit_test(equilibrium),
         cmocka_unit_test(initial_accelerations),
+        cmocka_unit_test(rounding),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
