@@ -611,7 +611,7 @@ static void update_later(spari_blocks *m, const block_panel *panel) {
 /* ---- ties ---- */
 
 /* y := A^T x of r columns, A [3][3]; sa, ta: strides of A, exchanged for A x. */
-static KNOWN void turn(int r, const double *A, int sa, int ta, double *x, int stride) {
+static KNOWN void times_basis(int r, const double *A, int sa, int ta, double *x, int stride) {
     for (int c = 0; c < r; c++) {
         const double a = x[c], b = x[stride + c], d = x[2 * stride + c];
         for (int i = 0; i < 3; i++) {
@@ -642,7 +642,7 @@ static KNOWN void to_components(int r, const block_panel *p, double *f, int stri
     }
     for (int part = 0; part < 2; part++) {
         if (p->based[part]) {
-            turn(r, p->tie->basis[part], 3, 1, f + 3 * part * stride, stride);
+            times_basis(r, p->tie->basis[part], 3, 1, f + 3 * part * stride, stride);
         }
     }
     if (p->mixed) {
@@ -658,7 +658,7 @@ static KNOWN void from_components(int r, const block_panel *p, double *x) {
     }
     for (int part = 0; part < 2; part++) {
         if (p->based[part]) {
-            turn(r, p->tie->basis[part], 1, 3, x + 3 * part * r, r);
+            times_basis(r, p->tie->basis[part], 1, 3, x + 3 * part * r, r);
         }
     }
     for (int c = 0; c < r; c++) {
