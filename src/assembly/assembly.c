@@ -310,26 +310,19 @@ static int project(spari_assembly *a, double s, double dt) {
     return 0;
 }
 
-/* If a line becomes taut or slack in a step, the second correction shows it. A smaller contraction rate counts as
-   this. */
-#define LEAST_RATE 0.02
-
 /* Returns NULL, or the reason why the last attempt failed. A far correction may lead to another way of closing a
    loop. */
 static const char *attempts_of(spari_assembly *a, double s, double dt, int *iterations) {
-    static const spari_newton tied = {SPARI_LONGEST,  LEAST_RATE,     predict,     begin_attempt,
+    static const spari_newton tied = {SPARI_LONGEST,  predict,        begin_attempt,
                                       iterate_newton, renew_tangents, end_solution},
-                              alone = {INFINITY,       1e-6,           predict,     begin_attempt,
-                                       iterate_newton, renew_tangents, end_solution};
+                              alone = {INFINITY, predict, begin_attempt, iterate_newton, renew_tangents, end_solution};
     newton_step step = {a, s, dt};
     const int serves = tangent_serves(a), most = a->session->newton.max;
     if (a->constraints > 0) {
-        return spari_newton_solve(&tied, &step, serves, most, spari_newton_tolerance_begin(a->session, &a->trace),
-                                  iterations);
+        return spari_newton_solve(&tied, &step, serves, most, &a->left, iterations);
     }
     spari_component *p = a->component;
-    const char *wrong =
-        spari_newton_solve(&alone, &step, serves, most, spari_newton_tolerance_begin(a->session, p->trace), iterations);
+    const char *wrong = spari_newton_solve(&alone, &step, serves, most, p->left, iterations);
     if (wrong) {
         p->row->end_solution(p, 0, 0);
     }
@@ -345,7 +338,7 @@ static int guess_onward(void *self, spari_guess stays) {
 /* Moves driven joints that jump in so many parts, from the last position, each part from the solution of the part
    before. */
 static const char *walk_drives_in(spari_assembly *a, double s, double dt, int parts, int *iterations) {
-    static const spari_newton how = {SPARI_LONGEST,  LEAST_RATE,     guess_onward, begin_attempt,
+    static const spari_newton how = {SPARI_LONGEST,  guess_onward,   begin_attempt,
                                      iterate_newton, renew_tangents, end_solution};
     newton_step step = {a, s, dt};
     const char *wrong = NULL;
@@ -357,8 +350,7 @@ static const char *walk_drives_in(spari_assembly *a, double s, double dt, int pa
                 l->drive.z[k] = l->begin.z[k] + (l->to.z[k] - l->begin.z[k]) * part / parts;
             }
         }
-        a->trace.rate = 0;
-        wrong = spari_newton_solve(&how, &step, 0, a->session->newton.max, &a->trace, iterations);
+        wrong = spari_newton_solve(&how, &step, 0, a->session->newton.max, &a->left, iterations);
     }
     return wrong;
 }

@@ -41,14 +41,14 @@ void spari_assembly_unpack(spari_assembly *a, const double *from) {
 }
 
 double spari_assembly_remaining(const spari_assembly *a) {
-    return a->trace.left;
+    return a->left;
 }
 
 /* ---- begin, accept and reject ---- */
 
 void spari_assembly_begin(spari_assembly *a) {
     a->factored_begun = a->factored;
-    a->trace_begun = a->trace;
+    a->left_begun = a->left;
     a->reuse_begun = a->reuse;
     a->stepping = 1, a->formed = 0;
 }
@@ -60,14 +60,14 @@ void spari_assembly_accept(spari_assembly *a) {
 void spari_assembly_reject(spari_assembly *a) {
     if (a->stepping) {
         a->factored = a->factored_begun;
-        a->trace = a->trace_begun;
+        a->left = a->left_begun;
         a->reuse = a->reuse_begun;
     }
 }
 
 /* ---- save and load ---- */
 
-enum { HEAD = 13 };
+enum { HEAD = 11 };
 
 /* Of a factored system: the condensed members. */
 static int64_t factors_size(const spari_assembly *a) {
@@ -86,17 +86,15 @@ int64_t spari_assembly_state_size(const spari_assembly *a) {
 void spari_assembly_save(const spari_assembly *a, double *state) {
     state[0] = a->factored;
     state[1] = a->components;
-    state[2] = a->trace.rate;
-    state[3] = a->trace.left;
-    state[4] = a->factored_begun;
-    state[5] = a->trace_begun.rate;
-    state[6] = a->trace_begun.left;
-    state[7] = a->stepping;
-    state[8] = a->formed;
-    state[9] = (double)a->reuse.served;
-    state[10] = (double)a->reuse.spent;
-    state[11] = (double)a->reuse_begun.served;
-    state[12] = (double)a->reuse_begun.spent;
+    state[2] = a->left;
+    state[3] = a->factored_begun;
+    state[4] = a->left_begun;
+    state[5] = a->stepping;
+    state[6] = a->formed;
+    state[7] = (double)a->reuse.served;
+    state[8] = (double)a->reuse.spent;
+    state[9] = (double)a->reuse_begun.served;
+    state[10] = (double)a->reuse_begun.spent;
     state += HEAD;
     for (int i = 0; i < a->components && a->factored; i++) {
         spari_condensed_save(a->component[i].condensed, state);
@@ -109,11 +107,11 @@ static int is_flag(double x) {
 }
 
 int spari_assembly_is_state(const spari_assembly *a, const double *state, int64_t count) {
-    if (count < HEAD || !is_flag(state[0]) || state[1] != a->components || !spari_trace_is(state + 2) ||
-        !is_flag(state[4]) || !spari_trace_is(state + 5) || !is_flag(state[7]) || !is_flag(state[8])) {
+    if (count < HEAD || !is_flag(state[0]) || state[1] != a->components || !spari_is_remaining(state[2]) ||
+        !is_flag(state[3]) || !spari_is_remaining(state[4]) || !is_flag(state[5]) || !is_flag(state[6])) {
         return 0;
     }
-    for (int k = 9; k < HEAD; k++) {
+    for (int k = 7; k < HEAD; k++) {
         if (!spari_is_count(state[k])) {
             return 0;
         }
@@ -123,13 +121,13 @@ int spari_assembly_is_state(const spari_assembly *a, const double *state, int64_
 
 void spari_assembly_load(spari_assembly *a, const double *state) {
     a->factored = state ? (int)state[0] : 0;
-    a->trace = (spari_trace){state ? state[2] : 0, state ? state[3] : 0};
-    a->stepping = state && state[7] != 0;
-    a->formed = state && state[8] != 0;
-    a->factored_begun = state && (a->factored || a->formed) ? (int)state[4] : 0; /* with the condensed members */
-    a->trace_begun = (spari_trace){state ? state[5] : 0, state ? state[6] : 0};
-    a->reuse = (spari_tangent_reuse){state ? (int64_t)state[9] : 0, state ? (int64_t)state[10] : 0};
-    a->reuse_begun = (spari_tangent_reuse){state ? (int64_t)state[11] : 0, state ? (int64_t)state[12] : 0};
+    a->left = state ? state[2] : 0;
+    a->stepping = state && state[5] != 0;
+    a->formed = state && state[6] != 0;
+    a->factored_begun = state && (a->factored || a->formed) ? (int)state[3] : 0; /* with the condensed members */
+    a->left_begun = state ? state[4] : 0;
+    a->reuse = (spari_tangent_reuse){state ? (int64_t)state[7] : 0, state ? (int64_t)state[8] : 0};
+    a->reuse_begun = (spari_tangent_reuse){state ? (int64_t)state[9] : 0, state ? (int64_t)state[10] : 0};
     a->solved = 0;
     state = state ? state + HEAD : NULL;
     for (int i = 0; i < a->components && a->factored; i++) {

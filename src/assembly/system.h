@@ -49,10 +49,10 @@ struct spari_assembly {
     int loops;                  /* whether constraints close loops */
     int held;                   /* whether constraints and roots leave no free motion but deformation */
     int solved;                 /* the components and constraints are at the end of a step */
-    spari_trace trace;          /* of Newton; with strict tolerances its rate is not used */
+    double left;                /* estimated remaining correction of Newton in the last solution */
     int stepping, formed;       /* a step has begun; it has formed tangents */
     int factored_begun;         /* these three at the beginning of the step */
-    spari_trace trace_begun;
+    double left_begun;
     spari_tangent_reuse reuse_begun;
     int factored; /* there are tangents */
     spari_tangent_reuse reuse;

@@ -16,7 +16,7 @@ static void attach_frame(spari_component *p) {
     p->frame = p->member->solution;
     p->body = p->member->body;
     p->steps = &p->frame->steps;
-    p->trace = &p->frame->tangent.trace;
+    p->left = &p->frame->tangent.left;
 }
 
 static spari_rates deformation_rates(const spari_frame *f, const spari_frame_state *s) {

@@ -41,7 +41,7 @@ typedef struct spari_frame_state {
 /* The tangent in use, in doubles as it is saved. */
 typedef struct spari_frame_tangent_state {
     double factored, cm, cv; /* factored: 0 or 1 */
-    spari_trace trace;       /* of Newton; strict: its rate is not used */
+    double left;             /* estimated remaining correction of the last solution, relative to the length, rad */
     double rates[6];
 } spari_frame_tangent_state;
 

@@ -353,7 +353,7 @@ void spari_frame_restart(spar_member *m) {
 }
 
 enum {
-    STATE_HEAD = 14,
+    STATE_HEAD = 13,
     STATE_ROTATION = STATE_HEAD,
     STATE_BEGUN = STATE_ROTATION + 12,
     STATE_ENDS = STATE_BEGUN + sizeof(spari_frame_tangent_state) / sizeof(double),
@@ -380,8 +380,7 @@ void spari_frame_save(const spar_member *m, double *state) {
                                      f->tangent.cv,
                                      f->steps.started,
                                      f->combined,
-                                     f->tangent.trace.rate,
-                                     f->tangent.trace.left,
+                                     f->tangent.left,
                                      f->steps.begin.h,
                                      f->steps.begin.even,
                                      f->steps.solved.h,
@@ -407,9 +406,9 @@ void spari_frame_save(const spar_member *m, double *state) {
 int spari_frame_is_state(const spar_member *m, const double *state, int64_t count) {
     const spari_frame *f = m->solution;
     const int64_t at = ends_size(f), expected = spari_linear_state_size(f->linear);
-    if (count < at + SPARI_SNAPSHOT_HEAD || state[0] != f->n || !spari_trace_is(state + 6) ||
-        !spari_pattern_is(state[8], state[9]) || !spari_pattern_is(state[10], state[11]) ||
-        !spari_is_count(state[12]) || !spari_is_count(state[13]) || !spari_trace_is(state + STATE_BEGUN + 3)) {
+    if (count < at + SPARI_SNAPSHOT_HEAD || state[0] != f->n || !spari_is_remaining(state[6]) ||
+        !spari_pattern_is(state[7], state[8]) || !spari_pattern_is(state[9], state[10]) || !spari_is_count(state[11]) ||
+        !spari_is_count(state[12]) || !spari_is_remaining(state[STATE_BEGUN + 3])) {
         return 0;
     }
     int64_t factors = state[1] != 0 ? expected : 0, before = SPARI_SNAPSHOT_HEAD + (state[at + 1] > 0 ? expected : 0);
@@ -429,10 +428,10 @@ void spari_frame_load(spar_member *m, const double *state) {
     if (state[5] != 0) {
         spari_frame_combine(f, state + STATE_ROTATION);
     }
-    f->tangent.trace = (spari_trace){state[6], state[7]};
-    f->steps.begin = (spari_pattern){state[8], (int)state[9]};
-    f->steps.solved = (spari_pattern){state[10], (int)state[11]};
-    f->solves = (int64_t)state[12], f->factors = (int64_t)state[13];
+    f->tangent.left = state[6];
+    f->steps.begin = (spari_pattern){state[7], (int)state[8]};
+    f->steps.solved = (spari_pattern){state[9], (int)state[10]};
+    f->solves = (int64_t)state[11], f->factors = (int64_t)state[12];
     memcpy(f->tangent.rates, state + STATE_ROTATION + 6, sizeof f->tangent.rates);
     memcpy(&f->begun, state + STATE_BEGUN, sizeof f->begun);
     const double *at = state + STATE_ENDS;

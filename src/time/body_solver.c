@@ -118,7 +118,7 @@ void spari_solver_poison(spari_solver *s) {
 }
 
 void spari_solver_begin(spari_solver *s) {
-    s->begun = (spari_reuse){s->factored, s->tangent_cm, s->tangent_cv, s->served, s->spent, s->trace};
+    s->begun = (spari_reuse){s->factored, s->tangent_cm, s->tangent_cv, s->served, s->spent, s->left};
     spari_snapshot_open(&s->before, 1);
     s->start.known = 0;
 }
@@ -149,7 +149,7 @@ void spari_solver_reject(spari_solver *s) {
     s->factored = b->factored && s->before.saved >= 0;
     s->tangent_cm = b->cm, s->tangent_cv = b->cv;
     s->served = b->served, s->spent = b->spent;
-    s->trace = b->trace;
+    s->left = b->left;
     if (s->before.saved > 0) {
         const double *from = s->before.data, *factors = from + 4 * (int64_t)s->n;
         memcpy(s->tangent_q, from, (size_t)(4 * s->n) * sizeof *from);
@@ -244,7 +244,7 @@ void spari_solver_effort(const spari_solver *s, spari_effort *e) {
     const spari_body *b = s->body;
     *e = (spari_effort){.iterations = s->newton,
                         .tangents = s->factors,
-                        .left = s->trace.left,
+                        .left = s->left,
                         .nodes = b->unique,
                         .elements = b->elements,
                         .per_element = b->per_element,
@@ -255,7 +255,7 @@ void spari_solver_effort(const spari_solver *s, spari_effort *e) {
 
 /* Per node: 25 doubles at either end of the step, and 4 for the rotation at the reused tangent; 9 with which a
    tangent is formed. */
-enum { STATE_HEAD = 17, STATE_NODE = 54, STATE_OPERATOR = 9, STATE_BEGUN = 7 };
+enum { STATE_HEAD = 16, STATE_NODE = 54, STATE_OPERATOR = 9, STATE_BEGUN = 6 };
 
 /* The factors, or, if there are none, the data from which those for a response are formed. */
 static int64_t tangent_size(const spari_solver *s, int factored) {
@@ -282,8 +282,7 @@ void spari_solver_save(const spari_solver *s, double *state) {
                                      s->steps.begin.even,
                                      (double)s->served,
                                      (double)s->spent,
-                                     s->trace.rate,
-                                     s->trace.left,
+                                     s->left,
                                      s->steps.solved.even};
     size_t n = (size_t)s->n;
     memcpy(state, head, sizeof head);
@@ -296,8 +295,7 @@ void spari_solver_save(const spari_solver *s, double *state) {
         memcpy(state + 4 * n, s->tinv, STATE_OPERATOR * n * sizeof *state);
     }
     const spari_reuse *b = &s->begun;
-    const double begun[STATE_BEGUN] = {b->factored,      b->cm,         b->cv,        (double)b->served,
-                                       (double)b->spent, b->trace.rate, b->trace.left};
+    const double begun[STATE_BEGUN] = {b->factored, b->cm, b->cv, (double)b->served, (double)b->spent, b->left};
     state += 4 * n + (size_t)tangent_size(s, s->factored);
     memcpy(state, begun, sizeof begun);
     spari_snapshot_save(&s->before, state + STATE_BEGUN);
@@ -306,13 +304,13 @@ void spari_solver_save(const spari_solver *s, double *state) {
 int spari_solver_is_state(const spari_solver *s, const double *state, int64_t count) {
     int64_t own = STATE_HEAD + STATE_NODE * (int64_t)s->n;
     if (count < STATE_HEAD || state[0] != s->n || !spari_is_count(state[7]) || !spari_is_count(state[8]) ||
-        !spari_is_count(state[12]) || !spari_is_count(state[13]) || !spari_trace_is(state + 14) ||
-        !spari_pattern_is(state[4], state[11]) || !spari_pattern_is(state[5], state[16])) {
+        !spari_is_count(state[12]) || !spari_is_count(state[13]) || !spari_is_remaining(state[14]) ||
+        !spari_pattern_is(state[4], state[11]) || !spari_pattern_is(state[5], state[15])) {
         return 0;
     }
     const int64_t begun = own + tangent_size(s, state[1] != 0);
     const double *b = state + begun, *before = b + STATE_BEGUN;
-    return count >= begun + STATE_BEGUN && spari_is_count(b[3]) && spari_is_count(b[4]) && spari_trace_is(b + 5) &&
+    return count >= begun + STATE_BEGUN && spari_is_count(b[3]) && spari_is_count(b[4]) && spari_is_remaining(b[5]) &&
            spari_snapshot_is(before, count - begun - STATE_BEGUN, before_size(s)) &&
            (before[1] <= 0 || spari_linear_is_state(s->linear, before + SPARI_SNAPSHOT_HEAD + 4 * (int64_t)s->n)) &&
            (state[1] == 0 || spari_linear_is_state(s->linear, state + own));
@@ -323,12 +321,12 @@ void spari_solver_load(spari_solver *s, const double *state) {
     s->factored = state[1] != 0;
     s->tangent_cm = state[2], s->tangent_cv = state[3];
     s->steps.begin = (spari_pattern){state[4], (int)state[11]};
-    s->steps.solved = (spari_pattern){state[5], (int)state[16]};
+    s->steps.solved = (spari_pattern){state[5], (int)state[15]};
     s->steps.started = state[6] != 0;
     s->newton = (int64_t)state[7], s->factors = (int64_t)state[8];
     s->power = state[9], s->power_begin = state[10];
     s->served = (int64_t)state[12], s->spent = (int64_t)state[13];
-    s->trace.rate = state[14], s->trace.left = state[15];
+    s->left = state[14];
     s->start.known = 0;
     memcpy(s->begin.q, state += STATE_HEAD, 25 * n * sizeof *state);
     memcpy(s->to.q, state += 25 * n, 25 * n * sizeof *state);
@@ -339,7 +337,6 @@ void spari_solver_load(spari_solver *s, const double *state) {
         memcpy(s->tinv, state + 4 * n, STATE_OPERATOR * n * sizeof *state);
     }
     state += 4 * n + (size_t)tangent_size(s, s->factored);
-    s->begun =
-        (spari_reuse){state[0] != 0, state[1], state[2], (int64_t)state[3], (int64_t)state[4], {state[5], state[6]}};
+    s->begun = (spari_reuse){state[0] != 0, state[1], state[2], (int64_t)state[3], (int64_t)state[4], state[5]};
     spari_snapshot_load(&s->before, state + STATE_BEGUN, s->factored);
 }

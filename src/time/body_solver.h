@@ -25,7 +25,7 @@ typedef struct spari_reuse {
     int factored;
     double cm, cv;         /* the tangent's coefficients */
     int64_t served, spent; /* solutions with it, and what they and the tangent itself took, in iterations */
-    spari_trace trace;     /* of Newton; strict: its rate is not used */
+    double left;           /* estimated remaining correction of the last solution, relative to the length, rad */
 } spari_reuse;
 
 /* Forces at the starting values of Newton. These values follow from the motion at t^n, so each iteration of a coupling
@@ -66,7 +66,7 @@ struct spari_solver {
     double tangent_cm, tangent_cv; /* its coefficients */
     int64_t served, spent;         /* solutions with it, and what they and the tangent itself took, in iterations */
     spari_start_forces start;
-    spari_trace trace;     /* of Newton; strict: its rate is not used */
+    double left;           /* estimated remaining correction of the last solution, relative to the length, rad */
     spari_reuse begun;     /* the same at the beginning of the step, */
     spari_snapshot before; /* and its factors */
 };

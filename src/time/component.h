@@ -98,7 +98,7 @@ typedef struct spari_component {
     double *K;                 /* the condensed tangent [6 ends][6 ends], global axes, as the system was formed */
     struct spari_frame *frame; /* if it is linear */
     spari_steps *steps;
-    spari_trace *trace;                   /* of Newton, without ends */
+    double *left;                         /* remaining correction of Newton, without ends */
     const spari_rotating_frame *rotating; /* equilibrium in a rotating frame; NULL: in one at rest */
     double moved_in_step;                 /* of a component without ends: the motion of the stage; 0: not known */
     int moved, owner_before; /* during creation: the rank that had the member before, and the solution of this rank */

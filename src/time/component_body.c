@@ -54,7 +54,7 @@ static void attach_nodes(spari_component *p) {
     p->condensed = s->condensed;
     p->body = s->body;
     p->steps = &s->steps;
-    p->trace = &s->trace;
+    p->left = &s->left;
 }
 
 int spari_component_make_ends(const spari_component *p) {

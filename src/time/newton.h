@@ -17,7 +17,6 @@ typedef struct spari_iterate {
 
 typedef struct spari_newton {
     double farthest; /* a larger correction counts as divergence */
-    double least;    /* lower limit of a contraction rate that the next solution uses */
     /* Computes starting values. Returns 0 if this kind does not exist here. */
     int (*predict)(void *self, spari_guess stays);
     /* Begins an attempt, with the earlier tangent if `reused` and if it may serve. Returns whether there is a tangent.
@@ -42,18 +41,14 @@ typedef struct spari_attempt {
 #define SPARI_SLOW 0.5
 #define SPARI_LONGEST 0.5
 
-/* If a solution ends before it shows a contraction rate, the earlier rate is multiplied by this factor. */
-#define SPARI_AGEING 1.5
-
-static inline double spari_newton_next_rate(const spari_newton *how, double rate) {
-    return rate <= 0 ? 0 : rate < how->least ? how->least : rate < SPARI_SLOW ? rate : SPARI_SLOW;
-}
-
-/* theta is the observed contraction rate, and theta / (1 - theta) times the last correction estimates the remaining
-   correction (Hairer & Wanner, Solving ODEs II, IV.8). Returns NULL, or the reason of a failure. */
+/* theta is the ratio of two corrections of this solution with the same tangent, and theta / (1 - theta) times the last
+   correction estimates the remaining correction (Hairer & Wanner, Solving ODEs II, IV.8). Without such a ratio the
+   remaining correction counts as large as the last one. *left: the remaining correction. Returns NULL, or the reason of
+   a failure. */
 static inline const char *spari_newton_attempt(const spari_newton *how, void *self, spari_attempt try, int most,
-                                               spari_trace *trace, int *iterations) {
-    double last = 0, longest = try.full ? SPARI_LONGEST : INFINITY, known = try.full ? 0 : trace->rate, worst = 0;
+                                               double *left, int *iterations) {
+    double last = 0, longest = try.full ? SPARI_LONGEST : INFINITY;
+    int same = 0; /* the last correction had the same tangent */
     int fresh = !how->begin(self, try.reused);
     for (int it = 1; it <= most; it++, ++*iterations) {
         spari_iterate n;
@@ -62,33 +57,28 @@ static inline const char *spari_newton_attempt(const spari_newton *how, void *se
             return wrong; /* cppcheck-suppress returnDanglingLifetime ; a constant text, not of n */
         }
         double theta = last > 0 ? n.correction / last : 0;
-        double left = last > 0 && theta < 1 && !try.full ? theta / (1 - theta) * n.correction : n.correction;
-        left = last > 0 ? left : left * (known > 0 ? known / (1 - known) : 1);
-        worst = theta > worst ? theta : worst;
-        if (left <= n.tolerance || n.rounded || (theta > 0.5 && n.small)) {
-            trace->left = left;
-            trace->rate =
-                n.rounded ? trace->rate : spari_newton_next_rate(how, last > 0 ? worst : SPARI_AGEING * known);
+        *left = same && theta < 1 ? theta / (1 - theta) * n.correction : n.correction;
+        if (*left <= n.tolerance || n.rounded || (theta > 0.5 && n.small)) {
             how->end(self, it, fresh);
             return NULL;
         }
         if ((theta > 2 || n.correction > how->farthest) && !try.full) {
             return "diverges";
         }
-        if (try.full || theta > SPARI_SLOW) {
+        same = !try.full && theta <= SPARI_SLOW;
+        if (!same) {
             how->renew(self);
             fresh = 1;
-            worst = 0;
         }
         last = n.correction;
     }
     return "does not converge";
 }
 
-/* reused: there is a tangent that may serve. trace: of the last solution; its rate serves the first iteration. Returns
-   NULL, or the reason why the last attempt failed. */
-static inline const char *spari_newton_solve(const spari_newton *how, void *self, int reused, int most,
-                                             spari_trace *trace, int *iterations) {
+/* reused: there is a tangent that may serve. *left: as above. Returns NULL, or the reason why the last attempt failed.
+ */
+static inline const char *spari_newton_solve(const spari_newton *how, void *self, int reused, int most, double *left,
+                                             int *iterations) {
     static const spari_attempt attempts[] = {{1, 0, SPARI_KEEP_ACCELERATION},
                                              {0, 0, SPARI_KEEP_ACCELERATION},
                                              {0, 1, SPARI_KEEP_SHAPE},
@@ -99,7 +89,7 @@ static inline const char *spari_newton_solve(const spari_newton *how, void *self
         if (!how->predict(self, attempts[k].stays)) {
             continue;
         }
-        wrong = spari_newton_attempt(how, self, attempts[k], most, trace, iterations);
+        wrong = spari_newton_attempt(how, self, attempts[k], most, left, iterations);
         if (!wrong) {
             return NULL;
         }

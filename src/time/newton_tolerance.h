@@ -19,10 +19,5 @@ double spari_newton_tolerance(const spar_member *member, const spari_scheme *c, 
 static inline double spari_newton_tolerance_stage(const spar_session *session, const spari_scheme *c, double motion) {
     return 0.25 * (fmin(session->newton.atol, 1e-6 * c->h * c->h) + session->newton.rtol * motion);
 }
-/* Called at the beginning of a solution. With strict tolerances the contraction of earlier solutions does not count. */
-static inline spari_trace *spari_newton_tolerance_begin(const spar_session *session, spari_trace *trace) {
-    trace->rate = session->newton.strict ? 0 : trace->rate;
-    return trace;
-}
 
 #endif

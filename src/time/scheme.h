@@ -26,14 +26,9 @@ typedef struct spari_scheme {
     int still;   /* no inertia: equilibrium at each time, rates from the increments */
 } spari_scheme;
 
-/* Result of the last Newton solution: its contraction rate (0: not known), and the estimated remaining correction
-   relative to the member's length, rad. */
-typedef struct spari_trace {
-    double rate, left;
-} spari_trace;
-/* Whether two numbers of a file can be such values. */
-static inline int spari_trace_is(const double *x) {
-    return x[0] >= 0 && x[0] < 1 && x[1] >= 0 && x[1] <= DBL_MAX;
+/* Whether a number of a file can be Newton's estimated remaining correction. */
+static inline int spari_is_remaining(double x) {
+    return x >= 0 && x <= DBL_MAX;
 }
 
 /* The history of the substeps: the length of the last one (0: none yet), and how many before it had the same length,
