@@ -35,8 +35,8 @@ struct spari_blocks {
     int *near;   /* positions of later blocks, increasing */
     int *offset; /* their first column in U and row in L */
     int *pivot;
-    double *entry, least;
-    int watched, negative; /* whether signs are counted; number of negative ones */
+    double *entry, least[2]; /* entries; smallest pivots, of displacements and of rotations */
+    int watched, negative;   /* whether signs are counted; number of negative ones */
     int64_t entries;
 };
 
@@ -736,17 +736,18 @@ static int factor_untied(spari_blocks *m, block_panel *p) {
 }
 
 int spari_blocks_factor(spari_blocks *m) {
-    m->least = INFINITY;
+    m->least[0] = m->least[1] = INFINITY;
     m->negative = 0;
     for (int p = 0; p < m->n; p++) {
         block_panel *panel = m->panel + p;
         if (panel->held ? factor_tied(m, panel) : factor_untied(m, panel)) {
-            m->least = 0;
+            m->least[0] = m->least[1] = 0;
             return 1;
         }
         for (int k = panel->held; k < panel->size; k++) {
-            double pivot = fabs(panel->D[k * panel->size + k]);
-            m->least = pivot < m->least ? pivot : m->least;
+            double pivot = fabs(panel->D[k * panel->size + k]),
+                   *least = m->least + (panel->size == SIX && (panel->mixed ? panel->order[k] : k) >= 3);
+            *least = pivot < *least ? pivot : *least;
         }
         update_later(m, panel);
         if (panel->to >= 0) {
@@ -756,8 +757,8 @@ int spari_blocks_factor(spari_blocks *m) {
     return 0;
 }
 
-double spari_blocks_least_pivot(const spari_blocks *m) {
-    return m->least;
+void spari_blocks_least_pivots(const spari_blocks *m, double least[2]) {
+    memcpy(least, m->least, sizeof m->least);
 }
 
 /* x_later -= L own, of `count` unknowns of the panel from `from` on */

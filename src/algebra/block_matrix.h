@@ -54,8 +54,9 @@ double *spari_blocks_at(spari_blocks *matrix, int i, int j, int *stride);
 spari_tie *spari_blocks_tie(spari_blocks *matrix, int i);
 /* Returns 0, or 1 if a pivot is 0 or not finite. */
 int spari_blocks_factor(spari_blocks *matrix);
-/* Smallest pivot of the last factorisation. */
-double spari_blocks_least_pivot(const spari_blocks *matrix);
+/* Smallest pivots of the last factorisation: of displacements, which are the first three of a block, and of rotations.
+   Blocks of other sizes than 6 count as displacements. */
+void spari_blocks_least_pivots(const spari_blocks *matrix, double least[2]);
 /* Switches the counting of negative eigenvalues of a symmetric matrix on or off. They are those of the pivot blocks
    (Sylvester's law of inertia), which have 12 rows at most. */
 void spari_blocks_watch(spari_blocks *matrix, int on);

@@ -30,9 +30,6 @@
 
 enum { ITERATIONS = 60, HALVINGS = 14 };
 
-/* A system whose smallest pivot is below this part of its largest stiffness is singular apart from rounding. */
-static const double loose = 1e-13;
-
 /* Result of a load step: an equilibrium, or none. LOOSE: a motion is not constrained. UNSTABLE: the equilibrium does
    not last, or the path to it passes a limit or bifurcation point. LONG: it needs too many load steps. */
 typedef enum outcome { FOUND, FAILED, LOOSE, UNSTABLE, LONG } outcome;
@@ -44,11 +41,13 @@ typedef struct equilibrium {
     int potential;      /* the loads have one, so the stability of an equilibrium is known */
     spari_linear *path; /* the tangent of a member without joints, if its path is watched */
     int on_path;        /* the last point is on the path */
+    double unbalanced;  /* largest residual of the latest iterate; infinite if the loads have no potential */
     char motion[240];   /* that is not constrained or unstable */
 } equilibrium;
 
 /* Residual at the load factor f, and gaps with driven motions at the same part of their way. */
-static double balance_static(spari_assembly *a, double f, double *residual_size) {
+static double balance_static(equilibrium *t, double f, double *residual_size) {
+    spari_assembly *a = t->a;
     double scale = 0;
     for (int i = 0; i < a->components; i++) {
         scale = fmax(scale, a->component[i].row->balance_static(a->component + i, f));
@@ -61,16 +60,19 @@ static double balance_static(spari_assembly *a, double f, double *residual_size)
         for (int k = 0; k < 6; k++) {
             l->drive.z[k] = j->now.z[k] + f * (j->drive[1].z[k] - j->now.z[k]);
             l->gap[k] = spari_constraint_holds(l, k) ? spari_constraint_gap(l, k) : 0;
-            scale = fmax(scale, fabs(j->after.load[k]));
+            scale = fmax(scale, fabs(j->after.load[k]) / (k < 3 ? 1 : l->reach));
         }
+    }
+    for (int i = 0; i < a->components; i++) {
+        spari_constraints_add_forces(a, a->component + i);
     }
     *residual_size = 0;
     for (int i = 0; i < a->components; i++) {
-        spari_constraints_add_forces(a, a->component + i);
         double left = a->component[i].row->residual_size(a->component + i);
         *residual_size = fmax(*residual_size, left);
         scale += 0 * left;
     }
+    t->unbalanced = t->potential ? *residual_size : INFINITY;
     return scale;
 }
 
@@ -105,7 +107,7 @@ static int may_end(const spari_assembly *a, int it, double scale, double size) {
     double change = 0;
     for (int i = 0; i < a->constraints && it < 3; i++) {
         for (int k = 0; k < 6; k++) {
-            change = fmax(change, fabs(a->constraint[i].correction[k]));
+            change = fmax(change, fabs(a->constraint[i].correction[k]) / (k < 3 ? 1 : a->constraint[i].reach));
         }
     }
     return a->constraints == 0 || (change <= 1e-6 * scale && size < 1e-7);
@@ -131,11 +133,12 @@ static int has_potential_loads(const spari_assembly *a, const double *(*fluid)(c
 /* Solves for the corrections with the smallest shift that makes the system that of a minimum: 0, or one of a
    sequence that grows by a factor of 4. *last_shift: the last shift that was not 0. Returns the fault of the system
    without a shift. */
-static outcome solve_downhill(spari_assembly *a, double f, double *last_shift) {
+static outcome solve_downhill(equilibrium *t, double f, double *last_shift) {
+    spari_assembly *a = t->a;
     enum { SHIFTS = 30 };
     outcome why = FOUND;
     a->shift = 0;
-    if (solve_static(a, f) || spari_system_weakest_pivot(a) < loose) {
+    if (solve_static(a, f) || spari_system_is_loose(a, t->unbalanced)) {
         why = LOOSE;
     } else if (spari_system_count_negative(a) > 0) {
         why = UNSTABLE;
@@ -144,7 +147,8 @@ static outcome solve_downhill(spari_assembly *a, double f, double *last_shift) {
     for (int i = 0, wrong = why != FOUND; i < SHIFTS && wrong; i++, shift *= 4) {
         a->system_serves = 0;
         a->shift = *last_shift = shift;
-        wrong = spari_system_solve(a, 0) || spari_system_weakest_pivot(a) < loose || spari_system_count_negative(a) > 0;
+        wrong =
+            spari_system_solve(a, 0) || spari_system_count_negative(a) > 0 || spari_system_is_loose(a, t->unbalanced);
         if (wrong && i == SHIFTS - 1) {
             return FAILED;
         }
@@ -154,20 +158,22 @@ static outcome solve_downhill(spari_assembly *a, double f, double *last_shift) {
 
 /* Finds a stable equilibrium at the load factor f from the states `to`, always downhill. LOOSE: a motion is
    not constrained there. UNSTABLE: the equilibrium found is unstable. */
-static outcome find_downhill(spari_assembly *a, double f) {
+static outcome find_downhill(equilibrium *t, double f) {
+    spari_assembly *a = t->a;
     enum { DOWNHILL = 400 };
     const double longest = 0.3;
     double last = 0, last_shift = 0;
     outcome why = FOUND;
     for (int it = 0; it < DOWNHILL && why != FAILED; it++) {
-        double residual_size, cut, scale = balance_static(a, f, &residual_size);
+        double residual_size, cut, scale = balance_static(t, f, &residual_size);
         if (!isfinite(scale)) {
             return FAILED;
         }
         if (it == 0) {
-            last_shift = 16 * (residual_size > 0 ? residual_size : 1) / spari_member_length(a->component[0].member);
+            last_shift = residual_size > 0 ? 16 * residual_size / spari_member_length(a->component[0].member)
+                                           : DBL_EPSILON * a->scale[0];
         }
-        why = solve_downhill(a, f, &last_shift);
+        why = solve_downhill(t, f, &last_shift);
         if (why == FAILED) {
             break;
         }
@@ -184,7 +190,7 @@ static outcome find_downhill(spari_assembly *a, double f) {
 /* ---- a load step ---- */
 
 /* Whether the equilibrium is stable: no maximum or saddle, apart from motions without stiffness. */
-static outcome judge(const equilibrium *t, double f) {
+static outcome judge(equilibrium *t, double f) {
     spari_assembly *a = t->a;
     if (t->path) {
         return a->component[0].row->definite_static(a->component, f) == 0 ? UNSTABLE : FOUND;
@@ -195,23 +201,23 @@ static outcome judge(const equilibrium *t, double f) {
     spari_blocks_watch(a->system, 1);
     int singular = solve_static(a, f);
     spari_blocks_watch(a->system, 0);
-    int unstable = !singular && spari_system_weakest_pivot(a) >= loose && spari_system_count_negative(a) > 0;
+    int unstable = !singular && spari_system_count_negative(a) > 0 && !spari_system_is_loose(a, t->unbalanced);
     return unstable ? UNSTABLE : FOUND;
 }
 
 /* By Newton from the present state. */
-static outcome find_nearby(const equilibrium *t, double f) {
+static outcome find_nearby(equilibrium *t, double f) {
     const double longest = 0.8; /* a correction rotates no node by more (rad), and moves it by no more of the length */
     spari_assembly *a = t->a;
     double last = 0;
     a->shift = 0;
     for (int it = 0; it < ITERATIONS; it++) {
-        double residual_size, cut, scale = balance_static(a, f, &residual_size);
+        double residual_size, cut, scale = balance_static(t, f, &residual_size);
         if (!isfinite(scale)) {
             return FAILED;
         }
         int singular = solve_static(a, f);
-        if (a->constraints > 0 && (singular || spari_system_weakest_pivot(a) < loose)) {
+        if (a->constraints > 0 && (singular || spari_system_is_loose(a, t->unbalanced))) {
             return LOOSE;
         }
         if (singular || (t->path && t->on_path && spari_linear_sign(t->path) < 0)) {
@@ -256,7 +262,7 @@ static outcome find_point(equilibrium *t, double f, int first) {
     if ((found == LOOSE && first) || found == UNSTABLE) {
         keep_point(t, 1);
         spari_blocks_watch(a->system, 1);
-        found = find_downhill(a, f);
+        found = find_downhill(t, f);
         spari_blocks_watch(a->system, 0);
         a->shift = 0;
         if (found == LOOSE || found == UNSTABLE) { /* where the downhill iteration has ended */
@@ -285,7 +291,7 @@ static void begin_equilibrium(equilibrium *t, int onward) {
     if (t->path) {
         double residual_size;
         t->on_path =
-            isfinite(balance_static(a, 0, &residual_size)) && residual_size <= 1e-9 * a->component[0].body->stiffest;
+            isfinite(balance_static(t, 0, &residual_size)) && residual_size <= 1e-9 * a->component[0].body->stiffest;
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include "../math/rotation.h"
 
+#include <float.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -152,7 +153,8 @@ static void add_part(spari_assembly *a, spari_component *p) {
         }
     }
     for (int i = 0; i < m; i++) {
-        a->scale = spari_larger(a->scale, fabs(p->K[(m + 1) * i]));
+        double *scale = a->scale + (i % 6 >= 3);
+        *scale = spari_larger(*scale, fabs(p->K[(m + 1) * i]));
     }
 }
 
@@ -287,7 +289,7 @@ static double scale_of_constraint(spari_assembly *a, const spari_constraint *l) 
             }
         }
     }
-    return scale > 0 ? scale : a->scale;
+    return scale > 0 ? scale : a->scale[0];
 }
 
 /* The multipliers of a constraint that closes a loop have a block of their own. */
@@ -454,11 +456,12 @@ static void add_shift(spari_assembly *a) {
 static void fill_system(spari_assembly *a, double cv, double penalty) {
     a->penalty = penalty;
     spari_blocks_zero(a->system);
-    a->scale = 0;
+    a->scale[0] = a->scale[1] = 0;
     for (int i = 0; i < a->components; i++) {
         add_part(a, a->component + i);
     }
-    a->scale = a->scale > 0 ? a->scale : 1;
+    a->scale[0] = a->scale[0] > 0 ? a->scale[0] : 1;
+    a->scale[1] = a->scale[1] > 0 ? a->scale[1] : 1;
     for (int i = 0; i < a->constraints; i++) {
         add_constraint_stiffness(a, a->constraint + i, cv);
     }
@@ -480,7 +483,7 @@ static void fill_system(spari_assembly *a, double cv, double penalty) {
         for (int k = 0; k < v->fixed && v->cluster == i; k++) {
             int stride;
             double *block = spari_blocks_at(a->system, v->block, v->block, &stride);
-            block[(stride + 1) * k] = a->scale;
+            block[(stride + 1) * k] = a->scale[k >= 3];
         }
     }
     if (a->shift > 0) {
@@ -510,6 +513,13 @@ static int form_system(spari_assembly *a, double cv, double penalty) {
     return singular;
 }
 
+/* The smallest pivot, relative to the largest stiffness of its kind: of displacements or of rotations. */
+static double weakest_pivot(const spari_assembly *a) {
+    double least[2];
+    spari_blocks_least_pivots(a->system, least);
+    return fmin(least[0] / a->scale[0], least[1] / a->scale[1]);
+}
+
 /* Forms and factors the system. With one penalty a block may be singular by chance, but not with two different ones.
    Returns 0 or 1. */
 static int factor_system(spari_assembly *a, double cv) {
@@ -520,7 +530,7 @@ static int factor_system(spari_assembly *a, double cv) {
             return 1;
         }
         singular = spari_blocks_factor(a->system);
-        if (!a->loops || spari_system_weakest_pivot(a) > weak) {
+        if (!a->loops || weakest_pivot(a) > weak) {
             break;
         }
     }
@@ -684,6 +694,18 @@ static void load_loop(const spari_assembly *a, const spari_constraint *l, int ga
         const spari_interface *v = moving(a, l->node[side]);
         if (v) {
             load_node(a, v, f + 6 * side, c);
+        }
+    }
+}
+
+/* The forces y of the interface nodes in column c. */
+static void load_forces(const spari_assembly *a, const double *y, int c) {
+    for (int i = 0; i < a->interfaces; i++) {
+        const spari_interface *v = a->interface + i;
+        if (v->cluster >= 0) {
+            double f[6];
+            memcpy(f, y + 6 * i, sizeof f);
+            load_node(a, v, f, c);
         }
     }
 }
@@ -901,8 +923,91 @@ int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acce
     return 0;
 }
 
-double spari_system_weakest_pivot(const spari_assembly *a) {
-    return spari_blocks_least_pivot(a->system) / a->scale;
+/* The moment that a load causes if its lever arms rotate by 1 rad. */
+static double moment_of_load(const spari_constraint *l, const double load[6]) {
+    return l->reach * spari_norm(load) + spari_norm(load + 3);
+}
+
+/* |x|^T |K| |x| of a constraint in the motion a->x: of its springs, and of its loads, which are as accurate as those
+   from which the iteration began. */
+static double stiffness_of_constraint(const spari_assembly *a, const spari_constraint *l) {
+    const double moment = moment_of_load(l, l->joint->after.load) + moment_of_load(l, l->begin.load);
+    double K[12][12], x[12], sum = 0;
+    constraint_tangent(a, l, 0, K);
+    for (int i = 0; i < 12; i++) {
+        x[i] = l->node[i / 6] < 0 ? 0 : a->x[6 * l->node[i / 6] + i % 6];
+        sum += i % 6 < 3 ? 0 : moment * x[i] * x[i];
+    }
+    for (int i = 0; i < 144; i++) {
+        sum += fabs(x[i / 12] * K[i / 12][i % 12] * x[i % 12]);
+    }
+    return sum;
+}
+
+/* The largest difference between K_ij and K_ji of a component, in N/m, beyond those of unbalanced moments of its nodes:
+   rounding of its condensation. Two rotations of a node do not commute, and are left out. */
+static double lopsidedness(const spari_component *p, double unbalanced) {
+    const double length = spari_member_length(p->member);
+    double most = 0;
+    for (int i = 0, m = 6 * p->condensed->ends; i < m; i++) {
+        for (int j = 0; j < i; j++) {
+            double size = (i % 6 < 3 ? 1 : length) * (j % 6 < 3 ? 1 : length);
+            int rotations = i % 6 >= 3 && j % 6 >= 3 && i / 6 == j / 6;
+            most = rotations ? most : fmax(most, fabs(p->K[m * i + j] - p->K[m * j + i]) / size);
+        }
+    }
+    return fmax(0, most - unbalanced * p->body->unique / length);
+}
+
+/* The same of a component and its constraints. Before condensation its stiffness is larger: `stiffest` is its force for
+   a strain of 1, so that a motion of 1 between nodes n apart has n times this over the length. */
+static double stiffness_of_motion(const spari_assembly *a, const spari_component *p, double unbalanced) {
+    const double *x = a->x + p->at, length = spari_member_length(p->member);
+    const double within = p->body->stiffest * p->body->unique / length + lopsidedness(p, unbalanced) / DBL_EPSILON;
+    double sum = 0;
+    for (int i = 0, m = 6 * p->condensed->ends; i < m; i++) {
+        double way = fabs(x[i]) * (i % 6 < 3 ? 1 : length);
+        sum += within * way * way;
+        for (int j = 0; j < m; j++) {
+            sum += fabs(x[i] * p->K[m * i + j] * x[j]);
+        }
+    }
+    for (int n = 0; n < p->member->joint_count; n++) {
+        sum += stiffness_of_constraint(a, a->constraint + p->member->joints[n]->constraint);
+    }
+    return sum;
+}
+
+/* The motion caused by a force F on every interface node and a moment F times the member's length does the work W. If a
+   stiffness k opposes the motion, W is of the size k |x|^2, and rounding errors are of the size eps |x|^T |K| |x|: both
+   are energies, so that no unit matters. */
+int spari_system_is_loose(spari_assembly *a, double unbalanced) {
+    static const double rounding = 256 * DBL_EPSILON;
+    a->columns = 1;
+    memset(a->b, 0, (size_t)spari_blocks_rows(a->system) * sizeof *a->b);
+    for (int i = 0; i < a->components; i++) {
+        const spari_component *p = a->component + i;
+        for (int k = 0, m = 6 * p->condensed->ends; k < m; k++) {
+            double sign = sin(1 + 12.9898 * (p->at + k));
+            a->y[p->at + k] = copysign(0.5, sign) + sign;
+            a->y[p->at + k] *= k % 6 < 3 ? 1 : spari_member_length(p->member);
+        }
+    }
+    load_forces(a, a->y, 0);
+    if (spari_blocks_solve(a->system, 1, a->b)) {
+        return 1;
+    }
+    show_motion(a, 0, a->x);
+    int loose = 0;
+    for (int i = 0; i < a->components && !loose; i++) {
+        const spari_component *p = a->component + i;
+        double work = 0;
+        for (int k = p->at; k < p->at + 6 * p->condensed->ends; k++) {
+            work += fabs(a->y[k] * a->x[k]);
+        }
+        loose = !(work >= rounding * stiffness_of_motion(a, p, unbalanced));
+    }
+    return loose;
 }
 
 int spari_system_count_negative(const spari_assembly *a) {
@@ -962,7 +1067,7 @@ static int free_motion(spari_assembly *a) {
         int block = a->interface[i].cluster == i ? a->interface[i].block : -1, stride;
         for (int k = 0; k < 6 && block >= 0; k++) {
             double *entry = spari_blocks_at(a->system, block, block, &stride);
-            entry[(stride + 1) * k] += 1e-12 * a->scale;
+            entry[(stride + 1) * k] += 1e-12 * a->scale[k >= 3];
         }
     }
     if (spari_blocks_factor(a->system)) {

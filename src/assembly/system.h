@@ -60,7 +60,7 @@ struct spari_assembly {
     int rotates_far;      /* joints rotate far in a substep */
     int system_serves;    /* the system below is factored, for the present tangents and this cv, */
     double cv, moved;     /* and the motion of the components since; only within a solution */
-    double scale;         /* its largest stiffness */
+    double scale[2];      /* its largest stiffness, of displacements and of rotations */
     double penalty;       /* of constraints that close loops, by their scale */
     double shift;         /* additional stiffness of every motion of a cluster, N/m; at rest */
     spari_blocks *system;
@@ -85,8 +85,9 @@ void spari_assembly_look(spari_assembly *a, double dt);
 int spari_assembly_solve(spari_assembly *a, double cv);
 /* Subtracts the part `cut` of the multipliers' corrections. */
 void spari_constraints_correct_loads(spari_assembly *a, double cut);
-/* The smallest pivot of the system factored last, relative to the largest stiffness. */
-double spari_system_weakest_pivot(const spari_assembly *a);
+/* Whether the system factored last has a motion whose stiffness rounding hides. unbalanced: the largest
+   residual of the components; infinite if their loads have no potential. Destroys x, y and b. */
+int spari_system_is_loose(spari_assembly *a, double unbalanced);
 /* The number of negative eigenvalues of that system, apart from those of its multipliers, if the system counts them
    (block_matrix.h). There are none where the potential of the loads has a minimum. */
 int spari_system_count_negative(const spari_assembly *a);

@@ -378,9 +378,9 @@ static int check_line(spar_member *member, const double *gll, const double *bary
     for (int k = 0; k < 3; k++) { /* positions lose digits with the distance from the origin */
         far = fmax(far, fmax(fabs(x[k]), fabs(member->placement.x[k])));
     }
-    SPARI_REQUIRE(member->session, length >= 1e-9 * far && length >= 1e-9, SPAR_ERR_ARGUMENT,
-                  "member '%s': its points coincide: its axis is %.3g m long; give at least 1e-9 m and 1e-9 of its "
-                  "distance from the origin",
+    SPARI_REQUIRE(member->session, length >= 1e-9 * far && length > 0, SPAR_ERR_ARGUMENT,
+                  "member '%s': its points coincide: its axis is %.3g m long; give at least 1e-9 of its distance from "
+                  "the origin",
                   member->name, length);
     SPARI_TRY(check_forward(member, gll, bary, x, length));
     for (int64_t i = 0; i < member->nodes; i++) {

@@ -117,6 +117,33 @@ static void initial_accelerations(void **state) {
     agrees(0, INITIAL);
 }
 
+/* A cantilever of steel with a body welded to its tip, in SI; only its length changes. F L^2 / (3 EI) = 1/300; its own
+   shear adds 2e-4 of this. */
+static void small_assemblies(void **state) {
+    (void)state;
+    double first = 0;
+    for (double L = 1e4; L > 5e-13; L /= 10) {
+        const double d[2] = {L / 60, L / 20}, end[3] = {L, 0, 0};
+        double p[SPAR_SECTION_COUNT], K[36], M[36], q[7];
+        spar_session *s = scene_session();
+        OK(s, spar_section_from_shape(SPAR_SHAPE_RECTANGLE, 2, d, 2e11, 0.3, 7800, SPAR_SECTION_COUNT, p));
+        OK(s, spar_section_build(SPAR_SECTION_COUNT, p, K, M));
+        const double m = p[SPAR_SECTION_MASS] * L, J[3] = {0.01 * m * L * L, 0.01 * m * L * L, 0.01 * m * L * L},
+                     F[6] = {0, 0.01 * p[SPAR_SECTION_EI_Z] / (L * L)};
+        spar_member *b = scene_beam(s, "beam", 2, 7, L, K, M);
+        OK(s, spar_member_commit(b));
+        spar_member *t = scene_body(s, "tip", end, m, J);
+        (void)scene_joint(s, "weld", t, 0, b, 13, 0);
+        OK(s, spar_member_set_load(t, 0, SPAR_LOAD_DEAD, F));
+        OK(s, spar_member_solve_static(b, 1));
+        scene_tip(b, q);
+        first = first > 0 ? first : q[1] / L;
+        NEAR(q[1] / L, 1. / 300, 1e-6);
+        NEAR(q[1] / L, first, 1e-9);
+        spar_session_destroy(&s);
+    }
+}
+
 /* The force that rounding errors of Newton are relative to: EA here, in millimetres and kilometres too. */
 static void rounding(void **state) {
     (void)state;
@@ -134,6 +161,7 @@ int main(void) {
         cmocka_unit_test(steps),
         cmocka_unit_test(equilibrium),
         cmocka_unit_test(initial_accelerations),
+        cmocka_unit_test(small_assemblies),
         cmocka_unit_test(rounding),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

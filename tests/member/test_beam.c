@@ -292,7 +292,7 @@ static void test_coinciding_nodes(void **state) {
         spar_member *b = NULL;
         double x[12] = {0};
         for (int i = 0; i < 4; i++) {
-            x[3 * i] = k < 3 ? wrong[k][i] : 1e-15 * i;
+            x[3 * i] = k < 3 ? wrong[k][i] : k == 4 ? 1e-15 * i : 0;
             x[3 * i + 1] = k == 4 ? 1e3 : 0;
             x[3 * i] *= k == 4 ? 1e8 : 1; /* 3e-7 m, a kilometre away */
         }
