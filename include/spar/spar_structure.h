@@ -343,8 +343,8 @@ SPAR_API int spar_member_get_work(const spar_member *member, int64_t capacity, d
 /* Static equilibrium of one member, and of all members that joints connect to it, under gravity, applied loads and the
    fluid's present loads. It starts from the present state; velocities become 0. With a fluid that responds use
    spar_session_solve_static. Collective, between steps.
-     load_steps: in, 1 to 100000, number of equal parts in which the loads are applied. A part that fails is halved, up
-           to 5000 times.
+     load_steps: in, 1 to 100000, number of equal parts in which the loads are applied, from those that balance the
+           present state on. A part that fails is halved, up to 5000 times.
    A driven root in steady rotation gives the equilibrium in the rotating frame, with centrifugal loads. Members
    connected to such a root, to a node with prescribed rotation or to a hinge driven at constant rate rotate with
    it. The result is a stable equilibrium: of dead forces the one that growing loads lead to. Members held by their

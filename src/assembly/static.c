@@ -42,8 +42,20 @@ typedef struct equilibrium {
     spari_linear *path; /* the tangent of a member without joints, if its path is watched */
     int on_path;        /* the last point is on the path */
     double unbalanced;  /* largest residual of the latest iterate; infinite if the loads have no potential */
+    double *before;     /* nodal forces that balance the first state without the loads; NULL: not known */
     char motion[240];   /* that is not constrained or unstable */
 } equilibrium;
+
+/* Adds `part` of the forces that balance the first state. */
+static void add_forces_before(const equilibrium *t, double part) {
+    const double *from = t->before;
+    for (int i = 0; i < t->a->components && from && part > 0; i++) {
+        spari_solver *s = t->a->component[i].solver;
+        for (int k = 0; s && k < 6 * s->n; k++) {
+            s->r[k] -= part * *from++;
+        }
+    }
+}
 
 /* Residual at the load factor f, and gaps with driven motions at the same part of their way. */
 static double balance_static(equilibrium *t, double f, double *residual_size) {
@@ -66,6 +78,7 @@ static double balance_static(equilibrium *t, double f, double *residual_size) {
     for (int i = 0; i < a->components; i++) {
         spari_constraints_add_forces(a, a->component + i);
     }
+    add_forces_before(t, 1 - f);
     *residual_size = 0;
     for (int i = 0; i < a->components; i++) {
         double left = a->component[i].row->residual_size(a->component + i);
@@ -275,24 +288,36 @@ static outcome find_point(equilibrium *t, double f, int first) {
 
 /* ---- the load steps ---- */
 
-/* Begins from the last shapes (onward), else from t^n. The path begins there if the state is in equilibrium without
-   loads. */
-static void begin_equilibrium(equilibrium *t, int onward) {
+/* Begins from the last shapes (onward), else from t^n. before: receives the forces that balance this state without the
+   loads, so that the path begins there; NULL: the loads begin at 0. Returns whether they count. */
+static int begin_equilibrium(equilibrium *t, int onward, double *before) {
     spari_assembly *a = t->a;
+    double stiffest = 0, residual_size;
     for (int i = 0; i < a->components; i++) {
         a->component[i].rotating = a->rotates ? &a->rotating : NULL;
         a->component[i].row->begin_static(a->component + i, t->fluid(a->component[i].member), onward);
+        stiffest = a->component[i].body ? fmax(stiffest, a->component[i].body->stiffest) : stiffest;
     }
     for (int i = 0; i < a->constraints && !onward; i++) {
         a->constraint[i].joint->after = a->constraint[i].joint->now;
     }
     t->motion[0] = 0;
+    t->before = NULL;
     keep_point(t, 0);
-    if (t->path) {
-        double residual_size;
-        t->on_path =
-            isfinite(balance_static(t, 0, &residual_size)) && residual_size <= 1e-9 * a->component[0].body->stiffest;
+    if (onward) {
+        t->on_path = !t->path;
+        return 0;
     }
+    int finite = isfinite(balance_static(t, 0, &residual_size)), loaded = !(residual_size <= 1e-9 * stiffest);
+    t->on_path = !t->path || (finite && !loaded);
+    double *to = before;
+    for (int i = 0; i < a->components && before && finite; i++) {
+        const spari_solver *s = a->component[i].solver;
+        spari_give(to, s ? s->r : NULL, s ? 6 * s->n : 0);
+        to += s ? 6 * s->n : 0;
+    }
+    t->before = finite ? before : NULL;
+    return loaded;
 }
 
 /* Keeps the last point. Returns the part of the load that was reached. */
@@ -314,6 +339,32 @@ static double follow_loads(equilibrium *t, int load_steps, outcome *why) {
         step *= 0.5;
         halvings += *why == LOOSE && done == 0 ? HALVINGS : 1;
     }
+    return done;
+}
+
+/* From t^n: along a path that begins in this state, with the loads that balance it. If this ends before the loads are
+   reached, from loads of 0. */
+static double follow_loads_from_state(equilibrium *t, int load_steps, outcome *why) {
+    int64_t count = 0;
+    for (int i = 0; i < t->a->components; i++) {
+        count += t->a->component[i].solver ? 6 * t->a->component[i].solver->n : 0;
+    }
+    double *before = spari_zalloc(count, sizeof *before);
+    int loaded = begin_equilibrium(t, 0, before);
+    double done = follow_loads(t, load_steps, why);
+    if (done < 1 && loaded && before) {
+        outcome other;
+        char motion[sizeof t->motion];
+        memcpy(motion, t->motion, sizeof motion);
+        (void)begin_equilibrium(t, 0, NULL);
+        if (follow_loads(t, load_steps, &other) < 1) {
+            memcpy(t->motion, motion, sizeof motion);
+        } else {
+            done = 1;
+        }
+    }
+    free(before);
+    t->before = NULL;
     return done;
 }
 
@@ -383,12 +434,11 @@ static int find_equilibrium_of(equilibrium *t, int load_steps, int onward) {
     double done = 0;
     t->potential = !a->rotates && has_potential_loads(a, t->fluid);
     if (onward) {
-        begin_equilibrium(t, 1);
+        (void)begin_equilibrium(t, 1, NULL);
         done = follow_loads(t, 1, &why);
     }
     if (done < 1) {
-        begin_equilibrium(t, 0);
-        done = follow_loads(t, load_steps, &why);
+        done = follow_loads_from_state(t, load_steps, &why);
     }
     a->factored = 0;
     a->stepping = a->formed = 0;
