@@ -248,17 +248,32 @@ void spari_frame_poison(spari_frame *f) {
     spari_poison(f->to.y, 4 * (int64_t)f->n);
 }
 
-/* The factored products of the free columns, which are linearly independent. */
-static int factor_gram(spari_frame *f) {
-    int n = f->n;
+/* x [6 f->nodes][n]: the rows of rotations, times `by` */
+static void scale_rotations(const spari_frame *f, int n, double by, double *x) {
+    for (int i = 0; i < f->nodes; i++) {
+        cblas_dscal(3 * n, by, x + (int64_t)n * (6 * i + 3), 1);
+    }
+}
+
+/* The factored products of the free columns, which are linearly independent. Rotations count at the member's length. */
+static int factor_gram(spari_frame *f, double length) {
+    const int n = f->n;
+    const int64_t size = 6 * (int64_t)f->nodes * n;
     if (f->gram) {
         return SPAR_OK;
     }
-    if (!(f->gram = spari_zalloc((int64_t)n * n, sizeof *f->gram))) {
+    double *scaled = spari_zalloc(size, sizeof *scaled);
+    f->gram = spari_zalloc((int64_t)n * n, sizeof *f->gram);
+    if (!f->gram || !scaled) {
+        SPARI_FREE(f->gram, scaled);
+        f->gram = NULL;
         return SPAR_ERR_MEMORY;
     }
-    SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, n, n, 6 * f->nodes, 1, f->basis, n, f->basis, n, 0,
+    memcpy(scaled, f->basis, (size_t)size * sizeof *scaled);
+    scale_rotations(f, n, length, scaled);
+    SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, n, n, 6 * f->nodes, 1, scaled, n, scaled, n, 0,
                            f->gram, n));
+    free(scaled);
     for (int k = 0; k < f->constrained * n; k++) {
         int i = k / n, j = k % n;
         f->gram[i * n + j] = f->gram[j * n + i] = i == j;
@@ -270,7 +285,8 @@ static int factor_gram(spari_frame *f) {
     return SPAR_OK;
 }
 
-/* phi (phi^T phi)^-1 phi^T load, with phi the basis: the smallest load with the same modal loads. */
+/* S phi (phi^T S phi)^-1 phi^T load, with phi the basis, and S 1 for forces and the member's length squared for
+   moments: the smallest load with the same modal loads, moments divided by the length. */
 int spari_frame_effective_load(spar_member *m, double *load) {
     spari_frame *f = m->solution;
     const double *root = f->to.root.q;
@@ -279,7 +295,8 @@ int spari_frame_effective_load(spar_member *m, double *load) {
         spari_member_even_loads(m, load);
         return SPAR_OK;
     }
-    SPARI_TRY(factor_gram(f));
+    const double length = spari_member_length(m);
+    SPARI_TRY(factor_gram(f, length));
     if (!f->gram) {
         return SPAR_OK;
     }
@@ -291,6 +308,7 @@ int spari_frame_effective_load(spar_member *m, double *load) {
     memset(f->dx, 0, (size_t)f->constrained * sizeof *f->dx);
     spari_cholesky_solve(n, f->gram, f->dx);
     SPARI_BLAS(cblas_dgemv(CblasRowMajor, CblasNoTrans, 6 * f->nodes, n, 1, f->basis, n, f->dx, 1, 0, f->nodal, 1));
+    scale_rotations(f, 1, length * length, f->nodal);
     for (int64_t i = 0; i < 6 * f->nodes; i += 3) {
         spari_rotate(root + 3, f->nodal + i, f->global + i);
     }
