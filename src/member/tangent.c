@@ -207,18 +207,28 @@ void spari_body_tangent(const spari_body *body, int e, const double *q, const do
     add_turned_forces(body, e, &t, S);
 }
 
-/* The tangent is linear in cm and cv. Large values avoid cancellation: with 1, the mass of a stiff beam would keep
-   few digits. */
+/* The tangent is linear in cm and cv. Large values avoid cancellation: with 1, the mass of a stiff beam would keep few
+   digits. out := C (which 0) or M (1), of a tangent with `large` times it beside S. Returns whether S is so large, in
+   these units of time, that its rounding counts. */
+static int rates_part(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor,
+                      const double *S, int which, double large, double *out) {
+    double most = 0, most_of_S = 0;
+    spari_body_tangent(body, e, q, v, a, factor, which == 1 ? large : 0, which == 0 ? large : 0, NULL, out);
+    for (int i = 0; i < 36 * body->per_element * body->per_element; i++) {
+        out[i] -= S[i];
+        most = fmax(most, fabs(out[i])), most_of_S = fmax(most_of_S, fabs(S[i]));
+        out[i] /= large;
+    }
+    return most > 0 && most < 0x1p20 * most_of_S;
+}
+
 void spari_body_rates(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor,
                       const double *S, double *C, double *M) {
-    const double large = 0x1p60;
     double *out[2] = {C, M};
     for (int k = 0; k < 2; k++) {
-        if (out[k]) {
-            spari_body_tangent(body, e, q, v, a, factor, k == 1 ? large : 0, k == 0 ? large : 0, NULL, out[k]);
-            for (int i = 0; i < 36 * body->per_element * body->per_element; i++) {
-                out[k][i] = (out[k][i] - S[i]) / large;
-            }
+        double large = 0x1p60;
+        while (out[k] && rates_part(body, e, q, v, a, factor, S, k, large, out[k]) && large < 0x1p240) {
+            large *= 0x1p60;
         }
     }
 }
