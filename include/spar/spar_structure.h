@@ -379,7 +379,8 @@ SPAR_API int spar_member_solve_eigenvalues(spar_member *member, int64_t n, const
 /* Chooses stiffness-proportional damping such that two modes have given damping ratios. It replaces
    spar_beam_set_damping and adds to mass damping. Each mode sets mu of its dominant group of strains (bending about
    y with shear z, bending about z with shear y, torsion with stretch); the third group gets the geometric mean.
-   Between commit and first step. Collective.
+   A warning names a mode that gets more than 3 times the largest ratio chosen, or, of an assembly, less than half of
+   the smallest. Between commit and first step, after the joints. Collective.
      mode[2]: in, from 0, as spar_member_solve_modes numbers them, of the member without joints
      ratio[2]: in, of critical damping, > 0
      mu[6]: out, s, NULL: not wanted
@@ -388,8 +389,8 @@ SPAR_API int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2
 /* Chooses proportional damping for the damping ratios of any number of modes: mu of three groups of strains (as
    spar_beam_set_modal_damping) and alpha of spar_beam_set_mass_damping, none below 0. It replaces both. The sum of the
    squares of (achieved / ratio - 1) is least. Up to four modes can be met if they differ in kind: first flap, second
-   flap, first edge, first torsion. A group that no mode depends on gets the mean of what the modes ask for. Between
-   commit and first step. Collective.
+   flap, first edge, first torsion. A group that no mode depends on gets the mean of what the modes ask for. It warns as
+   spar_beam_set_modal_damping does. Between commit and first step. Collective.
      n: in, 1 to 1000
      mode[n]: in, from 0, as spar_member_solve_modes numbers them about the present state (at rest, or in steady
            rotation after a static solution), of the member without joints

@@ -17,8 +17,9 @@ struct spari_beam {
     int rule, points;              /* rule -1: chosen from the sections */
     double mu[6];
     int damped;
-    double mass_damping; /* 1/s, mass-proportional damping */
-    int planar;          /* held in a plane, with this unit normal */
+    int damped_by_ratios; /* of its modes, and no joint has been created since */
+    double mass_damping;  /* 1/s, mass-proportional damping */
+    int planar;           /* held in a plane, with this unit normal */
     double normal[3];
 };
 

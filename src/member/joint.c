@@ -3,6 +3,7 @@
 
 #include "../base/environment.h"
 #include "../math/rotation.h"
+#include "beam.h"
 #include "check_arguments.h"
 
 #include <float.h>
@@ -51,6 +52,18 @@ static int reserve_joint(spar_member *m) {
     return 0;
 }
 
+/* Damping by ratios looks at the assembly as it is then; what comes later is told here, once. */
+static void tell_damping(spar_member *m, const char *name) {
+    if (m && m->beam && m->beam->damped_by_ratios) {
+        m->beam->damped_by_ratios = 0;
+        spari_warn(m->session,
+                   "member '%s': its damping was chosen by the ratios of its modes before joint '%s' was created, and "
+                   "connected members change the modes; choose the damping after the joints, or look at "
+                   "spar_member_solve_eigenvalues",
+                   m->name, name);
+    }
+}
+
 static int joint_create(spar_session *s, const char *call, const char *name, spar_member *a, int64_t node_a,
                         spar_member *b, int64_t node_b, spar_joint **out) {
     SPARI_REQUIRE(NULL, s, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
@@ -94,6 +107,8 @@ static int joint_create(spar_session *s, const char *call, const char *name, spa
     }
     *out = j;
     s->joints_stale = 1;
+    tell_damping(a, name);
+    tell_damping(b, name);
     return SPAR_OK;
 }
 

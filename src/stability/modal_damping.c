@@ -9,6 +9,7 @@
 #include "../member/check_arguments.h"
 #include "../time/fidelity.h"
 #include "modes.h"
+#include "plausible_damping.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -159,7 +160,21 @@ static int find_damped_modes(spar_member *m, int64_t count, const int64_t *mode,
     return status;
 }
 
-static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2], double mu[6]) {
+/* What is chosen; omega: of these modes. */
+static spari_damping_asked asked_of(int64_t n, const int64_t *mode, const double *ratio, const double *omega) {
+    spari_damping_asked asked = {ratio[0], ratio[0], omega[0], omega[0], 0};
+    int64_t most = 0;
+    for (int64_t k = 0; k < n; k++) {
+        asked.least = fmin(asked.least, ratio[k]), asked.most = fmax(asked.most, ratio[k]);
+        asked.lowest = fmin(asked.lowest, omega[k]), asked.highest = fmax(asked.highest, omega[k]);
+        most = mode[k] >= most ? mode[k] + 1 : most;
+    }
+    asked.modes = 2 * most + 6; /* torsion stands above the bending modes that are chosen */
+    return asked;
+}
+
+static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2], double mu[6],
+                   spari_damping_asked *asked) {
     spar_session *s = m->session;
     double omega[2], share[2][GROUPS][GROUPS], groups[GROUPS];
     int own[2] = {0, 0};
@@ -180,6 +195,7 @@ static int find_mu(spar_member *m, const int64_t mode[2], const double ratio[2],
     for (int i = 0; i < 6; i++) {
         mu[i] = groups[GROUP[i]];
     }
+    *asked = asked_of(2, mode, ratio, omega);
     return SPAR_OK;
 }
 
@@ -235,7 +251,7 @@ static int agree_on_damping(spar_member *m, const char *call, const spari_agreed
     spari_body_free(m->body);
     m->body = body;
     memcpy(m->beam->mu, mu, sizeof m->beam->mu);
-    m->beam->damped = 1;
+    m->beam->damped = m->beam->damped_by_ratios = 1;
     m->effects |= SPAR_EFFECT_DAMPING;
     if (spari_fidelity_is_here(m)) {
         m->row->renew(m);
@@ -248,11 +264,13 @@ int spar_beam_set_modal_damping(spar_member *beam, const int64_t mode[2], const 
     SPARI_REQUIRE(NULL, beam, SPAR_ERR_ARGUMENT, "%s: the member is NULL; create it first", __func__);
     double found[6], alpha = beam->beam ? beam->beam->mass_damping : 0;
     int status = check_modes(beam, 2, mode, ratio), given = mode && ratio;
-    status = status == SPAR_OK ? find_mu(beam, mode, ratio, found) : status;
+    spari_damping_asked asked;
+    status = status == SPAR_OK ? find_mu(beam, mode, ratio, found, &asked) : status;
     const spari_agreed must_agree[] = {
         spari_whole("mode[0]", given ? mode[0] : 0), spari_whole("mode[1]", given ? mode[1] : 0),
         spari_real("ratio[0]", given ? ratio[0] : 0), spari_real("ratio[1]", given ? ratio[1] : 0)};
     SPARI_TRY(agree_on_damping(beam, __func__, must_agree, 4, found, alpha, status));
+    spari_damping_tell_plausible(beam, &asked);
     spari_give(mu, found, 6);
     return SPAR_OK;
 }
@@ -333,7 +351,7 @@ static void fit(int64_t n, const double (*share)[GROUPS][GROUPS], const double *
 
 /* mu, alpha and the ratios that they give */
 static int fit_damping(spar_member *m, int64_t n, const int64_t *mode, const double *ratio, double mu[6], double *alpha,
-                       double *found) {
+                       double *found, spari_damping_asked *asked) {
     double *omega = spari_zalloc(n, sizeof *omega), y[FITTED];
     double(*share)[GROUPS][GROUPS] = spari_zalloc(n, sizeof *share);
     int status = omega && share
@@ -349,6 +367,7 @@ static int fit_damping(spar_member *m, int64_t n, const int64_t *mode, const dou
             mu[i] = y[GROUP[i]] * y[GROUP[i]];
         }
         *alpha = y[GROUPS] * y[GROUPS];
+        *asked = asked_of(n, mode, ratio, omega);
     }
     SPARI_FREE(omega, share);
     return status;
@@ -368,10 +387,12 @@ int spar_beam_fit_damping(spar_member *beam, int64_t n, const int64_t *mode, con
     if (given && !(found = spari_zalloc(n, sizeof *found))) {
         status = spari_fail(beam->session, SPAR_ERR_MEMORY, "no memory for the damping of member '%s'", beam->name);
     }
-    status = status == SPAR_OK ? fit_damping(beam, n, mode, ratio, mu, &alpha, found) : status;
+    spari_damping_asked asked;
+    status = status == SPAR_OK ? fit_damping(beam, n, mode, ratio, mu, &alpha, found, &asked) : status;
     const spari_agreed must_agree[] = {spari_whole("n", n), spari_hash("mode", modes), spari_hash("ratio", ratios)};
     status = agree_on_damping(beam, __func__, must_agree, 3, mu, alpha, status);
     if (status == SPAR_OK) {
+        spari_damping_tell_plausible(beam, &asked);
         spari_give(achieved, found, n);
     }
     free(found);
