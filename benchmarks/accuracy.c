@@ -35,7 +35,6 @@ typedef struct setting {
     knobs knobs;
 } setting;
 
-static const char balanced[] = "balanced"; /* Newton as the library ends it */
 static setting list[SETTINGS_MAX];
 static int count;
 
@@ -44,7 +43,7 @@ static int count;
 static void add(const scene *s, const char *knob, const char *value, knobs k) {
     if (count < SETTINGS_MAX) {
         setting *to = &list[count++];
-        k.newton = k.newton > 0 || strcmp(value, balanced) == 0 ? k.newton : 1e-12; /* else strict */
+        k.newton = k.newton > 0 ? k.newton : 1e-12;
         *to = (setting){.scene = s, .knob = knob, .knobs = k};
         snprintf(to->value, sizeof to->value, "%s", value);
     }
@@ -250,7 +249,6 @@ static void settings_of(const scene *s) {
     TURN("rho", rho, "%g", 0, 0.5, 1);
     TURN("substeps", substeps, "%g", 2, 4);
     TURN("newton", newton, "%.0e", 1e-3, 1e-5, 1e-6, 1e-8, 1e-10);
-    TAKE("newton", newton, 0, balanced);
     TURN("predictor", predictor, "%g", 0, 2);
     TURN("theta", theta, "%g", 0, 0.5);
     TAKE("start", start, 0, "no loads at t = 0");
@@ -395,7 +393,7 @@ static void count_steps(int i) {
 
 static int counted(const setting *at, int full) {
     static const char *const some[] = {"default", "fidelity", "together"};
-    int among = strcmp(at->value, balanced) == 0;
+    int among = strcmp(at->knob, "newton") == 0;
     for (size_t i = 0; i < sizeof some / sizeof *some; i++) {
         among |= strcmp(at->knob, some[i]) == 0;
     }

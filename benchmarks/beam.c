@@ -28,7 +28,6 @@ static void measure(const deck *d, nrel5mw *turbine, int repeats, figures *f) {
             box_scene(&s, 1, d->nodes, d->dt, 0);
         }
         MUST(s.session, spar_session_set_newton(s.session, d->atol, d->rtol, 20));
-        MUST(s.session, spar_session_set_option(s.session, "newton.stop", "strict"));
         step(&s); /* accelerations at t = 0 are found here */
         const spari_solver *solver = s.member->solution;
         int64_t newton = solver->newton, factors = solver->factors;

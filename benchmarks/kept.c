@@ -38,7 +38,6 @@ static int converge(int k, int finer, double *truth) {
     w.air.noise = 0; /* of the solver: the answer that it is meant to give */
     status = status ? status : spar_session_set_coupling(w.s, SPAR_COUPLING_IQN_ILS, 1e-12, 1e-7, 50);
     status = status ? status : spar_session_set_newton(w.s, 1e-14, 1e-9, 50);
-    status = status ? status : spar_session_set_option(w.s, "newton.stop", "strict");
     status = status ? status : look(&w, truth);
     for (int64_t i = 1; i <= worlds[k].times * finer * worlds[k].steps && !status; i++) {
         double *x = truth + 3 * WORLD_MEMBERS * (i / each);

@@ -106,7 +106,7 @@ static double now(void) {
 static int run_spar(double end, int steps, int strict, peer_run *r) {
     machine t = {.session = NULL};
     double q[7 * BLADE_NODES], dt = end / steps;
-    int bad = make_machine(&t) || (strict && spar_session_set_option(t.session, "newton.stop", "strict"));
+    int bad = make_machine(&t) || (strict && spar_session_set_newton(t.session, 1e-15, 1e-12, 50));
     double since = now();
     for (int i = 1; i <= steps && !bad; i++) {
         bad = drive(&t, i * dt) || spar_step_begin(t.session, dt) || spar_step_solve(t.session) ||

@@ -15,8 +15,7 @@ static int settings(spar_session *s, const knobs *k) {
     TRY(spar_session_set_integrator(s, k->rho, k->substeps));
     TRY(spar_session_set_predictor(s, k->predictor));
     TRY(spar_session_set_coupling(s, k->learn > 0 ? SPAR_COUPLING_IQN_ILS : k->scheme, 0, k->tolerance, 60));
-    TRY(k->newton > 0 ? spar_session_set_newton(s, 1e-15, k->newton, 50) : SPAR_OK);
-    return k->newton > 0 ? spar_session_set_option(s, "newton.stop", "strict") : SPAR_OK;
+    return k->newton > 0 ? spar_session_set_newton(s, 1e-15, k->newton, 50) : SPAR_OK;
 }
 
 static int commit(spar_member *b, const knobs *k) {

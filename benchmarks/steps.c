@@ -70,7 +70,7 @@ static spar_session *make(double rho, spar_member **body) {
     spar_session *s = NULL;
     must(NULL, spar_session_create(&s));
     must(s, spar_session_set_integrator(s, rho, 1));
-    must(s, spar_session_set_option(s, "newton.stop", "strict"));
+    must(s, spar_session_set_newton(s, 1e-15, 1e-12, 50));
     must(s, spar_rigid_create(s, "body", x, upright, mass, body));
     must(s, spar_member_commit(*body));
     must(s, spar_spring_create(s, "spring", *body, 0, SPAR_FREE_X, one, NULL, NULL, NULL));

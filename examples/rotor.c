@@ -90,7 +90,6 @@ static int describe_session(scene *s) {
     TRY(spar_session_set_predictor(s->session, o->predictor));
     TRY(spar_session_set_coupling(s->session, o->scheme, 0, o->coupling_tolerance, o->max_iterations));
     TRY(spar_session_set_newton(s->session, 1e-15, o->newton, 50));
-    TRY(spar_session_set_option(s->session, "newton.stop", "strict"));
     if (o->scheme == SPAR_COUPLING_FIXED_POINT) {
         TRY(spar_session_set_relaxation(s->session, o->relaxation));
     }

@@ -30,9 +30,9 @@ static inline void scene_mass(double *M, double m, const double c[3], const doub
     }
 }
 
-/* Newton to its tolerance in every step: what is compared to rounding, or with a run that is asked otherwise */
+/* Newton almost to rounding: for what is compared to rounding, or with a run that is asked otherwise. */
 static inline void scene_strict(spar_session *s) {
-    OK(s, spar_session_set_option(s, "newton.stop", "strict"));
+    OK(s, spar_session_set_newton(s, 1e-15, 1e-12, 50));
 }
 
 /* One evaluation of the fluid per step, with predicted loads. */

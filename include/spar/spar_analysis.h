@@ -301,7 +301,7 @@ SPAR_API int spar_trial_solve_eigenvalues(spar_trial *trial, int64_t n, const do
    that spar solves for is displaced along each of its lowest undamped modes, and given a velocity along it, to and fro.
    The multipliers are those of the steps, right to dt^2. Errors are the square of the amplitude, and the coupling's
    error over the amplitude. Each run begins with consistent initial accelerations, for which the solver is called with
-   dt 0 (spar_session_solve_initial). Newton's stopping rule is strict. The callback before each step drives roots and
+   dt 0 (spar_session_solve_initial). Newton's rtol is 1e-12 at most. The callback before each step drives roots and
    joints by the time. The fluid begins each run with its present states: what it remembers for longer than a period is
    not seen. Collective.
      n: in, number of multipliers, 0 to 2 modes

@@ -27,13 +27,12 @@ SPAR_API int spar_session_set_integrator(spar_session *session, double rho_inf, 
 /* rho_inf: out, NULL: not wanted
    substeps: out, NULL: not wanted */
 SPAR_API int spar_session_get_integrator(const spar_session *session, double *rho_inf, int *substeps);
-/* Tolerances of Newton's iteration. It stops when the estimated remaining correction is below atol + rtol times its
-   scale: the member's length for displacements, 1 for rotations. Static solutions always use these tolerances.
-   Steps use them alone if the option newton.stop is strict. By default (balanced) the iteration of a step may stop
-   earlier, when its error is negligible compared with the time-step error and the coupling tolerance
-   (docs/explanation/accuracy.md).
+/* Tolerances of Newton's iteration in a step. It stops when the estimated remaining correction is below
+   atol + rtol times the motion in the step, and the estimated unbalanced forces are below 100 rtol times the largest
+   section force or force of inertia. Displacements are relative to the member's length, rotations are in rad. Both
+   estimates follow from the iterations of the same solution. Choose rtol 1e-12 to compare runs to their last digits.
      atol: in, >= 0; default 1e-15
-     rtol: in, >= 0; default 1e-12
+     rtol: in, >= 0; default 1e-8
      max_iterations: in, >= 1; after that many SPAR_ERR_NUMERIC; default 50 */
 SPAR_API int spar_session_set_newton(spar_session *session, double atol, double rtol, int max_iterations);
 /* atol: out, NULL: not wanted
@@ -62,11 +61,6 @@ SPAR_API int spar_session_get_relaxation(const spar_session *session, double *om
 /* Sets an option by name.
      key: in
      value: in, a number or a word
-   newton.stop            balanced (default) | strict: where Newton's iteration of a step stops. Strict: at the
-                          tolerances of spar_session_set_newton; choose it for bitwise comparison of runs. Balanced:
-                          when its error is a thousandth of the time-step error, (E4) of docs/explanation/theory.md,
-                          and of the coupling tolerance, between rtol and 1e-7 of the increments. If the time-step
-                          error is unknown, balanced is strict
    coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations. Choose accept if the
                           host cannot repeat a step, and look at SPAR_REPORT_UNCONVERGED
    coupling.unstable      error (default) | accept: what spar_step_check does if the error of the predicted loads has

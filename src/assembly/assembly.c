@@ -6,7 +6,6 @@
 #include "../math/rotation.h"
 #include "../time/fidelity.h"
 #include "../time/newton.h"
-#include "../time/newton_tolerance.h"
 #include "../time/substeps.h"
 #include "system.h"
 
@@ -44,6 +43,7 @@ static int predict(void *self, spari_guess stays) {
     const newton_step *t = self;
     spari_assembly *a = t->a;
     int any = 0;
+    a->wandered = a->wandered || stays != SPARI_KEEP_ACCELERATION;
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
         int has = p->row->predict(p, stays);
@@ -101,11 +101,12 @@ static double balance(spari_assembly *a, double *residual_size) {
     *residual_size = 0;
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
-        scale += p->row->balance(p);
+        p->force = p->row->balance(p);
+        scale += p->force;
         spari_constraints_add_forces(a, p);
-        double left = p->row->residual_size(p);
-        *residual_size = spari_larger(*residual_size, left);
-        scale += 0 * left;
+        p->unbalanced = p->row->residual_size(p);
+        *residual_size = spari_larger(*residual_size, p->unbalanced);
+        scale += 0 * p->unbalanced;
         if (a->factored && spari_component_reduce(p, 1, a->x + p->at)) {
             return NAN;
         }
@@ -156,26 +157,52 @@ static int correct(spari_assembly *a, double longest, double *size) {
     return 0;
 }
 
-/* The remaining correction that is allowed after a correction as large as `largest`. Strict: relative to the largest
-   motion of all components. No component needs to be more accurate than a tenth of the least accurate one, because
-   their motions are coupled. */
-static double tolerance(const spari_assembly *a, double largest) {
-    const spar_session *s = a->session;
-    double size = 0, most = 0, worst = 0;
+/* The remaining correction that is allowed in a substep with this motion. In a stage of TR-BDF2 less is allowed:
+   accelerations follow from increments with cm = 11.7 / h^2 (generalised-alpha: 4 / h^2), and the next step, which may
+   be much longer, begins with these accelerations. */
+static double correction_tolerance(const spar_session *s, const spari_scheme *c, double motion) {
+    const spari_newton_settings *n = &s->newton;
+    return c->rule == SPARI_ALPHA ? n->atol + n->rtol * motion
+                                  : 0.25 * (fmin(n->atol, 1e-6 * c->h * c->h) + n->rtol * motion);
+}
+
+/* The unbalanced forces that may remain where the largest force of a section or of inertia is `force`, with a
+   correction tolerance relative to the motion. Forces follow from second derivatives of positions, so that they have
+   relative errors some hundred times larger. Rounding of positions makes forces of `stiffest` times their last digit.
+ */
+static double force_tolerance(const spari_body *body, double force, double relative) {
+    static const double part = 100, rounding = 64 * DBL_EPSILON;
+    return part * relative * force + rounding * body->stiffest;
+}
+
+/* A tolerance relative to the motion; at rest there is none. */
+static double relative_to(double motion, double tolerance) {
+    return tolerance < motion ? tolerance / motion : 1;
+}
+
+/* No component needs to be more accurate than SLOWEST times the others: their motions and forces are coupled. */
+static const double SLOWEST = 0.01;
+
+/* The tolerances after a correction as large as `largest`, from those of all components. */
+static void find_tolerances(const spari_assembly *a, double largest, spari_iterate *it) {
+    double motion = 0, force = 0, worst = 0, worst_force = 0;
+    it->force = 0;
     for (int i = 0; i < a->components; i++) {
-        spari_component *p = a->component + i;
-        p->allowed = s->newton.strict ? 0 : spari_newton_tolerance(p->member, &p->scheme, p->motion, a->held);
-        size = spari_larger(size, p->motion);
-        most = spari_larger(most, p->allowed);
+        motion = spari_larger(motion, a->component[i].motion);
+        force = spari_larger(force, a->component[i].force);
     }
-    for (int i = 0; i < a->components && !s->newton.strict; i++) {
+    for (int i = 0; i < a->components; i++) {
         const spari_component *p = a->component + i;
-        worst = spari_larger(worst, p->correction_size / spari_larger(p->allowed, 0.1 * most));
+        double way = spari_larger(p->motion, SLOWEST * motion),
+               allowed = correction_tolerance(a->session, &p->scheme, way),
+               may_remain =
+                   force_tolerance(p->body, spari_larger(p->force, SLOWEST * force), relative_to(way, allowed));
+        worst = p->correction_size > 0 ? spari_larger(worst, p->correction_size / allowed) : worst;
+        worst_force = p->unbalanced > 0 ? spari_larger(worst_force, p->unbalanced / may_remain) : worst_force;
+        it->force = spari_larger(it->force, p->unbalanced);
     }
-    int stage = a->component[0].scheme.rule != SPARI_ALPHA;
-    double strict =
-        stage ? spari_newton_tolerance_stage(s, &a->component[0].scheme, size) : s->newton.atol + s->newton.rtol * size;
-    return worst > 0 ? fmax(strict, largest / worst) : strict;
+    it->tolerance = worst > 0 ? largest / worst : largest;
+    it->force_tolerance = worst_force > 0 ? it->force / worst_force : 0;
 }
 
 static int tangent_serves(const spari_assembly *a) {
@@ -232,8 +259,12 @@ static const char *iterate_alone(spari_assembly *a, double longest, spari_iterat
     }
     a->factored = 1;
     it->correction = p->row->advance(p, longest, &motion);
-    it->tolerance = spari_newton_tolerance(p->member, &p->scheme, motion, 0);
-    it->small = it->correction < 1e-11 || residual_size <= 64 * DBL_EPSILON * p->body->stiffest;
+    it->tolerance = correction_tolerance(a->session, &p->scheme, motion);
+    it->force = residual_size;
+    it->force_tolerance = it->correction > 0 ? force_tolerance(p->body, scale, relative_to(motion, it->tolerance))
+                                             : residual_size; /* the solution is exact */
+    it->small = it->correction < 1e-11;
+    it->stiff = residual_size <= 64 * DBL_EPSILON * p->body->stiffest;
     it->rounded = residual_size <= 16 * DBL_EPSILON * scale;
     return NULL;
 }
@@ -260,8 +291,9 @@ static const char *iterate_newton(void *self, double longest, spari_iterate *it)
     a->moved += it->correction;
     /* Positions must not depend on the state in which the system was factored. */
     a->system_serves = a->system_serves && a->moved < near_factored && a->component[0].scheme.rule == SPARI_ALPHA;
-    it->tolerance = tolerance(a, it->correction);
+    find_tolerances(a, it->correction, it);
     it->small = it->correction < 1e-11;
+    it->stiff = 0;
     it->rounded = residual_size <= 16 * DBL_EPSILON * scale && it->small;
     return NULL;
 }
@@ -684,7 +716,7 @@ static int knows_work(const spari_assembly *a) {
 static int gains_of_all(void *self, const spari_part *part) {
     spari_assembly *a = self;
     double gain = 0, size = 0;
-    int near = 1;
+    int near = !a->wandered;
     if (!knows_work(a)) {
         return 0;
     }
@@ -710,7 +742,7 @@ static int gains_of_all(void *self, const spari_part *part) {
         gain += more;
         size += of;
     }
-    return gain > SPARI_GAIN * size;
+    return gain > (a->wandered ? SPARI_GAIN_FAR : SPARI_GAIN) * size;
 }
 
 static void enter_all(void *self, const spari_part *part) {
@@ -750,6 +782,7 @@ static int stage_of_all(void *self, const spari_scheme *c, const spari_part *par
     spari_assembly *a = self;
     set_scheme(a, c);
     a->constrains_rates = a->rotates_far || c->rule != SPARI_ALPHA;
+    a->wandered = a->wandered && c->rule == SPARI_BACKWARD;
     if (c->rule == SPARI_TRAPEZOIDAL) { /* positions depend on the tangent here, so it must
                                            not depend on earlier solutions */
         a->factored = 0;

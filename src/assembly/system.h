@@ -47,7 +47,6 @@ struct spari_assembly {
     int clusters;               /* whether any of them has the unknowns of another; if so, */
     double (*tangents)[12][12]; /* [constraints] their tangents as the system was formed */
     int loops;                  /* whether constraints close loops */
-    int held;                   /* whether constraints and roots leave no free motion but deformation */
     int solved;                 /* the components and constraints are at the end of a step */
     double left;                /* estimated remaining correction of Newton in the last solution */
     int stepping, formed;       /* a step has begun; it has formed tangents */
@@ -68,6 +67,7 @@ struct spari_assembly {
     double *b;     /* of the system, [rows][columns]: for the gaps and forces, and for the rates' gaps */
     int columns;
     int rates_off; /* there are rates' gaps */
+    int wandered;  /* the solution of the substep needed new tangents in each iteration */
     double *rates; /* 6 of each node of the largest component */
 };
 

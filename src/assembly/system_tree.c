@@ -158,22 +158,6 @@ static void visit_all(spari_assembly *a, const tree_lists *lists) {
     }
 }
 
-/* Whether constraints of six motions connect all components to the ground or to a prescribed root. */
-static int is_held(const spari_assembly *a) {
-    int held = 0;
-    for (int i = 0; i < a->components; i++) {
-        held = held || spari_member_root_is_prescribed(a->component[i].member);
-    }
-    for (int i = 0; i < a->constraints; i++) {
-        const spari_constraint *l = a->constraint + i;
-        if (spari_constraint_count(l) < 6) {
-            return 0;
-        }
-        held = held || !l->component[0] || !l->component[1];
-    }
-    return held;
-}
-
 int spari_system_find_tree(spari_assembly *a) {
     tree_lists lists = {0};
     int status = place_interfaces(a);
@@ -181,7 +165,6 @@ int spari_system_find_tree(spari_assembly *a) {
     status = status == SPAR_OK ? list_constraints(a, &lists) : status;
     if (status == SPAR_OK) {
         visit_all(a, &lists);
-        a->held = is_held(a);
     }
     free(lists.begin);
     free(lists.entry);

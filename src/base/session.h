@@ -39,9 +39,6 @@ typedef struct spari_newton_settings {
     double atol;
     double rtol;
     int max;
-    int strict;   /* option newton.stop = balanced (default) | strict */
-    double share; /* with newton.stop = balanced: relative acceleration error that Newton may leave, from the coupling
-                     tolerance; infinite: no limit */
 } spari_newton_settings;
 
 /* Settings of the coupling. */

@@ -393,9 +393,3 @@ int spari_accelerator_added_mass(const spari_accelerator *a, double *mean, doubl
     *spread = enough ? *spread : 0;
     return enough;
 }
-
-double spari_accelerator_typical_ratio(const spari_accelerator *a) {
-    spari_ratios all = all_ratios(a, 1);
-    double square = all.weight > 0 ? all.sum2 / all.weight : 0;
-    return square > 0 && isfinite(square) ? sqrt(square) : 0;
-}

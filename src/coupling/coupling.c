@@ -199,28 +199,6 @@ static void report_added_mass(spari_coupling *c) {
                                        c->report + SPAR_REPORT_ADDED_MASS_SPREAD);
 }
 
-/* What Newton may leave, relative to what the coupling is iterated to. */
-static const double newton_part = 1e-3;
-
-/* Newton's error returns as a load error, multiplied by mu in the motion norm; mu is the ratio of added mass to mass
-   estimated from the loads, 1 without an estimate. This error must be small compared with the last changes of the
-   iteration, a hundredth of the final one. This applies to the first solutions of a step too, because columns are
-   differences of these and serve in later steps. With a tenth, IQN-ILS takes up to 15 per cent more iterations with
-   heavy exact fluids, with a thousandth 5 (tests/support/flows.h). A fluid solution costs more than a Newton
-   iteration. A mu below `least` is raised to it. */
-double spari_coupling_share(const spar_session *s) {
-    static const double least = 0.05;
-    const spari_coupling *c = s->own->coupling;
-    if (!c->accelerator || c->idle) {
-        return INFINITY;
-    }
-    double mu = spari_accelerator_typical_ratio(c->accelerator), goal = s->coupling.rtol;
-    if (spari_coupling_wants_motion(s)) {
-        goal = fmin(goal, s->coupling.motion_rtol);
-    }
-    return newton_part * goal / (mu > 0 ? fmax(mu, least) : 1);
-}
-
 void spari_coupling_begin(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     c->iterations = 0;
@@ -371,6 +349,8 @@ static double rounding_of_accelerations(const spar_session *s) {
 
 /* Error of the correction for added mass, [N], by rounding and by what Newton leaves in the accelerations: loads cannot
    agree any better, and may be smaller than this. */
+static const double correction_part = 1e-3; /* of the tolerance */
+
 static double error_of_added_mass(const spar_session *s) {
     double f2 = 0;
     int k = 0;
@@ -382,7 +362,7 @@ static double error_of_added_mass(const spar_session *s) {
         }
     }
     const double rounding = 8 * (DBL_EPSILON + rounding_of_accelerations(s));
-    return f2 > 0 ? fmax(rounding, newton_part * s->coupling.rtol) * sqrt(f2) : 0;
+    return f2 > 0 ? fmax(rounding, correction_part * s->coupling.rtol) * sqrt(f2) : 0;
 }
 
 static int not_converged(spar_session *s, const char *call) {

@@ -58,9 +58,6 @@ int spari_coupling_weighs(const spar_session *session);
 int spari_coupling_fits(const spar_session *session);
 void spari_coupling_free(spari_coupling **coupling);
 void spari_coupling_begin(spar_session *session);
-/* Relative acceleration error that Newton may leave in the next solution because of the coupling; infinite: no
-   limit. */
-double spari_coupling_share(const spar_session *session);
 /* After the loads have been exchanged: whether they agree with those used, to the tolerances; and the next loads, if
    the scheme iterates. SPAR_ERR_NUMERIC: they are not finite. */
 int spari_coupling_compare(spar_session *session, int *agreed);

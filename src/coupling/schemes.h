@@ -97,8 +97,6 @@ int spari_accelerator_imaged(const spari_accelerator *accelerator);
 /* Mean and standard deviation of this ratio over the differences of this step and, decaying, of earlier ones,
    weighted by the roots of their lengths. Returns 0, and zeros, if there are too few. */
 int spari_accelerator_added_mass(const spari_accelerator *a, double *mean, double *spread);
-/* The root of the mean square of the same ratios, however few there are; 0: none. */
-double spari_accelerator_typical_ratio(const spari_accelerator *a);
 
 /* State as doubles, for save and load into an accelerator with the same n and settings. */
 int64_t spari_accelerator_state_size(const spari_accelerator *a);

@@ -30,29 +30,36 @@ static void add_forces(const spari_body *body, int tile, int from, int to, void 
     }
 }
 
-/* Forces of a rigid body of one node, as inertia_gravity_lanes.h has them for a point. Returns their size. */
+/* Forces of a rigid body of one node, as inertia_gravity_lanes.h has them for a point. Returns the size of their terms,
+   which balance each other in a free motion. */
 static double forces_of_one(const spari_body *body, const spari_regime *how, const double *q, const double *v,
                             const double *a, double r[6]) {
     const double *mass = body->mass, *rotation = q + 3;
     const double m = mass[0], mc[3] = {mass[SPARI_LANES], mass[2 * SPARI_LANES], mass[3 * SPARI_LANES]};
     const int moves = how->shown == SPARI_ACCELERATED;
-    double net[3], h[3], y[3] = {0}, moment[3], force[3];
+    double net[3], h[3], y[3] = {0}, moment[3], force[3], size = 0, turning = 0;
     for (int i = 0; i < 3; i++) {
         net[i] = (moves ? a[i] : 0) - how->weight[i];
     }
     spari_rotate_back(rotation, net, h);
     spari_cross(mc, h, moment);
+    size = m * (spari_norm(how->weight) + (moves ? spari_norm(a) : 0));
+    turning = spari_norm(moment);
     if (moves) {
         double A[3], W[3], JA[3], JW[3], x[3], z[3];
         spari_rotate_back(rotation, a + 3, A);
         symmetric_times_one(mass + SPARI_LANES * 4, A, JA);
         spari_cross(A, mc, y);
+        size += spari_norm(y);
+        turning += spari_norm(JA);
         if (body->gyroscopic) {
             spari_rotate_back(rotation, v + 3, W);
             symmetric_times_one(mass + SPARI_LANES * 4, W, JW);
             spari_cross(W, mc, x);
             spari_cross(W, x, z);
             spari_cross(W, JW, x);
+            size += spari_norm(z);
+            turning += spari_norm(x);
         }
         for (int i = 0; i < 3; i++) {
             y[i] += body->gyroscopic ? z[i] : 0;
@@ -65,7 +72,7 @@ static double forces_of_one(const spari_body *body, const spari_regime *how, con
     }
     spari_rotate(rotation, force, r);
     spari_rotate(rotation, moment, r + 3);
-    return spari_norm(force) + spari_norm(moment) / body->length;
+    return body->weight[0] * (size + turning / body->length);
 }
 
 /* Power of mass-proportional damping: twice mass_damping times the kinetic energy of the motion relative to the first

@@ -111,13 +111,10 @@ typedef struct spari_member_state {
     spari_cuts cuts;        /* of this step; for connected members, those of the first one */
 } spari_member_state;
 
-/* Measures of a member's motion, for the step error and the tolerance of Newton. */
+/* Measures of a member's motion, for the step error. */
 typedef struct spari_accuracy {
     double step_error; /* with a tolerance: error of the last step, m */
     double speed;      /* with a tolerance: largest speed so far, m/s */
-    double jerk; /* option newton.stop = balanced: rate of change of the acceleration in the last steps, relative to
-                    the length, 1/s^3 (time/newton_tolerance.h); 0: unknown */
-    double acceleration; /* likewise: acceleration, relative to the length, 1/s^2 */
 } spari_accuracy;
 
 struct spar_member {

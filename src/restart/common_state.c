@@ -238,8 +238,6 @@ static void pass_member(passage *t, spar_member *m) {
     pass(t, &m->state.dissipated_step, 1);
     pass_numbers(t, &m->accuracy.step_error, 1);
     pass_numbers(t, &m->accuracy.speed, 1);
-    pass_numbers(t, &m->accuracy.jerk, 1);
-    pass_numbers(t, &m->accuracy.acceleration, 1);
     pass_int(t, &m->state.balanced[0]);
     pass_int(t, &m->state.balanced[1]);
     pass_int(t, &m->state.motion_given);

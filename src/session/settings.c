@@ -49,7 +49,6 @@ enum { NOBODY, GRAVITY, INTEGRATOR, NEWTON, PREDICTOR, COUPLING, RELAXATION, REP
 
 static const char not_negative[] = "a finite number >= 0", one_or_more[] = "at least 1";
 
-/* The default tolerances of Newton keep the influence of rotated axes or another number of ranks below 1e-11. */
 static const spari_setting settings[] = {
     ALONG("gravity (x)", 0),
     ALONG("gravity (y)", 1),
@@ -59,7 +58,7 @@ static const spari_setting settings[] = {
     WHOLE(INTEGRATOR, "integrator", "substeps", integrator.substeps, 1, INT32_MAX, one_or_more, 1,
           SPARI_AGREED | SPARI_VARIED),
     REAL(NEWTON, "newton", "atol", newton.atol, 0, DBL_MAX, not_negative, 1e-15, SPARI_AGREED),
-    REAL(NEWTON, "newton", "rtol", newton.rtol, 0, DBL_MAX, not_negative, 1e-12, SPARI_AGREED | SPARI_VARIED),
+    REAL(NEWTON, "newton", "rtol", newton.rtol, 0, DBL_MAX, not_negative, 1e-8, SPARI_AGREED | SPARI_VARIED),
     WHOLE(NEWTON, "newton", "max_iterations", newton.max, 1, INT32_MAX, one_or_more, 50, SPARI_AGREED),
     WHOLE(PREDICTOR, "predictor", "order", coupling.predictor, 0, 2, "0, 1 or 2", 1, SPARI_AGREED | SPARI_VARIED),
     WHOLE(COUPLING, "coupling", "scheme", coupling.scheme, 0, SPARI_SCHEME_COUNT - 1, "a SPAR_COUPLING_*",
@@ -73,7 +72,6 @@ static const spari_setting settings[] = {
     WHOLE(REPRODUCIBLE, "reproducible", "on", ranks.reproducible, 0, 1, "0 or 1", 0, SPARI_AGREED),
     REAL(TOLERANCE, "tolerance", "drift", tolerance.drift, 0, DBL_MAX, not_negative, 0, SPARI_AGREED),
     REAL(TOLERANCE, "tolerance", "rtol", tolerance.rtol, 0, 1, "a number from 0 to 1", 0, SPARI_AGREED),
-    OPTION_WORD("newton.stop", newton.strict, "balanced", "strict", SPARI_AGREED | SPARI_VARIED),
     OPTION_WORD("coupling.unconverged", coupling.accept_unconverged, "error", "accept", SPARI_AGREED),
     OPTION_WORD("coupling.unstable", coupling.accept_unstable, "error", "accept", SPARI_AGREED),
     OPTION_WHOLE("coupling.patience", coupling.patience, 1, 1000000, "a whole number from 1 to 1000000", 3,

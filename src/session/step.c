@@ -195,7 +195,6 @@ int spar_step_solve(spar_session *session) {
     if (s->state.static_solution) {
         return spari_start_solve(s, __func__);
     }
-    s->newton.share = spari_coupling_share(s);
     s->state.rough = spari_coupling_is_rough(s);
     status = spari_threads_solve(s);
     status = spari_session_share_motion(s, status);

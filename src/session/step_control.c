@@ -17,7 +17,7 @@ static double find_error(const spar_member *m, double *speed) {
         return 0;
     }
     const spari_scheme c = spari_scheme_of(m, 0, s->clock.dt / s->integrator.substeps);
-    const spari_step_change of = spari_step_change_of(m, 1);
+    const spari_step_change of = spari_step_change_of(m);
     *speed = of.speed;
     return spari_step_error_is_known(s) ? spari_step_error(&c, of.change) : 0;
 }

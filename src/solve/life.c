@@ -14,7 +14,6 @@
 #include "../member/mean_acceleration.h"
 #include "../member/plane.h"
 #include "../time/fidelity.h"
-#include "../time/newton_tolerance.h"
 #include "work.h"
 
 #include <stdlib.h>
@@ -93,7 +92,6 @@ static void forget_begun(spar_member *m) {
 void spari_member_restart(spar_member *m) {
     forget_begun(m);
     m->state.balanced[0] = m->state.balanced[1] = 0;
-    m->accuracy.jerk = m->accuracy.acceleration = 0;
     spari_means_forget(m);
     copy_motion(m, &m->now, &m->after);
     for (int k = 0; k < (m->state.drive_given ? 1 : 2); k++) { /* where it is to be driven to stays */
@@ -165,7 +163,6 @@ void spari_member_accept(spar_member *m) {
     if (m->means) {
         spari_means_accept(m);
     }
-    spari_newton_tolerance_accept(m);
     copy_motion(m, &m->after, &m->now);
     copy_solved(m, 1, 0);
     m->state.balanced[0] = m->state.balanced[1];

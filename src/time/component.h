@@ -31,7 +31,7 @@ typedef struct spari_component_row {
     /* Computes the residual (forces less loads) of the latest iterate. Returns the size that rounding errors are
        relative to. */
     double (*balance)(struct spari_component *p);
-    /* The largest residual force; not finite if one of them is not. */
+    /* The largest residual force, moments over the length; not finite if one of them is not. */
     double (*residual_size)(const struct spari_component *p);
     /* Forms and factors the tangent at that iterate and condenses it to the ends. Returns 0 or 1 (singular). */
     int (*tangent)(struct spari_component *p);
@@ -90,8 +90,9 @@ typedef struct spari_component {
     const spari_body *body;
     const spari_state *state; /* motion of the nodes */
     int at;                   /* index of its first unknown in the system */
-    /* Of the latest correction: its size, the motion in the step, and the remaining correction that is allowed. */
-    double correction_size, motion, allowed;
+    /* Of the latest correction: its size, the motion in the step, the largest force, and the unbalanced one before it.
+     */
+    double correction_size, motion, force, unbalanced;
     spari_scheme scheme; /* of the stage under way */
     spari_stage stage;
     spari_scheme alpha;        /* of a substep */

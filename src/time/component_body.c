@@ -217,13 +217,14 @@ static node_rotation rotation_since_tangent(const spari_component *p) {
                             .tangent_q = s->tangent_q,
                             .q = p->state->q,
                             .r = s->r,
+                            .per_length = 1 / s->body->length,
                             .rotation = s->rotation}};
 }
 
 /* The nodes have rotated since the reused tangent was formed. Forces are therefore rotated back node by node, and the
    corrections forward. For a rigid rotation of the member this is exact. For a beam that oscillates and bends, one
    tangent then lasts some forty times longer than in fixed axes.
-   Returns the largest force, infinite if one is not finite. */
+   Returns the largest force, moments over the length, infinite if one is not finite. */
 static double rotate_back(const spari_component *p) {
     node_rotation t = rotation_since_tangent(p);
     spari_solver_spread(p->solver, rotate_span_back, &t);
@@ -240,11 +241,12 @@ static int is_all_ends(const spari_component *p) {
 static double size_of_residual(const spari_component *p) {
     const spari_solver *s = p->solver;
     double most = 0, poison = 0;
+    const double per_length = 1 / s->body->length;
     if (!is_all_ends(p)) {
         return rotate_back(p);
     }
     for (int k = 0; k < 6 * s->n; k++) {
-        double size = fabs(s->r[k]);
+        double size = fabs(k % 6 < 3 ? s->r[k] : per_length * s->r[k]);
         most = size > most ? size : most;
         poison += 0 * size;
     }
@@ -382,19 +384,16 @@ static double advance_nodes(spari_component *p, double longest, double *motion) 
    the mean. If new tangents contract no better than old ones, the mean never falls so far. */
 enum { PATIENCE = 5, PRICE = 10 };
 
-/* Whether the tangent is reused after a solution of so many iterations. fresh: it was formed in this solution. If
-   Newton stops earlier (newton_tolerance.h), a solution takes fewer iterations; an early stop for a coupling saves
-   hardly any. */
-static int serves_on(spari_solver *s, const spar_session *session, int iterations, int fresh) {
-    int patience = session->newton.strict || isfinite(session->newton.share) ? PATIENCE : PATIENCE - 2;
+/* Whether the tangent is reused after a solution of so many iterations. fresh: it was formed in this solution. */
+static int serves_on(spari_solver *s, int iterations, int fresh) {
     if (fresh) { /* the first iterations may have used another tangent */
         s->served = 1;
-        s->spent = PRICE + (iterations < patience ? iterations : patience);
+        s->spent = PRICE + (iterations < PATIENCE ? iterations : PATIENCE);
         return 1;
     }
     s->served++;
     s->spent += iterations;
-    return iterations <= patience || iterations * s->served <= s->spent;
+    return iterations <= PATIENCE || iterations * s->served <= s->spent;
 }
 
 static void end_solution_of_nodes(spari_component *p, int iterations, int fresh) {
@@ -404,7 +403,7 @@ static void end_solution_of_nodes(spari_component *p, int iterations, int fresh)
         return;
     }
     spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, s->increment);
-    s->factored = serves_on(s, p->member->session, iterations, fresh);
+    s->factored = serves_on(s, iterations, fresh);
     if (!s->factored) { /* for a response */
         spari_alpha_operators(s, &p->scheme, &p->stage.ends, s->increment);
     }

@@ -1,5 +1,6 @@
-/* Newton's method for a substep (assembly/assembly.c). An attempt that fails is followed by a more careful one from
-   other starting values. The loops stand in a header so that the compiler inlines the operations. */
+/* Newton's method for a substep (assembly/assembly.c). It ends on corrections and forces that it has measured in the
+   solution under way. An attempt that fails is followed by a more careful one from other starting values. The loops
+   stand in a header so that the compiler inlines the operations. */
 #ifndef SPARI_NEWTON_H
 #define SPARI_NEWTON_H
 
@@ -10,9 +11,11 @@
 
 /* Result of one iteration. */
 typedef struct spari_iterate {
-    double correction, tolerance; /* its size, and the remaining correction that is allowed */
-    int rounded;                  /* the residual consists of rounding errors */
-    int small;                    /* as small as rounding allows, once it contracts no more */
+    double correction, tolerance;  /* its size, and the remaining correction that is allowed */
+    double force, force_tolerance; /* the unbalanced forces before it, and those that may remain */
+    int rounded;                   /* the residual consists of rounding errors */
+    int small;                     /* as small as rounding allows, once it contracts no more */
+    int stiff;                     /* the residual is within rounding errors of the largest stiffness */
 } spari_iterate;
 
 typedef struct spari_newton {
@@ -41,14 +44,30 @@ typedef struct spari_attempt {
 #define SPARI_SLOW 0.5
 #define SPARI_LONGEST 0.5
 
-/* theta is the ratio of two corrections of this solution with the same tangent, and theta / (1 - theta) times the last
-   correction estimates the remaining correction (Hairer & Wanner, Solving ODEs II, IV.8). Without such a ratio the
-   remaining correction counts as large as the last one. *left: the remaining correction. Returns NULL, or the reason of
-   a failure. */
+/* Two corrections show the contraction of their largest part. Other parts, too small to be seen beside it, may contract
+   less: in a strip that is stiff along its line, the first correction closes what that stiffness sees, and little else.
+   A contraction below this limit counts as this limit. */
+#define SPARI_LEAST_RATE 0.02
+
+/* What remains after the last of two corrections with the same tangent, from their sizes (Hairer & Wanner, Solving
+   ODEs II, IV.8). Without the first one (0), as much as the last one. */
+static inline double spari_newton_remaining(double before, double last) {
+    double theta = before > 0 ? last / before : 1;
+    theta = theta > SPARI_LEAST_RATE ? theta : SPARI_LEAST_RATE;
+    return theta < 1 ? theta / (1 - theta) * last : last;
+}
+
+/* Beside a large stiffness, rounding may be larger than what still can be corrected. So many corrections in turn that
+   do not halve the least one show that nothing can. */
+#define SPARI_STALLED 3
+
+/* Ends once the remaining correction and the remaining unbalanced forces are both below their tolerances. Both are
+   needed: a beam is stiffer along its line than across it by EA L^2 / EI, so that corrections of a small rotation leave
+   large forces. *left: the remaining correction. Returns NULL, or the reason of a failure. */
 static inline const char *spari_newton_attempt(const spari_newton *how, void *self, spari_attempt try, int most,
                                                double *left, int *iterations) {
-    double last = 0, longest = try.full ? SPARI_LONGEST : INFINITY;
-    int same = 0; /* the last correction had the same tangent */
+    double last = 0, force = 0, least = INFINITY, longest = try.full ? SPARI_LONGEST : INFINITY;
+    int same = 0, stalled = 0; /* the last correction had the same tangent; so many did not halve the least one */
     int fresh = !how->begin(self, try.reused);
     for (int it = 1; it <= most; it++, ++*iterations) {
         spari_iterate n;
@@ -57,8 +76,12 @@ static inline const char *spari_newton_attempt(const spari_newton *how, void *se
             return wrong; /* cppcheck-suppress returnDanglingLifetime ; a constant text, not of n */
         }
         double theta = last > 0 ? n.correction / last : 0;
-        *left = same && theta < 1 ? theta / (1 - theta) * n.correction : n.correction;
-        if (*left <= n.tolerance || n.rounded || (theta > 0.5 && n.small)) {
+        *left = spari_newton_remaining(same ? last : 0, n.correction);
+        int balanced = spari_newton_remaining(same ? force : 0, n.force) <= n.force_tolerance;
+        stalled = n.correction > 0.5 * least ? stalled + 1 : 0;
+        least = n.correction < least ? n.correction : least;
+        if ((*left <= n.tolerance && balanced) || n.rounded || (theta > 0.5 && n.small) ||
+            (stalled >= SPARI_STALLED && n.stiff)) {
             how->end(self, it, fresh);
             return NULL;
         }
@@ -71,6 +94,7 @@ static inline const char *spari_newton_attempt(const spari_newton *how, void *se
             fresh = 1;
         }
         last = n.correction;
+        force = n.force;
     }
     return "does not converge";
 }

@@ -17,6 +17,7 @@ typedef struct spari_node_work {
     const double *q, *tangent_q;  /* [n][7] now; [n][4] rotations when the tangent was formed */
     double *rotation;             /* [n][4] rotation since; NULL: the correction is not in the axes of the tangent */
     const double *r;              /* [n][6] forces */
+    double per_length;            /* moments times this count as forces */
     const double *R;              /* [9] orientation of a driven root; NULL: there is none */
 } spari_node_work;
 
@@ -44,7 +45,8 @@ typedef struct spari_node_size {
 } spari_node_size;
 
 /* All of nodes [from, to). */
-/* rotation := q kept*; dx := the forces r, rotated back. Returns the largest force, infinite if one is not finite. */
+/* rotation := q kept*; dx := the forces r, rotated back. Returns the largest force, moments times per_length, infinite
+   if one is not finite. */
 double spari_nodes_rotate_back(const spari_node_work *t, int64_t from, int64_t to);
 /* dx := dx rotated to the present axes. */
 void spari_nodes_rotate_forth(const spari_node_work *t, int64_t from, int64_t to);

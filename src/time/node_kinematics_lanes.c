@@ -137,7 +137,8 @@ HERE void NAME(forces_back_block)(const int whole, const int64_t *at, const spar
     NAME(quat_mul)(q, back, rotation);
     NAME(drop_rows)(whole, at, 4, 4, t->rotation + 4 * i, rotation);
     for (int k = 0; k < 6; k++) {
-        *most = NAME(larger)(NAME(larger)(r[k], -r[k]), *most);
+        const L size = k < 3 ? r[k] : t->per_length * r[k];
+        *most = NAME(larger)(NAME(larger)(size, -size), *most);
         *poison = *poison + 0.0 * r[k];
     }
     NAME(rotate_back)(rotation, r, r);

@@ -40,11 +40,11 @@ int spari_step_error_applies(const spar_member *m) {
     return m->row->solved && m->row->moves && (m->effects & SPAR_EFFECT_INERTIA) != 0;
 }
 
-/* Sums of squares over nodes, in parts of `span` of those that are looked at. */
+/* Sums of squares over nodes, in parts of `span`. */
 enum { PARTS = 32, LEAST = 256 };
 typedef struct change_sums {
     const spar_member *m;
-    int64_t stride, span;
+    int64_t span;
     double length;
     spari_step_change part[PARTS];
 } change_sums;
@@ -53,33 +53,31 @@ static void add_changes(void *context, int64_t from, int64_t to) {
     change_sums *t = context;
     const spar_member *m = t->m;
     double v[6], a[6], v0[6], a0[6];
-    spari_step_change sum = {0, 0, 0};
+    spari_step_change sum = {0, 0};
     for (int64_t i = from; i < to; i++) {
-        rates_from_root(m, &m->now, i * t->stride, v0, a0);
-        rates_from_root(m, &m->after, i * t->stride, v, a);
+        rates_from_root(m, &m->now, i, v0, a0);
+        rates_from_root(m, &m->after, i, v, a);
         for (int k = 0; k < 6; k++) {
             double weight = k < 3 ? 1 : t->length * t->length;
             sum.change += weight * (a[k] - a0[k]) * (a[k] - a0[k]);
-            sum.acceleration += weight * a[k] * a[k];
             sum.speed += weight * v[k] * v[k];
         }
     }
     t->part[from / t->span] = sum;
 }
 
-spari_step_change spari_step_change_of(const spar_member *m, int64_t stride) {
-    int64_t nodes = (m->nodes + stride - 1) / stride, span = (nodes + PARTS - 1) / PARTS;
-    change_sums t = {.m = m, .stride = stride, .span = span < LEAST ? LEAST : span};
+spari_step_change spari_step_change_of(const spar_member *m) {
+    int64_t nodes = m->nodes, span = (nodes + PARTS - 1) / PARTS;
+    change_sums t = {.m = m, .span = span < LEAST ? LEAST : span};
     t.length = m->nodes == 1 ? spari_member_length(m) : 0;
     spari_thread_pool_spread(m->session->pool, nodes, t.span, add_changes, &t);
     spari_step_change sum = t.part[0];
     for (int64_t k = 1; k * t.span < nodes; k++) {
         sum.change += t.part[k].change;
-        sum.acceleration += t.part[k].acceleration;
         sum.speed += t.part[k].speed;
     }
     double count = (double)nodes;
-    return (spari_step_change){sqrt(sum.change / count), sqrt(sum.acceleration / count), sqrt(sum.speed / count)};
+    return (spari_step_change){sqrt(sum.change / count), sqrt(sum.speed / count)};
 }
 
 int spari_step_error_is_known(const spar_session *s) {

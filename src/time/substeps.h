@@ -21,8 +21,10 @@ typedef struct spari_stepper {
     void (*name)(const void *self, char *text, int size);
 } spari_stepper;
 
-/* Part of the energy that a substep may gain where its motion is hardly resolved. */
+/* Part of the energy that a substep may gain where its motion is hardly resolved; and where Newton has found it only
+   with a new tangent in each iteration, which may lead to another solution. */
 #define SPARI_GAIN 0.1
+#define SPARI_GAIN_FAR 0.01
 
 /* Advances from t^n to t^n + dt in the session's substeps. A substep is halved, down to 1/1024, if it has no
    solution or if its solution gains energy (Newton has found another equilibrium). *cuts keeps the halvings for the

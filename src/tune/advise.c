@@ -124,8 +124,7 @@ static spari_plan tight(const spari_advisor *d, int64_t steps) {
         p.rtol = tight_rtol(d, steps);
     }
     if (!is_heavy(d)) {
-        p.strict = 1;
-        p.newton = fmin(fmax(1e-3 * d->tolerance, 1e-12), keeps_coupling(d) ? 1 : p.rtol);
+        p.newton = fmin(p.newton, fmin(fmax(1e-3 * d->tolerance, 1e-12), keeps_coupling(d) ? 1 : p.rtol));
         p.predictor = keeps_coupling(d) ? p.predictor : 2;
     }
     p.more = d->search->keep_nodes ? 0 : d->node_error > 0.3 * d->tolerance ? 4 : 2;

@@ -29,7 +29,6 @@ spari_plan spari_plan_present(const spar_session *s, int64_t steps) {
     return (spari_plan){.steps = steps,
                         .scheme = s->coupling.scheme,
                         .predictor = s->coupling.predictor,
-                        .strict = s->newton.strict,
                         .rtol = s->coupling.rtol,
                         .newton = s->newton.rtol};
 }
@@ -39,7 +38,6 @@ void spari_plan_settings(const spari_plan *p, double *values) {
     SPARI_VARY(values, coupling.predictor, p->predictor);
     SPARI_VARY(values, coupling.rtol, p->rtol);
     SPARI_VARY(values, newton.rtol, p->newton);
-    SPARI_VARY(values, newton.strict, p->strict);
 }
 
 spari_rebuild spari_plan_rebuild(const spar_member *m, const spari_plan *p) {

@@ -11,7 +11,6 @@ typedef struct spari_plan {
     int64_t steps; /* in the time that the host asked for */
     int more;      /* nodes of each element beyond those that a beam has, < 0: fewer */
     int scheme, predictor;
-    int strict; /* Newton ends at its rtol only */
     double rtol, newton;
 } spari_plan;
 

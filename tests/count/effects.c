@@ -319,7 +319,6 @@ static void make(scene *s, const setting *is) {
     /* the first correction of Newton is small enough and every step, of another length than the one before, forms a
        tangent: scenes differ by what a step computes, not by how soon it converges */
     MUST(spar_session_set_newton(s->session, 1, 1, 50));
-    MUST(spar_session_set_option(s->session, "newton.stop", "strict"));
     if (is->aero) {
         make_blades(s);
     } else {

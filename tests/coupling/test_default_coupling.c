@@ -17,7 +17,7 @@ static void test_heavy_body(void **state) {
         double off = 0, form = 0, most = 0;
         create(&w, body_mass, ratios[r] * body_mass);
         create(&whole, (1 + ratios[r]) * body_mass, 0);
-        OK(whole.s, spar_session_set_option(whole.s, "newton.stop", "strict"));
+        OK(whole.s, spar_session_set_newton(whole.s, 1e-15, 1e-12, 50));
         /* its loads do not depend on the motion: the second evaluation confirms the first */
         OK(whole.s, spar_session_set_coupling(whole.s, SPAR_COUPLING_FIXED_POINT, 0, 1e-14, 2));
         w.load = whole.load = slow;

@@ -219,14 +219,11 @@ static void fluid_settings(scene *w, spar_fluid *f, int before_map) {
 
 /* The settings of the session are others than the defaults. */
 static void change_session(spar_session *s) {
-    static const char *const option[][2] = {{"newton.stop", "strict"},
-                                            {"coupling.unconverged", "accept"},
-                                            {"coupling.unstable", "accept"},
-                                            {"coupling.patience", "7"},
-                                            {"coupling.filter", "0.00012345678901234"},
-                                            {"coupling.columns", "20"},
-                                            {"coupling.reuse", "4"},
-                                            {"coupling.motion_rtol", "1e-9"}};
+    static const char *const option[][2] = {
+        {"coupling.unconverged", "accept"}, {"coupling.unstable", "accept"},
+        {"coupling.patience", "7"},         {"coupling.filter", "0.00012345678901234"},
+        {"coupling.columns", "20"},         {"coupling.reuse", "4"},
+        {"coupling.motion_rtol", "1e-9"}};
     OK(s, spar_session_set_gravity(s, (const double[]){0.1, 0.2, -9.81}));
     OK(s, spar_session_set_integrator(s, 0.8, 2));
     OK(s, spar_session_set_newton(s, 1e-14, 1e-11, 40));
@@ -427,22 +424,6 @@ static void test_changed(void **state) {
     compare(1);
 }
 
-/* Newton's stopping rule is a setting of its own. */
-static void test_newton_keeps_its_rule(void **state) {
-    (void)state;
-    static const char *const rules[] = {"balanced", "strict"};
-    spar_session *s = NULL;
-    OK(NULL, spar_session_create(&s));
-    for (int k = 0; k < 2; k++) {
-        char word[32];
-        OK(s, spar_session_set_option(s, "newton.stop", rules[k]));
-        OK(s, spar_session_set_newton(s, 1e-14, 1e-9, 30));
-        OK(s, spar_session_get_option(s, "newton.stop", sizeof word, word));
-        assert_string_equal(word, rules[k]);
-    }
-    spar_session_destroy(&s);
-}
-
 /* ---- no setting is left out ---- */
 
 /* Reads the public headers, one after the other. */
@@ -502,7 +483,6 @@ static void test_all_settings_are_tried(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_defaults), cmocka_unit_test(test_changed),
-                                       cmocka_unit_test(test_newton_keeps_its_rule),
                                        cmocka_unit_test(test_all_settings_are_tried)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -268,7 +268,7 @@ static sequence_world make(int kind, double rho) {
     double K[36], M[36];
     sequence_world w = {.s = scene_session()};
     OK(w.s, spar_session_set_integrator(w.s, rho, 1));
-    OK(w.s, spar_session_set_option(w.s, "newton.stop", "balanced"));
+    OK(w.s, spar_session_set_newton(w.s, 1e-15, 1e-8, 50));
     OK(w.s, spar_session_set_gravity(w.s, (double[]){0, 0, -9.81}));
     soft(K, M);
     switch (kind) {
@@ -413,7 +413,6 @@ static void figures(int kind, int pattern, double h, double time, double out[PAR
     const int n = (int)(time / PARTS / h + 0.5);
     sequence_world w = make(kind, 0.9);
     assert_true(n <= MOST_STEPS);
-    OK(w.s, spar_session_set_option(w.s, "newton.stop", "strict"));
     OK(w.s, spar_session_set_newton(w.s, 1e-15, 1e-13, 50));
     for (int p = 0; p < PARTS; p++) {
         double *x = out[p], sum = 0;

@@ -65,7 +65,7 @@ static world make(int kind, double rho) {
     world w = {.kind = kind, .bodies = 1, .s = scene_session()};
     spar_session *s = w.s;
     OK(s, spar_session_set_integrator(s, rho, 1));
-    OK(s, spar_session_set_option(s, "newton.stop", "balanced"));
+    OK(s, spar_session_set_newton(s, 1e-15, 1e-8, 50));
     if (kind == ROD || (kind >= PENDULUM && kind <= STIFFER)) {
         OK(s, spar_session_set_gravity(s, (double[]){0, 0, -9.81}));
     }
@@ -249,7 +249,6 @@ enum { FIGURES = 25 };
 static void figures(int kind, double rho, int pattern, double h, double time, double *x) {
     world w = make(kind, rho);
     double q[7 * 6], v[6 * 6], a[6 * 6];
-    OK(w.s, spar_session_set_option(w.s, "newton.stop", "strict"));
     OK(w.s, spar_session_set_newton(w.s, 1e-15, 1e-13, 50));
     sequence_seed = 5;
     for (int k = 0; w.t < time * (1 - 1e-12); k++) {

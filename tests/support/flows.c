@@ -336,6 +336,7 @@ static int set_up(flow *f) {
     if (c->omega > 0) {
         TRY(spar_session_set_relaxation(s, c->omega));
     }
+    TRY(c->newton > 0 ? spar_session_set_newton(s, 1e-15, c->newton, 50) : SPAR_OK);
     for (int k = 0; k < FLOW_OPTIONS && c->option[k][0]; k++) {
         TRY(spar_session_set_option(s, c->option[k][0], c->option[k][1]));
     }

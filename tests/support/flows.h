@@ -39,6 +39,7 @@ typedef struct flow_case {
     int scheme, predictor, most; /* predictor -1: the library's; most 0: 50 iterations */
     double rtol;
     double omega;                        /* 0: the library's */
+    double newton;                       /* relative tolerance; 0: the library's */
     const char *option[FLOW_OPTIONS][2]; /* keys and values, ends at NULL */
     int learn;                           /* stations at which the added mass is learned; 0: it is not */
     int response;                        /* SPAR_RESPONSE_*: what predicted loads of it answer to */

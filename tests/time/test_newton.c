@@ -1,6 +1,6 @@
-/* Where Newton's iteration of a step ends: balanced with the error of the step and to its coupling (option
-   newton.stop), runs are those of strict ones to a small part of what dt leaves, in the long run too, and take fewer
-   iterations. The oracle is the strict run, and one with half its dt: their distance is the error of dt (3/4 of it). */
+/* Where Newton's iteration of a step ends: with the default tolerance, runs are those of strict ones (1e-12) to a small
+   part of what dt leaves, in the long run too, and take fewer iterations. The oracle is the strict run, and one with
+   half its dt: their distance is the error of dt (3/4 of it). */
 #include "scene.h"
 
 #include "time/body_solver.h"
@@ -89,14 +89,14 @@ static flown fly(int beam, double dt, int64_t steps, double rho, int strict) {
 static void test_body_keeps_what_it_has(void **state) {
     (void)state;
     for (double rho = 0.9; rho < 1.05; rho += 0.1) {
-        flown strict = fly(0, 0.02, 100000, rho, 1), balanced = fly(0, 0.02, 100000, rho, 0);
+        flown strict = fly(0, 0.02, 100000, rho, 1), plain = fly(0, 0.02, 100000, rho, 0);
         print_message("body: energy %.3e, strict %.3e; turns' momentum %.3e, strict %.3e; iterations %.2f of %.2f\n",
-                      balanced.energy, strict.energy, balanced.momentum_of_turns, strict.momentum_of_turns,
-                      balanced.newton, strict.newton);
-        assert_true(balanced.energy <= 1.1 * strict.energy);
-        assert_true(balanced.momentum_of_turns <= 1.1 * strict.momentum_of_turns);
-        NEAR(balanced.momentum, 0, 1e-12);
-        assert_true(balanced.newton < 0.8 * strict.newton);
+                      plain.energy, strict.energy, plain.momentum_of_turns, strict.momentum_of_turns, plain.newton,
+                      strict.newton);
+        assert_true(plain.energy <= 1.1 * strict.energy);
+        assert_true(plain.momentum_of_turns <= 1.1 * strict.momentum_of_turns);
+        NEAR(plain.momentum, 0, 1e-12);
+        assert_true(plain.newton < 0.8 * strict.newton);
     }
 }
 
@@ -107,21 +107,20 @@ static void test_beam_swings_alike(void **state) {
     const struct { double dt, rho; } run[] = {{5e-3, 1}, {5e-3, 0.9}, {2e-3, 0.9}};
     for (size_t k = 0; k < sizeof run / sizeof *run; k++) {
         double dt = run[k].dt, rho = run[k].rho;
-        flown strict = fly(1, dt, 4000, rho, 1), balanced = fly(1, dt, 4000, rho, 0),
-              half = fly(1, dt / 2, 8000, rho, 1);
-        double off = farthest(&strict, &balanced), error = farthest(&strict, &half);
+        flown strict = fly(1, dt, 4000, rho, 1), plain = fly(1, dt, 4000, rho, 0), half = fly(1, dt / 2, 8000, rho, 1);
+        double off = farthest(&strict, &plain), error = farthest(&strict, &half);
         print_message("box: %.1e of the error; energy %.3e, strict %.3e; iterations %.2f of %.2f\n", off / error,
-                      balanced.energy, strict.energy, balanced.newton, strict.newton);
+                      plain.energy, strict.energy, plain.newton, strict.newton);
         assert_true(off <= 0.01 * error);
-        NEAR(balanced.energy, strict.energy, 0.05 * strict.energy);
-        assert_true(balanced.newton < 0.7 * strict.newton);
+        NEAR(plain.energy, strict.energy, 0.05 * strict.energy);
+        assert_true(plain.newton < 0.85 * strict.newton);
     }
 }
 
 /* ---- what has no error ---- */
 
-/* A box that drifts, and turns about its own axis: no step errs, no estimate gives Newton leave, and after 2000 steps
-   no node is off the rigid motion by more than rounding, 1e-12 of the length. */
+/* A box that drifts, and turns about its own axis: after 2000 steps no node is off the rigid motion by more than
+ * rounding, 1e-12 of the length. */
 static void test_rigid_motion_is_no_strain(void **state) {
     (void)state;
     const double x0[3] = {0, 0, 0}, v0[3] = {1, 2, -1}, w[3] = {0.5, 0, 0}, dt = 0.01;
@@ -152,8 +151,8 @@ static void test_rigid_motion_is_no_strain(void **state) {
 
 /* ---- what comes at once ---- */
 
-/* A box that hardly moves, and so errs by hardly anything, is hit; a ball drops into a slack line. In the step of it
-   the contraction of the steps before is no guide. Beside the strict run to a hundredth of the error of dt. */
+/* A box that hardly moves is hit; a ball drops into a slack line. In the step of it the steps before are no guide.
+   Beside the strict run to a hundredth of the error of dt. */
 static void hit(double dt, int64_t steps, int strict, double tip[3]) {
     const double little[6] = {0, 0, 1e-3}, much[6] = {0, 40, 60};
     double K[36], M[36], q[7];
@@ -200,13 +199,13 @@ static void drop(double dt, int64_t steps, int strict, double place[3]) {
 
 static void test_what_comes_at_once(void **state) {
     (void)state;
-    double strict[3], balanced[3], half[3];
-    hit(0.01, 60, 1, strict), hit(0.01, 60, 0, balanced), hit(0.005, 120, 1, half);
-    print_message("hit: %.1e of the error\n", from(strict, balanced, 3) / from(strict, half, 3));
-    assert_true(from(strict, balanced, 3) <= 0.01 * from(strict, half, 3));
-    drop(0.01, 120, 1, strict), drop(0.01, 120, 0, balanced), drop(0.005, 240, 1, half);
-    print_message("dropped: %.1e of the error\n", from(strict, balanced, 3) / from(strict, half, 3));
-    assert_true(from(strict, balanced, 3) <= 0.01 * from(strict, half, 3));
+    double strict[3], plain[3], half[3];
+    hit(0.01, 60, 1, strict), hit(0.01, 60, 0, plain), hit(0.005, 120, 1, half);
+    print_message("hit: %.1e of the error\n", from(strict, plain, 3) / from(strict, half, 3));
+    assert_true(from(strict, plain, 3) <= 0.01 * from(strict, half, 3));
+    drop(0.01, 120, 1, strict), drop(0.01, 120, 0, plain), drop(0.005, 240, 1, half);
+    print_message("dropped: %.1e of the error\n", from(strict, plain, 3) / from(strict, half, 3));
+    assert_true(from(strict, plain, 3) <= 0.01 * from(strict, half, 3));
 }
 
 /* ---- corrections that are mixed ---- */
@@ -235,11 +234,11 @@ static double push(int elements, double atol, double tip[3]) {
 }
 
 /* The tangent that is kept contracts by 0.1 to 0.3, by eigenvalues of either sign. As they come the corrections take
-   7.2, 9.8 and 11.4 to 1e-8, 1e-10 and 1e-12; mixed a tenth less, and leave no more than they may. */
+   8.3, 9.9 and 11.4 to 1e-8, 1e-10 and 1e-12; mixed a tenth less, and leave no more than they may. */
 static void test_corrections_are_mixed(void **state) {
     (void)state;
     const int elements[] = {1, 3};
-    const double most[] = {7.1, 9, 10.6};
+    const double most[] = {7.7, 9, 10.4};
     for (int k = 0; k < 2; k++) {
         double exact[3], tip[3], atol = 1e-8;
         (void)push(elements[k], 1e-15, exact);
@@ -254,7 +253,7 @@ static void test_corrections_are_mixed(void **state) {
 
 /* ---- the same again ---- */
 
-/* Saved and loaded, the run goes on to the bit: what estimates and contraction are is in the file. */
+/* Saved and loaded, the run goes on to the bit: the reused tangent is in the file. */
 static void test_saved_and_loaded(void **state) {
     (void)state;
     const char *path = "newton.spar";
@@ -285,31 +284,6 @@ static void test_saved_and_loaded(void **state) {
     remove(path);
 }
 
-/* A rejected step leaves what the next ones go by as it was. */
-static void test_rejected(void **state) {
-    (void)state;
-    double K[36], M[36], jerk[2], swing[2];
-    spar_session *s = NULL;
-    OK(NULL, spar_session_create(&s));
-    scene_box(K, M);
-    spar_member *b = scene_beam(s, "box", 1, P, 10, K, M);
-    OK(s, spar_member_commit(b));
-    OK(s, spar_member_set_load(b, P - 1, SPAR_LOAD_DEAD, (const double[]){0, 10, 25, 0, 0, 0}));
-    scene_run(s, 0.01, 10);
-    jerk[0] = b->accuracy.jerk, swing[0] = b->accuracy.acceleration;
-    assert_true(jerk[0] > 0 && swing[0] > 0);
-    OK(s, spar_step_begin(s, 0.05));
-    OK(s, spar_step_solve(s));
-    OK(s, spar_step_reject(s));
-    jerk[1] = b->accuracy.jerk, swing[1] = b->accuracy.acceleration;
-    assert_memory_equal(jerk, jerk + 1, sizeof *jerk);
-    assert_memory_equal(swing, swing + 1, sizeof *swing);
-    scene_strict(s);
-    scene_run(s, 0.01, 1);
-    assert_true(b->accuracy.jerk == 0 && b->accuracy.acceleration == 0); /* strict: nothing is kept */
-    spar_session_destroy(&s);
-}
-
 /* What is asked of members that are solved without iteration, and of none. */
 static void test_getter(void **state) {
     (void)state;
@@ -323,7 +297,6 @@ static void test_getter(void **state) {
     OK(s, spar_member_get_iterations(p, NULL, NULL));
     OK(s, spar_member_get_iterations(p, &taken, &left));
     assert_true(taken == 0 && left == 0);
-    REFUSED(s, SPAR_ERR_ARGUMENT, "give balanced or strict", spar_session_set_option(s, "newton.stop", "loose"));
     spar_session_destroy(&s);
 }
 
@@ -335,7 +308,6 @@ int main(void) {
         cmocka_unit_test(test_what_comes_at_once),
         cmocka_unit_test(test_corrections_are_mixed),
         cmocka_unit_test(test_saved_and_loaded),
-        cmocka_unit_test(test_rejected),
         cmocka_unit_test(test_getter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -17,7 +17,6 @@ static void begin(int k, int nodes, double fading, double dt, world *w) {
     assert_int_equal(world_create(k, nodes, fading, w), SPAR_OK);
     OK(w->s, spar_session_set_coupling(w->s, SPAR_COUPLING_IQN_ILS, 1e-12, 1e-7, 50));
     OK(w->s, spar_session_set_newton(w->s, 1e-14, 1e-10, 50));
-    OK(w->s, spar_session_set_option(w->s, "newton.stop", "strict"));
     if (dt > 0) {
         OK(w->s, spar_session_solve_initial(w->s, dt, world_solve, w, NULL));
     }

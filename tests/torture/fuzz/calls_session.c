@@ -232,20 +232,12 @@ void do_spar_session_set_threads(call *c) {
 }
 
 void do_spar_session_set_option(call *c) {
-    static const char *const keys[] = {"coupling.unconverged", "coupling.columns",     "coupling.reuse",
-                                       "coupling.filter",      "coupling.motion_atol", "coupling.motion_rtol",
-                                       "coupling.norm",        "coupling.patience",    "coupling.estimate",
-                                       "newton.stop",          "coupling.unstable"};
-    static const char *const values[][3] = {{"error", "accept", "accept"},
-                                            {"1", "3", "30"},
-                                            {"0", "1", "5"},
-                                            {"0", "1e-4", "0.5"},
-                                            {"0", "1e-12", "1e-3"},
-                                            {"0", "1e-6", "0.1"},
-                                            {"motion", "loads", "loads"},
-                                            {"1", "3", "1000000"},
-                                            {"off", "on", "on"},
-                                            {"balanced", "strict", "balanced"},
+    static const char *const keys[] = {
+        "coupling.unconverged", "coupling.columns", "coupling.reuse",    "coupling.filter",   "coupling.motion_atol",
+        "coupling.motion_rtol", "coupling.norm",    "coupling.patience", "coupling.estimate", "coupling.unstable"};
+    static const char *const values[][3] = {{"error", "accept", "accept"}, {"1", "3", "30"},       {"0", "1", "5"},
+                                            {"0", "1e-4", "0.5"},          {"0", "1e-12", "1e-3"}, {"0", "1e-6", "0.1"},
+                                            {"motion", "loads", "loads"},  {"1", "3", "1000000"},  {"off", "on", "on"},
                                             {"error", "accept", "accept"}};
     static const char *const strange[] = {"",   "nan",   "inf",    "-1", "1e999",  "1,5",  "0x10",  " 1",   "1 ",
                                           "%s", "10001", "1e-400", "-0", "accept", "keep", "1e300", "10000"};
@@ -292,7 +284,7 @@ void do_spar_session_sum_balance(call *c) {
 
 void do_spar_session_get_option(call *c) {
     static const char *const keys[] = {
-        "coupling.unconverged", "newton.stop",       "coupling.columns", "coupling.filter",
+        "coupling.unconverged", "coupling.estimate", "coupling.columns", "coupling.filter",
         "coupling.norm",        "coupling.patience", "no.option",        "spar%n"};
     live_session *l = arg_session(c);
     const char *key = odd(c) ? NULL : keys[below(c, 8)];

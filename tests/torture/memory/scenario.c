@@ -260,11 +260,15 @@ static void go(host *h, int steps) {
 
 static void settings(spar_session *s) {
     static const double g[3] = {0, 0, -2};
-    static const char *const option[][2] = {{"newton.stop", "balanced"},     {"coupling.unconverged", "accept"},
-                                            {"coupling.unstable", "accept"}, {"coupling.patience", "100"},
-                                            {"coupling.norm", "motion"},     {"coupling.estimate", "on"},
-                                            {"coupling.columns", "10"},      {"coupling.reuse", "2"},
-                                            {"coupling.filter", "1e-5"},     {"coupling.motion_rtol", "1e-3"}};
+    static const char *const option[][2] = {{"coupling.unconverged", "accept"},
+                                            {"coupling.unstable", "accept"},
+                                            {"coupling.patience", "100"},
+                                            {"coupling.norm", "motion"},
+                                            {"coupling.estimate", "on"},
+                                            {"coupling.columns", "10"},
+                                            {"coupling.reuse", "2"},
+                                            {"coupling.filter", "1e-5"},
+                                            {"coupling.motion_rtol", "1e-3"}};
     CALL(spar_session_set_gravity, s, g);
     CALL(spar_session_set_integrator, s, 0.8, 1);
     CALL(spar_session_set_newton, s, 1e-10, 1e-9, 30);

@@ -206,7 +206,7 @@ static void describe(scene *w, uint64_t seed, enum way way) {
     (void)spar_session_create(&w->s);
     const double g[3] = {0, 0, -9.81};
     (void)spar_session_set_gravity(w->s, g);
-    (void)spar_session_set_option(w->s, "newton.stop", draw(&w->random, 2) ? "balanced" : "strict");
+    (void)spar_session_set_newton(w->s, 1e-15, draw(&w->random, 2) ? 1e-8 : 1e-12, 50);
     (void)spar_session_set_integrator(w->s, between(&w->random, 0.5, 1), 1 + draw(&w->random, 3));
     (void)spar_session_set_predictor(w->s, draw(&w->random, 3));
     (void)spar_session_set_coupling(w->s, draw(&w->random, 4), 1e-10, 1e-8, 60);
