@@ -361,7 +361,9 @@ SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
      n: in, at most the number of free unknowns
      frequency_hz[n]: out, ascending; negative if the stiffness is, infinite without mass
      shapes[n][nodes][6]: out, displacement and rotation of this member's nodes, for unit modal mass of all connected
-           members, NULL: not wanted */
+           members, NULL: not wanted
+   SPAR_ERR_NUMERIC: no convergence; or rounding of very stiff strains leaves an error beyond 5e-4 of a frequency. That
+   of exact beams is right beside stretch of any stiffness. */
 SPAR_API int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
 /* Eigenvalues lambda of small motions x e^(lambda t) about the present state, at rest or in steady rotation. Damping,
    Coriolis, gyroscopic and unsymmetric stiffness terms are included (docs/explanation/theory.md). lambda is growth
@@ -373,7 +375,7 @@ SPAR_API int spar_member_solve_modes(spar_member *member, int64_t n, double *fre
      shapes[n][nodes][6][2]: out, real and imaginary part, for unit x^H M x, largest component real, NULL: not wanted
      frame[3]: out, rad/s, angular velocity of the frame in which x is seen, NULL: not wanted
    SPAR_ERR_STATE: no equilibrium; SPAR_ERR_UNSUPPORTED: parts rotate against each other and are not axisymmetric;
-   SPAR_ERR_NUMERIC: fewer than n converged. */
+   SPAR_ERR_NUMERIC: fewer than n converged; or rounding hides one, as of spar_member_solve_modes. */
 SPAR_API int spar_member_solve_eigenvalues(spar_member *member, int64_t n, const double shift[2], double *eigenvalue,
                                            double *shapes, double frame[3]);
 /* Chooses stiffness-proportional damping such that two modes have given damping ratios. It replaces

@@ -28,6 +28,7 @@ typedef struct spari_pencil {
     spari_pencil_constraint *constraint;
     double *left;        /* [n] internal minus external forces of the state */
     double scale, noise; /* reference force, and its rounding error */
+    double cap;          /* of beams: the stiffest strain, relative to the softest (member/capped.h); 0: as described */
     int full;            /* an entry did not fit in memory */
 } spari_pencil;
 

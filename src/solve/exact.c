@@ -2,6 +2,7 @@
 #include "../algebra/pencil.h"
 #include "../math/rotation.h"
 #include "../member/applied_loads.h"
+#include "../member/capped.h"
 #include "../member/plane.h"
 #include "../time/body_solver.h"
 #include "../time/component.h"
@@ -117,8 +118,10 @@ static int exact_problem(const spar_member *m, spari_pencil *to) {
     if (rotating) {
         spari_rotating_frame_nodes(&frame, 1, m, (int)u, q, v, a);
     }
-    for (int e = 0; e < m->mesh.elements; e++) {
-        spari_steady_rotation_tangent(m->body, rotating ? &frame.rotation : NULL, e, q, v, a, 1, S, mass);
+    spari_body body;
+    int status = spari_body_cap(m->body, q, to->cap, &body);
+    for (int e = 0; e < m->mesh.elements && status == SPAR_OK; e++) {
+        spari_steady_rotation_tangent(&body, rotating ? &frame.rotation : NULL, e, q, v, a, 1, S, mass);
         if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, S);
         }
@@ -126,8 +129,9 @@ static int exact_problem(const spar_member *m, spari_pencil *to) {
         reduce_matrix(m, mass);
         spari_pencil_add_symmetric(to, first_unknown(m, e), own, S, mass);
     }
+    spari_body_uncap(m->body, &body);
     free(q);
-    return SPAR_OK;
+    return status;
 }
 
 /* Residual in steady rotation, under the loads in use. */
@@ -171,8 +175,10 @@ static int exact_linearise(const spar_member *m, const double w[3], spari_pencil
     } else {
         v = a = NULL;
     }
-    for (int e = 0; e < m->mesh.elements; e++) {
-        spari_steady_rotation_pencil(m->body, w, frame.rotation.w, e, q, v, a, K, C, M);
+    spari_body body;
+    int status = spari_body_cap(m->body, q, to->cap, &body);
+    for (int e = 0; e < m->mesh.elements && status == SPAR_OK; e++) {
+        spari_steady_rotation_pencil(&body, w, frame.rotation.w, e, q, v, a, K, C, M);
         if (spari_carries_loads(m)) {
             spari_applied_tangent(m, e, q, 1, K);
         }
@@ -181,7 +187,8 @@ static int exact_linearise(const spar_member *m, const double w[3], spari_pencil
         reduce_matrix(m, M);
         spari_pencil_add(to, first_unknown(m, e), own, own, K, C, M);
     }
-    int status = exact_left(m, q, v, a, to);
+    spari_body_uncap(m->body, &body);
+    status = status == SPAR_OK ? exact_left(m, q, v, a, to) : status;
     free(q);
     return status;
 }

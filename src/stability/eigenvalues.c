@@ -1,5 +1,5 @@
 /* Eigenvalues of the small-motion equations, and the public call. */
-#include "small_motions.h"
+#include "rounding.h"
 
 #include "../assembly/assembly.h"
 #include "../base/environment.h"
@@ -28,20 +28,59 @@ static int solve_small_motions(spari_small_motions *w, int n, double complex shi
     return SPAR_OK;
 }
 
-/* Converts a vector x of all unknowns to the motion of a member's nodes [nodes][6][2]. */
-static void shape_of_vector(const spari_small_motions *w, const spari_motion_part *p, const double complex *x,
-                            double *nodes) {
-    const spar_member *m = p->member;
-    double *part = w->workspace, *workspace = part + p->size, *motion = workspace + 6 * m->body->unique;
-    for (int side = 0; side < 2; side++) {
-        for (int i = 0; i < p->size; i++) {
-            part[i] = side ? cimag(x[p->at + i]) : creal(x[p->at + i]);
+/* The eigenvalues sought. A pair has two vectors, the real and the imaginary part. */
+typedef struct eigenvalue_search {
+    spari_small_motions *motions;
+    double complex shift, *value, *x; /* [n], [n][unknowns] */
+} eigenvalue_search;
+
+static int solve_pairs(void *context, spari_pairs *pairs) {
+    const eigenvalue_search *of = context;
+    const int64_t size = of->motions->size;
+    SPARI_TRY(solve_small_motions(of->motions, pairs->n, of->shift, of->value, of->x));
+    for (int k = 0; k < pairs->n; k++) {
+        double *x = pairs->x + 2 * size * k;
+        pairs->value[2 * k] = creal(of->value[k]), pairs->value[2 * k + 1] = cimag(of->value[k]);
+        pairs->square[k] = creal(of->value[k] * conj(of->value[k]));
+        for (int64_t i = 0; i < size; i++) {
+            x[i] = creal(of->x[size * k + i]), x[size + i] = cimag(of->x[size * k + i]);
         }
-        m->row->shape(m, part, workspace, motion);
+    }
+    return SPAR_OK;
+}
+
+/* Converts the real and the imaginary part x [2][unknowns] of all unknowns to the motion of a member's nodes
+   [nodes][6][2]. */
+static void shape_of_vector(const spari_small_motions *w, const spari_motion_part *p, const double *x, double *nodes) {
+    const spar_member *m = p->member;
+    double *workspace = w->workspace, *motion = workspace + 6 * m->body->unique;
+    for (int side = 0; side < 2; side++) {
+        m->row->shape(m, x + (int64_t)w->size * side + p->at, workspace, motion);
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
             nodes[2 * i + side] = motion[i];
         }
     }
+}
+
+/* With a shift, motions with stiff strains may be sought, which less stiff ones would move. */
+static int pairs_of(spari_small_motions *w, const spar_member *m, int64_t n, double complex shift, double *eigenvalue,
+                    double *shapes) {
+    eigenvalue_search of = {.motions = w, .shift = shift, .value = spari_zalloc(n, sizeof *of.value)};
+    spari_pairs p = {.n = (int)n, .width = 2, .vectors = 2, .solve = solve_pairs, .context = &of};
+    of.x = spari_zalloc(n * w->size, sizeof *of.x);
+    p.square = spari_zalloc(n * (4 + 2 * (int64_t)w->size), sizeof *p.square);
+    p.error = p.square + n, p.value = p.error + n, p.x = p.value + 2 * n;
+    int status = of.value && of.x && p.square
+                     ? spari_pairs_solve(w, &p, !(cabs(shift) > 0))
+                     : spari_fail(w->session, SPAR_ERR_MEMORY, "'%s': no memory for eigenvalues", m->name);
+    if (status == SPAR_OK) {
+        spari_give(eigenvalue, p.value, 2 * n);
+    }
+    for (int64_t k = 0; k < n && status == SPAR_OK && shapes; k++) {
+        shape_of_vector(w, spari_small_motions_part(w, m), p.x + 2 * (int64_t)w->size * k, shapes + 12 * m->nodes * k);
+    }
+    SPARI_FREE(of.value, of.x, p.square);
+    return status;
 }
 
 static int eigenvalues_of(spar_member *m, int64_t n, double complex shift, double *eigenvalue, double *shapes,
@@ -53,19 +92,7 @@ static int eigenvalues_of(spar_member *m, int64_t n, double complex shift, doubl
         status = spari_fail(s, SPAR_ERR_ARGUMENT, "'%s': %lld eigenvalues; there are %d unknowns", m->name,
                             (long long)n, w.size);
     }
-    if (status == SPAR_OK && n > 0) {
-        double complex *value = spari_zalloc(n, sizeof *value), *x = spari_zalloc(n * w.size, sizeof *x);
-        status = value && x ? solve_small_motions(&w, (int)n, shift, value, x)
-                            : spari_fail(s, SPAR_ERR_MEMORY, "'%s': no memory for eigenvalues", m->name);
-        for (int64_t k = 0; k < n && status == SPAR_OK; k++) {
-            eigenvalue[2 * k] = creal(value[k]);
-            eigenvalue[2 * k + 1] = cimag(value[k]);
-            if (shapes) {
-                shape_of_vector(&w, spari_small_motions_part(&w, m), x + w.size * k, shapes + 12 * m->nodes * k);
-            }
-        }
-        SPARI_FREE(value, x);
-    }
+    status = status == SPAR_OK && n > 0 ? pairs_of(&w, m, n, shift, eigenvalue, shapes) : status;
     if (status == SPAR_OK) {
         spari_give(frame, w.w, 3);
     }

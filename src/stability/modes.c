@@ -9,9 +9,10 @@
 #include "../base/session.h"
 #include "../member/check_arguments.h"
 #include "../time/fidelity.h"
-#include "small_motions.h"
+#include "rounding.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 static const char *subject(int connected) {
     return connected ? "the assembly of" : "member";
@@ -48,8 +49,16 @@ static void find_blocks(const spari_small_motions *w, int *block) {
     }
 }
 
-static int solve_modes(spari_small_motions *w, const spar_member *m, int connected, int64_t n, double *frequency,
-                       double *shapes) {
+/* The modes sought: the member, and the frequencies as the value of a pair. */
+typedef struct modes_search {
+    spari_small_motions *motions;
+    const spar_member *member;
+    int connected;
+} modes_search;
+
+static int solve_pairs(void *context, spari_pairs *pairs) {
+    const modes_search *of = context;
+    const spari_small_motions *w = of->motions;
     int available = w->size, status = SPAR_ERR_MEMORY;
     double sum = 0;
     for (int64_t i = 0; i < w->pencil.entries; i++) {
@@ -57,26 +66,38 @@ static int solve_modes(spari_small_motions *w, const spar_member *m, int connect
     }
     SPARI_REQUIRE(w->session, isfinite(sum), SPAR_ERR_NUMERIC,
                   "%s '%s': stiffness in the present state is not finite; check loads, sections and their units",
-                  subject(connected), m->name);
-    if (n > w->size) {
-        return check_found(w, m, connected, n, available, SPAR_ERR_ARGUMENT);
-    }
-    double *square = spari_zalloc(n * (1 + (int64_t)w->size), sizeof *square), *x = square + n;
+                  subject(of->connected), of->member->name);
     int *block = spari_zalloc(w->size, sizeof *block);
-    if (square && block) {
+    if (block) {
         find_blocks(w, block);
         const spari_modes_problem problem = {.pencil = &w->pencil, .block = block};
-        status = spari_lowest_modes(&problem, (int)n, square, x, &available);
+        status = spari_lowest_modes(&problem, pairs->n, pairs->value, pairs->x, &available);
     }
-    status = check_found(w, m, connected, n, available, status);
+    free(block);
+    for (int k = 0; k < pairs->n && status == SPAR_OK; k++) {
+        pairs->square[k] = fabs(pairs->value[k]);
+    }
+    return check_found(w, of->member, of->connected, pairs->n, available, status);
+}
+
+static int solve_modes(spari_small_motions *w, const spar_member *m, int connected, int64_t n, double *frequency,
+                       double *shapes) {
+    if (n > w->size) {
+        return check_found(w, m, connected, n, w->size, SPAR_ERR_ARGUMENT);
+    }
+    modes_search of = {w, m, connected};
+    spari_pairs p = {.n = (int)n, .width = 1, .vectors = 1, .solve = solve_pairs, .context = &of};
+    p.square = spari_zalloc(n * (3 + (int64_t)w->size), sizeof *p.square);
+    p.value = p.square + n, p.error = p.value + n, p.x = p.error + n;
+    int status = p.square ? spari_pairs_solve(w, &p, 1) : check_found(w, m, connected, n, 0, SPAR_ERR_MEMORY);
     const spari_motion_part *own = spari_small_motions_part(w, m);
-    for (int64_t k = 0; k < n && square && status == SPAR_OK; k++) {
-        frequency[k] = copysign(sqrt(fabs(square[k])), square[k]) / 6.283185307179586;
+    for (int64_t k = 0; k < n && status == SPAR_OK; k++) {
+        frequency[k] = copysign(sqrt(p.square[k]), p.value[k]) / 6.283185307179586;
         if (shapes) {
-            m->row->shape(m, x + w->size * k + own->at, w->workspace, shapes + 6 * m->nodes * k);
+            m->row->shape(m, p.x + w->size * k + own->at, w->workspace, shapes + 6 * m->nodes * k);
         }
     }
-    SPARI_FREE(square, block);
+    free(p.square);
     return status;
 }
 

@@ -19,6 +19,8 @@ typedef struct spari_small_motions {
     double w[3]; /* angular velocity of the frame */
     int loose;   /* for shapes alone: each part has a frame of its own; time-dependent terms are ignored */
     int modes;   /* symmetric stiffness and mass alone */
+    int alone;   /* without joints */
+    double cap;  /* of exact beams, see spari_small_motions_cap */
     spari_pencil pencil;
     double *workspace; /* of a shape */
 } spari_small_motions;

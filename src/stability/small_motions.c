@@ -181,6 +181,7 @@ static int fill_motions(spari_small_motions *w, const spar_joint *joints) {
     int constraints = 0;
     spari_pencil_free(&w->pencil);
     SPARI_REQUIRE(s, spari_pencil_create(&w->pencil, w->size) == SPAR_OK, SPAR_ERR_MEMORY, "no memory for eigenvalues");
+    w->pencil.cap = w->cap;
     for (int i = 0; i < w->parts; i++) {
         const spari_motion_part *p = w->part + i;
         int64_t first = w->pencil.entries;
@@ -261,5 +262,19 @@ int spari_small_motions_create_loose(spari_small_motions *w, spar_session *s) {
 int spari_small_motions_create_modes(spari_small_motions *w, const spar_member *first, int connected) {
     *w = (spari_small_motions){.session = first->session, .modes = 1};
     SPARI_TRY(gather_motions(w, first, connected));
+    w->alone = !connected;
     return fill_motions(w, connected ? w->session->joints : NULL);
+}
+
+int spari_small_motions_cap(spari_small_motions *w, double ratio) {
+    w->cap = ratio;
+    return fill_motions(w, w->alone ? NULL : w->session->joints);
+}
+
+void spari_small_motions_energy(const spari_small_motions *w, const double *x, double *energy, double *terms) {
+    for (int64_t i = 0; i < w->pencil.entries; i++) {
+        const spari_pencil_entry *e = w->pencil.entry + i;
+        double part = x[e->row] * e->k * x[e->column];
+        *energy += part, *terms += fabs(part);
+    }
 }

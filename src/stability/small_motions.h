@@ -16,6 +16,11 @@ int spari_small_motions_create_loose(spari_small_motions *motions, spar_session 
 /* The same for modes: the symmetric parts of stiffness and mass, in any state. connected: with all that joints connect
    to the member; otherwise without joints. */
 int spari_small_motions_create_modes(spari_small_motions *motions, const spar_member *first, int connected);
+/* Forms the equations again, with the sections of exact beams no stiffer than `ratio` times their softest strain
+   (member/capped.h); 0: as they are. */
+int spari_small_motions_cap(spari_small_motions *motions, double ratio);
+/* energy += x^T K x, terms += the sum of the absolute values of its terms. */
+void spari_small_motions_energy(const spari_small_motions *motions, const double *x, double *energy, double *terms);
 void spari_small_motions_free(spari_small_motions *motions);
 
 #endif

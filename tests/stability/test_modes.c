@@ -480,6 +480,48 @@ static void test_jacket(void **state) {
     spar_session_destroy(&s);
 }
 
+/* A round cantilever in no axis' direction, stretch and shear 1e4 to 1e20 times as stiff as bending: the frequencies of
+   two pairs of bending, 3.516 and 22.03 sqrt(EI/m)/L^2 less 2e-4 and 2e-3 of them by rotary inertia, and the
+   eigenvalues are those of 1e8, whose own stretch and shear change 1e-6 of them. Beside a tip load, too, as far as
+   there is an equilibrium. A linear beam keeps the stiffness of its commit: it is right, or refused. */
+static void test_stiff_strains(void **state) {
+    (void)state;
+    const double eta[2] = {0, 1}, line[6] = {0, 0, 0, 0.6, 0.64, 0.48}, load[6] = {0.1, 0.3, -0.5};
+    static const int fidelity[3] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR};
+    for (int kind = 0; kind < 3; kind++) {
+        double want[4] = {0};
+        for (double ratio = 1e8; ratio < (kind == 1 ? 1e13 : 1e21); ratio *= 10) {
+            double K[36], M[36], f[4], value[8];
+            scene_diagonal(K, ratio, ratio, ratio, 1, 1, 1);
+            scene_diagonal(M, 1, 1, 1, 2e-4, 1e-4, 1e-4);
+            spar_session *s = scene_session();
+            spar_member *b = scene_beam(s, "b", 2, 8, 1, K, M);
+            OK(s, spar_beam_set_axis(b, 2, eta, line, NULL));
+            OK(s, spar_member_set_fidelity(b, fidelity[kind], 0));
+            OK(s, spar_member_commit(b));
+            if (kind == 1) {
+                OK(s, spar_member_set_load(b, 15, SPAR_LOAD_DEAD, load));
+                OK(s, spar_member_solve_static(b, 4));
+            }
+            int status = spar_member_solve_modes(b, 4, f, NULL);
+            int other = spar_member_solve_eigenvalues(b, 4, NULL, value, NULL, NULL);
+            assert_true(kind == 2 && ratio > 3e9 ? status == SPAR_ERR_NUMERIC || status == SPAR_OK : status == SPAR_OK);
+            assert_true(kind == 2 && ratio > 3e9 ? other == SPAR_ERR_NUMERIC || other == SPAR_OK : other == SPAR_OK);
+            for (int i = 0; i < 4; i++) {
+                want[i] = ratio < 2e8 ? f[i] : want[i];
+                assert_true(status != SPAR_OK || fabs(f[i] / want[i] - 1) < (kind == 2 ? 1e-3 : 5e-6));
+                assert_true(other != SPAR_OK ||
+                            fabs(value[2 * i + 1] / (two_pi * want[i]) - 1) < (kind == 2 ? 1e-3 : 5e-6));
+            }
+            spar_session_destroy(&s);
+        }
+        if (kind != 1) {
+            NEAR(two_pi * want[0] / 3.516015, 1, 3e-4);
+            NEAR(two_pi * want[2] / 22.034492, 1, 3e-3);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rotating_cantilever), cmocka_unit_test(test_timoshenko),
@@ -488,6 +530,7 @@ int main(void) {
         cmocka_unit_test(test_free_and_buckled),    cmocka_unit_test(test_free_and_curved),
         cmocka_unit_test(test_followed_body),       cmocka_unit_test(test_modes_beyond_numbers),
         cmocka_unit_test(test_identical_beams),     cmocka_unit_test(test_jacket),
+        cmocka_unit_test(test_stiff_strains),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
