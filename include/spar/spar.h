@@ -126,7 +126,8 @@ SPAR_API void spar_session_destroy(spar_session **session);
    motion is that of the last solve, the loads are those pushed last. All step calls are collective. */
 
 /* Part 1: predicts the loads at t^{n+1} (option: spar_session_set_predictor).
-     dt: in, s, >= 1e-100; may change from step to step by any factor
+     dt: in, s, >= 1e-100, >= 1e-12 of the last step, and large enough to change t; it may vary otherwise. Add a
+           shorter rest of a window to the step before.
    Collective. */
 SPAR_API int spar_step_begin(spar_session *session, double dt);
 /* Part 2: solves all members from t^n to t^{n+1} under the current loads. Each call starts again from t^n.

@@ -40,6 +40,18 @@ static int is_uneven(const spar_session *s, double dt) {
     return s->clock.uneven[0] || !spari_steps_even(&s->clock, dt) || spari_substeps_rotate_fast(s, dt);
 }
 
+/* A step that the clock does not resolve, or beside which the last one is so long that accelerations by differences are
+   rounding: what a host is left with at the end of a window. */
+static int check_least(spar_session *s, const char *call, double dt) {
+    static const double part = 1e-12;
+    const double t = s->clock.time, last = s->clock.step > 0 ? s->clock.dt_last[0] : 0;
+    SPARI_REQUIRE(s, dt >= part * last && (t == 0 || t + dt != t), SPAR_ERR_ARGUMENT,
+                  "%s: dt is %g s at t = %.9g s, after a step of %g s: the clock and accelerations do not resolve it; "
+                  "add what is left of a window to the step before, or leave it out",
+                  call, dt, t, last);
+    return SPAR_OK;
+}
+
 /* uneven: result of is_uneven. */
 static int check_begin(spar_session *s, const char *call, double dt, int uneven) {
     if (s->state.phase != SPARI_IDLE) {
@@ -48,6 +60,7 @@ static int check_begin(spar_session *s, const char *call, double dt, int uneven)
     SPARI_TRY(spari_need_dt(s, call, dt));
     SPARI_REQUIRE(s, isfinite(s->clock.time + dt), SPAR_ERR_ARGUMENT,
                   "%s: the clock is at %g s and cannot advance by %g s; give a smaller dt", call, s->clock.time, dt);
+    SPARI_TRY(check_least(s, call, dt));
     SPARI_TRY(spari_need_all_committed(s, call));
     const int mean = s->integrator.substeps > 1 || uneven;
     for (spar_member *m = s->members; m && mean; m = m->next) {
