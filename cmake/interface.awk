@@ -4,28 +4,33 @@
 #   collective  name                                     whose comment has the word "Collective"; the others are local
 # type: int, int64_t, double, float, char, context, the callback's or the handle's (session, member, ...). pass: value, in or out
 # (by address), list (of handles, in), callback. shape: [n][3], "" of a single number.
-# Whether an address is an array's, the comments say: "x[n][3]: out" is one, "t: out" a single number; what is said of a name
-# holds until something else is. A capacity has the constant that counts its entries: "report[capacity]: out, by SPAR_REPORT_*".
-# With -v null=1 each parameter has a fifth part: null, where its comment says what NULL means.
+# Whether an address is an array's, the comment before the call says, which must describe each of them: "x[nodes][3]: out" is one,
+# "t: out" a single number. A size is a number, a constant, an argument of the call, or a count that COUNTS names. A capacity has the
+# constant that counts its entries: "report[capacity]: out, by SPAR_REPORT_*".
+# With -v null=1 each parameter has a fifth part: null, where its comment says what NULL means; of a count that no array need show, its
+# word: "n: in, motion_nodes"; of a capacity that without which the array would be cut: "capacity: in, of the arrays; n is enough".
 # With -v docs=1 each call is followed by:
 #   doc  name  the comment before it, a backslash and an n between its lines
 #   awk -f interface.awk <header>
 
-function hear(said,   list, n, word, i, p, own, each) {
+# What a comment says of its parameters.
+function hear(said,   list, n, word, i, p, own) {
+    split("", SHAPE); split("", NULL); split("", WORD)
     gsub(/[ \t\n]+/, " ", said)
-    each = said ~ /each NULL/
     while (match(said, LIST)) {
-        list = substr(said, RSTART, RLENGTH - 2)
+        list = substr(said, RSTART + 1, RLENGTH - 1)
         said = substr(said, RSTART + RLENGTH)
-        n = split(list, word, ", ")
+        own = said
+        if (match(own, LIST)) own = substr(own, 1, RSTART)
+        n = split(substr(list, 1, index(list, ": ") - 1), word, ", ")
         for (i = 1; i <= n; i++) {
             p = word[i]
             sub(/\[.*/, "", p)
             SHAPE[p] = substr(word[i], length(p) + 1)
-            if (said ~ /^out, (m, rad, )?by SPAR_/) SHAPE[p] = counted(SHAPE[p], said)
-            own = said
-            if (match(own, LIST)) own = substr(own, 1, RSTART - 1)
-            NULL[p] = each || own ~ /NULL/
+            if (list ~ /: out$/ && own ~ /^, (m, rad, )?by SPAR_/) SHAPE[p] = counted(SHAPE[p], own)
+            NULL[p] = own ~ /NULL( or 0)?:/
+            if (match(own, /^, [a-z]+_nodes[,. *]/)) WORD[p] = substr(own, 3, RLENGTH - 3)
+            if (match(own, /[a-z0-9]+ is enough/)) WORD[p] = substr(own, RSTART, RLENGTH - 10)
         }
     }
 }
@@ -75,14 +80,30 @@ function parameter(text,   type, p, stars, list, shape, fixed) {
     gsub(/ +/, "", type)
     if (type == "void") return p "|context|value|"
     if (type in CALLBACK) return p "|" substr(type, 6) "|callback|"
-    if (sub(/^spar_/, "", type)) return p "|" type "|" (list ? "list|[n]" : stars > 1 ? "out|" : "value|")
+    if (sub(/^spar_/, "", type)) return p "|" type "|" (list ? "list|" SHAPE[p] : stars > 1 ? "out|" : "value|")
     if (!stars) return p "|" type "|value|"
+    if (!(p in SHAPE)) wrong(p " is not described: \"" p ": in\" or \"" p ": out\"")
     if (shape == "") shape = SHAPE[p]
+    check_sizes(p, shape)
     if (type == "char" && shape == "") shape = "[]"
     return p "|" type "|" (fixed ? "in" : "out") "|" shape
 }
 
-function call(prototype,   head, f, answer, n, i, part, line) {
+function wrong(why) {
+    print FILENAME ": " f ": " why >"/dev/stderr"
+    failed = 1
+}
+
+# Every size of an array is one that a caller knows.
+function check_sizes(p, shape,   k, part, i) {
+    gsub(/^\[|\]$/, "", shape)
+    k = split(shape, part, /\]\[/)
+    for (i = 1; i <= k; i++)
+        if (part[i] !~ /^[0-9]+$|^SPAR_[A-Z_]+_COUNT$/ && !(part[i] in ARGUMENT) && index(COUNTS, " " part[i] " ") == 0)
+            wrong("the size of " p ", " part[i] ", is neither an argument nor a count")
+}
+
+function call(prototype,   head, answer, n, i, part, line, p) {
     head = prototype
     sub(/\(.*/, "", head)
     f = head
@@ -92,19 +113,26 @@ function call(prototype,   head, f, answer, n, i, part, line) {
     sub(/^[^(]*\(/, "", prototype)
     sub(/\)[^)]*$/, "", prototype)
     n = prototype == "void" ? 0 : split(prototype, part, ",")
+    split("", ARGUMENT)
+    for (i = 1; i <= n; i++)
+        if (part[i] !~ /[*[]/) {
+            p = part[i]
+            sub(/.* /, "", p)
+            ARGUMENT[p] = 1
+        }
     for (i = 1; i <= n; i++) {
         line = line "\t" parameter(part[i])
-        if (null && part[i] ~ /[*[]/) line = line (NULL[the_name] ? "|null" : "|")
-        else if (null) line = line "|"
+        if (null) line = line "|" (part[i] ~ /[*[]/ ? (NULL[the_name] ? "null" : "") : WORD[the_name])
     }
     print line
     if (collective) print "collective\t" f
     if (docs) print "doc\t" f "\t" comment
 }
 
-BEGIN { LIST = "[a-z_][a-z0-9_]*([[][^]]*[]])*(, [a-z_][a-z0-9_]*([[][^]]*[]])*)*: " }
+BEGIN { LIST = " [a-z_][a-z0-9_]*([[][^]]*[]])*(, [a-z_][a-z0-9_]*([[][^]]*[]])*)*: (in|out)" }
+BEGIN { COUNTS = " nodes motion_nodes force_nodes which_nodes sections blades P " }
 BEGIN { split("spar_log spar_fluid_solver spar_before_step spar_progress", names, " "); for (i in names) CALLBACK[names[i]] = 1 }
-/^#/ { next }
+/^#/ || /^extern "C"/ { next }
 { text = text $0 "\n" }
 
 # Comments and statements in turn.
@@ -113,7 +141,7 @@ END {
         sub(/^[ \t\n]+/, "", text)
         if (substr(text, 1, 2) == "/*") {
             stop = index(text, "*/")
-            hear(substr(text, 1, stop + 1))
+            hear(" " substr(text, 1, stop + 1))
             collective = substr(text, 1, stop + 1) ~ /Collective/
             comment = substr(text, 4, stop - 5)
             gsub(/\\/, "\\\\", comment)
@@ -137,4 +165,5 @@ END {
             call(statement)
         }
     }
+    if (failed) exit 1
 }

@@ -4,9 +4,9 @@
 # Out comes the file with each line "! plain procedures of <object>" replaced by them, and each "! plain bindings of <object>"
 # in the type by theirs, unless the file binds them itself.
 #
-# An argument is optional where the header says what NULL means, an output where it has others beside it. n comes from the
-# first array that must be there, or from the object: of a fluid its nodes of `which`, or those that the call is about. Numbers of
-# C that can be only 0 or 1 bear the name `on`, and are logical here.
+# An argument is optional where the header says what NULL means, an output where it has others beside it. The argument n comes from
+# the first array that must be there; other sizes are counts of the object, by the header's names for them. Numbers of C that can be
+# only 0 or 1 bear the name `on`, and are logical here.
 
 # "text" in lines of at most 120 columns, cut behind commas and brackets
 function put(indent, text,   line, cut) {
@@ -48,9 +48,8 @@ function dimensions(   i, text) {
 function needed(   i, text, e) {
     for (i = 1; i <= RANK; i++) {
         e = EXTENT[i]
-        if (object == "aero" && e == "n") e = "self%sections"
-        else if (object == "aero" && e == "blades") e = "self%blades"
-        else e = e == "n" ? count : extent(e)
+        if (object == "aero") e = e ~ /^(sections|blades)$/ ? "self%" e : extent(e)
+        else e = e == "n" || e ~ /nodes$/ ? count : extent(e)
         text = text (i > 1 ? ", " : "") e
     }
     return "[" text "]"
@@ -111,8 +110,12 @@ function find_count(   i, has) {
 }
 
 function nodes(   i) {
-    for (i = 1; i <= params; i++) if (P[i] == "which") return "to_c(which)"
-    return name ~ /force|_states/ ? "to_c(SPAR_NODES_FORCE)" : "to_c(SPAR_NODES_MOTION)"
+    for (i = 1; i <= params; i++) {
+        if (SHAPE[i] ~ /\[which_nodes\]/) return "to_c(which)"
+        if (SHAPE[i] ~ /\[force_nodes\]/) return "to_c(SPAR_NODES_FORCE)"
+        if (SHAPE[i] ~ /\[motion_nodes\]/) return "to_c(SPAR_NODES_MOTION)"
+    }
+    cannot("no set of nodes")
 }
 
 function declare(i,   type) {
@@ -138,7 +141,7 @@ function checks(   i, has, line, triples) {
         measure(SHAPE[i])
         if (!RANK || is_fixed() || TYPE[i] == "char" || P[COUNTED] == "capacity" || P[i] == carrier && RANK == 1) continue
         if (TYPE[i] == "int" || TYPE[i] == "int64_t") cannot("an array of integers")
-        triples = object == "fluid" && name ~ /^(pull|push)_/ && SHAPE[i] == "[n][3]"
+        triples = object == "fluid" && name ~ /^(pull|push)_/ && SHAPE[i] ~ /_nodes\]\[3\]$/
         line = "shape(" P[i] ", kind=c_int64_t), "
         line = triples ? "need_triples(self, " which_nodes() ", fault, '" P[i] "', " line "n)" : \
             "need(fault, '" P[i] "', " line needed() ")"

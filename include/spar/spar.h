@@ -41,6 +41,9 @@
    - Units are SI, or any other consistent set. Angles are in radians.
    - Vectors are in one right-handed inertial frame, "global", unless a line says "own frame" or "section frame".
    - Arrays are contiguous: x[n][3] is the double array with component i of node j at 3 j + i, Fortran's x(3,n).
+   - A size in brackets is a number, a constant, an argument of the call, or one of these counts: nodes, of the member
+     (spar_member_get_count); motion_nodes and force_nodes, of the fluid on this rank (spar_fluid_get_count);
+     which_nodes, of the set that the argument `which` names.
    - Quaternions are unit, scalar first, [w,x,y,z]. R(q) takes local components to global ones. q and -q are equal.
    - Motion of a member's nodes, in global axes, relative to the reference configuration: q[7] is the displacement and
      the quaternion of the rotation. v[6] is velocity and angular velocity, a[6] their rates. load[6] is force and
@@ -115,7 +118,9 @@ SPAR_API int spar_session_create(spar_session **session);
      session: out
    SPAR_ERR_ARGUMENT: not a communicator; SPAR_ERR_COMM: MPI is not initialised, is finalised, or has failed. */
 SPAR_API int spar_session_create_fcomm(int comm, spar_session **session);
-/* Destroys the session with its members and fluids, whose handles become invalid. Call it before MPI_Finalize.
+/* Destroys the session with its members and fluids, whose handles become invalid. Call it before MPI_Finalize, and not
+   in a callback of this session: the call in progress would go on in freed memory.
+     session: in; out, NULL
    Collective: a rank that waits in another collective call gets SPAR_ERR_COMM there. */
 SPAR_API void spar_session_destroy(spar_session **session);
 
@@ -147,14 +152,14 @@ SPAR_API int spar_step_reject(spar_session *session);
 
 /* Parts 3 and 4: motion of the motion nodes at t^n + theta dt; before the first step, the initial state. Local.
      theta: in, in [0,1]: 1 backward Euler, 1/2 Crank-Nicolson, 0 explicit
-     x[n][3]: out, position, m, NULL: not wanted
-     v[n][3]: out, velocity, m/s, NULL: not wanted
+     x[motion_nodes][3]: out, position, m, NULL: not wanted
+     v[motion_nodes][3]: out, velocity, m/s, NULL: not wanted
    SPAR_ERR_NUMERIC: the rotations at the nodes of an element cancel. */
 SPAR_API int spar_fluid_pull_motion(spar_fluid *fluid, double theta, double *x, double *v);
 /* Part 7: loads at t^{n+1} on the force nodes where they are now; before the first step, those at t = 0. Replaces what
    this fluid pushed before. Local.
-     force[n][3]: in, N
-     moment[n][3]: in, N m, about each node, NULL: none
+     force[force_nodes][3]: in, N
+     moment[force_nodes][3]: in, N m, about each node, NULL: none
    SPAR_ERR_ARGUMENT: a value is not finite. The loads stay as they were, and spar_step_check fails on all ranks unless
    a valid push follows. */
 SPAR_API int spar_fluid_push_forces(spar_fluid *fluid, const double *force, const double *moment);
@@ -213,7 +218,10 @@ enum {
      max_iterations: in, >= 1; after that many spar_step_check answers SPAR_ERR_NUMERIC, or accepts (option
            coupling.unconverged); default 50 */
 SPAR_API int spar_session_set_coupling(spar_session *session, int scheme, double atol, double rtol, int max_iterations);
-/* Outputs: as set, each NULL: not wanted. */
+/* scheme: out, NULL: not wanted
+   atol: out, NULL: not wanted
+   rtol: out, NULL: not wanted
+   max_iterations: out, NULL: not wanted */
 SPAR_API int spar_session_get_coupling(const spar_session *session, int *scheme, double *atol, double *rtol,
                                        int *max_iterations);
 /* The clock. Local.
@@ -319,27 +327,26 @@ SPAR_API int spar_member_set_initial_velocity(spar_member *member, const double 
    Collective. SPAR_ERR_COMM: the ranks described different members. */
 SPAR_API int spar_member_commit(spar_member *member);
 
-/* State of a committed member; n is its number of nodes. During a step getters answer the latest iterate at t^{n+1},
-   between steps the state at t^n. They are local and answer on every rank. Values that are set must be the same on
-   every rank. */
+/* State of a committed member. During a step getters answer the latest iterate at t^{n+1}, between steps the state at
+   t^n. They are local and answer on every rank. Values that are set must be the same on every rank. */
 
 /* nodes: out, number of nodes; before the commit too */
 SPAR_API int spar_member_get_count(const spar_member *member, int64_t *nodes);
 /* Reference configuration.
-     x[n][3]: out, m, NULL: not wanted
-     q[n][4]: out, section frames, NULL: not wanted */
+     x[nodes][3]: out, m, NULL: not wanted
+     q[nodes][4]: out, section frames, NULL: not wanted */
 SPAR_API int spar_member_get_reference(const spar_member *member, double *x, double *q);
 /* Motion of the nodes. A fluid whose loads depend on the acceleration must pull it (spar_fluid_pull_poses), not read it
    here.
-     q[n][7]: out, NULL: not wanted
-     v[n][6]: out, NULL: not wanted
-     a[n][6]: out, NULL: not wanted */
+     q[nodes][7]: out, NULL: not wanted
+     v[nodes][6]: out, NULL: not wanted
+     a[nodes][6]: out, NULL: not wanted */
 SPAR_API int spar_member_get_motion(const spar_member *member, double *q, double *v, double *a);
 /* Sets the motion of a point or an external member: during a step that at t^{n+1}, in every iteration if needed; before
    the first step the initial motion.
-     q[n][7]: in, NULL: unchanged
-     v[n][6]: in, NULL: unchanged
-     a[n][6]: in, NULL: unchanged */
+     q[nodes][7]: in, NULL: unchanged
+     v[nodes][6]: in, NULL: unchanged
+     a[nodes][6]: in, NULL: unchanged */
 SPAR_API int spar_member_set_motion(spar_member *member, const double *q, const double *v, const double *a);
 /* Prescribes the motion of a driven root, or of a point, at the end of the next step. It is interpolated within the
    step. Between steps only. Without a new call the root stays where it is.
@@ -352,7 +359,7 @@ SPAR_API int spar_member_drive(spar_member *member, const double q[7], const dou
 enum { SPAR_LOAD_DEAD = 0, SPAR_LOAD_FOLLOWER = 1 };
 /* Applies a load to a node. It replaces the node's earlier load of this kind and stays until replaced. A node bears the
    sum of both kinds.
-     node: in, 0 to n-1
+     node: in, 0 to nodes - 1
      kind: in, SPAR_LOAD_DEAD: fixed direction; SPAR_LOAD_FOLLOWER: in the node's section axes, rotating with them
      load[6]: in, N, N m
    The load is the one at the end of the next step. Within a step it changes linearly, from 0 if it is new. Before the
@@ -362,14 +369,14 @@ SPAR_API int spar_member_set_load(spar_member *member, int64_t node, int kind, c
 /* All nodal loads in use: applied loads and the fluid's, in global axes. After spar_step_begin those are predicted;
    after a spar_step_check with done = 0, the loads of the next iteration; otherwise the ones pushed last. An
    external member is to be solved with these; they include the loads of joints.
-     load[n][6]: out, N, N m */
+     load[nodes][6]: out, N, N m */
 SPAR_API int spar_member_get_loads(const spar_member *member, double *load);
 
 /* ---- fluids ------------------------------------------------------------------------------------------------------ */
 
 /* A fluid is local to its rank. A member may have many, on any ranks, or none. Nodes are set and mapped between
    steps. If ranks share a border, motion nodes may appear on several ranks; each force node belongs to one rank,
-   because loads of all ranks are added. All calls are local. n is the number of nodes of the set. */
+   because loads of all ranks are added. All calls are local. */
 
 /* The two sets of nodes. */
 enum {
@@ -381,7 +388,8 @@ enum {
      name: in, not empty, for messages; copied
      fluid: out */
 SPAR_API int spar_fluid_create(spar_member *member, const char *name, spar_fluid **fluid);
-/* Destroys a fluid before its session; its loads disappear with it. */
+/* Destroys a fluid before its session; its loads disappear with it.
+     fluid: in; out, NULL */
 SPAR_API void spar_fluid_destroy(spar_fluid **fluid);
 /* Sets the motion nodes. Map afterwards.
      n: in
@@ -408,12 +416,12 @@ SPAR_API int spar_fluid_map(spar_fluid *fluid);
      which: in, SPAR_NODES_MOTION, or SPAR_NODES_FORCE: where an actuator line spreads what spar_fluid_pull_forces gives
            at the same theta
      theta: in, in [0,1], as of spar_fluid_pull_motion
-     x[n][3]: out, m, position, NULL: not wanted
-     q[n][4]: out, orientation of the section, scalar part >= 0, NULL: not wanted
-     v[n][3]: out, m/s, NULL: not wanted
-     omega[n][3]: out, rad/s, angular velocity, NULL: not wanted
-     accel[n][3]: out, m/s^2, acceleration of the node, NULL: not wanted
-     alpha[n][3]: out, rad/s^2, angular acceleration, NULL: not wanted
+     x[which_nodes][3]: out, m, position, NULL: not wanted
+     q[which_nodes][4]: out, orientation of the section, scalar part >= 0, NULL: not wanted
+     v[which_nodes][3]: out, m/s, NULL: not wanted
+     omega[which_nodes][3]: out, rad/s, angular velocity, NULL: not wanted
+     accel[which_nodes][3]: out, m/s^2, acceleration of the node, NULL: not wanted
+     alpha[which_nodes][3]: out, rad/s^2, angular acceleration, NULL: not wanted
    Steps with substeps, and steps from the first change of dt on, give mean accelerations: the mean over the step,
    extrapolated to the end of the step with the mean of the step before (T15). They are of second order too, and an
    added mass may respond to them. A member with an added mass of its own (spar_member_set_added_mass) always gives the
@@ -435,7 +443,8 @@ SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, int which, double theta, d
    them as before. After a failure the session is as it was. SPAR_ERR_IO: the file cannot be read, or is damaged;
    SPAR_ERR_ARGUMENT: it does not match the session. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
-/* Reads a saved state into the session. path: in. Collective. */
+/* Reads a saved state into the session. Collective.
+     path: in */
 SPAR_API int spar_session_load(spar_session *session, const char *path);
 
 #ifdef __cplusplus

@@ -9,6 +9,8 @@
    that of spar_fluid_pull_poses: x along the span from root to tip, y from leading to trailing edge, z = x cross y. The
    twist given here is relative to this frame. If the beam's frames contain the blade's twist, give the difference.
 
+   Sizes: blades and sections are those with which the object was created, whatever becomes of its fluids.
+
    Calls are local, but the report of effects. An object holds the blades whose fluids are on this rank, which may be
    none. It is used by one thread at a time. Angles are in radians. Blades and sections count from 0. */
 #ifndef SPAR_AERO_H
@@ -70,28 +72,30 @@ SPAR_API int spar_polar_set_interpolation(spar_polar *polar, int kind);
      cd: out, NULL: not wanted
      cm: out, NULL: not wanted */
 SPAR_API int spar_polar_evaluate(const spar_polar *polar, double alpha_rad, double *cl, double *cd, double *cm);
-/* Destroys a polar; NULL is legal. Sections that use it keep its table. */
+/* Destroys a polar; NULL is legal. Sections that use it keep its table.
+     polar: in; out, NULL */
 SPAR_API void spar_polar_destroy(spar_polar **polar);
 
 /* Creates a rotor or wing. The fluids stay the caller's. They must exist until the last call of spar_aero_solve,
    spar_aero_read_aerodyn and spar_aero_set_effects. After a new map create a new object.
      blades: in, on this rank; 0 with NULL: a rank without blades
      sections[blades]: in, one mapped fluid per blade (spar_fluid_set_stations), all of one session, with the same
-           number n >= 2 of sections at different positions from root to tip
+           number, 2 or more, of sections at different positions from root to tip
      aero: out */
 SPAR_API int spar_aero_create(int blades, spar_fluid *const *sections, spar_aero **aero);
-/* Destroys the object; NULL is legal. */
+/* Destroys the object; NULL is legal.
+     aero: in; out, NULL */
 SPAR_API void spar_aero_destroy(spar_aero **aero);
 /* Describes section i of every blade.
-     i: in, 0 to n-1
+     i: in, 0 to sections - 1
      chord: in, m, >= 0
      twist: in, rad; positive rotates the leading edge into the wind and lowers the angle of attack: a left-handed
            rotation about the section's x
      polar: in */
 SPAR_API int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, double twist, const spar_polar *polar);
 /* Chord and twist of the sections, as set or read. On a rank without blades nothing is written.
-     chord[n]: out, m, NULL: not wanted
-     twist[n]: out, rad, in [-pi, pi], as of spar_aero_set_section, NULL: not wanted
+     chord[sections]: out, m, NULL: not wanted
+     twist[sections]: out, rad, in [-pi, pi], as of spar_aero_set_section, NULL: not wanted
    SPAR_ERR_STATE: a section is not described. */
 SPAR_API int spar_aero_get_chord(const spar_aero *aero, double *chord, double *twist);
 /* Reads a blade from AeroDyn's files (AeroDyn 15 and later): the airfoils of the primary file, the stations of the
@@ -117,7 +121,7 @@ SPAR_API int spar_fluid_read_aerodyn(spar_fluid *fluid, const char *primary_path
      primary_path: in
      blade_path: in, NULL: as above
      q[4]: in, NULL: as above
-     span[n]: in, m, n the number of sections, NULL: those of the stations
+     span[sections]: in, m, NULL: those of the stations
    SPAR_ERR_UNSUPPORTED: after spar_aero_set_turn with -1. Other failures as above. */
 SPAR_API int spar_aero_read_aerodyn(spar_aero *aero, const char *primary_path, const char *blade_path,
                                     const double q[4], const double *span);
@@ -176,7 +180,7 @@ SPAR_API int spar_aero_set_tower(spar_aero *aero, const double base[3], const do
 SPAR_API int spar_aero_set_effects(spar_aero *aero, int effects);
 /* Pulls the motion, computes the loads in the wind, and pushes them.
      density: in, kg/m^3
-     inflow[blades][n][3]: in, m/s, global axes, undisturbed by the rotor; with shear, at its reference height
+     inflow[blades][sections][3]: in, m/s, global axes, undisturbed by the rotor; with shear, at its reference height
      theta: in, as of spar_fluid_pull_motion; 1 in steps with effects that have memory
    Loads per length are linear between sections, and zero beyond the first and the last. An interval of the length L
    gives its ends the consistent shares L/6 (2 f1 + f2) and L/6 (f1 + 2 f2). The same input gives the same result.
@@ -190,22 +194,22 @@ SPAR_API int spar_aero_solve(spar_aero *aero, double density, const double *infl
            wanted */
 SPAR_API int spar_aero_get_rotor(const spar_aero *aero, double *thrust, double *torque, double *power);
 /* Sections in the last solve.
-     alpha[blades][n]: out, rad, angle of attack, NULL: not wanted
-     cl[blades][n]: out, NULL: not wanted
-     cd[blades][n]: out, NULL: not wanted
-     a[blades][n]: out, axial induction, the flow across the disc is (1 - a) of the free flow, NULL: not wanted
-     a_tangential[blades][n]: out, the flow along the disc is (1 + a_tangential) of the free flow, 0 if that is 0, NULL:
-           not wanted */
+     alpha[blades][sections]: out, rad, angle of attack, NULL: not wanted
+     cl[blades][sections]: out, NULL: not wanted
+     cd[blades][sections]: out, NULL: not wanted
+     a[blades][sections]: out, axial induction, the flow across the disc is (1 - a) of the free flow, NULL: not wanted
+     a_tangential[blades][sections]: out, the flow along the disc is (1 + a_tangential) of the free flow, 0 if that is
+           0, NULL: not wanted */
 SPAR_API int spar_aero_get_sections(const spar_aero *aero, double *alpha, double *cl, double *cd, double *a,
                                     double *a_tangential);
 /* Flags in the last solve.
-     flags[blades][n]: out, SPAR_AERO_FLAG_* combined, NULL: not wanted
+     flags[blades][sections]: out, SPAR_AERO_FLAG_* combined, NULL: not wanted
      no_root: out, number of sections without a root, NULL: not wanted */
 SPAR_API int spar_aero_get_flags(const spar_aero *aero, int *flags, int64_t *no_root);
 /* Loads in the last solve, in global axes.
-     per_length[blades][n][6]: out, N/m, N m/m, force and moment per unit of span, NULL: not wanted
-     force[blades][n][3]: out, N, as pushed, NULL: not wanted
-     moment[blades][n][3]: out, N m, as pushed, NULL: not wanted */
+     per_length[blades][sections][6]: out, N/m, N m/m, force and moment per unit of span, NULL: not wanted
+     force[blades][sections][3]: out, N, as pushed, NULL: not wanted
+     moment[blades][sections][3]: out, N m, as pushed, NULL: not wanted */
 SPAR_API int spar_aero_get_loads(const spar_aero *aero, double *per_length, double *force, double *moment);
 
 /* Rows of the report of effects. */

@@ -39,7 +39,7 @@ SPAR_API int spar_member_learn_added_mass(spar_member *member, int64_t n, const 
            factor by which iterations will contract. Used below 1/4, no longer above 1/2. 1: too few measurements. NULL:
            not wanted
      n: out, stations, 0: nothing is to be learned, NULL: not wanted
-     capacity: in, of the arrays
+     capacity: in, of the arrays; n is enough
      eta[capacity]: out, NULL: not wanted
      mass[capacity][36]: out, as spar_member_set_added_mass takes it, 0 while nothing is known, NULL: not wanted */
 SPAR_API int spar_member_get_learned_added_mass(const spar_member *member, int *used, double *spread, int64_t *n,
@@ -187,7 +187,7 @@ SPAR_API int spar_trial_push_numbers(spar_trial *trial, int64_t n, const double 
 SPAR_API int spar_trial_set_option(spar_trial *trial, const char *key, const char *value);
 /* Reads an option of the advice. Local.
      key: in, of spar_trial_set_option
-     capacity: in, of the text, with its end
+     capacity: in, of the text with its end; 32 is enough
      text[capacity]: out, the value; SPAR_ERR_ARGUMENT if it does not fit */
 SPAR_API int spar_trial_get_option(const spar_trial *trial, const char *key, int64_t capacity, char *text);
 /* Finds cheap settings whose error stays below a tolerance. A trial with the session as it is gives estimates of the
@@ -284,7 +284,7 @@ SPAR_API int spar_trial_get_motion(const spar_trial *trial, int64_t *modes, doub
      shift[2]: in, 1/s and rad/s: growth rate and angular frequency; the eigenvalues nearest to it are found; NULL: zero
      eigenvalue[n][2]: out, 1/s and rad/s: growth rate and angular frequency >= 0, by their distance from the shift.
            Those of the fluid alone are left out unless they grow
-     nodes: in, of all members, the size of shapes; 0 without shapes
+     nodes: in, all_nodes, of all members of the session; 0 without shapes
      shapes[n][nodes][6][2]: out, displacement and rotation of the nodes, member by member as created, real and
            imaginary part, of unit x^H M x, NULL: not wanted
      frame[3]: out, rad/s, as of spar_member_solve_eigenvalues, NULL: not wanted

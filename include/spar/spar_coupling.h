@@ -83,14 +83,14 @@ SPAR_API int spar_session_get_relaxation(const spar_session *session, double *om
 SPAR_API int spar_session_set_option(spar_session *session, const char *key, const char *value);
 /* The value of an option, as a text that spar_session_set_option takes.
      key: in
-     capacity: in, of the text with its end; 32 is always enough
+     capacity: in, of the text with its end; 32 is enough
      text[capacity]: out
    SPAR_ERR_ARGUMENT: no such key, or the capacity is too small. */
 SPAR_API int spar_session_get_option(const spar_session *session, const char *key, int64_t capacity, char *text);
 /* History of the iterations of the current step, or of the last step or static solution; the same on all ranks. Root of
    the sum of squares over all nodes; moments are divided by the member's length.
      iterations: out, how many there were, NULL: not wanted
-     capacity: in, of the arrays; max_iterations of spar_session_set_coupling is always enough
+     capacity: in, of the arrays; iterations is enough
      residual[capacity]: out, N, change of the loads in each iteration, weighed by motion (option coupling.norm), 0
            beyond the last, NULL: not wanted
      size[capacity]: out, N, size of the loads, NULL: not wanted */
@@ -148,7 +148,7 @@ SPAR_API int spar_session_get_phase(const spar_session *session, int *phase);
    SPAR_ERR_UNSUPPORTED: a point; at the commit: external and prescribed members. */
 SPAR_API int spar_member_set_added_mass(spar_member *member, int64_t n, const double *eta, const double *mass);
 /* n: out, stations, NULL: not wanted
-   capacity: in, of the arrays
+   capacity: in, of the arrays; n is enough
    eta[capacity]: out, NULL: not wanted
    mass[capacity][36]: out, NULL: not wanted */
 SPAR_API int spar_member_get_added_mass(const spar_member *member, int64_t *n, int64_t capacity, double *eta,
@@ -264,7 +264,7 @@ SPAR_API int spar_member_set_owner(spar_member *member, int rank);
 /* rank: out, who solves the member, or would before the first step */
 SPAR_API int spar_member_get_owner(const spar_member *member, int *rank);
 /* How the work is distributed over the ranks. Collective; ranks may ask for different outputs.
-     capacity: in, of the arrays; entries beyond the number of ranks are 0
+     capacity: in, of the arrays; ranks is enough, their number; entries beyond are 0
      members[capacity]: out, members solved by each rank, NULL: not wanted
      expected[capacity]: out, estimated instructions per iteration, NULL: not wanted
      counted[capacity]: out, Newton's iterations so far, each weighed by what is expected of its member, without joints;
@@ -290,8 +290,7 @@ SPAR_API int spar_session_fail(spar_session *session, int status, const char *me
 
 /* ---- fluids: description ----------------------------------------------------------------------------------------- */
 
-/* All calls on fluids are local, but spar_fluid_sum_loads and spar_fluid_check_loads. n is the number of nodes of
-   the set in question. */
+/* All calls on fluids are local, but spar_fluid_sum_loads and spar_fluid_check_loads. */
 
 /* member: out, the member of the fluid */
 SPAR_API int spar_fluid_get_member(const spar_fluid *fluid, spar_member **member);
@@ -313,10 +312,10 @@ SPAR_API int spar_fluid_set_motion_stations(spar_fluid *fluid, int64_t n, const 
    volumes of the mesh are not watched. While there are weights, pulls of orientation, angular velocity and angular
    acceleration are SPAR_ERR_UNSUPPORTED. New motion nodes remove the weights. Not for stations (SPAR_ERR_STATE). Not
    saved.
-     n: in, number of motion nodes, 0: no weights (default)
+     n: in, 0: no weights (default), else motion_nodes
      w[n]: in, in [0,1], NULL: none, with n = 0 */
 SPAR_API int spar_fluid_set_motion_weights(spar_fluid *fluid, int64_t n, const double *w);
-/* w[n]: out, 1 without weights */
+/* w[motion_nodes]: out, 1 without weights */
 SPAR_API int spar_fluid_get_motion_weights(const spar_fluid *fluid, double *w);
 /* Sets weights that decrease with a distance d. With s = (d - within) / (beyond - within) the weight is 1 for s <= 0
    and 0 for s >= 1. Between 1/6 and 5/6 it is 1.1 - 1.2 s, before 1 - 43.2 s^3 + 129.6 s^4, behind the mirror image.
@@ -326,15 +325,15 @@ SPAR_API int spar_fluid_get_motion_weights(const spar_fluid *fluid, double *w);
    SPAR_ERR_NUMERIC. Far from the line they fold when a section has rotated by a right angle.
      within: in, m, must contain the body's section if the distance is that from the line
      beyond: in, m, > within, some 1.5 times as far from it as the member moves, or more
-     n: in, number of motion nodes
+     n: in, motion_nodes
      distance[n]: in, m, NULL: from the reference line of the committed member
      held[n]: in, not 0: weight 0, NULL: none */
 SPAR_API int spar_fluid_fade_motion(spar_fluid *fluid, double within, double beyond, int64_t n, const double *distance,
                                     const int *held);
-/* Layout of the arrays [n][3] of this rank: component i of node j stands at j * node + i * component. It holds for
-   positions, velocities and accelerations pulled at motion nodes and for what is pushed or pulled at force nodes,
-   in both precisions. Quaternions, matrices, nodes and getters stay packed. New nodes reset it. Not saved. Not for
-   fluids of spar_aero.
+/* Layout of the arrays [motion_nodes][3] or [force_nodes][3] of this rank: component i of node j stands at
+   j * node + i * component. It holds for positions, velocities and accelerations pulled at motion nodes and for what is
+   pushed or pulled at force nodes, in both precisions. Quaternions, matrices, nodes and getters stay packed. New nodes
+   reset it. Not saved. Not for fluids of spar_aero.
      which: in, SPAR_NODES_*
      node: in, 1 to 2^40, numbers between neighbouring nodes
      component: in, 1 to 2^40: (3, 1) packed (default), (1, n) by component, (8, 1) in records of eight
@@ -386,7 +385,7 @@ SPAR_API int spar_fluid_get_interpolation(const spar_fluid *fluid, int *kind);
 SPAR_API int spar_fluid_set_option(spar_fluid *fluid, const char *key, const char *value);
 /* The value of an option, as a text that spar_fluid_set_option takes.
      key: in
-     capacity: in, of the text with its end; 32 is always enough
+     capacity: in, of the text with its end; 32 is enough
      text[capacity]: out
    Local. SPAR_ERR_ARGUMENT: no such key, or the capacity is too small. */
 SPAR_API int spar_fluid_get_option(const spar_fluid *fluid, const char *key, int64_t capacity, char *text);
@@ -418,21 +417,21 @@ enum {
 SPAR_API int spar_fluid_get_flag_count(const spar_fluid *fluid, int which, int flag, int64_t *n);
 /* The nearest point of each node on the line, as spar_fluid_map has found it.
      which: in, SPAR_NODES_*
-     eta[n]: out, of the nearest point, in [0,1]; 0.5 on a point or rigid body, NULL: not wanted
-     distance[n]: out, m, from the nearest point to the node, NULL: not wanted
-     flags[n]: out, SPAR_MAP_* or-ed, NULL: not wanted
+     eta[which_nodes]: out, of the nearest point, in [0,1]; 0.5 on a point or rigid body, NULL: not wanted
+     distance[which_nodes]: out, m, from the nearest point to the node, NULL: not wanted
+     flags[which_nodes]: out, SPAR_MAP_* or-ed, NULL: not wanted
    Local. SPAR_ERR_STATE: the nodes are not mapped. */
 SPAR_API int spar_fluid_get_map(const spar_fluid *fluid, int which, double *eta, double *distance, int *flags);
 /* The nearest points.
      which: in, SPAR_NODES_*
-     x_map[n][3]: out, position in the reference configuration, m, NULL: not wanted
-     q_map[n][4]: out, section frame there, NULL: not wanted
-     con[n][3]: out, lever arm c of (T3), from the nearest point to the node, m, NULL: not wanted */
+     x_map[which_nodes][3]: out, position in the reference configuration, m, NULL: not wanted
+     q_map[which_nodes][4]: out, section frame there, NULL: not wanted
+     con[which_nodes][3]: out, lever arm c of (T3), from the nearest point to the node, m, NULL: not wanted */
 SPAR_API int spar_fluid_get_nearest(const spar_fluid *fluid, int which, double *x_map, double *q_map, double *con);
 /* The interpolation at the nearest points.
      which: in, SPAR_NODES_*
-     first_node[n]: out, node of the member at which the P = nodes_per_element basis values begin, NULL: not wanted
-     phi[n][P]: out, basis values, NULL: not wanted */
+     first_node[which_nodes]: out, node of the member at which the basis values begin, NULL: not wanted
+     phi[which_nodes][P]: out, basis values, P the nodes per element; 1 on a point or rigid body, NULL: not wanted */
 SPAR_API int spar_fluid_get_basis(const spar_fluid *fluid, int which, int64_t *first_node, double *phi);
 
 /* ---- fluids: motion ---------------------------------------------------------------------------------------------- */
@@ -444,10 +443,10 @@ SPAR_API int spar_fluid_get_travel(spar_fluid *fluid, double *largest, int64_t *
 /* The nodes of one set at t^{n+1} in the latest iterate, between steps at t^n: for pictures and post-processing. A
    getter: it does not count as a pull, and a trial that switches effects off does not change it.
      which: in, SPAR_NODES_*
-     x[n][3]: out, m, position, NULL: not wanted; nodes with weights follow in part, as in pulls
-     q[n][4]: out, orientation of the section at the nearest point, scalar part >= 0, NULL: not wanted
-     v[n][3]: out, m/s, NULL: not wanted
-     nearest[n][3]: out, m, position of the nearest point on the line, NULL: not wanted
+     x[which_nodes][3]: out, m, position, NULL: not wanted; nodes with weights follow in part, as in pulls
+     q[which_nodes][4]: out, orientation of the section at the nearest point, scalar part >= 0, NULL: not wanted
+     v[which_nodes][3]: out, m/s, NULL: not wanted
+     nearest[which_nodes][3]: out, m, position of the nearest point on the line, NULL: not wanted
    Local. */
 SPAR_API int spar_fluid_get_positions(const spar_fluid *fluid, int which, double *x, double *q, double *v,
                                       double *nearest);
@@ -459,12 +458,12 @@ enum {
 /* Orientations of the motion nodes as matrices at t^n + theta dt.
      theta: in, in [0,1]
      convention: in, SPAR_MATRIX_*
-     matrix[n][9]: out */
+     matrix[motion_nodes][9]: out */
 SPAR_API int spar_fluid_pull_matrices(spar_fluid *fluid, double theta, int convention, double *matrix);
 /* Compares a host's own matrices with those that spar_fluid_pull_matrices gives at t^{n+1}, to 1e-5. For start-up; it
    allocates.
      convention: in, SPAR_MATRIX_*
-     matrix[n][9]: in
+     matrix[motion_nodes][9]: in
    SPAR_ERR_ARGUMENT: they differ. The message names a transposed matrix, a determinant of -1, a matrix that is no
    rotation, or the angle between both. */
 SPAR_API int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const double *matrix);
@@ -474,11 +473,11 @@ SPAR_API int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const 
 /* The fluid's own node forces at t^n + theta dt, for actuator lines. At t^{n+1} they are the pushed ones, or predicted
    before the first push of the step; 0 before the first push of all.
      theta: in, in [0,1]
-     force[n][3]: out, N
+     force[force_nodes][3]: out, N
    SPAR_ERR_STATE: they are not kept (SPAR_EFFECT_FLUID_HISTORY). */
 SPAR_API int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *force);
 /* The same at t^{n+1} as a getter, for output.
-     force[n][3]: out, N
+     force[force_nodes][3]: out, N
    SPAR_ERR_STATE: they are not kept (SPAR_KIND_FORCES). */
 SPAR_API int spar_fluid_get_forces(const spar_fluid *fluid, double *force);
 /* Pushes loads of a fluid that makes several steps within dt: the mean loads over the part of the step that ends at
@@ -487,8 +486,8 @@ SPAR_API int spar_fluid_get_forces(const spar_fluid *fluid, double *force);
    second order in dt and keeps the impulse. Use spar_fluid_push_forces for loads known at t^{n+1}. Not before the
    first step.
      theta: in, in (0, 1], increasing; a smaller one begins a new iteration
-     force[n][3]: in, N
-     moment[n][3]: in, N m, about each node, NULL: none */
+     force[force_nodes][3]: in, N
+     moment[force_nodes][3]: in, N m, about each node, NULL: none */
 SPAR_API int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *force, const double *moment);
 /* States of the host's model at each force node: wakes, stall, friction. Pull returns the states at t^n. When the
    step is accepted, the states pushed last become the new t^n states; when it is rejected, they are discarded. They
@@ -501,36 +500,36 @@ SPAR_API int spar_fluid_set_states(spar_fluid *fluid, int64_t width);
            solution, initial conditions): push a steady state there; NULL: not wanted */
 SPAR_API int spar_fluid_get_states(const spar_fluid *fluid, int64_t *width, double *dt);
 /* width: in, as set
-   states[n][width]: out, at t^n, by force node */
+   states[force_nodes][width]: out, at t^n, by force node */
 SPAR_API int spar_fluid_pull_states(const spar_fluid *fluid, int64_t width, double *states);
 /* Without a push the states at t^n stay.
      width: in, as set
-     states[n][width]: in, at t^{n+1}, or at t = 0 before the first step */
+     states[force_nodes][width]: in, at t^{n+1}, or at t = 0 before the first step */
 SPAR_API int spar_fluid_push_states(spar_fluid *fluid, int64_t width, const double *states);
 /* The calls of each iteration for hosts in single precision. Numbers are converted on the way in and out; all sums
    are in double precision. spar_fluid_pull_motion:
      theta: in, in [0,1]
-     x[n][3]: out, m, NULL: not wanted
-     v[n][3]: out, m/s, NULL: not wanted */
+     x[motion_nodes][3]: out, m, NULL: not wanted
+     v[motion_nodes][3]: out, m/s, NULL: not wanted */
 SPAR_API int spar_fluid_pull_motion_f32(spar_fluid *fluid, double theta, float *x, float *v);
 /* spar_fluid_pull_poses in single precision.
      which: in, SPAR_NODES_*
      theta: in, in [0,1]
-     x[n][3]: out, m, NULL: not wanted
-     q[n][4]: out, NULL: not wanted
-     v[n][3]: out, m/s, NULL: not wanted
-     omega[n][3]: out, rad/s, NULL: not wanted
-     accel[n][3]: out, m/s^2, NULL: not wanted
-     alpha[n][3]: out, rad/s^2, NULL: not wanted */
+     x[which_nodes][3]: out, m, NULL: not wanted
+     q[which_nodes][4]: out, NULL: not wanted
+     v[which_nodes][3]: out, m/s, NULL: not wanted
+     omega[which_nodes][3]: out, rad/s, NULL: not wanted
+     accel[which_nodes][3]: out, m/s^2, NULL: not wanted
+     alpha[which_nodes][3]: out, rad/s^2, NULL: not wanted */
 SPAR_API int spar_fluid_pull_poses_f32(spar_fluid *fluid, int which, double theta, float *x, float *q, float *v,
                                        float *omega, float *accel, float *alpha);
 /* spar_fluid_pull_forces in single precision.
      theta: in, in [0,1]
-     force[n][3]: out, N */
+     force[force_nodes][3]: out, N */
 SPAR_API int spar_fluid_pull_forces_f32(spar_fluid *fluid, double theta, float *force);
 /* spar_fluid_push_forces in single precision.
-     force[n][3]: in, N
-     moment[n][3]: in, N m, NULL: none */
+     force[force_nodes][3]: in, N
+     moment[force_nodes][3]: in, N m, NULL: none */
 SPAR_API int spar_fluid_push_forces_f32(spar_fluid *fluid, const float *force, const float *moment);
 /* Figures of the last push. */
 enum {

@@ -98,7 +98,7 @@ SPAR_API int spar_section_describe(const double stiffness[36], const double mass
 /* The findings in words, with their numbers, one on a line.
      stiffness[36]: in
      mass[36]: in, NULL: none
-     capacity: in, 1000 is enough
+     capacity: in; 1000 is enough
      text[capacity]: out, "" without findings; SPAR_ERR_ARGUMENT if it does not fit */
 SPAR_API int spar_section_report(const double stiffness[36], const double mass[36], int64_t capacity, char *text);
 /* The same section seen from another line and in other axes. For stiffness and mass alike. Local, without a session.
@@ -151,7 +151,7 @@ SPAR_API int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path,
    SPAR_ERR_STATE at the commit: the sections have no mass. */
 SPAR_API int spar_beam_set_masses(spar_member *beam, int64_t n, const double *eta, const double *mass);
 /* n: out, NULL: not wanted
-   capacity: in, of the arrays
+   capacity: in, of the arrays; n is enough
    eta[capacity]: out, NULL: not wanted
    mass[capacity][36]: out, NULL: not wanted */
 SPAR_API int spar_beam_get_masses(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *mass);
@@ -167,7 +167,7 @@ SPAR_API int spar_beam_get_masses(const spar_member *beam, int64_t *n, int64_t c
    root. */
 SPAR_API int spar_beam_set_foundation(spar_member *beam, int64_t n, const double *eta, const double *stiffness);
 /* n: out, NULL: not wanted
-   capacity: in, of the arrays
+   capacity: in, of the arrays; n is enough
    eta[capacity]: out, NULL: not wanted
    stiffness[capacity][3]: out, NULL: not wanted */
 SPAR_API int spar_beam_get_foundation(const spar_member *beam, int64_t *n, int64_t capacity, double *eta,
@@ -182,7 +182,7 @@ SPAR_API int spar_beam_get_foundation(const spar_member *beam, int64_t *n, int64
            outside */
 SPAR_API int spar_beam_set_pretension(spar_member *beam, int64_t n, const double *eta, const double *force);
 /* n: out, NULL: not wanted
-   capacity: in, of the arrays
+   capacity: in, of the arrays; n is enough
    eta[capacity]: out, NULL: not wanted
    force[capacity][6]: out, NULL: not wanted */
 SPAR_API int spar_beam_get_pretension(const spar_member *beam, int64_t *n, int64_t capacity, double *eta,

@@ -14,10 +14,10 @@ help(spar.Fluid.push_forces) shows what the header says. This is what differs fr
   fluid.push_forces, spar_beam_set_axis is member.set_axis, spar_beam_create session.beam_create. A link is a joint whose
   own calls keep their name: joint.link_set_spring. A call without such an argument is a function: spar.version().
   Constants are spar.OK, ... without SPAR_.
-- Arguments stand in the header's order. Left out are counts that an array given shows (n), capacities, contexts, and all
-  results. What C takes as NULL is None, or left out at the end.
+- Arguments stand in the header's order. Left out are counts that an array given shows (n) or the library knows,
+  capacities, contexts, and all results. What C takes as NULL is None, or left out at the end.
 - Arrays may be lists, of the header's shape or flat. A 36 may be 6 x 6, a 9 may be 3 x 3. Numbers are converted where
-  nothing is lost but digits: complex ones are refused.
+  nothing is lost but digits: refused are complex and masked ones, and integers beyond those of C.
 - Results come back: none, one, or a tuple in the header's order. An array that is given by its name is filled in place:
   fluid.pull_motion(1.0, x=x, v=v). One given as None is not wanted.
 - Arrays of numpy.float32 take the call of single precision, if there is one: fluid.push_forces(force) calls
@@ -25,20 +25,25 @@ help(spar.Fluid.push_forces) shows what the header says. This is what differs fr
 - After fluid.set_layout arrays keep the shape (n, 3). One whose strides are those of the layout is passed as it is, another
   is copied, and results have these strides: set_layout(which, 1, n) takes arrays in Fortran's order without a copy.
 - Failures raise a subclass of spar.Error with the library's message: ArgumentError, StateError, NumericError, ... .status
-  is the SPAR_ERR_*.
+  is the SPAR_ERR_*. An argument of a wrong type or shape, which C cannot be given, raises TypeError or ValueError.
 - A fluid's solver is a function of (session, t, dt, iteration), what is called before the steps of trials one of
-  (session, t, dt), a log one of (level, text), a progress one of (done, expected), which answers 0 or None to go on. What
-  they raise ends the step, or the trial's call, and is raised again.
+  (session, t, dt), a progress one of (done, expected). They answer 0 or None to go on, any other integer to end the call.
+  What they raise ends the step, or the trial's call, and is raised again. A log is a function of (level, text), which must
+  not call its session. It cannot end a call: what it raises is raised when the call is done.
 - A trial is made by session.trial_create(), and keeps its callbacks.
 - A session is closed by `with`, close(), or at the latest when nothing refers to it; members, joints, fluids and trials
-  keep it. What belonged to it is closed with it: further calls raise spar.Error. Nothing of spar can be copied or pickled.
+  keep it. What belonged to it is closed with it: further calls raise spar.Error. A session cannot be closed in one of its
+  callbacks. Nothing of spar can be copied or pickled.
+- Threads. Calls of one session wait for each other; another thread may call it while a callback runs.
 - Several ranks: spar.Session(comm) with an mpi4py communicator or its Fortran integer.
 The library is the one that SPAR_LIBRARY names, else the one in the folder of the package (a wheel has it there), else the
 libspar.so.0.9 that the loader finds. libspar_aero is in the same folder.
 """
 import ctypes
 import inspect
+import operator
 import os
+import threading
 from math import prod
 
 import numpy
@@ -88,6 +93,10 @@ def _failed(status, message):
     return _errors.get(status, Error)(status, message)
 
 
+def _refused(message):
+    return ArgumentError(CONSTANTS['SPAR_ERR_ARGUMENT'], message)  # noqa: F821 pylint: disable=undefined-variable
+
+
 # ---- the table ----
 
 _NUMBERS = {'int': (ctypes.c_int, numpy.dtype(numpy.intc)), 'int64_t': (ctypes.c_int64, numpy.dtype(numpy.int64)),
@@ -98,9 +107,7 @@ _CALLBACKS = {
     'before_step': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
     'progress': ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
     'log': ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)}
-_LAID = ('push_forces', 'push_forces_at', 'pull_forces', 'pull_motion', 'pull_poses')  # arrays [n][3] by the fluid's layout
-_OF_FORCE_NODES = ('push_forces', 'push_forces_at', 'pull_forces', 'get_forces')
-_ENOUGH = 1000  # the capacity of lists that the library cuts off at their end
+_LAID = ('push_forces', 'push_forces_at', 'pull_forces', 'pull_motion', 'pull_poses')  # arrays [nodes][3] by the fluid's layout
 
 
 def _c_type(p):
@@ -122,14 +129,15 @@ class _Call:
             raise ImportError(f'the library has no {self.name}: install the package and the library from one release')
         self.function.restype = {'int': ctypes.c_int, 'text': ctypes.c_char_p, 'none': None}[self.answer]
         self.function.argtypes = [_c_type(p) for p in self.parameters]
-        self.names = {p.name for p in self.parameters}
+        self.by_name = {p.name: p for p in self.parameters}
+        self.converters = {p.name: _converter(self, p) for p in self.asked + said.arrays_filled()}
         self.asked_names = [p.name for p in self.asked]
         self.values = {p.name for p in self.parameters if p.how == 'value'}
+        self.handles = [p for p in self.asked if p.type in _table.CLASSES]
         self.shaped = [p for p in self.parameters if p.array or p.how == 'list']
         self.single = None  # the call of the same name in single precision
-        plain = self.python_name.replace('_f32', '')
-        self.laid = self.owner == 'fluid' and plain in _LAID
-        self.of_force_nodes = plain in _OF_FORCE_NODES
+        self.laid = self.owner == 'fluid' and self.python_name.replace('_f32', '') in _LAID
+        self.set_of_nodes = next((d for p in self.shaped for d in p.dims if d in _SETS), None)
         self.steps = [(p, self._way(p)) for p in self.parameters]
 
     def _way(self, p):
@@ -140,7 +148,7 @@ class _Call:
             return _Running.callback
         if p.type == 'context':
             return _Running.nothing
-        if p.type in _CLASSES:
+        if p.type in _table.CLASSES:
             return _Running.handle
         if p.type == 'char':
             return _Running.text
@@ -157,7 +165,7 @@ class _Call:
             raise TypeError(f'{self.python_name} takes {", ".join(self.asked_names) or "no arguments"}')
         given = dict(zip(self.asked_names, values))
         for name, value in named.items():
-            if name in given or name not in self.names:
+            if name in given or name not in self.converters:
                 raise TypeError(f'{self.python_name} has no argument {name} left')
             given[name] = value
         if self.single is not None and any(isinstance(value, numpy.ndarray) and value.dtype == numpy.float32
@@ -199,49 +207,201 @@ def _has_shape(shape, known):
     return any(len(shape) == len(form) and all(b is None or a == b for a, b in zip(shape, form)) for form in forms)
 
 
-def _laid_out(n, kind, strides):
-    """Zeros of the shape (n, 3) with these strides, in bytes."""
-    size = (max(n, 1) - 1) * strides[0] + 2 * strides[1] + kind.itemsize
-    return numpy.ndarray((n, 3), kind, buffer=bytearray(size), strides=strides)
+def _room(shape, kind, strides=None):
+    """Zeros for a result of C; with strides, in bytes, those of a fluid's layout."""
+    if strides is None:
+        return numpy.zeros(shape, kind)
+    size = (max(shape[0], 1) - 1) * strides[0] + 2 * strides[1] + kind.itemsize
+    return numpy.ndarray(shape, kind, buffer=bytearray(size), strides=strides)
+
+
+def _number(kind, value):
+    """A number that C reads or writes, and its address."""
+    number = kind(value)
+    return number, ctypes.byref(number)
+
+
+# ---- from Python's values to C's ----
+
+def _wrong(call, p, what):
+    return TypeError(f'{call.name}: {p.name} is {what}')
+
+
+def _integer(call, p, value):
+    """An integer that C can hold."""
+    try:
+        value = operator.index(value)
+    except TypeError:
+        raise _wrong(call, p, f'of the type {type(value).__name__}; it must be an integer') from None
+    limits = numpy.iinfo(_NUMBERS[p.type][1])
+    if not limits.min <= value <= limits.max:
+        raise _refused(f'{call.name}: {p.name} is {value}; it must be from {limits.min} to {limits.max}')
+    return value
+
+
+def _real(call, p, value):
+    try:
+        return ctypes.c_double(value).value
+    except TypeError:
+        raise _wrong(call, p, f'of the type {type(value).__name__}; it must be a number') from None
+
+
+def _text(call, p, value):
+    """A text, as bytes; the end of C's text is a NUL."""
+    if value is None:
+        return None
+    try:
+        value = os.fsencode(value)
+    except TypeError:
+        raise _wrong(call, p, f'of the type {type(value).__name__}; it must be a text') from None
+    if b'\0' in value:
+        raise ValueError(f'{call.name}: {p.name} contains a NUL')
+    return value
+
+
+def _array(call, p, value):
+    """An array that C can read; numbers are converted where nothing is lost but digits."""
+    if value is None:
+        return None
+    if isinstance(value, numpy.ma.MaskedArray) and numpy.ma.is_masked(value):
+        raise _wrong(call, p, 'masked in part; it must have all numbers')
+    kind = _NUMBERS[p.type][1]
+    value = numpy.asarray(value)
+    if value.dtype == kind:
+        return value.copy() if p.result else value  # read and written: not the caller's
+    if value.size and not numpy.can_cast(value.dtype, kind, 'same_kind'):
+        raise _wrong(call, p, f'of {value.dtype}; it must be of {kind}')
+    if kind.kind == 'i' and value.dtype.kind in 'iu' and value.size:
+        limits = numpy.iinfo(kind)
+        if not (limits.min <= int(value.min()) and int(value.max()) <= limits.max):
+            raise _refused(f'{call.name}: {p.name} has numbers beyond {limits.min} to {limits.max}')
+    with numpy.errstate(over='ignore'):  # C refuses what is not finite
+        return value.astype(kind)
+
+
+def _in_place(call, p, value):
+    """An array of the caller that C fills; None: not wanted."""
+    if value is None:
+        return None
+    if not p.array:
+        raise TypeError(f'{call.name}: {p.name} is a result; None leaves it out')
+    kind = _NUMBERS[p.type][1]
+    if not isinstance(value, numpy.ndarray) or isinstance(value, numpy.ma.MaskedArray) or value.dtype != kind \
+            or not value.flags.aligned:
+        raise _wrong(call, p, f'filled in place; it must be a contiguous, aligned array of {kind}')
+    if not value.flags.writeable:
+        raise _wrong(call, p, 'filled in place; it must be an array that can be written')
+    return value
+
+
+def _thing(call, p, value):
+    """A handle of the kind that belongs there."""
+    if value is None and p.null:
+        return None
+    if not isinstance(value, _CLASSES[p.type]):
+        what = 'None' if value is None else f'of the type {type(value).__name__}'
+        raise _wrong(call, p, f'{what}; it must be a {_table.CLASSES[p.type]}')
+    return value
+
+
+def _things(call, p, value):
+    return [_thing(call, p, one) for one in value]
+
+
+def _function_or_none(call, p, value):
+    if value is not None and not callable(value):
+        raise _wrong(call, p, f'of the type {type(value).__name__}; it must be a function or None')
+    return value
+
+
+def _converter(call, p):
+    """What makes C's value of the caller's."""
+    if p.how == 'callback':
+        return _function_or_none
+    if p.how == 'list':
+        return _things
+    if p.type in _table.CLASSES:
+        return _thing
+    if p.type == 'char':
+        return _text
+    if p.how == 'out' and p not in call.asked:
+        return _in_place
+    if p.array:
+        return _array
+    return _integer if p.type in ('int', 'int64_t') else _real
 
 
 class _Running:
     """A call under way: from Python's arguments to C's, and its results back."""
-    __slots__ = ('call', 'owner', 'given', 'sizes', 'results', 'raised', 'keep', 'callbacks', 'strides')
+    __slots__ = ('call', 'owner', 'given', 'things', 'session', 'sizes', 'results', 'raised', 'keep', 'callbacks', 'strides')
 
     def __init__(self, call, owner, given):
-        self.call, self.owner, self.given = call, owner, given
+        self.call, self.owner = call, owner
         self.sizes, self.results, self.raised, self.keep, self.callbacks = {}, [], [], [], {}
-        if owner is not None:
-            self.open(owner)
-        self.strides = owner.strides(call, given) if call.laid else None  # numbers between nodes, components; None: packed
+        self.given = {name: call.converters[name](call, call.by_name[name], value) for name, value in given.items()}
+        self.things = [] if owner is None else [owner]
+        self.session = owner.session if owner is not None else None
+        if call.handles:
+            self.handles_given()
+
+    def handles_given(self):
+        """Things beside the owner, all of one session or of none."""
+        call = self.call
+        for p in call.handles:
+            value = self.given.get(p.name)
+            self.things += value if isinstance(value, list) else [value] if value is not None else []
+        self.session = next((thing.session for thing in self.things if thing.session is not None), None)
+        if any(thing.session is not None and thing.session is not self.session for thing in self.things):
+            closed = ''.join(thing.closed() for thing in self.things)
+            raise _refused(f'{call.name}: {closed or "the handles belong to different sessions"}')
 
     def run(self):
         """Calls C and answers its results."""
+        uses = [self.session.use] if self.session is not None else []
+        if self.call.handles or not uses:
+            uses += [thing.use for thing in self.things if thing.session is None]
+        entered, faults = [], []
+        try:
+            for use in uses:
+                use.enter(self.call.name)
+                entered.append(use)
+            return self.answer()
+        finally:
+            for use in entered:
+                faults += use.leave()
+            if faults:
+                raise faults[0]
+
+    def answer(self):
+        """The same within the use of the session."""
         call = self.call
+        for thing in self.things:
+            closed = thing.closed()
+            if closed:  # its handle leads into memory that is another's
+                raise _refused(f'{call.name}: {closed}')
+        self.strides = self.owner.strides(call, self.given) if call.laid else None  # numbers between nodes, components
         for p in call.shaped:
             if p.how == 'list':
-                self.sizes['blades' if call.name == 'spar_aero_create' else p.dims[0]] = len(self.given[p.name])
+                self.sizes[p.dims[0]] = len(self.given.get(p.name, []))
             elif self.given.get(p.name) is not None:
                 self.array_given(p)
-        arguments = [way(self, p) for p, way in call.steps]
-        answer = self.called(arguments)
+        answer = self.called([way(self, p) for p, way in call.steps])
+        if self.raised:
+            raise self.raised[0]
         if call.answer == 'text':
-            return (answer or b'').decode()
+            return (answer or b'').decode(errors='surrogateescape')
         if call.name == 'spar_has':
             return bool(answer)
         if call.answer == 'int' and answer != 0:
-            if self.raised:
-                raise self.raised[0]
-            raise _failed(answer, self.message())
-        if isinstance(self.owner, Trial):
-            self.owner.callbacks.update(self.callbacks)
+            raise _failed(answer, self.message() or _calls['spar_status_text'].function(answer).decode())
+        if self.callbacks:
+            self.owner.keep_callbacks(self.callbacks)
         results = [r() if callable(r) else r for r in self.results]
         return results[0] if len(results) == 1 else tuple(results) or None
 
     def called(self, arguments):
         """Calls C. What callbacks of a trial raise meanwhile is this call's."""
-        trials = [thing for thing in (self.owner, *self.given.values()) if isinstance(thing, Trial)]
+        trials = [thing for thing in self.things if thing.kind == 'trial']
         if not trials:
             return self.call.function(*arguments)
         before = [trial.raised for trial in trials]
@@ -254,34 +414,22 @@ class _Running:
                 trial.raised = raised
 
     def message(self):
-        """The message of the session of the owner, else of what is given, else of none."""
-        things = [self.owner] + [value for value in self.given.values() if isinstance(value, _Thing)]
-        session = next((thing.session for thing in things if thing is not None and thing.session is not None), None)
-        return _calls['spar_session_message'].function(session.handle if session is not None else None).decode()
+        """The message of the session, else of this thread."""
+        return _calls['spar_session_message'].function(self.session and self.session.handle).decode(errors='replace')
 
     # ---- arrays ----
 
     def array_given(self, p):
-        """An array of the caller's, as C reads it; what it shows of the sizes."""
-        kind = _NUMBERS[p.type][1]
+        """An array of the caller's, as C takes it; what it shows of the sizes."""
         value = self.given[p.name]
         strides = self.strides if self.strides is not None and p.dims[1:] == [3] else None
-        if p.how == 'out' and p not in self.call.asked:  # filled in place
-            if not isinstance(value, numpy.ndarray) or value.dtype != kind or not (strides or value.flags.c_contiguous):
-                raise TypeError(f'{p.name}: a contiguous array of {kind} is filled in place')
-            if not value.flags.writeable:
-                raise TypeError(f'{p.name}: an array that can be written is filled in place; this one cannot')
-        elif not (isinstance(value, numpy.ndarray) and value.dtype == kind):
-            value = numpy.asarray(value)
-            if value.size and not numpy.can_cast(value.dtype, kind, 'same_kind'):
-                raise TypeError(f'{self.call.name}: {p.name} is of {value.dtype}; it must be of {kind}')
-            value = value.astype(kind)
-        known = [self.size(d) for d in p.dims]
-        self.check_shape(p, value, known)
+        self.check_shape(p, value, [self.sizes.get(d) if d == 'capacity' else self.size(d) for d in p.dims])
         if strides is not None:
             value = self.laid(p, value, strides)
-        elif not value.flags.c_contiguous:
-            value = numpy.ascontiguousarray(value)
+        elif not (value.flags.c_contiguous and value.flags.aligned):
+            if p.result and p not in self.call.asked:
+                raise _wrong(self.call, p, f'filled in place; it must be a contiguous, aligned array of {value.dtype}')
+            value = numpy.array(value, order='C')
         self.given[p.name] = value
 
     def check_shape(self, p, value, known):
@@ -300,15 +448,16 @@ class _Running:
             raise ValueError(f'{self.call.name}: {p.name} has the shape {value.shape}; it must be {p.name}{shape}')
 
     def laid(self, p, value, strides):
-        """An array [n][3] in the layout of the fluid: itself, if it is, else a copy."""
+        """An array [nodes][3] in the layout of the fluid: itself, if it is, else a copy."""
         if value.ndim != 2:
             raise ValueError(f'{self.call.name}: {p.name} has the shape {value.shape}; after set_layout it must be {p.name}[n][3]')
         strides = tuple(value.itemsize * number for number in strides)
-        if value.strides[1] == strides[1] and (value.strides[0] == strides[0] or len(value) < 2) or not value.size:
+        if value.strides[1] == strides[1] and (value.strides[0] == strides[0] or len(value) < 2) and value.flags.aligned \
+                or not value.size:
             return value
         if p.result:
             raise TypeError(f'{p.name}: it is filled in place, so its strides must be {strides}; they are {value.strides}')
-        copy = _laid_out(len(value), value.dtype, strides)
+        copy = _room(value.shape, value.dtype, strides)
         copy[...] = value
         return copy
 
@@ -319,96 +468,96 @@ class _Running:
         if d in self.sizes:
             return self.sizes[d]
         if d in self.given:
-            return int(self.given[d])
+            return max(0, self.given[d])  # C refuses those below 0
         if d in self.call.values:
-            return _ENOUGH if d == 'capacity' and not self.array_named(d) else None
-        if self.owner is None:
-            return None
-        size = self.owner.size(d, self.call, self.given)
+            word = self.call.by_name[d].word
+            size = self.enough(word) if d == 'capacity' else self.owner.size(word, self.given) if word else None
+        else:
+            size = self.owner.size(d, self.given) if self.owner is not None else None
         if size is not None:
             self.sizes[d] = size
         return size
 
-    def array_named(self, d):
-        """Whether an array is given that has this dimension."""
-        return any(p.array and d in p.dims and self.given.get(p.name) is not None for p in self.call.parameters)
-
-    def capacity(self, name):
-        """What the result has room for: by a constant of the table, by the caller's array, or enough."""
-        for p in self.call.parameters:
-            if p.array and p.result and p.how == 'out':
-                if name == 'columns':
-                    return self.size(p.dims[1])
-                size = self.size(p.dims[0])
-                if size is not None:
-                    return size
-        return self.sizes.get(name, _ENOUGH)
+    def enough(self, word):
+        """The capacity with which no list is cut: a number, a count of the owner, or a result that C answers without room."""
+        if word.isdigit():
+            return int(word)
+        if word not in self.call.by_name:
+            return self.owner.size(word, self.given)
+        count = _NUMBERS[self.call.by_name[word].type][0]()
+        status = self.call.function(*[self.owner.handle if p is self.call.parameters[0] else ctypes.byref(count) if p.name == word
+                                      else 0 if p.name == 'capacity' else None for p in self.call.parameters])
+        if status != 0:
+            raise _failed(status, self.message())
+        return count.value
 
     # ---- from a parameter to C's argument ----
 
     def nothing(self, _p):
         """A context."""
 
-    def open(self, thing):
-        """The handle of a thing, which is there; that of one which is not leads into memory that is another's."""
-        closed = thing.closed()
-        if closed:
-            raise _failed(CONSTANTS['SPAR_ERR_ARGUMENT'], f'{self.call.name}: {closed}')
-        return thing.handle
-
     def own(self, _p):
         """The thing whose method this is."""
         return self.owner.handle
 
     def value(self, p):
-        """A number, or a count that an array shows."""
+        """A number, or a count that an array shows or the library knows."""
         if p.name in self.given:
             return self.given[p.name]
-        size = self.size(p.name) if p.type == 'int64_t' or p.name == 'blades' else None
-        if p.name in ('capacity', 'rows', 'columns'):
-            size = self.capacity(p.name)
+        if p.name == 'capacity' and not p.word:  # of as many as a constant says
+            return next(q.dims[0] for q in self.call.shaped if q.result)
+        size = self.size(p.name) if p.name not in self.call.asked_names else None
         if size is None:
-            if p.name == 'n':
-                return 0  # of no array
-            raise TypeError(f'{self.call.python_name} lacks {p.name}')
+            if p.name in self.call.asked_names:
+                raise TypeError(f'{self.call.name} lacks {p.name}')
+            return 0  # of no array
         return size
 
     def handle(self, p):
         """Handles that are given, and a handle that the call makes."""
         if p.how == 'list':
-            handles = (ctypes.c_void_p * len(self.given[p.name]))(*[self.open(h) for h in self.given[p.name]])
+            things = self.given.get(p.name, [])
+            handles = (ctypes.c_void_p * len(things))(*[thing.handle for thing in things])
             self.keep.append(handles)
-            return ctypes.cast(handles, ctypes.c_void_p)
+            return ctypes.cast(handles, ctypes.c_void_p) if things else None
         if p.how == 'value':
             value = self.given.get(p.name)
-            return self.open(value) if value is not None else None
+            if value is None and not p.null:
+                raise TypeError(f'{self.call.name} lacks {p.name}')
+            return value.handle if value is not None else None
         made = ctypes.c_void_p()
-        of = list(self.given.get('sections', []))[:1]
-        session = self.owner.session if self.owner is not None else of[0].session if of else None
-        self.results.append(lambda: session if p.type == 'session' else _CLASSES[p.type](made.value, session))
+        self.results.append(lambda: self.made(p, made.value))
         return ctypes.byref(made)
+
+    def made(self, p, handle):
+        """What the call has made, or found."""
+        if p.type == 'session':
+            return self.session
+        if p.type == 'member' and self.owner is self.session:
+            self.session.members.append(handle)
+        if p.type in ('polar', 'aero'):
+            return handle  # for the class that calls
+        return _CLASSES[p.type](handle, self.session)
 
     def text(self, p):
         """A text, or room for one."""
         if p.how == 'in':
-            value = self.given.get(p.name)
-            return os.fsencode(value) if value is not None else None
-        text = ctypes.create_string_buffer(_ENOUGH)
-        self.results.append(lambda: text.value.decode())
-        return ctypes.addressof(text)
+            return self.given.get(p.name)
+        text = _room([self.size('capacity')], numpy.dtype(numpy.uint8))
+        self.keep.append(text)
+        self.results.append(lambda: text.tobytes().split(b'\0')[0].decode(errors='surrogateescape'))
+        return text.ctypes.data
 
     def array(self, p):
         """An array that is given, and room for one that comes back."""
         value = self.given.get(p.name)
         if value is None and p.result and p.name not in self.given:
-            shape = [self.size(d) if d != 'capacity' else self.capacity(d) for d in p.dims]
-            if None in shape:
-                return None  # not wanted, for nobody knows how large it is
+            shape = [self.size(d) for d in p.dims]
             kind = _NUMBERS[p.type][1]
             if self.strides is not None and p.dims[1:] == [3]:
-                value = _laid_out(shape[0], kind, tuple(kind.itemsize * number for number in self.strides))
+                value = _room(shape, kind, tuple(kind.itemsize * number for number in self.strides))
             else:
-                value = numpy.zeros(shape, kind)
+                value = self.packed(p, shape, kind)
         if value is None:
             return None
         self.keep.append(value)
@@ -416,49 +565,140 @@ class _Running:
             self.results.append(value)
         return value.ctypes.data
 
+    def packed(self, p, shape, kind):
+        """Room for an array of this shape, where the machine has it."""
+        try:
+            return _room(shape, kind)
+        except (MemoryError, ValueError):
+            fault = f'{self.call.name}: no memory for {p.name} of the shape {shape}'
+            raise _failed(CONSTANTS['SPAR_ERR_MEMORY'], fault) from None
+
     def number(self, p):
-        """Room for a number that comes back."""
-        if p.name in self.given and self.given[p.name] is None:
+        """Room for a number that comes back; what is given of it is read first."""
+        value = self.given.get(p.name, 0)
+        if value is None:
             return None
-        number = _NUMBERS[p.type][0](*([self.given[p.name]] if p.name in self.given else []))
+        if p.name not in self.given and p.name in self.call.asked_names:
+            raise TypeError(f'{self.call.name} lacks {p.name}')
+        number, address = _number(_NUMBERS[p.type][0], value)
         self.results.append(lambda: number.value)
-        return ctypes.byref(number)
+        return address
 
     def callback(self, p):
         """What C calls in Python's place."""
         kind, function = _CALLBACKS[p.type], self.given.get(p.name)
-        if p.type == 'log' and function is not None:
-            def called(_session, level, text, _context):
-                function(level, text.decode(errors='replace'))
-            self.owner.log = kind(called)  # kept as long as the session
-            return self.owner.log
-        made = kind() if function is None else kind(self.calling(p, function))
+        if function is None:
+            made = kind()
+        else:
+            made = kind(self.telling(function) if p.type == 'log' else self.calling(p, function))
         self.keep.append(made)
-        self.callbacks[p.name] = made  # a trial keeps it until the next
+        if self.owner.keeps:
+            self.callbacks[p.name] = made
         return made
+
+    def telling(self, function):
+        """What C calls as a log, in the middle of a call: what it raises is kept until the call is done."""
+        faults = self.session.use.faults
+
+        def called(_session, level, text, _context):
+            try:
+                function(level, text.decode(errors='replace'))
+            except BaseException as fault:  # pylint: disable=broad-except
+                faults.append(fault)
+        return called
 
     def calling(self, p, function):
         """What C calls. What is raised there ends the call under way, which raises it again."""
-        owner, raised = self.owner, self.raised
+        owner, session, own, name = self.owner, self.session, self.raised, f'{self.call.name}: {p.name}'
 
         def called(_session, *rest):
+            raised = owner.raised if owner.kind == 'trial' else own
+            if raised:
+                return 1  # the call is to end
+            session.use.lend()
             try:
-                arguments = rest[:-1] if p.type == 'progress' else (owner.session, *rest[:-1])
-                return int(function(*arguments) or 0)
+                return _answered(name, function(*rest[:-1]) if p.type == 'progress' else function(session, *rest[:-1]))
             except BaseException as fault:  # pylint: disable=broad-except
-                (owner.raised if isinstance(owner, Trial) else raised).append(fault)
+                raised.append(fault)
                 return 1
+            finally:
+                session.use.take_back()
         return called
+
+
+def _answered(name, answer):
+    """The status that a callback answers."""
+    if answer is None:
+        return 0
+    try:
+        status = int(answer) if isinstance(answer, numpy.bool_) else operator.index(answer)
+    except TypeError:
+        raise TypeError(f'{name} answered {answer!r}; it must answer an integer, or None for success') from None
+    if not -2**31 <= status < 2**31:
+        raise ValueError(f'{name} answered {answer}; it must answer an integer of 32 bits, or None for success')
+    return status
+
+
+class _Use:
+    """Who calls a session, or what belongs to none: one thread at a time, and others while a callback runs."""
+    __slots__ = ('lock', 'thread', 'callbacks', 'open', 'left', 'replaced', 'faults')
+
+    def __init__(self):
+        self.lock = threading.Lock()
+        self.thread = None  # which is in a call, and in none of its callbacks but the log
+        self.callbacks = 0  # that run
+        self.open = True
+        self.left = []  # handles of trials that nothing refers to: a collector finds them in any thread and at any time
+        self.replaced = []  # callbacks that C may be in
+        self.faults = []  # what the log has raised in this call
+
+    def enter(self, name):
+        """Waits until this thread may call."""
+        thread = threading.get_ident()
+        if self.thread == thread:
+            fault = f'{name}: a call of this session is in progress; a log and a __del__ must not call it'
+            raise _failed(CONSTANTS['SPAR_ERR_STATE'], fault)
+        self.lock.acquire()  # pylint: disable=consider-using-with
+        self.thread = thread
+        if not self.callbacks and (self.left or self.replaced):
+            self.replaced.clear()
+            while self.left and self.open:
+                _destroy('trial', self.left.pop())
+
+    def leave(self):
+        """The call is done; answers what its log has raised."""
+        faults = ()
+        if self.faults:
+            faults = self.faults.copy()
+            self.faults.clear()
+        self.thread = None
+        self.lock.release()
+        return faults
+
+    def lend(self):
+        """A callback begins: it may call, and so may other threads."""
+        self.callbacks += 1
+        self.thread = None
+        self.lock.release()
+
+    def take_back(self):
+        """It has ended."""
+        self.lock.acquire()  # pylint: disable=consider-using-with
+        self.thread = threading.get_ident()
+        self.callbacks -= 1
 
 
 # ---- what calls belong to ----
 
-_OF_NO_SESSION = ('polar', 'aero')  # they do not go with one
+def _destroy(kind, handle):
+    _calls[f'spar_{kind}_destroy'].function(ctypes.byref(ctypes.c_void_p(handle)))
 
 
 class _Thing:
     """A handle of the library; its methods are the calls that take it first."""
-    kind, owned, handle, session = '', False, None, None
+    kind, handle, session = '', None, None
+    keeps = False  # callbacks, beyond the call that they are given to
+    outlives = False  # its session
 
     def __init__(self, handle, session=None):
         self.handle = handle
@@ -469,10 +709,6 @@ class _Thing:
         raise TypeError(f'a {self.kind} of spar cannot be copied or pickled: there would be two owners; save and load '
                         'its session')
 
-    def size(self, d, _call, _given):
-        """How large a dimension is that no argument says."""
-        return None
-
     def closed(self):
         """What of it is not there any more; '' if all is."""
         if self.session is not None and self.session.handle is None:
@@ -480,47 +716,93 @@ class _Thing:
         return '' if self.handle else f'this {self.kind} is closed'
 
     def close(self):
-        """Destroys it, if it is still there; of a session with all that is made from it."""
-        if self.handle and (self.kind in _OF_NO_SESSION or not self.closed()):
-            handle = ctypes.c_void_p(self.handle)
-            self.handle = None
-            _calls[f'spar_{self.kind}_destroy'].function(ctypes.addressof(handle))
+        """Destroys it, if it is still there; of a session with all that is made from it. Members and joints go with their session."""
+        name = f'spar_{self.kind}_destroy'
+        if name not in _calls:
+            raise _failed(CONSTANTS['SPAR_ERR_UNSUPPORTED'], f'a {self.kind} goes with its session; close that')
+        use, faults = (self.session or self).use, []
+        use.enter(name)
+        try:
+            self.close_in(use)
+        finally:
+            faults = use.leave()
+        if faults:
+            raise faults[0]
+
+    def close_in(self, _use):
+        """The same within the use of its session."""
+        handle, there = self.handle, self.outlives or self.session.handle is not None
+        self.handle = None
+        if handle and there:
+            _destroy(self.kind, handle)
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        self.close()
-
-    def __del__(self):
-        if self.owned and _library is not None:
+        if self.kind not in ('member', 'joint'):
             self.close()
 
 
 class Session(_Thing):
     """A session of this process alone, or over a communicator."""
-    kind, owned = 'session', True
+    kind, keeps, outlives = 'session', True, True
     session = property(lambda self: self)
 
     def __init__(self, comm=None):
         super().__init__(None)
+        self.use = _Use()
+        self.alone = comm is None
+        self.members = []  # their handles
+        self.log = {}  # what C calls
         made = ctypes.c_void_p()
         if comm is None:
             status = _calls['spar_session_create'].function(ctypes.addressof(made))
         else:
-            comm = comm.py2f() if hasattr(comm, 'py2f') else int(comm)
-            status = _calls['spar_session_create_fcomm'].function(comm, ctypes.addressof(made))
+            create = _calls['spar_session_create_fcomm']
+            number = _integer(create, create.by_name['comm'], comm.py2f() if hasattr(comm, 'py2f') else comm)
+            status = create.function(number, ctypes.addressof(made))
         if status != 0:
-            raise _failed(status, _calls['spar_session_message'].function(None).decode())
+            raise _failed(status, _calls['spar_session_message'].function(None).decode(errors='replace'))
         self.handle = made.value
+
+    def keep_callbacks(self, callbacks):
+        """Keeps a log, as long as C may call it; C uses the others in their call alone."""
+        if 'log' in callbacks:
+            self.use.replaced.append(self.log)
+            self.log = callbacks
+
+    def size(self, word, _given):
+        """What no argument says: ranks, and all_nodes, of all members."""
+        if word == 'all_nodes':
+            return sum(_count(self, 'spar_member_get_count', handle) for handle in self.members)
+        if word != 'ranks':
+            return None
+        ranks = ctypes.c_double(1)
+        if not self.alone:
+            status = _calls['spar_session_sum'].function(self.handle, 0, 1, ctypes.byref(ranks))
+            if status != 0:
+                raise _failed(status, _calls['spar_session_message'].function(self.handle).decode(errors='replace'))
+        return int(ranks.value)
+
+    def close_in(self, use):
+        if self.handle and use.callbacks:
+            raise _failed(CONSTANTS['SPAR_ERR_STATE'], 'spar_session_destroy: a callback of this session is running; close the '
+                          'session when the call has ended')
+        use.open = False
+        super().close_in(use)
+
+    def __del__(self):
+        if self.handle and _library is not None:  # nothing refers to it, so nothing calls it
+            _destroy('session', self.handle)
 
 
 def _count(thing, name, *of):
     """What a call answers whose result is one count, without what the other calls need."""
     number = ctypes.c_int64()
-    status = _calls[name].function(thing.handle, *of, ctypes.byref(number))
+    status = _calls[name].function(*(of or (thing.handle,)), ctypes.byref(number))
     if status != 0:
-        raise _failed(status, _calls['spar_session_message'].function(thing.session.handle).decode())
+        raise _failed(status, _calls['spar_session_message'].function(thing.session.handle).decode(errors='replace'))
     return number.value
 
 
@@ -528,8 +810,9 @@ class Member(_Thing):
     """A structure: a beam, a rigid body, a point, or one that the host solves. A session makes it."""
     kind = 'member'
 
-    def size(self, d, _call, _given):
-        return _count(self, 'spar_member_get_count') if d in ('n', 'nodes') else None
+    def size(self, word, _given):
+        """nodes."""
+        return _count(self, 'spar_member_get_count') if word == 'nodes' else None
 
 
 class Joint(_Thing):
@@ -537,69 +820,96 @@ class Joint(_Thing):
     kind = 'joint'
 
 
+_SETS = {'motion_nodes': 0, 'force_nodes': 1, 'which_nodes': None}
+
+
 class Fluid(_Thing):
     """A fluid's nodes on this rank. A member makes it."""
     kind = 'fluid'
 
-    def size(self, d, call, given):
-        if d == 'n':
-            return _count(self, 'spar_fluid_get_count', given.get('which', 1 if call.of_force_nodes else 0))
-        if d == 'P':
-            return self.get_member().get_elements()[1]
-        return None
+    def size(self, word, given):
+        """motion_nodes, force_nodes, which_nodes, P."""
+        if word in _SETS:
+            return _count(self, 'spar_fluid_get_count', self.handle, given['which'] if word == 'which_nodes' else _SETS[word])
+        if word != 'P':
+            return None
+        member, each = ctypes.c_void_p(), ctypes.c_int(1)
+        _calls['spar_fluid_get_member'].function(self.handle, ctypes.byref(member))
+        if _count(self, 'spar_member_get_count', member) > 1:  # a beam
+            _calls['spar_beam_get_elements'].function(member, None, ctypes.byref(each))
+        return each.value
 
     def strides(self, call, given):
         """Numbers between nodes and between components in the layout; None: packed."""
         node, component = ctypes.c_int64(3), ctypes.c_int64(1)
-        _calls['spar_fluid_get_layout'].function(self.handle, given.get('which', 1 if call.of_force_nodes else 0),
-                                                 ctypes.byref(node), ctypes.byref(component))
+        which = given.get('which', 0) if call.set_of_nodes == 'which_nodes' else _SETS[call.set_of_nodes]
+        _calls['spar_fluid_get_layout'].function(self.handle, which, ctypes.byref(node), ctypes.byref(component))
         return None if (node.value, component.value) == (3, 1) else (node.value, component.value)
 
 
 class Trial(_Thing):
     """Trial runs on a copy of a session. A session makes it."""
-    kind, owned = 'trial', True
+    kind, keeps = 'trial', True
 
     def __init__(self, handle, session=None):
         super().__init__(handle, session)
         self.callbacks = {}  # what C calls, by the names of the arguments
         self.raised = []  # by its callbacks, in the call under way
 
+    def keep_callbacks(self, callbacks):
+        """Keeps what C may call until others replace it."""
+        self.session.use.replaced.append({name: self.callbacks.get(name) for name in callbacks})
+        self.callbacks.update(callbacks)
+
+    def size(self, word, given):
+        """As of the session."""
+        return self.session.size(word, given)
+
+    def __del__(self):
+        if self.handle and _library is not None and self.session.handle:
+            self.session.use.left.append(self.handle)  # the session may be in a call, in another thread
+
 
 class Polar(_Thing):
     """Coefficients of an airfoil over the angle of attack."""
-    kind, owned = 'polar', True
+    kind, outlives = 'polar', True
 
     def __init__(self, alpha_rad, cl, cd, cm=None):
-        made = _calls['spar_polar_create'](None, alpha_rad, cl, cd, cm)
-        super().__init__(made.handle)
-        made.handle = None
+        self.use = _Use()
+        super().__init__(_calls['spar_polar_create'](None, alpha_rad, cl, cd, cm))
+
+    def __del__(self):
+        if self.handle and _library is not None:
+            _destroy('polar', self.handle)
 
 
 class Aero(_Thing):
     """Blade elements: sections has one fluid of stations for each blade."""
-    kind, owned = 'aero', True
+    kind, outlives = 'aero', True
 
     def __init__(self, sections):
-        made = _calls['spar_aero_create'](None, sections)
-        super().__init__(made.handle, sections[0].session if sections else None)
-        self.sections = list(sections)
-        made.handle = None
+        self.use = _Use()
+        self.fluids = list(sections)
+        super().__init__(_calls['spar_aero_create'](None, self.fluids))
+        if self.fluids:
+            self.session = self.fluids[0].session
+            self.sections = _count(self, 'spar_fluid_get_count', self.fluids[0].handle, 0)
+
+    sections = 0  # of each blade, when it was made
 
     def closed(self):
-        return super().closed() or next((fluid.closed() for fluid in self.sections if fluid.closed()), '')
+        return super().closed() or next((fluid.closed() for fluid in self.fluids if fluid.closed()), '')
 
-    def size(self, d, call, given):
-        if d == 'blades':
-            return len(self.sections)
-        return self.sections[0].get_count(0) if d == 'n' and self.sections else None
+    def size(self, word, _given):
+        """blades and sections."""
+        return {'blades': len(self.fluids), 'sections': self.sections}.get(word)
+
+    def __del__(self):
+        if self.handle and _library is not None:
+            _destroy('aero', self.handle)
 
 
-class _Made(_Thing):
-    """What a call has made, on its way to the class that owns it."""
-
-
-_CLASSES = {'session': Session, 'member': Member, 'joint': Joint, 'fluid': Fluid, 'trial': Trial, 'polar': _Made, 'aero': _Made}
+_CLASSES = {'session': Session, 'member': Member, 'joint': Joint, 'fluid': Fluid, 'trial': Trial, 'polar': Polar, 'aero': Aero}
 globals().update((name[len('SPAR_'):], number) for name, number in CONSTANTS.items())
 _said = _table.read()
 _calls = {_name: _Call(_one) for _name, _one in _said.items()}
@@ -607,7 +917,6 @@ for _name, _one in _calls.items():
     _one.single = _calls.get(_name + '_f32')
     if _one.public:
         _owner = _CLASSES[_one.owner] if _one.owner else None
-        _owner = {'polar': Polar, 'aero': Aero}.get(_one.owner, _owner)
         if hasattr(_owner, _one.python_name) if _owner else _one.python_name in globals():
             raise ImportError(f'{_name}: there are two of the name {_one.python_name}')
         if _owner:

@@ -15,7 +15,8 @@ _MADE_BY_CLASSES = {'spar_session_create', 'spar_session_create_fcomm', 'spar_po
 
 
 class Parameter:
-    """name, type, how (value, in, out, list, callback), dims, array, result, null: whether None is allowed."""
+    """name, type, how (value, in, out, list, callback), dims, array, result, null: whether None is allowed; word: what a count or a
+    capacity is where no array shows it."""
 
     def __init__(self, text):
         self.name, self.type, self.how, shape, null = text.split('|')
@@ -23,6 +24,7 @@ class Parameter:
         self.array = self.type in NUMBERS and bool(self.dims)
         self.result = self.how == 'out'
         self.null = null == 'null' or self.how == 'callback'
+        self.word = null if null != 'null' else ''
 
 
 class Call:
@@ -35,9 +37,8 @@ class Call:
         first = self.parameters[0] if self.parameters else None
         self.owner = first.type if first and first.type in CLASSES and first.how == 'value' else None
         self.asked = [p for p in self.parameters[1 if self.owner else 0:]  # what the caller gives, in this order
-                      if self.given(p) and p.type != 'context' and not (p.type == 'int64_t' and p.name in shown)
-                      and not (p.how == 'value' and p.name in ('capacity', 'rows', 'columns'))
-                      and not (name == 'spar_aero_create' and p.name == 'blades')]
+                      if self.given(p) and p.type != 'context' and p.name != 'capacity'
+                      and not (p.how == 'value' and (p.name in shown or p.word))]
         self.results = [p for p in self.parameters if p.result]
         self.python_name = name[len('spar_'):]
         for prefix in _PREFIXES.get(self.owner, (f'{self.owner}_',)):

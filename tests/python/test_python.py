@@ -10,6 +10,7 @@ import pickle
 import shutil
 import subprocess
 import sys
+import threading
 import unittest
 
 import numpy
@@ -225,7 +226,7 @@ class Edges(unittest.TestCase):
     def test_shapes(self):
         with spar.Session() as s:
             _, fluid = body(s)
-            with self.assertRaisesRegex(ValueError, r'force has the shape \(2, 3\); it must be force\[n\]\[3\]'):
+            with self.assertRaisesRegex(ValueError, r'force has the shape \(2, 3\); it must be force\[force_nodes\]\[3\]'):
                 fluid.push_forces(numpy.zeros((2, 3)))
             with self.assertRaises(ValueError):
                 s.set_gravity([0, 0])
@@ -543,6 +544,255 @@ class Edges(unittest.TestCase):
             self.assertEqual(s.get_time()[0], taken)
 
 
+class Hostile(unittest.TestCase):
+    """What a caller may do wrong ends in a refusal that names the argument: these were crashes, cut numbers, or lost words."""
+
+    def test_states(self):
+        """States are by force node: 2 motion nodes and 40 force nodes have 40 rows (2 rows were allocated, and 40 written)."""
+        with spar.Session() as s:
+            member, _ = body(s)
+            fluid = member.fluid_create('other')
+            fluid.set_motion_nodes(numpy.zeros((2, 3)))
+            fluid.set_force_nodes(numpy.zeros((40, 3)))
+            fluid.map()
+            fluid.set_states(2)
+            states = numpy.arange(80.0).reshape(40, 2)
+            fluid.push_states(states)
+            numpy.testing.assert_array_equal(fluid.pull_states(2), states)
+
+    def test_wrong_kind(self):
+        """A handle of another kind, or none, never reaches C."""
+        with spar.Session() as s:
+            member, fluid = body(s)
+            polar, trial = spar.Polar([-1, 1], [0, 0], [0, 0]), s.trial_create()
+            joint = s.joint_create('joint', member, 0, None, 0, 63)
+            for wrong in (fluid, s, polar, trial, joint, 5, 'body', None):
+                with self.assertRaisesRegex(TypeError, 'spar_joint_create: a is .*; it must be a Member'):
+                    s.joint_create('k', wrong, 0, None, 0, 63)
+            with self.assertRaisesRegex(TypeError, 'b is of the type Trial'):
+                s.joint_create('k', member, 0, trial, 0, 63)
+            with self.assertRaisesRegex(TypeError, 'sections is of the type Member'):
+                spar.Aero([member])
+            with self.assertRaisesRegex(TypeError, 'member is of the type Fluid'):
+                trial.get_beam(fluid)
+            with self.assertRaisesRegex(TypeError, 'solve is of the type int'):
+                s.step(0.1, 3)
+            with self.assertRaisesRegex(spar.Error, 'goes with its session'):
+                member.close()
+            with spar.Session() as other, self.assertRaisesRegex(spar.ArgumentError, 'different sessions'):
+                s.joint_create('k', body(other)[0], 0, None, 0, 63)
+
+    def test_numbers(self):
+        """Integers that C cannot hold, numbers of other types, and the names of their arguments."""
+        with spar.Session() as s:
+            member, fluid = body(s)
+            for number in (2**31, 2**32 + 1, -2**31 - 1):
+                with self.assertRaisesRegex(spar.ArgumentError, f'order is {number}'):
+                    s.set_predictor(number)
+            with self.assertRaisesRegex(spar.ArgumentError, f'node is {2**64}'):
+                member.set_load(2**64, 0, [1.0] * 6)
+            with self.assertRaisesRegex(TypeError, 'order is of the type float; it must be an integer'):
+                s.set_predictor(1.0)
+            with self.assertRaisesRegex(TypeError, 'omega is of the type str; it must be a number'):
+                s.set_relaxation('1')
+            s.set_predictor(numpy.int64(2))
+            self.assertEqual(s.get_predictor(), 2)
+            with self.assertRaisesRegex(spar.ArgumentError, 'held has numbers beyond'):
+                fluid.fade_motion(0.1, 0.5, None, [2**32])
+            with self.assertRaisesRegex(TypeError, 'g is masked'):
+                s.set_gravity(numpy.ma.array([1.0, 2.0, 3.0], mask=[0, 1, 0]))
+            with self.assertRaisesRegex(spar.OutOfMemoryError, 'frequency_hz'):
+                member.solve_modes(2**62)
+            with self.assertRaises(spar.ArgumentError):
+                member.solve_modes(-1)
+            for name in ('capacity', 'n', 'session', 'context'):  # not the caller's to choose
+                with self.assertRaisesRegex(TypeError, f'no argument {name}'):
+                    s.get_report(**{name: 100000})
+            with self.assertRaisesRegex(TypeError, 'None leaves it out'):
+                s.get_time(t=1.0)
+
+    def test_answers(self):
+        """A callback answers an integer of C, or nothing: others were cut to 0, which is success."""
+        with spar.Session() as s:
+            _, fluid = body(s)
+
+            def solve(*_):
+                fluid.push_forces([[1.0, 0, 0]])
+                return answer
+
+            for answer in (2**32, -2**32, 0.5, 0.0, 'x', '', [], numpy.array([0]), numpy.nan):
+                with self.assertRaisesRegex((TypeError, ValueError), 'spar_step: solve answered'):
+                    s.step(0.1, solve)
+            for answer in (1, -1, True, numpy.True_, numpy.int32(7)):
+                with self.assertRaises(spar.UserError):
+                    s.step(0.1, solve)
+            for answer in (None, 0, False, numpy.False_, numpy.int64(0)):
+                s.step(0.1, solve)
+
+    def test_texts(self):
+        """A NUL ends no text early; what is no text is refused by name; bytes of a name come back."""
+        with spar.Session() as s:
+            with self.assertRaisesRegex(ValueError, 'name contains a NUL'):
+                s.rigid_create('bo\0dy', None, None, numpy.eye(6))
+            with self.assertRaisesRegex(TypeError, 'name is of the type int'):
+                s.rigid_create(7, None, None, numpy.eye(6))
+            member = s.rigid_create(b'k\xf6rper', None, None, numpy.eye(6))
+            self.assertEqual(os.fsencode(member.get_name()), b'k\xf6rper')
+            with self.assertRaisesRegex(spar.ArgumentError, 'k.rper'):
+                member.set_root(77)
+
+    def test_unaligned(self):
+        """Numbers between addresses: copied on the way in, refused where they would be filled; a read-only array is not written."""
+        with spar.Session() as s:
+            _, fluid = body(s)
+            odd = numpy.frombuffer(bytearray(25), numpy.float64, 3, 1).reshape(1, 3)
+            self.assertFalse(odd.flags.aligned)
+            odd[...] = [[1, 2, 3]]
+            fluid.push_forces(odd)
+            numpy.testing.assert_array_equal(fluid.sum_loads()[0], [1, 2, 3])
+            with self.assertRaisesRegex(TypeError, 'x is filled in place.*aligned'):
+                fluid.pull_motion(1.0, x=odd)
+            constant = numpy.frombuffer(numpy.array([1.0, 2.0]).tobytes())
+            self.assertFalse(constant.flags.writeable)
+            numpy.testing.assert_array_equal(s.sum(0, constant), [1, 2])
+
+    def test_fade(self):
+        """The distance from the line needs no array: node 0 on it has the weight 1, one beyond it 0."""
+        with spar.Session() as s:
+            member, _ = body(s)
+            fluid = member.fluid_create('mesh')
+            fluid.set_motion_nodes([[0.05, 0, 0], [0.9, 0, 0]])
+            fluid.map()
+            fluid.fade_motion(0.1, 0.5)
+            numpy.testing.assert_array_equal(fluid.get_motion_weights(), [1, 0])
+            fluid.set_motion_weights()
+            numpy.testing.assert_array_equal(fluid.get_motion_weights(), [1, 1])
+
+    def test_messages(self):
+        """A constructor's failure has the library's words (it had none)."""
+        with spar.Session() as s:
+            _, fluid = body(s)
+            with self.assertRaisesRegex(spar.ArgumentError, 'spar_aero_create: fluid .fluid. of blade 0'):
+                spar.Aero([fluid])
+
+    def test_closed_in_callback(self):
+        """A session is not closed in its callbacks, its own trial may be, and a log does not call it."""
+        with spar.Session() as s:
+            _, fluid = body(s)
+            trial = s.trial_create()
+            trial.set_steps(0.1, 8)
+            for thing, said in ((s, 'a callback of this session is running'), (None, 'log')):
+                def solve(*_, thing=thing):
+                    if thing:
+                        thing.close()
+                    fluid.push_forces([[0, 0, 0]])
+                if thing:
+                    with self.assertRaisesRegex(spar.StateError, said):
+                        s.step(0.1, solve)
+                    trial.set_callbacks(None, solve)
+                    with self.assertRaisesRegex(spar.StateError, said):
+                        trial.run(0)
+            trial.set_callbacks(None, lambda *_: trial.close())
+            trial.run(0)
+            with self.assertRaisesRegex(spar.ArgumentError, 'this trial is closed'):
+                trial.run(0)
+            s.set_log(lambda *_: s.get_gravity())
+            with self.assertRaisesRegex(spar.StateError, 'a log and a __del__ must not call it'):
+                s.step(-1.0)
+            s.set_log(None)
+            s.step(0.1)
+
+    def test_log_raises(self):
+        """What a log raises is raised when the call is done, with the failure that it was told of as its context."""
+        def log(_level, text):
+            raise KeyError(text)
+
+        with spar.Session() as s:
+            member = s.rigid_create('body', None, None, 1e-3 * numpy.eye(6))
+            s.set_log(log)
+            with self.assertRaisesRegex(KeyError, 'root condition 77') as caught:
+                member.set_root(77)
+            self.assertIsInstance(caught.exception.__context__, spar.ArgumentError)
+            s.set_log(None)
+            member.commit()
+            s.step(0.1)
+
+    def test_raise_in_report(self):
+        """A call that goes on without a run raises what its callback has raised (an effect's failure is a result)."""
+        with spar.Session() as s:
+            _, fluid = body(s)
+            s.set_gravity([0, 0, -9.81])
+            trial = s.trial_create()
+            trial.set_steps(0.1, 8)
+
+            def solve(*_):
+                x, _ = fluid.pull_motion(1.0)
+                if x[0, 2] == 0:  # without gravity
+                    raise KeyError('flow')
+                fluid.push_forces(0 * x)
+
+            trial.set_callbacks(None, solve)
+            with self.assertRaisesRegex(KeyError, 'flow'):
+                trial.report_effects()
+
+    def test_collector(self):
+        """Trials that only a collector finds, in another thread and during calls, are left to their session."""
+        with spar.Session() as s:
+            body(s)
+            stop = threading.Event()
+
+            def collect():
+                while not stop.is_set():
+                    gc.collect(0)
+
+            thread = threading.Thread(target=collect)
+            thread.start()
+            try:
+                for _ in range(300):
+                    trial = s.trial_create()
+                    trial.set_steps(0.1, 8)
+                    trial.set_callbacks(None, lambda *_, me=trial: 0)  # a cycle
+                    del trial
+            finally:
+                stop.set()
+                thread.join()
+            trial = s.trial_create()
+            trial.set_steps(0.1, 8)
+            trial.set_callbacks(None, lambda *_, me=trial: 0)
+            del trial
+            gc.collect()
+            self.assertTrue(s.use.left)
+            s.get_gravity()
+            self.assertFalse(s.use.left)
+
+    def test_threads(self):
+        """Calls of one session wait for each other; another thread may call it during a callback."""
+        with spar.Session() as s:
+            member, fluid = body(s)
+            seen = []
+
+            def solve(*_):
+                thread = threading.Thread(target=lambda: seen.append(member.get_count()))
+                thread.start()
+                thread.join()
+                fluid.push_forces([[0, 0, 0]])
+
+            s.step(0.1, solve)
+            self.assertEqual(set(seen), {1})
+
+            def run():
+                for _ in range(50):
+                    s.step(0.01)
+                    fluid.pull_motion(1.0)
+
+            threads = [threading.Thread(target=run) for _ in range(4)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+            self.assertEqual(s.get_time()[1], 201)
+
+
 class Every(unittest.TestCase):
     """Every call of the table is made, with arguments that its parameters' names suggest: it answers or raises spar.Error."""
 
@@ -580,14 +830,15 @@ class Every(unittest.TestCase):
 
     def argument(self, call, p, scene, owner):  # pylint: disable=too-many-return-statements
         """A value for a parameter, by what it is and is called."""
-        if p.how in ('callback', 'list'):
+        if p.how == 'callback':
             return None
         if p.type in scene:
             return scene[p.type][0] if p.name != 'b' else None
         if p.array:
             if p.name == 'stiffness' and p.dims == [36]:
                 return numpy.zeros(36)
-            n = owner.size('n', call, {}) if owner is not None else None
+            count = {'member': 'nodes', 'fluid': 'motion_nodes', 'aero': 'sections'}.get(call.owner)
+            n = owner.size(count, {}) if count else None
             n = 2 if n is None or (n == 0 and call.python_name.startswith('set_')) else n
             shape = [d if isinstance(d, int) else {'blades': 1, 'width': 2}.get(d, n) for d in p.dims]
             value = numpy.zeros(shape, int if p.type.startswith('int') else float)
@@ -656,7 +907,7 @@ class Described(unittest.TestCase):
             self.assertNotIn('NULL', function.__doc__)
             found += 1
         self.assertGreater(found, 200)
-        self.assertIn('force[n][3]: in, N\n', spar.Fluid.push_forces.__doc__)
+        self.assertIn('force[force_nodes][3]: in, N\n', spar.Fluid.push_forces.__doc__)
         self.assertEqual(str(inspect.signature(spar.Fluid.push_forces)), '(self, /, force, moment=None)')
         self.assertEqual(str(inspect.signature(spar.Fluid.pull_motion)), '(self, /, theta, *, x=Ellipsis, v=Ellipsis)')
 

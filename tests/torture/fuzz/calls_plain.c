@@ -9,10 +9,10 @@ void do_spar_session_get_gravity(call *c) {
 
 void do_spar_session_get_coupling(call *c) {
     live_session *session = arg_session(c);
-    int *scheme = arg_out(c, (int64_t)sizeof *scheme, 0);
-    double *atol = arg_out(c, (int64_t)sizeof *atol, 0);
-    double *rtol = arg_out(c, (int64_t)sizeof *rtol, 0);
-    int *max_iterations = arg_out(c, (int64_t)sizeof *max_iterations, 0);
+    int *scheme = arg_out(c, (int64_t)sizeof *scheme, 1);
+    double *atol = arg_out(c, (int64_t)sizeof *atol, 1);
+    double *rtol = arg_out(c, (int64_t)sizeof *rtol, 1);
+    int *max_iterations = arg_out(c, (int64_t)sizeof *max_iterations, 1);
     RUN(c, spar_session_get_coupling(session->s, scheme, atol, rtol, max_iterations));
 }
 
