@@ -78,7 +78,7 @@ $1 == "call" && pass == "calls" {
         if (ORDER[i] in NEED) imports = imports (imports == "" ? "" : ", ") ORDER[i]
 
     open_part("    ")
-    put("    ", (result == "" ? "subroutine " : "function ") f "(" names ") bind(c)" (result == "" ? "" : " result(" result ")"))
+    put("    ", (result == "" ? "subroutine " : $3 == "text" ? "pure function " : "function ") f "(" names ") bind(c)" (result == "" ? "" : " result(" result ")"))
     print "      import :: " imports
     for (i = 4; i <= NF; i++) { # neighbours of one kind share a line
         line = i > 4 && FORM[i] == FORM[i - 1] ? line ", " NAME[i] : FORM[i] " :: " NAME[i]

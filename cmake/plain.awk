@@ -158,7 +158,7 @@ function which_nodes(   text) {
 
 function head(   i, names, line) {
     for (i = 1; i <= params; i++) if (i != COUNTED) names = names ", " P[i]
-    put("  ", "subroutine " procedure "(self" names ", stat, errmsg)")
+    put("  ", "recursive subroutine " procedure "(self" names ", stat, errmsg)")
     add("    class(spar_" object (object == "aero" ? "_object" : "") "), intent(" (name ~ /^(get|pull|write|save|fail)(_|$)/ ? "in" : "inout") ") :: self")
     for (i = 1; i <= params; i++) {
         if (i == COUNTED) continue

@@ -26,7 +26,7 @@
 ! n is taken from the shape, and every shape is checked; n = 0 is legal. The library copies, no array is
 ! kept; array sections such as a(:,1:4:2) are legal and cost a copy. Nodes and sections are counted from 1 in arguments; the
 ! library's own messages count from 0, and so does the node of fluid%get_travel (-1: there are none). A fluid's layout (1, n)
-! stands for arrays x(n,3), by component, (3, 1) for x(3,n).
+! stands for arrays x(n,3), by component, (3, 1) for x(3,n), (8, 1) for x(8,n); other shapes are refused.
 ! Kinds. Numbers are real(c_double). Write 0.02_c_double or 0.02d0: the default real 0.02 does not compile, because 50 000 such
 ! steps would end at 999.99998 s. Hosts in single precision have the four calls of nodes with arrays of real(c_float), as in C:
 ! fluid%pull_motion_f32, %pull_poses_f32, %pull_forces_f32 and %push_forces_f32. theta is real(c_double) there too.
@@ -480,7 +480,7 @@ contains
 
   ! ---- session ----
 
-  subroutine session_create(self, comm, stat, errmsg)
+  recursive subroutine session_create(self, comm, stat, errmsg)
     class(spar_session), intent(inout) :: self
     integer, intent(in), optional :: comm
     integer, intent(out), optional :: stat
@@ -495,7 +495,7 @@ contains
     end if
   end subroutine session_create
 
-  subroutine session_destroy(self)
+  recursive subroutine session_destroy(self)
     class(spar_session), intent(inout) :: self
     type(trial_record), pointer :: record
 
@@ -508,51 +508,64 @@ contains
     end do
   end subroutine session_destroy
 
-  impure elemental subroutine session_final(self)
+  impure elemental recursive subroutine session_final(self)
     type(spar_session), intent(inout) :: self
 
     call self%destroy()
   end subroutine session_final
 
-  impure elemental subroutine session_assign(left, right)
+  impure elemental recursive subroutine session_assign(left, right)
     class(spar_session), intent(inout) :: left
     type(spar_session), intent(in) :: right
 
     call forbid_copy('a session', left%handle, right%handle)
   end subroutine session_assign
 
-  logical function session_exists(self) result(there)
+  recursive logical function session_exists(self) result(there)
     class(spar_session), intent(in) :: self
 
     there = c_associated(self%handle)
   end function session_exists
 
   ! For calls of spar_c, while the session lives.
-  type(c_ptr) function session_handle(self) result(handle)
+  recursive type(c_ptr) function session_handle(self) result(handle)
     class(spar_session), intent(in) :: self
 
     handle = self%handle
   end function session_handle
 
   ! What went wrong last, where, and the cure.
-  function session_message(self) result(text)
+  recursive function session_message(self) result(text)
     class(spar_session), intent(in) :: self
-    character(:), allocatable :: text
+    character(length_of_session_message(self)) :: text
 
-    call copy_text(spar_session_message(self%handle), text)
+    call fill_text(spar_session_message(self%handle), text)
   end function session_message
 
+  pure recursive integer(c_int64_t) function length_of_session_message(self) result(n)
+    class(spar_session), intent(in) :: self
+
+    n = text_length(spar_session_message(self%handle))
+  end function length_of_session_message
+
   ! Warning i, from 1; empty beyond the last.
-  function session_get_warning(self, i) result(text)
+  recursive function session_get_warning(self, i) result(text)
     class(spar_session), intent(in) :: self
     integer, intent(in) :: i
-    character(:), allocatable :: text
+    character(length_of_session_get_warning(self, i)) :: text
 
-    call copy_text(spar_session_get_warning(self%handle, int(i, c_int64_t) - 1), text)
+    call fill_text(spar_session_get_warning(self%handle, int(i, c_int64_t) - 1), text)
   end function session_get_warning
 
+  pure recursive integer(c_int64_t) function length_of_session_get_warning(self, i) result(n)
+    class(spar_session), intent(in) :: self
+    integer, intent(in) :: i
+
+    n = text_length(spar_session_get_warning(self%handle, int(i, c_int64_t) - 1))
+  end function length_of_session_get_warning
+
   ! Of arrays of different lengths as many ranks as the shortest has. One call, which is collective.
-  subroutine session_sum_balance(self, members, expected, counted, stat, errmsg)
+  recursive subroutine session_sum_balance(self, members, expected, counted, stat, errmsg)
     class(spar_session), intent(in) :: self
     integer(c_int64_t), contiguous, intent(inout), optional :: members(:)
     real(c_double), contiguous, intent(inout), optional :: expected(:), counted(:)
@@ -569,7 +582,7 @@ contains
   end subroutine session_sum_balance
 
   ! status: what this rank has failed with, left out: nothing.
-  subroutine session_sum(self, x, status, stat, errmsg)
+  recursive subroutine session_sum(self, x, status, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: x(:)
     integer, intent(in), optional :: status
@@ -586,7 +599,7 @@ contains
   ! what it is given: log must be a module procedure or an external one, and context must live as long as the session, or until
   ! the next set_log.
   ! No intent for context: gfortran takes intent(in) as leave to keep the target's old values in registers.
-  subroutine session_set_log(self, log, context, stat, errmsg)
+  recursive subroutine session_set_log(self, log, context, stat, errmsg)
     class(spar_session), intent(inout) :: self
     procedure(spar_log), optional :: log
     class(*), pointer, optional :: context
@@ -613,7 +626,7 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_set_log
 
-  subroutine call_log(session, level, text, context) bind(c, name='')
+  recursive subroutine call_log(session, level, text, context) bind(c, name='')
     type(c_ptr), value :: session, text, context
     integer(c_int), value :: level
     type(log_record), pointer :: record
@@ -630,7 +643,7 @@ contains
   end subroutine call_log
 
   ! value is as long as what is set.
-  subroutine session_get_option(self, key, value, stat, errmsg)
+  recursive subroutine session_get_option(self, key, value, stat, errmsg)
     class(spar_session), intent(in) :: self
     character(*), intent(in) :: key
     character(:), allocatable, intent(inout) :: value
@@ -653,7 +666,7 @@ contains
   end subroutine session_get_option
 
   ! residual and size, by iteration from 1, take as many as they have room for: as many as set_coupling allows is always enough.
-  subroutine session_get_iterations(self, iterations, residual, size, stat, errmsg)
+  recursive subroutine session_get_iterations(self, iterations, residual, size, stat, errmsg)
     class(spar_session), intent(in) :: self
     integer, intent(inout), optional :: iterations
     real(c_double), contiguous, intent(inout), optional :: residual(:), size(:)
@@ -674,7 +687,7 @@ contains
   ! ---- one coupling step ----
 
   ! done is .true. after a failure too, so that a loop that waits for it ends.
-  subroutine session_step_check(self, done, stat, errmsg)
+  recursive subroutine session_step_check(self, done, stat, errmsg)
     class(spar_session), intent(inout) :: self
     logical, intent(out) :: done
     integer, intent(out), optional :: stat
@@ -690,7 +703,7 @@ contains
   ! A whole step; solve is called in every iteration (none: the structure alone moves), with context, which can be anything of
   ! the host. Both are used during this call only, so that solve may be an internal procedure, for which gfortran needs an
   ! executable stack; a module procedure needs none. After a failure the session is at t^n again.
-  subroutine session_step(self, dt, solve, context, iterations, stat, errmsg)
+  recursive subroutine session_step(self, dt, solve, context, iterations, stat, errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(in) :: dt
     procedure(spar_fluid_solver), optional :: solve
@@ -712,7 +725,7 @@ contains
 
   ! A step that keeps the tolerance of set_tolerance: tried with dt, and with less while its error is too large; dt: then that to
   ! go on with, taken: that of the step. before is called ahead of each try, solve as in step.
-  subroutine session_step_adaptive(self, dt, before, solve, context, taken, stat, errmsg)
+  recursive subroutine session_step_adaptive(self, dt, before, solve, context, taken, stat, errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(inout) :: dt
     procedure(spar_before_step), optional :: before
@@ -729,7 +742,7 @@ contains
   end subroutine session_step_adaptive
 
   ! The balanced start before the first step, of dt: solve as in step, with dt = 0, called until the loads agree.
-  subroutine session_solve_initial(self, dt, solve, context, iterations, stat, errmsg)
+  recursive subroutine session_solve_initial(self, dt, solve, context, iterations, stat, errmsg)
     class(spar_session), intent(inout), target :: self
     real(c_double), intent(in) :: dt
     procedure(spar_fluid_solver), optional :: solve
@@ -751,7 +764,7 @@ contains
 
   ! Equilibrium of all members with the fluid's answer: solve as in step, with dt = 0, called until the loads agree. load_steps:
   ! default 1.
-  subroutine session_solve_static(self, load_steps, solve, context, iterations, stat, errmsg)
+  recursive subroutine session_solve_static(self, load_steps, solve, context, iterations, stat, errmsg)
     class(spar_session), intent(inout), target :: self
     integer, intent(in), optional :: load_steps
     procedure(spar_fluid_solver), optional :: solve
@@ -774,7 +787,7 @@ contains
   end subroutine session_solve_static
 
   ! What C is handed for the host's procedures: the record with them, and the calls that read it; none for none.
-  subroutine fill_record(self, record, to_solver, to_before, solve, before, context)
+  recursive subroutine fill_record(self, record, to_solver, to_before, solve, before, context)
     class(spar_session), intent(inout), target :: self
     type(step_record), intent(out) :: record
     type(c_funptr), intent(out) :: to_solver, to_before
@@ -796,7 +809,7 @@ contains
     if (present(context)) record%context => context
   end subroutine fill_record
 
-  function call_solver(session, t, dt, iteration, context) bind(c, name='') result(answer)
+  recursive function call_solver(session, t, dt, iteration, context) bind(c, name='') result(answer)
     type(c_ptr), value :: session, context
     real(c_double), value :: t, dt
     integer(c_int), value :: iteration
@@ -816,7 +829,7 @@ contains
     answer = to_c(stat)
   end function call_solver
 
-  function call_before(session, t, dt, context) bind(c, name='') result(answer)
+  recursive function call_before(session, t, dt, context) bind(c, name='') result(answer)
     type(c_ptr), value :: session, context
     real(c_double), value :: t, dt
     integer(c_int) :: answer
@@ -838,7 +851,7 @@ contains
   ! ---- trials ----
 
   ! The session's variable must be a target and stay in place while the trial lives: callbacks are handed it.
-  subroutine trial_create(self, session, stat, errmsg)
+  recursive subroutine trial_create(self, session, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     class(spar_session), intent(inout), target :: session
     integer, intent(out), optional :: stat
@@ -864,7 +877,7 @@ contains
   end subroutine trial_create
 
   ! Takes the trial out of its session, which must still be there.
-  subroutine trial_destroy(self)
+  recursive subroutine trial_destroy(self)
     class(spar_trial), intent(inout) :: self
     class(spar_session), pointer :: session
     type(trial_record), pointer :: before
@@ -885,26 +898,26 @@ contains
     self%session = c_null_ptr
   end subroutine trial_destroy
 
-  impure elemental subroutine trial_assign(left, right)
+  impure elemental recursive subroutine trial_assign(left, right)
     class(spar_trial), intent(inout) :: left
     type(spar_trial), intent(in) :: right
 
     call forbid_copy('a trial', left%handle, right%handle)
   end subroutine trial_assign
 
-  logical function trial_exists(self) result(there)
+  recursive logical function trial_exists(self) result(there)
     class(spar_trial), intent(in) :: self
 
     there = c_associated(self%handle)
   end function trial_exists
 
-  type(c_ptr) function trial_handle(self) result(handle)
+  recursive type(c_ptr) function trial_handle(self) result(handle)
     class(spar_trial), intent(in) :: self
 
     handle = self%handle
   end function trial_handle
 
-  subroutine trial_set_steps_64(self, dt, steps, stat, errmsg)
+  recursive subroutine trial_set_steps_64(self, dt, steps, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     real(c_double), intent(in) :: dt
     integer(c_int64_t), intent(in) :: steps
@@ -914,7 +927,7 @@ contains
     call finish(spar_trial_set_steps(self%handle, dt, steps), self%session, stat, errmsg)
   end subroutine trial_set_steps_64
 
-  subroutine trial_set_steps_32(self, dt, steps, stat, errmsg)
+  recursive subroutine trial_set_steps_32(self, dt, steps, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     real(c_double), intent(in) :: dt
     integer(c_int), intent(in) :: steps
@@ -926,7 +939,7 @@ contains
 
   ! What is given is kept: procedures must be module procedures or external ones, and contexts live as long as the trial, or until
   ! the next set_callbacks.
-  subroutine trial_set_callbacks(self, before, before_context, solve, solve_context, stat, errmsg)
+  recursive subroutine trial_set_callbacks(self, before, before_context, solve, solve_context, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     procedure(spar_before_step), optional :: before
     class(*), pointer, optional :: before_context
@@ -956,7 +969,7 @@ contains
   end subroutine trial_set_callbacks
 
   ! progress and context are kept as by set_callbacks; without progress nothing is told.
-  subroutine trial_set_progress(self, progress, context, stat, errmsg)
+  recursive subroutine trial_set_progress(self, progress, context, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     procedure(spar_progress), optional :: progress
     class(*), pointer, optional :: context
@@ -977,7 +990,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine trial_set_progress
 
-  function call_trial_before(session, t, dt, context) bind(c, name='') result(answer)
+  recursive function call_trial_before(session, t, dt, context) bind(c, name='') result(answer)
     type(c_ptr), value :: session, context
     real(c_double), value :: t, dt
     integer(c_int) :: answer
@@ -996,7 +1009,7 @@ contains
     answer = to_c(stat)
   end function call_trial_before
 
-  function call_trial_solver(session, t, dt, iteration, context) bind(c, name='') result(answer)
+  recursive function call_trial_solver(session, t, dt, iteration, context) bind(c, name='') result(answer)
     type(c_ptr), value :: session, context
     real(c_double), value :: t, dt
     integer(c_int), value :: iteration
@@ -1016,7 +1029,7 @@ contains
     answer = to_c(stat)
   end function call_trial_solver
 
-  function call_trial_progress(session, done, expected, context) bind(c, name='') result(answer)
+  recursive function call_trial_progress(session, done, expected, context) bind(c, name='') result(answer)
     type(c_ptr), value :: session, context
     real(c_double), value :: done, expected
     integer(c_int) :: answer
@@ -1036,7 +1049,7 @@ contains
   end function call_trial_progress
 
   ! value is as long as what is set.
-  subroutine trial_get_option(self, key, value, stat, errmsg)
+  recursive subroutine trial_get_option(self, key, value, stat, errmsg)
     class(spar_trial), intent(in) :: self
     character(*), intent(in) :: key
     character(:), allocatable, intent(inout) :: value
@@ -1059,7 +1072,7 @@ contains
   end subroutine trial_get_option
 
   ! compare: with the last run that did not.
-  subroutine trial_run(self, compare, stat, errmsg)
+  recursive subroutine trial_run(self, compare, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     logical, intent(in), optional :: compare
     integer, intent(out), optional :: stat
@@ -1071,7 +1084,7 @@ contains
     call finish(spar_trial_run(self%handle, flag(compared)), self%session, stat, errmsg)
   end subroutine trial_run
 
-  subroutine trial_get_beam(self, member, fidelity, modes, elements, nodes_per_element, points, stat, errmsg)
+  recursive subroutine trial_get_beam(self, member, fidelity, modes, elements, nodes_per_element, points, stat, errmsg)
     class(spar_trial), intent(in) :: self
     class(spar_member), intent(in) :: member
     integer, intent(inout), optional :: fidelity, elements, nodes_per_element, points
@@ -1088,7 +1101,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine trial_get_beam
 
-  subroutine trial_apply(self, dt, stat, errmsg)
+  recursive subroutine trial_apply(self, dt, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     real(c_double), intent(inout), optional :: dt
     integer, intent(out), optional :: stat
@@ -1097,7 +1110,7 @@ contains
     call finish(spar_trial_apply(self%handle, dt), self%session, stat, errmsg)
   end subroutine trial_apply
 
-  subroutine trial_set_motion_64(self, modes, amplitude, memory, stat, errmsg)
+  recursive subroutine trial_set_motion_64(self, modes, amplitude, memory, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     integer(c_int64_t), intent(in) :: modes
     real(c_double), intent(in), optional :: amplitude ! left out: 0
@@ -1114,7 +1127,7 @@ contains
     call finish(spar_trial_set_motion(self%handle, modes, c_amplitude, c_memory), self%session, stat, errmsg)
   end subroutine trial_set_motion_64
 
-  subroutine trial_set_motion_32(self, modes, amplitude, memory, stat, errmsg)
+  recursive subroutine trial_set_motion_32(self, modes, amplitude, memory, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     integer(c_int), intent(in) :: modes
     real(c_double), intent(in), optional :: amplitude
@@ -1129,7 +1142,7 @@ contains
   end subroutine trial_set_motion_32
 
   ! shift(2), eigenvalue(2,n): growth rate and angular frequency; shapes(2,6,nodes of all members,n)
-  subroutine trial_solve_eigenvalues(self, shift, eigenvalue, shapes, frame, stat, errmsg)
+  recursive subroutine trial_solve_eigenvalues(self, shift, eigenvalue, shapes, frame, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     real(c_double), intent(in), optional :: shift(2)
     real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
@@ -1157,7 +1170,7 @@ contains
 
   ! ---- members ----
 
-  subroutine member_create_point(self, session, name, x, q, stat, errmsg)
+  recursive subroutine member_create_point(self, session, name, x, q, stat, errmsg)
     class(spar_member), intent(inout) :: self
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
@@ -1173,7 +1186,7 @@ contains
     call finish(status, session%handle, stat, errmsg)
   end subroutine member_create_point
 
-  subroutine member_create_rigid(self, session, name, x, q, mass, stat, errmsg)
+  recursive subroutine member_create_rigid(self, session, name, x, q, mass, stat, errmsg)
     class(spar_member), intent(inout) :: self
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
@@ -1189,7 +1202,7 @@ contains
     call finish(status, session%handle, stat, errmsg)
   end subroutine member_create_rigid
 
-  subroutine member_create_beam(self, session, name, elements, nodes_per_element, stat, errmsg)
+  recursive subroutine member_create_beam(self, session, name, elements, nodes_per_element, stat, errmsg)
     class(spar_member), intent(inout) :: self
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
@@ -1205,15 +1218,21 @@ contains
     call finish(status, session%handle, stat, errmsg)
   end subroutine member_create_beam
 
-  function member_get_name(self) result(name)
+  recursive function member_get_name(self) result(name)
     class(spar_member), intent(in) :: self
-    character(:), allocatable :: name
+    character(length_of_member_get_name(self)) :: name
 
-    call copy_text(spar_member_get_name(self%handle), name)
+    call fill_text(spar_member_get_name(self%handle), name)
   end function member_get_name
 
+  pure recursive integer(c_int64_t) function length_of_member_get_name(self) result(n)
+    class(spar_member), intent(in) :: self
+
+    n = text_length(spar_member_get_name(self%handle))
+  end function length_of_member_get_name
+
   ! A view of the new member: whatever the variable viewed before stays where it is, in its session.
-  subroutine member_take(self, handle, session, name, elements)
+  recursive subroutine member_take(self, handle, session, name, elements)
     class(spar_member), intent(inout) :: self
     type(c_ptr), intent(in) :: handle, session
     character(*), intent(in) :: name
@@ -1225,19 +1244,19 @@ contains
     self%elements = elements
   end subroutine member_take
 
-  logical function member_exists(self) result(there)
+  recursive logical function member_exists(self) result(there)
     class(spar_member), intent(in) :: self
 
     there = c_associated(self%handle)
   end function member_exists
 
-  type(c_ptr) function member_handle(self) result(handle)
+  recursive type(c_ptr) function member_handle(self) result(handle)
     class(spar_member), intent(in) :: self
 
     handle = self%handle
   end function member_handle
 
-  subroutine member_read_beamdyn(self, primary_path, blade_path, stat, errmsg)
+  recursive subroutine member_read_beamdyn(self, primary_path, blade_path, stat, errmsg)
     class(spar_member), intent(inout) :: self
     character(*), intent(in) :: primary_path
     character(*), intent(in), optional :: blade_path
@@ -1253,7 +1272,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_read_beamdyn
 
-  subroutine member_set_fidelity(self, kind, modes, stat, errmsg)
+  recursive subroutine member_set_fidelity(self, kind, modes, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(in) :: kind
     integer, intent(in), optional :: modes !! of a modal member
@@ -1267,7 +1286,7 @@ contains
   end subroutine member_set_fidelity
 
   ! n: stations; eta and mass are filled as far as they reach
-  subroutine member_get_added_mass(self, n, eta, mass, stat, errmsg)
+  recursive subroutine member_get_added_mass(self, n, eta, mass, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int64_t), intent(inout), optional :: n
     real(c_double), contiguous, intent(inout), optional :: eta(:)
@@ -1292,7 +1311,7 @@ contains
   end subroutine member_get_added_mass
 
   ! n: bodies; eta and mass are filled as far as they reach
-  subroutine member_get_masses(self, n, eta, mass, stat, errmsg)
+  recursive subroutine member_get_masses(self, n, eta, mass, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int64_t), intent(inout), optional :: n
     real(c_double), contiguous, intent(inout), optional :: eta(:)
@@ -1317,7 +1336,7 @@ contains
   end subroutine member_get_masses
 
   ! n: stations; eta and stiffness are filled as far as they reach
-  subroutine member_get_foundation(self, n, eta, stiffness, stat, errmsg)
+  recursive subroutine member_get_foundation(self, n, eta, stiffness, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int64_t), intent(inout), optional :: n
     real(c_double), contiguous, intent(inout), optional :: eta(:)
@@ -1342,7 +1361,7 @@ contains
   end subroutine member_get_foundation
 
   ! n: stations; eta and force are filled as far as they reach
-  subroutine member_get_pretension(self, n, eta, force, stat, errmsg)
+  recursive subroutine member_get_pretension(self, n, eta, force, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int64_t), intent(inout), optional :: n
     real(c_double), contiguous, intent(inout), optional :: eta(:)
@@ -1366,7 +1385,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_pretension
 
-  subroutine member_learn_added_mass(self, eta, stat, errmsg)
+  recursive subroutine member_learn_added_mass(self, eta, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:)
     integer, intent(out), optional :: stat
@@ -1376,7 +1395,7 @@ contains
   end subroutine member_learn_added_mass
 
   ! n: stations; eta and mass are filled as far as they reach
-  subroutine member_get_learned_added_mass(self, used, spread, n, eta, mass, stat, errmsg)
+  recursive subroutine member_get_learned_added_mass(self, used, spread, n, eta, mass, stat, errmsg)
     class(spar_member), intent(in) :: self
     logical, intent(inout) :: used
     real(c_double), intent(inout) :: spread
@@ -1404,7 +1423,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_learned_added_mass
 
-  subroutine member_get_count_64(self, nodes, stat, errmsg)
+  recursive subroutine member_get_count_64(self, nodes, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int64_t), intent(inout) :: nodes
     integer, intent(out), optional :: stat
@@ -1413,7 +1432,7 @@ contains
     call finish(spar_member_get_count(self%handle, nodes), self%session, stat, errmsg)
   end subroutine member_get_count_64
 
-  subroutine member_get_count_32(self, nodes, stat, errmsg)
+  recursive subroutine member_get_count_32(self, nodes, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int), intent(inout) :: nodes
     integer, intent(out), optional :: stat
@@ -1426,7 +1445,7 @@ contains
   end subroutine member_get_count_32
 
   ! Of a member that is there; what is not, the library refuses.
-  subroutine need_node(fault, member, node)
+  recursive subroutine need_node(fault, member, node)
     character(:), allocatable, intent(inout) :: fault
     class(spar_member), intent(in) :: member
     integer(c_int64_t), intent(in) :: node
@@ -1437,7 +1456,7 @@ contains
     fault = 'nodes are 1 to ' // trim(text_of(n)) // '; there is no node ' // trim(text_of(node))
   end subroutine need_node
 
-  subroutine member_set_load_64(self, node, kind, load, stat, errmsg)
+  recursive subroutine member_set_load_64(self, node, kind, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer(c_int64_t), intent(in) :: node
     integer, intent(in) :: kind
@@ -1454,7 +1473,7 @@ contains
     call finish(spar_member_set_load(self%handle, node - 1, to_c(kind), load), self%session, stat, errmsg)
   end subroutine member_set_load_64
 
-  subroutine member_set_load_32(self, node, kind, load, stat, errmsg)
+  recursive subroutine member_set_load_32(self, node, kind, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer(c_int), intent(in) :: node
     integer, intent(in) :: kind
@@ -1466,7 +1485,7 @@ contains
   end subroutine member_set_load_32
 
   ! modes are counted from 1
-  subroutine member_set_modal_damping(self, mode, ratio, mu, stat, errmsg)
+  recursive subroutine member_set_modal_damping(self, mode, ratio, mu, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(in) :: mode(2)
     real(c_double), intent(in) :: ratio(2)
@@ -1478,7 +1497,7 @@ contains
         errmsg)
   end subroutine member_set_modal_damping
 
-  subroutine member_fit_damping(self, mode, ratio, achieved, stat, errmsg)
+  recursive subroutine member_fit_damping(self, mode, ratio, achieved, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, contiguous, intent(in) :: mode(:)
     real(c_double), contiguous, intent(in) :: ratio(:)
@@ -1497,7 +1516,7 @@ contains
         achieved), self%session, stat, errmsg)
   end subroutine member_fit_damping
 
-  subroutine member_solve_modes(self, frequency_hz, shapes, stat, errmsg)
+  recursive subroutine member_solve_modes(self, frequency_hz, shapes, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: frequency_hz(:)
     real(c_double), contiguous, intent(inout), optional :: shapes(:,:,:)
@@ -1523,7 +1542,7 @@ contains
   end subroutine member_solve_modes
 
   ! shift(2), eigenvalue(2,n): growth rate and angular frequency; shapes(2,6,nodes,n)
-  subroutine member_solve_eigenvalues(self, shift, eigenvalue, shapes, frame, stat, errmsg)
+  recursive subroutine member_solve_eigenvalues(self, shift, eigenvalue, shapes, frame, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), intent(in) :: shift(2)
     real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
@@ -1554,7 +1573,7 @@ contains
   ! ---- fluids ----
 
   ! node_a and node_b from 1; without b: to the ground.
-  subroutine joint_create_64(self, session, name, a, node_a, free_motions, b, node_b, stat, errmsg)
+  recursive subroutine joint_create_64(self, session, name, a, node_a, free_motions, b, node_b, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
@@ -1576,7 +1595,7 @@ contains
     call finish(status, session%handle, stat, errmsg)
   end subroutine joint_create_64
 
-  subroutine joint_create_32(self, session, name, a, node_a, free_motions, b, node_b, stat, errmsg)
+  recursive subroutine joint_create_32(self, session, name, a, node_a, free_motions, b, node_b, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
@@ -1594,7 +1613,7 @@ contains
     call joint_create_64(self, session, name, a, int(node_a, c_int64_t), free_motions, b, node, stat, errmsg)
   end subroutine joint_create_32
 
-  subroutine joint_create_link_64(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
+  recursive subroutine joint_create_link_64(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
@@ -1616,7 +1635,7 @@ contains
     call finish(status, session%handle, stat, errmsg)
   end subroutine joint_create_link_64
 
-  subroutine joint_create_link_32(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
+  recursive subroutine joint_create_link_32(self, session, name, a, node_a, point_a, point_b, b, node_b, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     class(spar_session), intent(in) :: session
     character(*), intent(in) :: name
@@ -1635,7 +1654,7 @@ contains
   end subroutine joint_create_link_32
 
   ! What C is handed for the end at b: no member is the ground.
-  subroutine joint_end(b, node_b, other, node)
+  recursive subroutine joint_end(b, node_b, other, node)
     class(spar_member), intent(in), optional :: b
     integer(c_int64_t), intent(in), optional :: node_b
     type(c_ptr), intent(out) :: other
@@ -1647,7 +1666,7 @@ contains
     if (present(node_b)) node = node_b - 1
   end subroutine joint_end
 
-  subroutine joint_take(self, made, session, status)
+  recursive subroutine joint_take(self, made, session, status)
     class(spar_joint), intent(inout) :: self
     type(c_ptr), intent(in) :: made, session
     integer(c_int), intent(in) :: status
@@ -1657,20 +1676,20 @@ contains
     self%session = session
   end subroutine joint_take
 
-  logical function joint_exists(self) result(there)
+  recursive logical function joint_exists(self) result(there)
     class(spar_joint), intent(in) :: self
 
     there = c_associated(self%handle)
   end function joint_exists
 
-  type(c_ptr) function joint_handle(self) result(handle)
+  recursive type(c_ptr) function joint_handle(self) result(handle)
     class(spar_joint), intent(in) :: self
 
     handle = self%handle
   end function joint_handle
 
   ! A joint of one node with the ground, made with its springs.
-  subroutine joint_create_spring_64(self, session, name, member, node, free_motions, stiffness, damping, preload, stat, &
+  recursive subroutine joint_create_spring_64(self, session, name, member, node, free_motions, stiffness, damping, preload, stat, &
       errmsg)
     class(spar_joint), intent(inout) :: self
     class(spar_session), intent(in) :: session
@@ -1691,7 +1710,7 @@ contains
     call finish(status, session%handle, stat, errmsg)
   end subroutine joint_create_spring_64
 
-  subroutine joint_create_spring_32(self, session, name, member, node, free_motions, stiffness, damping, preload, stat, &
+  recursive subroutine joint_create_spring_32(self, session, name, member, node, free_motions, stiffness, damping, preload, stat, &
       errmsg)
     class(spar_joint), intent(inout) :: self
     class(spar_session), intent(in) :: session
@@ -1707,7 +1726,7 @@ contains
         preload, stat, errmsg)
   end subroutine joint_create_spring_32
 
-  subroutine joint_set_link_spring(self, stiffness, damping, length, tension_only, stat, errmsg)
+  recursive subroutine joint_set_link_spring(self, stiffness, damping, length, tension_only, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     real(c_double), intent(in) :: stiffness, damping, length
     logical, intent(in), optional :: tension_only
@@ -1720,7 +1739,7 @@ contains
     call finish(spar_link_set_spring(self%handle, stiffness, damping, length, slack), self%session, stat, errmsg)
   end subroutine joint_set_link_spring
 
-  subroutine fluid_create(self, member, name, stat, errmsg)
+  recursive subroutine fluid_create(self, member, name, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     class(spar_member), intent(in) :: member
     character(*), intent(in) :: name
@@ -1742,7 +1761,7 @@ contains
   end subroutine fluid_create
 
   ! A view of the member that the fluid was created for.
-  subroutine fluid_get_member(self, member, stat, errmsg)
+  recursive subroutine fluid_get_member(self, member, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     class(spar_member), intent(inout) :: member
     integer, intent(out), optional :: stat
@@ -1760,42 +1779,48 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_member
 
-  function fluid_get_name(self) result(name)
+  recursive function fluid_get_name(self) result(name)
     class(spar_fluid), intent(in) :: self
-    character(:), allocatable :: name
+    character(length_of_fluid_get_name(self)) :: name
 
-    call copy_text(spar_fluid_get_name(self%handle), name)
+    call fill_text(spar_fluid_get_name(self%handle), name)
   end function fluid_get_name
 
+  pure recursive integer(c_int64_t) function length_of_fluid_get_name(self) result(n)
+    class(spar_fluid), intent(in) :: self
+
+    n = text_length(spar_fluid_get_name(self%handle))
+  end function length_of_fluid_get_name
+
   ! Takes the fluid out of its session, which must still be there.
-  subroutine fluid_destroy(self)
+  recursive subroutine fluid_destroy(self)
     class(spar_fluid), intent(inout) :: self
 
     call spar_fluid_destroy(self%handle)
     self%session = c_null_ptr
   end subroutine fluid_destroy
 
-  impure elemental subroutine fluid_assign(left, right)
+  impure elemental recursive subroutine fluid_assign(left, right)
     class(spar_fluid), intent(inout) :: left
     type(spar_fluid), intent(in) :: right
 
     call forbid_copy('a fluid', left%handle, right%handle)
   end subroutine fluid_assign
 
-  logical function fluid_exists(self) result(there)
+  recursive logical function fluid_exists(self) result(there)
     class(spar_fluid), intent(in) :: self
 
     there = c_associated(self%handle)
   end function fluid_exists
 
-  type(c_ptr) function fluid_handle(self) result(handle)
+  recursive type(c_ptr) function fluid_handle(self) result(handle)
     class(spar_fluid), intent(in) :: self
 
     handle = self%handle
   end function fluid_handle
 
   ! w(n), n motion nodes; without w: no weights.
-  subroutine fluid_set_motion_weights(self, w, stat, errmsg)
+  recursive subroutine fluid_set_motion_weights(self, w, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in), optional :: w(:)
     integer, intent(out), optional :: stat
@@ -1808,7 +1833,7 @@ contains
   end subroutine fluid_set_motion_weights
 
   ! distance(n): without it from the reference line; held(n): not 0 where the mesh stands still.
-  subroutine fluid_fade_motion(self, within, beyond, distance, held, stat, errmsg)
+  recursive subroutine fluid_fade_motion(self, within, beyond, distance, held, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), intent(in) :: within, beyond
     real(c_double), contiguous, intent(in), optional :: distance(:)
@@ -1835,7 +1860,7 @@ contains
     call finish(spar_fluid_fade_motion(self%handle, within, beyond, n, distance, c_held), self%session, stat, errmsg)
   end subroutine fluid_fade_motion
 
-  subroutine fluid_get_count_64(self, which, n, stat, errmsg)
+  recursive subroutine fluid_get_count_64(self, which, n, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     integer(c_int64_t), intent(inout) :: n
@@ -1845,7 +1870,7 @@ contains
     call finish(spar_fluid_get_count(self%handle, to_c(which), n), self%session, stat, errmsg)
   end subroutine fluid_get_count_64
 
-  subroutine fluid_get_count_32(self, which, n, stat, errmsg)
+  recursive subroutine fluid_get_count_32(self, which, n, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     integer(c_int), intent(inout) :: n
@@ -1859,7 +1884,7 @@ contains
   end subroutine fluid_get_count_32
 
   ! value is as long as what is set.
-  subroutine fluid_get_option(self, key, value, stat, errmsg)
+  recursive subroutine fluid_get_option(self, key, value, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     character(*), intent(in) :: key
     character(:), allocatable, intent(inout) :: value
@@ -1881,7 +1906,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_option
 
-  subroutine fluid_get_map(self, which, eta, distance, flags, stat, errmsg)
+  recursive subroutine fluid_get_map(self, which, eta, distance, flags, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     real(c_double), contiguous, intent(inout), optional :: eta(:), distance(:)
@@ -1912,7 +1937,7 @@ contains
   end subroutine fluid_get_map
 
   ! first_node(n) counts from 1; phi(p,n), p nodes per element.
-  subroutine fluid_get_basis(self, which, first_node, phi, stat, errmsg)
+  recursive subroutine fluid_get_basis(self, which, first_node, phi, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     integer(c_int64_t), contiguous, intent(inout), optional :: first_node(:)
@@ -1941,7 +1966,7 @@ contains
   end subroutine fluid_get_basis
 
   ! matrix(row, column, n): the convention as its name says. C fills row by row, so the transpose of what C's name says is asked for.
-  subroutine fluid_pull_matrices(self, theta, convention, matrix, stat, errmsg)
+  recursive subroutine fluid_pull_matrices(self, theta, convention, matrix, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     integer, intent(in) :: convention
@@ -1966,7 +1991,7 @@ contains
   end subroutine fluid_pull_matrices
 
   ! matrix(row, column, n), as above.
-  subroutine fluid_check_matrices(self, convention, matrix, stat, errmsg)
+  recursive subroutine fluid_check_matrices(self, convention, matrix, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: convention
     real(c_double), contiguous, intent(in) :: matrix(:,:,:)
@@ -1989,7 +2014,7 @@ contains
     call finish(spar_fluid_check_matrices(self%handle, to_c(1 - convention), matrix), self%session, stat, errmsg)
   end subroutine fluid_check_matrices
 
-  subroutine fluid_push_forces(self, force, moment, stat, errmsg)
+  recursive subroutine fluid_push_forces(self, force, moment, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: force(:,:)
     real(c_double), contiguous, intent(in), optional :: moment(:,:)
@@ -2014,7 +2039,7 @@ contains
     call finish(spar_fluid_push_forces(self%handle, force, moment), self%session, stat, errmsg)
   end subroutine fluid_push_forces
 
-  subroutine fluid_push_forces_at(self, theta, force, moment, stat, errmsg)
+  recursive subroutine fluid_push_forces_at(self, theta, force, moment, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), intent(in) :: theta
     real(c_double), contiguous, intent(in) :: force(:,:)
@@ -2040,7 +2065,7 @@ contains
     call finish(spar_fluid_push_forces_at(self%handle, theta, force, moment), self%session, stat, errmsg)
   end subroutine fluid_push_forces_at
 
-  subroutine fluid_push_forces_f32(self, force, moment, stat, errmsg)
+  recursive subroutine fluid_push_forces_f32(self, force, moment, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_float), contiguous, intent(in) :: force(:,:)
     real(c_float), contiguous, intent(in), optional :: moment(:,:)
@@ -2067,7 +2092,7 @@ contains
 
   ! Collective. Whether all loads pushed add up to the host's total. Absent point: about the origin; absent moment: not
   ! compared.
-  subroutine fluid_check_loads(self, point, force, moment, rtol, stat, errmsg)
+  recursive subroutine fluid_check_loads(self, point, force, moment, rtol, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: force(3), rtol
     real(c_double), intent(in), optional :: point(3), moment(3)
@@ -2081,7 +2106,7 @@ contains
 
   ! Written by cmake/make-bindings.sh.
 
-  subroutine session_step_begin(self, dt, stat, errmsg)
+  recursive subroutine session_step_begin(self, dt, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: dt
     integer, intent(out), optional :: stat
@@ -2090,7 +2115,7 @@ contains
     call finish(spar_step_begin(self%handle, dt), self%handle, stat, errmsg)
   end subroutine session_step_begin
 
-  subroutine session_step_solve(self, stat, errmsg)
+  recursive subroutine session_step_solve(self, stat, errmsg)
     class(spar_session), intent(inout) :: self
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
@@ -2098,7 +2123,7 @@ contains
     call finish(spar_step_solve(self%handle), self%handle, stat, errmsg)
   end subroutine session_step_solve
 
-  subroutine session_step_accept(self, stat, errmsg)
+  recursive subroutine session_step_accept(self, stat, errmsg)
     class(spar_session), intent(inout) :: self
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
@@ -2106,7 +2131,7 @@ contains
     call finish(spar_step_accept(self%handle), self%handle, stat, errmsg)
   end subroutine session_step_accept
 
-  subroutine session_step_reject(self, stat, errmsg)
+  recursive subroutine session_step_reject(self, stat, errmsg)
     class(spar_session), intent(inout) :: self
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
@@ -2114,7 +2139,7 @@ contains
     call finish(spar_step_reject(self%handle), self%handle, stat, errmsg)
   end subroutine session_step_reject
 
-  subroutine session_set_gravity(self, g, stat, errmsg)
+  recursive subroutine session_set_gravity(self, g, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: g(3)
     integer, intent(out), optional :: stat
@@ -2123,7 +2148,7 @@ contains
     call finish(spar_session_set_gravity(self%handle, g), self%handle, stat, errmsg)
   end subroutine session_set_gravity
 
-  subroutine session_get_gravity(self, g, stat, errmsg)
+  recursive subroutine session_get_gravity(self, g, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout) :: g(3)
     integer, intent(out), optional :: stat
@@ -2132,7 +2157,7 @@ contains
     call finish(spar_session_get_gravity(self%handle, g), self%handle, stat, errmsg)
   end subroutine session_get_gravity
 
-  subroutine session_set_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
+  recursive subroutine session_set_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
     class(spar_session), intent(inout) :: self
     integer, intent(in) :: scheme
     real(c_double), intent(in) :: atol, rtol
@@ -2144,7 +2169,7 @@ contains
         stat, errmsg)
   end subroutine session_set_coupling
 
-  subroutine session_get_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
+  recursive subroutine session_get_coupling(self, scheme, atol, rtol, max_iterations, stat, errmsg)
     class(spar_session), intent(in) :: self
     integer, intent(inout), optional :: scheme
     real(c_double), intent(inout), optional :: atol, rtol
@@ -2159,7 +2184,7 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_coupling
 
-  subroutine session_get_time(self, t, step, iteration, stat, errmsg)
+  recursive subroutine session_get_time(self, t, step, iteration, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout), optional :: t
     integer(c_int64_t), intent(inout), optional :: step
@@ -2173,7 +2198,7 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_time
 
-  subroutine session_save(self, path, stat, errmsg)
+  recursive subroutine session_save(self, path, stat, errmsg)
     class(spar_session), intent(in) :: self
     character(*), intent(in) :: path
     integer, intent(out), optional :: stat
@@ -2182,7 +2207,7 @@ contains
     call finish(spar_session_save(self%handle, c_text(path)), self%handle, stat, errmsg)
   end subroutine session_save
 
-  subroutine session_load(self, path, stat, errmsg)
+  recursive subroutine session_load(self, path, stat, errmsg)
     class(spar_session), intent(inout) :: self
     character(*), intent(in) :: path
     integer, intent(out), optional :: stat
@@ -2191,7 +2216,7 @@ contains
     call finish(spar_session_load(self%handle, c_text(path)), self%handle, stat, errmsg)
   end subroutine session_load
 
-  subroutine session_set_integrator(self, rho_inf, substeps, stat, errmsg)
+  recursive subroutine session_set_integrator(self, rho_inf, substeps, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: rho_inf
     integer, intent(in) :: substeps
@@ -2201,7 +2226,7 @@ contains
     call finish(spar_session_set_integrator(self%handle, rho_inf, to_c(substeps)), self%handle, stat, errmsg)
   end subroutine session_set_integrator
 
-  subroutine session_get_integrator(self, rho_inf, substeps, stat, errmsg)
+  recursive subroutine session_get_integrator(self, rho_inf, substeps, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout), optional :: rho_inf
     integer, intent(inout), optional :: substeps
@@ -2214,7 +2239,7 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_integrator
 
-  subroutine session_set_newton(self, atol, rtol, max_iterations, stat, errmsg)
+  recursive subroutine session_set_newton(self, atol, rtol, max_iterations, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: atol, rtol
     integer, intent(in) :: max_iterations
@@ -2224,7 +2249,7 @@ contains
     call finish(spar_session_set_newton(self%handle, atol, rtol, to_c(max_iterations)), self%handle, stat, errmsg)
   end subroutine session_set_newton
 
-  subroutine session_get_newton(self, atol, rtol, max_iterations, stat, errmsg)
+  recursive subroutine session_get_newton(self, atol, rtol, max_iterations, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout), optional :: atol, rtol
     integer, intent(inout), optional :: max_iterations
@@ -2237,7 +2262,7 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_newton
 
-  subroutine session_set_predictor(self, order, stat, errmsg)
+  recursive subroutine session_set_predictor(self, order, stat, errmsg)
     class(spar_session), intent(inout) :: self
     integer, intent(in) :: order
     integer, intent(out), optional :: stat
@@ -2246,7 +2271,7 @@ contains
     call finish(spar_session_set_predictor(self%handle, to_c(order)), self%handle, stat, errmsg)
   end subroutine session_set_predictor
 
-  subroutine session_get_predictor(self, order, stat, errmsg)
+  recursive subroutine session_get_predictor(self, order, stat, errmsg)
     class(spar_session), intent(in) :: self
     integer, intent(inout) :: order
     integer, intent(out), optional :: stat
@@ -2258,7 +2283,7 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_predictor
 
-  subroutine session_set_relaxation(self, omega, stat, errmsg)
+  recursive subroutine session_set_relaxation(self, omega, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: omega
     integer, intent(out), optional :: stat
@@ -2267,7 +2292,7 @@ contains
     call finish(spar_session_set_relaxation(self%handle, omega), self%handle, stat, errmsg)
   end subroutine session_set_relaxation
 
-  subroutine session_get_relaxation(self, omega, stat, errmsg)
+  recursive subroutine session_get_relaxation(self, omega, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout) :: omega
     integer, intent(out), optional :: stat
@@ -2276,7 +2301,7 @@ contains
     call finish(spar_session_get_relaxation(self%handle, omega), self%handle, stat, errmsg)
   end subroutine session_get_relaxation
 
-  subroutine session_set_option(self, key, value, stat, errmsg)
+  recursive subroutine session_set_option(self, key, value, stat, errmsg)
     class(spar_session), intent(inout) :: self
     character(*), intent(in) :: key, value
     integer, intent(out), optional :: stat
@@ -2285,7 +2310,7 @@ contains
     call finish(spar_session_set_option(self%handle, c_text(key), c_text(value)), self%handle, stat, errmsg)
   end subroutine session_set_option
 
-  subroutine session_get_residual(self, residual, size, stat, errmsg)
+  recursive subroutine session_get_residual(self, residual, size, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout), optional :: residual, size
     integer, intent(out), optional :: stat
@@ -2294,7 +2319,7 @@ contains
     call finish(spar_session_get_residual(self%handle, residual, size), self%handle, stat, errmsg)
   end subroutine session_get_residual
 
-  subroutine session_get_report(self, report, stat, errmsg)
+  recursive subroutine session_get_report(self, report, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: report(:)
     integer, intent(out), optional :: stat
@@ -2303,7 +2328,7 @@ contains
     call finish(spar_session_get_report(self%handle, size(report, kind=c_int64_t), report), self%handle, stat, errmsg)
   end subroutine session_get_report
 
-  subroutine session_get_phase(self, phase, stat, errmsg)
+  recursive subroutine session_get_phase(self, phase, stat, errmsg)
     class(spar_session), intent(in) :: self
     integer, intent(inout) :: phase
     integer, intent(out), optional :: stat
@@ -2315,7 +2340,7 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_phase
 
-  subroutine session_step_begin_initial(self, dt, stat, errmsg)
+  recursive subroutine session_step_begin_initial(self, dt, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: dt
     integer, intent(out), optional :: stat
@@ -2324,7 +2349,7 @@ contains
     call finish(spar_step_begin_initial(self%handle, dt), self%handle, stat, errmsg)
   end subroutine session_step_begin_initial
 
-  subroutine session_set_tolerance(self, drift, rtol, stat, errmsg)
+  recursive subroutine session_set_tolerance(self, drift, rtol, stat, errmsg)
     class(spar_session), intent(inout) :: self
     real(c_double), intent(in) :: drift, rtol
     integer, intent(out), optional :: stat
@@ -2333,7 +2358,7 @@ contains
     call finish(spar_session_set_tolerance(self%handle, drift, rtol), self%handle, stat, errmsg)
   end subroutine session_set_tolerance
 
-  subroutine session_get_tolerance(self, drift, rtol, stat, errmsg)
+  recursive subroutine session_get_tolerance(self, drift, rtol, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout), optional :: drift, rtol
     integer, intent(out), optional :: stat
@@ -2342,7 +2367,7 @@ contains
     call finish(spar_session_get_tolerance(self%handle, drift, rtol), self%handle, stat, errmsg)
   end subroutine session_get_tolerance
 
-  subroutine session_get_step_control(self, ratio, next_dt, reject, rejected, stat, errmsg)
+  recursive subroutine session_get_step_control(self, ratio, next_dt, reject, rejected, stat, errmsg)
     class(spar_session), intent(in) :: self
     real(c_double), intent(inout), optional :: ratio, next_dt
     integer, intent(inout), optional :: reject
@@ -2356,7 +2381,7 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_step_control
 
-  subroutine session_set_reproducible(self, on, stat, errmsg)
+  recursive subroutine session_set_reproducible(self, on, stat, errmsg)
     class(spar_session), intent(inout) :: self
     logical, intent(in) :: on
     integer, intent(out), optional :: stat
@@ -2365,7 +2390,7 @@ contains
     call finish(spar_session_set_reproducible(self%handle, flag(on)), self%handle, stat, errmsg)
   end subroutine session_set_reproducible
 
-  subroutine session_get_reproducible(self, on, stat, errmsg)
+  recursive subroutine session_get_reproducible(self, on, stat, errmsg)
     class(spar_session), intent(in) :: self
     logical, intent(inout) :: on
     integer, intent(out), optional :: stat
@@ -2377,7 +2402,7 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_reproducible
 
-  subroutine session_set_threads(self, threads, stat, errmsg)
+  recursive subroutine session_set_threads(self, threads, stat, errmsg)
     class(spar_session), intent(inout) :: self
     integer, intent(in) :: threads
     integer, intent(out), optional :: stat
@@ -2386,7 +2411,7 @@ contains
     call finish(spar_session_set_threads(self%handle, to_c(threads)), self%handle, stat, errmsg)
   end subroutine session_set_threads
 
-  subroutine session_get_threads(self, threads, stat, errmsg)
+  recursive subroutine session_get_threads(self, threads, stat, errmsg)
     class(spar_session), intent(in) :: self
     integer, intent(inout) :: threads
     integer, intent(out), optional :: stat
@@ -2398,7 +2423,7 @@ contains
     call finish(status, self%handle, stat, errmsg)
   end subroutine session_get_threads
 
-  subroutine session_fail(self, status, message, stat, errmsg)
+  recursive subroutine session_fail(self, status, message, stat, errmsg)
     class(spar_session), intent(in) :: self
     integer, intent(in) :: status
     character(*), intent(in) :: message
@@ -2410,7 +2435,7 @@ contains
 
   ! Written by cmake/make-bindings.sh.
 
-  subroutine member_set_axis(self, eta, xyz, twist, stat, errmsg)
+  recursive subroutine member_set_axis(self, eta, xyz, twist, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:), xyz(:,:)
     real(c_double), contiguous, intent(in), optional :: twist(:)
@@ -2427,7 +2452,7 @@ contains
     call finish(spar_beam_set_axis(self%handle, size(eta, kind=c_int64_t), eta, xyz, twist), self%session, stat, errmsg)
   end subroutine member_set_axis
 
-  subroutine member_set_sections(self, eta, stiffness, mass, stat, errmsg)
+  recursive subroutine member_set_sections(self, eta, stiffness, mass, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:), stiffness(:,:,:)
     real(c_double), contiguous, intent(in), optional :: mass(:,:,:)
@@ -2447,7 +2472,7 @@ contains
         stat, errmsg)
   end subroutine member_set_sections
 
-  subroutine member_set_placement(self, x, q, stat, errmsg)
+  recursive subroutine member_set_placement(self, x, q, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in), optional :: x(3), q(4)
     integer, intent(out), optional :: stat
@@ -2456,7 +2481,7 @@ contains
     call finish(spar_member_set_placement(self%handle, x, q), self%session, stat, errmsg)
   end subroutine member_set_placement
 
-  subroutine member_set_root(self, kind, stat, errmsg)
+  recursive subroutine member_set_root(self, kind, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(in) :: kind
     integer, intent(out), optional :: stat
@@ -2465,7 +2490,7 @@ contains
     call finish(spar_member_set_root(self%handle, to_c(kind)), self%session, stat, errmsg)
   end subroutine member_set_root
 
-  subroutine member_set_external(self, on, stat, errmsg)
+  recursive subroutine member_set_external(self, on, stat, errmsg)
     class(spar_member), intent(inout) :: self
     logical, intent(in) :: on
     integer, intent(out), optional :: stat
@@ -2474,7 +2499,7 @@ contains
     call finish(spar_member_set_external(self%handle, flag(on)), self%session, stat, errmsg)
   end subroutine member_set_external
 
-  subroutine member_set_initial_velocity(self, x0, v0, omega, stat, errmsg)
+  recursive subroutine member_set_initial_velocity(self, x0, v0, omega, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in), optional :: x0(3), v0(3), omega(3)
     integer, intent(out), optional :: stat
@@ -2483,7 +2508,7 @@ contains
     call finish(spar_member_set_initial_velocity(self%handle, x0, v0, omega), self%session, stat, errmsg)
   end subroutine member_set_initial_velocity
 
-  subroutine member_commit(self, stat, errmsg)
+  recursive subroutine member_commit(self, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
@@ -2491,7 +2516,7 @@ contains
     call finish(spar_member_commit(self%handle), self%session, stat, errmsg)
   end subroutine member_commit
 
-  subroutine member_get_reference(self, x, q, stat, errmsg)
+  recursive subroutine member_get_reference(self, x, q, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:)
     integer, intent(out), optional :: stat
@@ -2514,7 +2539,7 @@ contains
     call finish(spar_member_get_reference(self%handle, x, q), self%session, stat, errmsg)
   end subroutine member_get_reference
 
-  subroutine member_get_motion(self, q, v, a, stat, errmsg)
+  recursive subroutine member_get_motion(self, q, v, a, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout), optional :: q(:,:), v(:,:), a(:,:)
     integer, intent(out), optional :: stat
@@ -2538,7 +2563,7 @@ contains
     call finish(spar_member_get_motion(self%handle, q, v, a), self%session, stat, errmsg)
   end subroutine member_get_motion
 
-  subroutine member_set_motion(self, q, v, a, stat, errmsg)
+  recursive subroutine member_set_motion(self, q, v, a, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in), optional :: q(:,:), v(:,:), a(:,:)
     integer, intent(out), optional :: stat
@@ -2562,7 +2587,7 @@ contains
     call finish(spar_member_set_motion(self%handle, q, v, a), self%session, stat, errmsg)
   end subroutine member_set_motion
 
-  subroutine member_drive(self, q, v, a, stat, errmsg)
+  recursive subroutine member_drive(self, q, v, a, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in) :: q(7)
     real(c_double), intent(in), optional :: v(6), a(6)
@@ -2572,7 +2597,7 @@ contains
     call finish(spar_member_drive(self%handle, q, v, a), self%session, stat, errmsg)
   end subroutine member_drive
 
-  subroutine member_get_loads(self, load, stat, errmsg)
+  recursive subroutine member_get_loads(self, load, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: load(:,:)
     integer, intent(out), optional :: stat
@@ -2594,7 +2619,7 @@ contains
     call finish(spar_member_get_loads(self%handle, load), self%session, stat, errmsg)
   end subroutine member_get_loads
 
-  subroutine member_get_elements(self, elements, nodes_per_element, stat, errmsg)
+  recursive subroutine member_get_elements(self, elements, nodes_per_element, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer, intent(inout), optional :: elements, nodes_per_element
     integer, intent(out), optional :: stat
@@ -2607,7 +2632,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_elements
 
-  subroutine member_set_nodes(self, x, q, stat, errmsg)
+  recursive subroutine member_set_nodes(self, x, q, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: x(:,:)
     real(c_double), contiguous, intent(in), optional :: q(:,:)
@@ -2624,7 +2649,7 @@ contains
     call finish(spar_beam_set_nodes(self%handle, size(x, 2, kind=c_int64_t), x, q), self%session, stat, errmsg)
   end subroutine member_set_nodes
 
-  subroutine member_set_quadrature(self, rule, points, stat, errmsg)
+  recursive subroutine member_set_quadrature(self, rule, points, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(in) :: rule, points
     integer, intent(out), optional :: stat
@@ -2633,7 +2658,7 @@ contains
     call finish(spar_beam_set_quadrature(self%handle, to_c(rule), to_c(points)), self%session, stat, errmsg)
   end subroutine member_set_quadrature
 
-  subroutine member_get_quadrature(self, rule, points, stat, errmsg)
+  recursive subroutine member_get_quadrature(self, rule, points, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer, intent(inout), optional :: rule, points
     integer, intent(out), optional :: stat
@@ -2646,7 +2671,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_quadrature
 
-  subroutine member_set_masses(self, eta, mass, stat, errmsg)
+  recursive subroutine member_set_masses(self, eta, mass, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:), mass(:,:,:)
     integer, intent(out), optional :: stat
@@ -2661,7 +2686,7 @@ contains
     call finish(spar_beam_set_masses(self%handle, size(eta, kind=c_int64_t), eta, mass), self%session, stat, errmsg)
   end subroutine member_set_masses
 
-  subroutine member_set_foundation(self, eta, stiffness, stat, errmsg)
+  recursive subroutine member_set_foundation(self, eta, stiffness, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:), stiffness(:,:)
     integer, intent(out), optional :: stat
@@ -2677,7 +2702,7 @@ contains
         errmsg)
   end subroutine member_set_foundation
 
-  subroutine member_set_pretension(self, eta, force, stat, errmsg)
+  recursive subroutine member_set_pretension(self, eta, force, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:), force(:,:)
     integer, intent(out), optional :: stat
@@ -2693,7 +2718,7 @@ contains
         errmsg)
   end subroutine member_set_pretension
 
-  subroutine member_set_damping(self, mu, stat, errmsg)
+  recursive subroutine member_set_damping(self, mu, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in) :: mu(6)
     integer, intent(out), optional :: stat
@@ -2702,7 +2727,7 @@ contains
     call finish(spar_beam_set_damping(self%handle, mu), self%session, stat, errmsg)
   end subroutine member_set_damping
 
-  subroutine member_get_damping(self, mu, stat, errmsg)
+  recursive subroutine member_get_damping(self, mu, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), intent(inout) :: mu(6)
     integer, intent(out), optional :: stat
@@ -2711,7 +2736,7 @@ contains
     call finish(spar_beam_get_damping(self%handle, mu), self%session, stat, errmsg)
   end subroutine member_get_damping
 
-  subroutine member_set_mass_damping(self, alpha, stat, errmsg)
+  recursive subroutine member_set_mass_damping(self, alpha, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in) :: alpha
     integer, intent(out), optional :: stat
@@ -2720,7 +2745,7 @@ contains
     call finish(spar_beam_set_mass_damping(self%handle, alpha), self%session, stat, errmsg)
   end subroutine member_set_mass_damping
 
-  subroutine member_get_mass_damping(self, alpha, stat, errmsg)
+  recursive subroutine member_get_mass_damping(self, alpha, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), intent(inout) :: alpha
     integer, intent(out), optional :: stat
@@ -2729,7 +2754,7 @@ contains
     call finish(spar_beam_get_mass_damping(self%handle, alpha), self%session, stat, errmsg)
   end subroutine member_get_mass_damping
 
-  subroutine member_set_plane(self, normal, stat, errmsg)
+  recursive subroutine member_set_plane(self, normal, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(in), optional :: normal(3)
     integer, intent(out), optional :: stat
@@ -2738,7 +2763,7 @@ contains
     call finish(spar_beam_set_plane(self%handle, normal), self%session, stat, errmsg)
   end subroutine member_set_plane
 
-  subroutine member_get_plane(self, normal, stat, errmsg)
+  recursive subroutine member_get_plane(self, normal, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), intent(inout) :: normal(3)
     integer, intent(out), optional :: stat
@@ -2747,7 +2772,7 @@ contains
     call finish(spar_beam_get_plane(self%handle, normal), self%session, stat, errmsg)
   end subroutine member_get_plane
 
-  subroutine member_get_fidelity(self, kind, modes, stat, errmsg)
+  recursive subroutine member_get_fidelity(self, kind, modes, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer, intent(inout), optional :: kind
     integer(c_int64_t), intent(inout), optional :: modes
@@ -2760,7 +2785,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_fidelity
 
-  subroutine member_set_effects(self, switch_on, switch_off, stat, errmsg)
+  recursive subroutine member_set_effects(self, switch_on, switch_off, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(in) :: switch_on, switch_off
     integer, intent(out), optional :: stat
@@ -2769,7 +2794,7 @@ contains
     call finish(spar_member_set_effects(self%handle, to_c(switch_on), to_c(switch_off)), self%session, stat, errmsg)
   end subroutine member_set_effects
 
-  subroutine member_get_effects(self, effects, stat, errmsg)
+  recursive subroutine member_get_effects(self, effects, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer, intent(inout) :: effects
     integer, intent(out), optional :: stat
@@ -2781,7 +2806,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_effects
 
-  subroutine member_get_placement(self, x, q, stat, errmsg)
+  recursive subroutine member_get_placement(self, x, q, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), intent(inout), optional :: x(3), q(4)
     integer, intent(out), optional :: stat
@@ -2790,7 +2815,7 @@ contains
     call finish(spar_member_get_placement(self%handle, x, q), self%session, stat, errmsg)
   end subroutine member_get_placement
 
-  subroutine member_get_root(self, kind, stat, errmsg)
+  recursive subroutine member_get_root(self, kind, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer, intent(inout) :: kind
     integer, intent(out), optional :: stat
@@ -2802,7 +2827,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_root
 
-  subroutine member_get_external(self, on, stat, errmsg)
+  recursive subroutine member_get_external(self, on, stat, errmsg)
     class(spar_member), intent(in) :: self
     logical, intent(inout) :: on
     integer, intent(out), optional :: stat
@@ -2814,7 +2839,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_external
 
-  subroutine member_set_line_load(self, kind, eta, load, stat, errmsg)
+  recursive subroutine member_set_line_load(self, kind, eta, load, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(in) :: kind
     real(c_double), contiguous, intent(in) :: eta(:), load(:,:)
@@ -2831,7 +2856,7 @@ contains
         stat, errmsg)
   end subroutine member_set_line_load
 
-  subroutine member_get_reaction(self, load, stat, errmsg)
+  recursive subroutine member_get_reaction(self, load, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), intent(inout) :: load(6)
     integer, intent(out), optional :: stat
@@ -2840,7 +2865,7 @@ contains
     call finish(spar_member_get_reaction(self%handle, load), self%session, stat, errmsg)
   end subroutine member_get_reaction
 
-  subroutine member_evaluate(self, eta, strain, force, x, q, stat, errmsg)
+  recursive subroutine member_evaluate(self, eta, strain, force, x, q, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:)
     real(c_double), contiguous, intent(inout), optional :: strain(:,:), force(:,:), x(:,:), q(:,:)
@@ -2862,7 +2887,7 @@ contains
         stat, errmsg)
   end subroutine member_evaluate
 
-  subroutine member_get_energy(self, energy, stat, errmsg)
+  recursive subroutine member_get_energy(self, energy, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: energy(:)
     integer, intent(out), optional :: stat
@@ -2871,7 +2896,7 @@ contains
     call finish(spar_member_get_energy(self%handle, size(energy, kind=c_int64_t), energy), self%session, stat, errmsg)
   end subroutine member_get_energy
 
-  subroutine member_get_work(self, work, stat, errmsg)
+  recursive subroutine member_get_work(self, work, stat, errmsg)
     class(spar_member), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: work(:)
     integer, intent(out), optional :: stat
@@ -2880,7 +2905,7 @@ contains
     call finish(spar_member_get_work(self%handle, size(work, kind=c_int64_t), work), self%session, stat, errmsg)
   end subroutine member_get_work
 
-  subroutine member_solve_static(self, load_steps, stat, errmsg)
+  recursive subroutine member_solve_static(self, load_steps, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(in) :: load_steps
     integer, intent(out), optional :: stat
@@ -2889,7 +2914,7 @@ contains
     call finish(spar_member_solve_static(self%handle, to_c(load_steps)), self%session, stat, errmsg)
   end subroutine member_solve_static
 
-  subroutine member_get_iterations(self, iterations, left, stat, errmsg)
+  recursive subroutine member_get_iterations(self, iterations, left, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer(c_int64_t), intent(inout), optional :: iterations
     real(c_double), intent(inout), optional :: left
@@ -2899,7 +2924,7 @@ contains
     call finish(spar_member_get_iterations(self%handle, iterations, left), self%session, stat, errmsg)
   end subroutine member_get_iterations
 
-  subroutine member_set_added_mass(self, eta, mass, stat, errmsg)
+  recursive subroutine member_set_added_mass(self, eta, mass, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:), mass(:,:,:)
     integer, intent(out), optional :: stat
@@ -2915,7 +2940,7 @@ contains
         errmsg)
   end subroutine member_set_added_mass
 
-  subroutine member_set_added_mass_response(self, response, stat, errmsg)
+  recursive subroutine member_set_added_mass_response(self, response, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(in) :: response
     integer, intent(out), optional :: stat
@@ -2924,7 +2949,7 @@ contains
     call finish(spar_member_set_added_mass_response(self%handle, to_c(response)), self%session, stat, errmsg)
   end subroutine member_set_added_mass_response
 
-  subroutine member_get_added_mass_response(self, response, stat, errmsg)
+  recursive subroutine member_get_added_mass_response(self, response, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer, intent(inout) :: response
     integer, intent(out), optional :: stat
@@ -2936,7 +2961,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_added_mass_response
 
-  subroutine member_set_owner(self, rank, stat, errmsg)
+  recursive subroutine member_set_owner(self, rank, stat, errmsg)
     class(spar_member), intent(inout) :: self
     integer, intent(in) :: rank
     integer, intent(out), optional :: stat
@@ -2945,7 +2970,7 @@ contains
     call finish(spar_member_set_owner(self%handle, to_c(rank)), self%session, stat, errmsg)
   end subroutine member_set_owner
 
-  subroutine member_get_owner(self, rank, stat, errmsg)
+  recursive subroutine member_get_owner(self, rank, stat, errmsg)
     class(spar_member), intent(in) :: self
     integer, intent(inout) :: rank
     integer, intent(out), optional :: stat
@@ -2957,7 +2982,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_owner
 
-  subroutine member_estimate_error(self, step, nodes, stat, errmsg)
+  recursive subroutine member_estimate_error(self, step, nodes, stat, errmsg)
     class(spar_member), intent(inout) :: self
     real(c_double), intent(inout), optional :: step, nodes
     integer, intent(out), optional :: stat
@@ -2966,7 +2991,7 @@ contains
     call finish(spar_member_estimate_error(self%handle, step, nodes), self%session, stat, errmsg)
   end subroutine member_estimate_error
 
-  subroutine member_write_vtk(self, path, stat, errmsg)
+  recursive subroutine member_write_vtk(self, path, stat, errmsg)
     class(spar_member), intent(in) :: self
     character(*), intent(in) :: path
     integer, intent(out), optional :: stat
@@ -2977,7 +3002,7 @@ contains
 
   ! Written by cmake/make-bindings.sh.
 
-  subroutine joint_set_frame(self, x, q, stat, errmsg)
+  recursive subroutine joint_set_frame(self, x, q, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     real(c_double), intent(in) :: x(3)
     real(c_double), intent(in), optional :: q(4)
@@ -2987,7 +3012,7 @@ contains
     call finish(spar_joint_set_frame(self%handle, x, q), self%session, stat, errmsg)
   end subroutine joint_set_frame
 
-  subroutine joint_set_spring(self, stiffness, damping, preload, stat, errmsg)
+  recursive subroutine joint_set_spring(self, stiffness, damping, preload, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     real(c_double), intent(in), optional :: stiffness(6,6), damping(6,6), preload(6)
     integer, intent(out), optional :: stat
@@ -2996,7 +3021,7 @@ contains
     call finish(spar_joint_set_spring(self%handle, stiffness, damping, preload), self%session, stat, errmsg)
   end subroutine joint_set_spring
 
-  subroutine joint_set_driven(self, mask, stat, errmsg)
+  recursive subroutine joint_set_driven(self, mask, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     integer, intent(in) :: mask
     integer, intent(out), optional :: stat
@@ -3005,7 +3030,7 @@ contains
     call finish(spar_joint_set_driven(self%handle, to_c(mask)), self%session, stat, errmsg)
   end subroutine joint_set_driven
 
-  subroutine joint_drive(self, motion, rate, acceleration, stat, errmsg)
+  recursive subroutine joint_drive(self, motion, rate, acceleration, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     real(c_double), intent(in) :: motion(6)
     real(c_double), intent(in), optional :: rate(6), acceleration(6)
@@ -3015,7 +3040,7 @@ contains
     call finish(spar_joint_drive(self%handle, motion, rate, acceleration), self%session, stat, errmsg)
   end subroutine joint_drive
 
-  subroutine joint_set_load(self, load, stat, errmsg)
+  recursive subroutine joint_set_load(self, load, stat, errmsg)
     class(spar_joint), intent(inout) :: self
     real(c_double), intent(in) :: load(6)
     integer, intent(out), optional :: stat
@@ -3024,7 +3049,7 @@ contains
     call finish(spar_joint_set_load(self%handle, load), self%session, stat, errmsg)
   end subroutine joint_set_load
 
-  subroutine joint_get_motion(self, motion, rate, acceleration, stat, errmsg)
+  recursive subroutine joint_get_motion(self, motion, rate, acceleration, stat, errmsg)
     class(spar_joint), intent(in) :: self
     real(c_double), intent(inout), optional :: motion(6), rate(6), acceleration(6)
     integer, intent(out), optional :: stat
@@ -3033,7 +3058,7 @@ contains
     call finish(spar_joint_get_motion(self%handle, motion, rate, acceleration), self%session, stat, errmsg)
   end subroutine joint_get_motion
 
-  subroutine joint_get_load(self, load, stat, errmsg)
+  recursive subroutine joint_get_load(self, load, stat, errmsg)
     class(spar_joint), intent(in) :: self
     real(c_double), intent(inout) :: load(6)
     integer, intent(out), optional :: stat
@@ -3042,7 +3067,7 @@ contains
     call finish(spar_joint_get_load(self%handle, load), self%session, stat, errmsg)
   end subroutine joint_get_load
 
-  subroutine joint_get_energy(self, energy, stat, errmsg)
+  recursive subroutine joint_get_energy(self, energy, stat, errmsg)
     class(spar_joint), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: energy(:)
     integer, intent(out), optional :: stat
@@ -3053,7 +3078,7 @@ contains
 
   ! Written by cmake/make-bindings.sh.
 
-  subroutine fluid_pull_motion(self, theta, x, v, stat, errmsg)
+  recursive subroutine fluid_pull_motion(self, theta, x, v, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     real(c_double), contiguous, intent(inout), optional :: x(:,:), v(:,:)
@@ -3077,7 +3102,7 @@ contains
     call finish(spar_fluid_pull_motion(self%handle, theta, x, v), self%session, stat, errmsg)
   end subroutine fluid_pull_motion
 
-  subroutine fluid_fail(self, status, message, stat, errmsg)
+  recursive subroutine fluid_fail(self, status, message, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: status
     character(*), intent(in) :: message
@@ -3087,7 +3112,7 @@ contains
     call finish(spar_fluid_fail(self%handle, to_c(status), c_text(message)), self%session, stat, errmsg)
   end subroutine fluid_fail
 
-  subroutine fluid_set_motion_nodes(self, x, stat, errmsg)
+  recursive subroutine fluid_set_motion_nodes(self, x, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: x(:,:)
     integer, intent(out), optional :: stat
@@ -3102,7 +3127,7 @@ contains
     call finish(spar_fluid_set_motion_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
   end subroutine fluid_set_motion_nodes
 
-  subroutine fluid_set_force_nodes(self, x, stat, errmsg)
+  recursive subroutine fluid_set_force_nodes(self, x, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: x(:,:)
     integer, intent(out), optional :: stat
@@ -3117,7 +3142,7 @@ contains
     call finish(spar_fluid_set_force_nodes(self%handle, size(x, 2, kind=c_int64_t), x), self%session, stat, errmsg)
   end subroutine fluid_set_force_nodes
 
-  subroutine fluid_set_stations(self, eta, offset, stat, errmsg)
+  recursive subroutine fluid_set_stations(self, eta, offset, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:)
     real(c_double), contiguous, intent(in), optional :: offset(:,:)
@@ -3135,7 +3160,7 @@ contains
         errmsg)
   end subroutine fluid_set_stations
 
-  subroutine fluid_map(self, stat, errmsg)
+  recursive subroutine fluid_map(self, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
@@ -3143,7 +3168,7 @@ contains
     call finish(spar_fluid_map(self%handle), self%session, stat, errmsg)
   end subroutine fluid_map
 
-  subroutine fluid_pull_poses(self, which, theta, x, q, v, omega, accel, alpha, stat, errmsg)
+  recursive subroutine fluid_pull_poses(self, which, theta, x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     real(c_double), intent(in) :: theta
@@ -3173,7 +3198,7 @@ contains
         stat, errmsg)
   end subroutine fluid_pull_poses
 
-  subroutine fluid_set_motion_stations(self, eta, offset, stat, errmsg)
+  recursive subroutine fluid_set_motion_stations(self, eta, offset, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: eta(:)
     real(c_double), contiguous, intent(in), optional :: offset(:,:)
@@ -3191,7 +3216,7 @@ contains
         stat, errmsg)
   end subroutine fluid_set_motion_stations
 
-  subroutine fluid_get_motion_weights(self, w, stat, errmsg)
+  recursive subroutine fluid_get_motion_weights(self, w, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: w(:)
     integer, intent(out), optional :: stat
@@ -3213,7 +3238,7 @@ contains
     call finish(spar_fluid_get_motion_weights(self%handle, w), self%session, stat, errmsg)
   end subroutine fluid_get_motion_weights
 
-  subroutine fluid_set_layout(self, which, node, component, stat, errmsg)
+  recursive subroutine fluid_set_layout(self, which, node, component, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     integer, intent(in) :: which
     integer(c_int64_t), intent(in) :: node, component
@@ -3223,7 +3248,7 @@ contains
     call finish(spar_fluid_set_layout(self%handle, to_c(which), node, component), self%session, stat, errmsg)
   end subroutine fluid_set_layout
 
-  subroutine fluid_get_layout(self, which, node, component, stat, errmsg)
+  recursive subroutine fluid_get_layout(self, which, node, component, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     integer(c_int64_t), intent(inout), optional :: node, component
@@ -3233,7 +3258,7 @@ contains
     call finish(spar_fluid_get_layout(self%handle, to_c(which), node, component), self%session, stat, errmsg)
   end subroutine fluid_get_layout
 
-  subroutine fluid_set_projection(self, method, max_distance, stat, errmsg)
+  recursive subroutine fluid_set_projection(self, method, max_distance, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     integer, intent(in) :: method
     real(c_double), intent(in) :: max_distance
@@ -3243,7 +3268,7 @@ contains
     call finish(spar_fluid_set_projection(self%handle, to_c(method), max_distance), self%session, stat, errmsg)
   end subroutine fluid_set_projection
 
-  subroutine fluid_get_projection(self, method, max_distance, stat, errmsg)
+  recursive subroutine fluid_get_projection(self, method, max_distance, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(inout), optional :: method
     real(c_double), intent(inout), optional :: max_distance
@@ -3256,7 +3281,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_projection
 
-  subroutine fluid_set_interpolation(self, kind, stat, errmsg)
+  recursive subroutine fluid_set_interpolation(self, kind, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     integer, intent(in) :: kind
     integer, intent(out), optional :: stat
@@ -3265,7 +3290,7 @@ contains
     call finish(spar_fluid_set_interpolation(self%handle, to_c(kind)), self%session, stat, errmsg)
   end subroutine fluid_set_interpolation
 
-  subroutine fluid_get_interpolation(self, kind, stat, errmsg)
+  recursive subroutine fluid_get_interpolation(self, kind, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(inout) :: kind
     integer, intent(out), optional :: stat
@@ -3277,7 +3302,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_interpolation
 
-  subroutine fluid_set_option(self, key, value, stat, errmsg)
+  recursive subroutine fluid_set_option(self, key, value, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     character(*), intent(in) :: key, value
     integer, intent(out), optional :: stat
@@ -3286,7 +3311,7 @@ contains
     call finish(spar_fluid_set_option(self%handle, c_text(key), c_text(value)), self%session, stat, errmsg)
   end subroutine fluid_set_option
 
-  subroutine fluid_get_kind(self, which, kind, stat, errmsg)
+  recursive subroutine fluid_get_kind(self, which, kind, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     integer, intent(inout) :: kind
@@ -3299,7 +3324,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine fluid_get_kind
 
-  subroutine fluid_get_flag_count(self, which, flag, n, stat, errmsg)
+  recursive subroutine fluid_get_flag_count(self, which, flag, n, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which, flag
     integer(c_int64_t), intent(inout) :: n
@@ -3309,7 +3334,7 @@ contains
     call finish(spar_fluid_get_flag_count(self%handle, to_c(which), to_c(flag), n), self%session, stat, errmsg)
   end subroutine fluid_get_flag_count
 
-  subroutine fluid_get_nearest(self, which, x_map, q_map, con, stat, errmsg)
+  recursive subroutine fluid_get_nearest(self, which, x_map, q_map, con, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     real(c_double), contiguous, intent(inout), optional :: x_map(:,:), q_map(:,:), con(:,:)
@@ -3334,7 +3359,7 @@ contains
     call finish(spar_fluid_get_nearest(self%handle, to_c(which), x_map, q_map, con), self%session, stat, errmsg)
   end subroutine fluid_get_nearest
 
-  subroutine fluid_get_travel(self, largest, node, stat, errmsg)
+  recursive subroutine fluid_get_travel(self, largest, node, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(inout), optional :: largest
     integer(c_int64_t), intent(inout), optional :: node
@@ -3344,7 +3369,7 @@ contains
     call finish(spar_fluid_get_travel(self%handle, largest, node), self%session, stat, errmsg)
   end subroutine fluid_get_travel
 
-  subroutine fluid_get_positions(self, which, x, q, v, nearest, stat, errmsg)
+  recursive subroutine fluid_get_positions(self, which, x, q, v, nearest, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     real(c_double), contiguous, intent(inout), optional :: x(:,:), q(:,:), v(:,:), nearest(:,:)
@@ -3370,7 +3395,7 @@ contains
     call finish(spar_fluid_get_positions(self%handle, to_c(which), x, q, v, nearest), self%session, stat, errmsg)
   end subroutine fluid_get_positions
 
-  subroutine fluid_pull_forces(self, theta, force, stat, errmsg)
+  recursive subroutine fluid_pull_forces(self, theta, force, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     real(c_double), contiguous, intent(inout) :: force(:,:)
@@ -3393,7 +3418,7 @@ contains
     call finish(spar_fluid_pull_forces(self%handle, theta, force), self%session, stat, errmsg)
   end subroutine fluid_pull_forces
 
-  subroutine fluid_get_forces(self, force, stat, errmsg)
+  recursive subroutine fluid_get_forces(self, force, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: force(:,:)
     integer, intent(out), optional :: stat
@@ -3415,7 +3440,7 @@ contains
     call finish(spar_fluid_get_forces(self%handle, force), self%session, stat, errmsg)
   end subroutine fluid_get_forces
 
-  subroutine fluid_set_states(self, width, stat, errmsg)
+  recursive subroutine fluid_set_states(self, width, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     integer(c_int64_t), intent(in) :: width
     integer, intent(out), optional :: stat
@@ -3424,7 +3449,7 @@ contains
     call finish(spar_fluid_set_states(self%handle, width), self%session, stat, errmsg)
   end subroutine fluid_set_states
 
-  subroutine fluid_get_states(self, width, dt, stat, errmsg)
+  recursive subroutine fluid_get_states(self, width, dt, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer(c_int64_t), intent(inout), optional :: width
     real(c_double), intent(inout), optional :: dt
@@ -3434,7 +3459,7 @@ contains
     call finish(spar_fluid_get_states(self%handle, width, dt), self%session, stat, errmsg)
   end subroutine fluid_get_states
 
-  subroutine fluid_pull_states(self, width, states, stat, errmsg)
+  recursive subroutine fluid_pull_states(self, width, states, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer(c_int64_t), intent(in) :: width
     real(c_double), contiguous, intent(inout) :: states(:,:)
@@ -3457,7 +3482,7 @@ contains
     call finish(spar_fluid_pull_states(self%handle, width, states), self%session, stat, errmsg)
   end subroutine fluid_pull_states
 
-  subroutine fluid_push_states(self, width, states, stat, errmsg)
+  recursive subroutine fluid_push_states(self, width, states, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     integer(c_int64_t), intent(in) :: width
     real(c_double), contiguous, intent(in) :: states(:,:)
@@ -3480,7 +3505,7 @@ contains
     call finish(spar_fluid_push_states(self%handle, width, states), self%session, stat, errmsg)
   end subroutine fluid_push_states
 
-  subroutine fluid_pull_motion_f32(self, theta, x, v, stat, errmsg)
+  recursive subroutine fluid_pull_motion_f32(self, theta, x, v, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     real(c_float), contiguous, intent(inout), optional :: x(:,:), v(:,:)
@@ -3504,7 +3529,7 @@ contains
     call finish(spar_fluid_pull_motion_f32(self%handle, theta, x, v), self%session, stat, errmsg)
   end subroutine fluid_pull_motion_f32
 
-  subroutine fluid_pull_poses_f32(self, which, theta, x, q, v, omega, accel, alpha, stat, errmsg)
+  recursive subroutine fluid_pull_poses_f32(self, which, theta, x, q, v, omega, accel, alpha, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     integer, intent(in) :: which
     real(c_double), intent(in) :: theta
@@ -3534,7 +3559,7 @@ contains
         self%session, stat, errmsg)
   end subroutine fluid_pull_poses_f32
 
-  subroutine fluid_pull_forces_f32(self, theta, force, stat, errmsg)
+  recursive subroutine fluid_pull_forces_f32(self, theta, force, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), intent(in) :: theta
     real(c_float), contiguous, intent(inout) :: force(:,:)
@@ -3557,7 +3582,7 @@ contains
     call finish(spar_fluid_pull_forces_f32(self%handle, theta, force), self%session, stat, errmsg)
   end subroutine fluid_pull_forces_f32
 
-  subroutine fluid_get_audit(self, audit, stat, errmsg)
+  recursive subroutine fluid_get_audit(self, audit, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     real(c_double), contiguous, intent(inout) :: audit(:)
     integer, intent(out), optional :: stat
@@ -3566,7 +3591,7 @@ contains
     call finish(spar_fluid_get_audit(self%handle, size(audit, kind=c_int64_t), audit), self%session, stat, errmsg)
   end subroutine fluid_get_audit
 
-  subroutine fluid_sum_loads(self, point, force, moment, stat, errmsg)
+  recursive subroutine fluid_sum_loads(self, point, force, moment, stat, errmsg)
     class(spar_fluid), intent(inout) :: self
     real(c_double), intent(in), optional :: point(3)
     real(c_double), intent(inout), optional :: force(3), moment(3)
@@ -3576,7 +3601,7 @@ contains
     call finish(spar_fluid_sum_loads(self%handle, point, force, moment), self%session, stat, errmsg)
   end subroutine fluid_sum_loads
 
-  subroutine fluid_write_vtk(self, path, stat, errmsg)
+  recursive subroutine fluid_write_vtk(self, path, stat, errmsg)
     class(spar_fluid), intent(in) :: self
     character(*), intent(in) :: path
     integer, intent(out), optional :: stat
@@ -3587,7 +3612,7 @@ contains
 
   ! Written by cmake/make-bindings.sh.
 
-  subroutine trial_get_steps(self, dt, steps, stat, errmsg)
+  recursive subroutine trial_get_steps(self, dt, steps, stat, errmsg)
     class(spar_trial), intent(in) :: self
     real(c_double), intent(inout), optional :: dt
     integer(c_int64_t), intent(inout), optional :: steps
@@ -3597,7 +3622,7 @@ contains
     call finish(spar_trial_get_steps(self%handle, dt, steps), self%session, stat, errmsg)
   end subroutine trial_get_steps
 
-  subroutine trial_get_errors(self, motion, reaction, load, stat, errmsg)
+  recursive subroutine trial_get_errors(self, motion, reaction, load, stat, errmsg)
     class(spar_trial), intent(in) :: self
     real(c_double), intent(inout), optional :: motion, reaction, load
     integer, intent(out), optional :: stat
@@ -3606,7 +3631,7 @@ contains
     call finish(spar_trial_get_errors(self%handle, motion, reaction, load), self%session, stat, errmsg)
   end subroutine trial_get_errors
 
-  subroutine trial_get_cost(self, seconds, evaluations, stat, errmsg)
+  recursive subroutine trial_get_cost(self, seconds, evaluations, stat, errmsg)
     class(spar_trial), intent(in) :: self
     real(c_double), intent(inout), optional :: seconds
     integer(c_int64_t), intent(inout), optional :: evaluations
@@ -3616,7 +3641,7 @@ contains
     call finish(spar_trial_get_cost(self%handle, seconds, evaluations), self%session, stat, errmsg)
   end subroutine trial_get_cost
 
-  subroutine trial_report_effects(self, stat, errmsg)
+  recursive subroutine trial_report_effects(self, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
@@ -3624,7 +3649,7 @@ contains
     call finish(spar_trial_report_effects(self%handle), self%session, stat, errmsg)
   end subroutine trial_report_effects
 
-  subroutine trial_get_effect(self, row, in_force, fails, size, motion, reaction, share, stat, errmsg)
+  recursive subroutine trial_get_effect(self, row, in_force, fails, size, motion, reaction, share, stat, errmsg)
     class(spar_trial), intent(in) :: self
     integer, intent(in) :: row
     integer, intent(inout), optional :: in_force, fails
@@ -3639,7 +3664,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine trial_get_effect
 
-  subroutine trial_set_goals(self, goals, stat, errmsg)
+  recursive subroutine trial_set_goals(self, goals, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     integer, intent(in) :: goals
     integer, intent(out), optional :: stat
@@ -3648,7 +3673,7 @@ contains
     call finish(spar_trial_set_goals(self%handle, to_c(goals)), self%session, stat, errmsg)
   end subroutine trial_set_goals
 
-  subroutine trial_get_goals(self, goals, stat, errmsg)
+  recursive subroutine trial_get_goals(self, goals, stat, errmsg)
     class(spar_trial), intent(in) :: self
     integer, intent(inout) :: goals
     integer, intent(out), optional :: stat
@@ -3660,7 +3685,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine trial_get_goals
 
-  subroutine trial_push_numbers(self, numbers, stat, errmsg)
+  recursive subroutine trial_push_numbers(self, numbers, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: numbers(:)
     integer, intent(out), optional :: stat
@@ -3670,7 +3695,7 @@ contains
         errmsg)
   end subroutine trial_push_numbers
 
-  subroutine trial_set_option(self, key, value, stat, errmsg)
+  recursive subroutine trial_set_option(self, key, value, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     character(*), intent(in) :: key, value
     integer, intent(out), optional :: stat
@@ -3679,7 +3704,7 @@ contains
     call finish(spar_trial_set_option(self%handle, c_text(key), c_text(value)), self%session, stat, errmsg)
   end subroutine trial_set_option
 
-  subroutine trial_advise(self, tolerance, length, stat, errmsg)
+  recursive subroutine trial_advise(self, tolerance, length, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     real(c_double), intent(in) :: tolerance, length
     integer, intent(out), optional :: stat
@@ -3688,7 +3713,8 @@ contains
     call finish(spar_trial_advise(self%handle, tolerance, length), self%session, stat, errmsg)
   end subroutine trial_advise
 
-  subroutine trial_get_settings(self, dt, substeps, scheme, coupling_rtol, predictor, newton_rtol, stat, errmsg)
+  recursive subroutine trial_get_settings(self, dt, substeps, scheme, coupling_rtol, predictor, newton_rtol, stat, &
+      errmsg)
     class(spar_trial), intent(in) :: self
     real(c_double), intent(inout), optional :: dt
     integer, intent(inout), optional :: substeps, scheme
@@ -3706,7 +3732,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine trial_get_settings
 
-  subroutine trial_get_outcome(self, error, cost, present_fails, present_error, stat, errmsg)
+  recursive subroutine trial_get_outcome(self, error, cost, present_fails, present_error, stat, errmsg)
     class(spar_trial), intent(in) :: self
     real(c_double), intent(inout), optional :: error, cost
     integer, intent(inout), optional :: present_fails
@@ -3720,7 +3746,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine trial_get_outcome
 
-  subroutine trial_get_search(self, runs, work, stat, errmsg)
+  recursive subroutine trial_get_search(self, runs, work, stat, errmsg)
     class(spar_trial), intent(in) :: self
     integer(c_int64_t), intent(inout), optional :: runs
     real(c_double), intent(inout), optional :: work
@@ -3730,7 +3756,7 @@ contains
     call finish(spar_trial_get_search(self%handle, runs, work), self%session, stat, errmsg)
   end subroutine trial_get_search
 
-  subroutine trial_get_motion(self, modes, amplitude, memory, stat, errmsg)
+  recursive subroutine trial_get_motion(self, modes, amplitude, memory, stat, errmsg)
     class(spar_trial), intent(in) :: self
     integer(c_int64_t), intent(inout), optional :: modes
     real(c_double), intent(inout), optional :: amplitude
@@ -3741,7 +3767,7 @@ contains
     call finish(spar_trial_get_motion(self%handle, modes, amplitude, memory), self%session, stat, errmsg)
   end subroutine trial_get_motion
 
-  subroutine trial_solve_floquet(self, eigenvalue, stat, errmsg)
+  recursive subroutine trial_solve_floquet(self, eigenvalue, stat, errmsg)
     class(spar_trial), intent(inout) :: self
     real(c_double), contiguous, intent(inout) :: eigenvalue(:,:)
     integer, intent(out), optional :: stat
@@ -3760,36 +3786,52 @@ contains
 
   ! ---- calls that need no object ----
 
-  function status_text(status) result(text)
+  recursive function status_text(status) result(text)
     integer, intent(in) :: status
-    character(:), allocatable :: text
+    character(length_of_status_text(status)) :: text
 
-    call copy_text(c_status_text(to_c(status)), text)
+    call fill_text(c_status_text(to_c(status)), text)
   end function status_text
 
-  function version() result(text)
-    character(:), allocatable :: text
+  pure recursive integer(c_int64_t) function length_of_status_text(status) result(n)
+    integer, intent(in) :: status
 
-    call copy_text(c_version(), text)
+    n = text_length(c_status_text(to_c(status)))
+  end function length_of_status_text
+
+  recursive function version() result(text)
+    character(length_of_version()) :: text
+
+    call fill_text(c_version(), text)
   end function version
 
+  pure recursive integer(c_int64_t) function length_of_version() result(n)
+    n = text_length(c_version())
+  end function length_of_version
+
   ! Whether this build of the library has a feature: 'mpi', ...
-  logical function has_feature(feature) result(there)
+  recursive logical function has_feature(feature) result(there)
     character(*), intent(in) :: feature
 
     there = c_has(c_text(feature)) /= 0
   end function has_feature
 
   ! Of a row of trial%report_effects, from 0 as SPAR_ROW_*; '' for what is no row.
-  function effect_name(row) result(name)
+  recursive function effect_name(row) result(name)
     integer, intent(in) :: row
-    character(:), allocatable :: name
+    character(length_of_effect_name(row)) :: name
 
-    call copy_text(c_effect_name(to_c(row)), name)
+    call fill_text(c_effect_name(to_c(row)), name)
   end function effect_name
 
+  pure recursive integer(c_int64_t) function length_of_effect_name(row) result(n)
+    integer, intent(in) :: row
+
+    n = text_length(c_effect_name(to_c(row)))
+  end function length_of_effect_name
+
   ! Adds a file to an index of files in time; part counts from 0.
-  subroutine series_add(path, time, part, file, stat, errmsg)
+  recursive subroutine series_add(path, time, part, file, stat, errmsg)
     character(*), intent(in) :: path, file
     real(c_double), intent(in) :: time
     integer, intent(in) :: part
@@ -3801,7 +3843,7 @@ contains
 
   ! ---- sections; properties are found under SPAR_SECTION_* in arrays declared from 0 ----
 
-  subroutine section_from_shape(shape, dimension, young, poisson, density, property, stat, errmsg)
+  recursive subroutine section_from_shape(shape, dimension, young, poisson, density, property, stat, errmsg)
     integer, intent(in) :: shape
     real(c_double), contiguous, intent(in) :: dimension(:)
     real(c_double), intent(in) :: young, poisson, density
@@ -3813,7 +3855,7 @@ contains
         size(property, kind=c_int64_t), property), c_null_ptr, stat, errmsg)
   end subroutine section_from_shape
 
-  subroutine section_build(property, stiffness, mass, stat, errmsg)
+  recursive subroutine section_build(property, stiffness, mass, stat, errmsg)
     real(c_double), contiguous, intent(in) :: property(0:)
     real(c_double), intent(inout), optional :: stiffness(6,6), mass(6,6)
     integer, intent(out), optional :: stat
@@ -3822,7 +3864,7 @@ contains
     call finish(c_section_build(size(property, kind=c_int64_t), property, stiffness, mass), c_null_ptr, stat, errmsg)
   end subroutine section_build
 
-  subroutine section_describe(stiffness, mass, property, findings, stat, errmsg)
+  recursive subroutine section_describe(stiffness, mass, property, findings, stat, errmsg)
     real(c_double), intent(in) :: stiffness(6,6)
     real(c_double), intent(in), optional :: mass(6,6)
     real(c_double), contiguous, intent(inout), optional :: property(0:)
@@ -3839,7 +3881,7 @@ contains
     call finish(status, c_null_ptr, stat, errmsg)
   end subroutine section_describe
 
-  subroutine section_report(stiffness, mass, text, stat, errmsg)
+  recursive subroutine section_report(stiffness, mass, text, stat, errmsg)
     real(c_double), intent(in) :: stiffness(6,6)
     real(c_double), intent(in), optional :: mass(6,6)
     character(:), allocatable, intent(inout) :: text
@@ -3861,7 +3903,7 @@ contains
     call finish(status, c_null_ptr, stat, errmsg)
   end subroutine section_report
 
-  subroutine section_transform(matrix, y, z, angle, out, stat, errmsg)
+  recursive subroutine section_transform(matrix, y, z, angle, out, stat, errmsg)
     real(c_double), intent(in) :: matrix(6,6), y, z, angle
     real(c_double), intent(inout) :: out(6,6)
     integer, intent(out), optional :: stat
@@ -3872,8 +3914,9 @@ contains
 
   ! ---- shapes ----
 
-  ! Triples of a fluid's n nodes: (3,n), or as large as the set's layout needs.
-  subroutine need_triples(fluid, which, fault, array, has, n)
+  ! Triples of a fluid's n nodes: (3,n); of layout (1,component) (component,3), of layout (node,1) (node,n); of others as large as
+  ! the layout needs.
+  recursive subroutine need_triples(fluid, which, fault, array, has, n)
     class(spar_fluid), intent(in) :: fluid
     integer, intent(in) :: which
     character(:), allocatable, intent(inout) :: fault
@@ -3887,8 +3930,11 @@ contains
     component = 1
     call fluid%get_layout(which, node, component, stat)
     if (stat /= SPAR_OK) return
-    if (node == 3 .and. component == 1) then
-      call need(fault, array, has, [3_c_int64_t, n])
+    if (node == 1) then
+      call need(fault, array, has, [merge(component, 0_c_int64_t, n > 0), 3_c_int64_t])
+      return
+    else if (component == 1) then
+      call need(fault, array, has, [node, n])
       return
     end if
     numbers = 0

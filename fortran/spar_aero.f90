@@ -96,7 +96,7 @@ contains
   ! ---- polars ----
 
   ! cm left out: 0.
-  subroutine polar_create(self, alpha_rad, cl, cd, cm, stat, errmsg)
+  recursive subroutine polar_create(self, alpha_rad, cl, cd, cm, stat, errmsg)
     class(spar_polar), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: alpha_rad(:), cl(:), cd(:)
     real(c_double), contiguous, intent(in), optional :: cm(:)
@@ -121,38 +121,38 @@ contains
   end subroutine polar_create
 
   ! Sections that use the polar keep its table.
-  subroutine polar_destroy(self)
+  recursive subroutine polar_destroy(self)
     class(spar_polar), intent(inout) :: self
 
     call spar_polar_destroy(self%handle)
   end subroutine polar_destroy
 
-  impure elemental subroutine polar_final(self)
+  impure elemental recursive subroutine polar_final(self)
     type(spar_polar), intent(inout) :: self
 
     call self%destroy()
   end subroutine polar_final
 
-  impure elemental subroutine polar_assign(left, right)
+  impure elemental recursive subroutine polar_assign(left, right)
     class(spar_polar), intent(inout) :: left
     type(spar_polar), intent(in) :: right
 
     call forbid_copy('a polar', left%handle, right%handle)
   end subroutine polar_assign
 
-  logical function polar_exists(self) result(there)
+  recursive logical function polar_exists(self) result(there)
     class(spar_polar), intent(in) :: self
 
     there = c_associated(self%handle)
   end function polar_exists
 
-  type(c_ptr) function polar_handle(self) result(handle)
+  recursive type(c_ptr) function polar_handle(self) result(handle)
     class(spar_polar), intent(in) :: self
 
     handle = self%handle
   end function polar_handle
 
-  subroutine polar_evaluate(self, alpha, cl, cd, cm, stat, errmsg)
+  recursive subroutine polar_evaluate(self, alpha, cl, cd, cm, stat, errmsg)
     class(spar_polar), intent(in) :: self
     real(c_double), intent(in) :: alpha
     real(c_double), intent(inout), optional :: cl, cd, cm
@@ -165,7 +165,7 @@ contains
   ! ---- blade element with momentum theory ----
 
   ! One fluid per blade of this rank; a rank without blades gives an array of none.
-  subroutine aero_create(self, fluids, stat, errmsg)
+  recursive subroutine aero_create(self, fluids, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self
     type(spar_fluid), intent(in) :: fluids(:)
     integer, intent(out), optional :: stat
@@ -197,7 +197,7 @@ contains
     call finish(status, session, stat, errmsg)
   end subroutine aero_create
 
-  subroutine aero_destroy(self)
+  recursive subroutine aero_destroy(self)
     class(spar_aero_object), intent(inout) :: self
 
     call spar_aero_destroy(self%handle)
@@ -206,33 +206,33 @@ contains
     self%sections = 0
   end subroutine aero_destroy
 
-  impure elemental subroutine aero_final(self)
+  impure elemental recursive subroutine aero_final(self)
     type(spar_aero_object), intent(inout) :: self
 
     call self%destroy()
   end subroutine aero_final
 
-  impure elemental subroutine aero_assign(left, right)
+  impure elemental recursive subroutine aero_assign(left, right)
     class(spar_aero_object), intent(inout) :: left
     type(spar_aero_object), intent(in) :: right
 
     call forbid_copy('an aero object', left%handle, right%handle)
   end subroutine aero_assign
 
-  logical function aero_exists(self) result(there)
+  recursive logical function aero_exists(self) result(there)
     class(spar_aero_object), intent(in) :: self
 
     there = c_associated(self%handle)
   end function aero_exists
 
-  type(c_ptr) function aero_handle(self) result(handle)
+  recursive type(c_ptr) function aero_handle(self) result(handle)
     class(spar_aero_object), intent(in) :: self
 
     handle = self%handle
   end function aero_handle
 
   ! Section i, from 1, of every blade.
-  subroutine aero_set_section_64(self, i, chord, twist, polar, stat, errmsg)
+  recursive subroutine aero_set_section_64(self, i, chord, twist, polar, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self
     integer(c_int64_t), intent(in) :: i
     real(c_double), intent(in) :: chord, twist
@@ -248,7 +248,7 @@ contains
     call finish(spar_aero_set_section(self%handle, i - 1, chord, twist, polar%handle), self%session, stat, errmsg)
   end subroutine aero_set_section_64
 
-  subroutine aero_set_section_32(self, i, chord, twist, polar, stat, errmsg)
+  recursive subroutine aero_set_section_32(self, i, chord, twist, polar, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self
     integer(c_int), intent(in) :: i
     real(c_double), intent(in) :: chord, twist
@@ -259,7 +259,7 @@ contains
     call self%set_section(int(i, c_int64_t), chord, twist, polar, stat, errmsg)
   end subroutine aero_set_section_32
 
-  subroutine aero_read_aerodyn(self, primary_path, blade_path, q, span, stat, errmsg)
+  recursive subroutine aero_read_aerodyn(self, primary_path, blade_path, q, span, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self
     character(*), intent(in) :: primary_path
     character(*), intent(in), optional :: blade_path
@@ -283,7 +283,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine aero_read_aerodyn
 
-  subroutine aero_get_flags(self, flags, no_root, stat, errmsg)
+  recursive subroutine aero_get_flags(self, flags, no_root, stat, errmsg)
     class(spar_aero_object), intent(in) :: self
     integer, intent(inout), optional :: flags(:,:)
     integer(c_int64_t), intent(inout), optional :: no_root
@@ -304,7 +304,7 @@ contains
     call finish(status, self%session, stat, errmsg)
   end subroutine aero_get_flags
 
-  subroutine aero_report_effects(self, trial, stat, errmsg)
+  recursive subroutine aero_report_effects(self, trial, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self
     class(spar_trial), intent(inout) :: trial
     integer, intent(out), optional :: stat
@@ -313,7 +313,7 @@ contains
     call finish(spar_aero_report_effects(self%handle, trial%c_handle()), session_of_trial(trial%c_handle()), stat, errmsg)
   end subroutine aero_report_effects
 
-  subroutine fluid_read_aerodyn(fluid, primary_path, blade_path, q, span, stat, errmsg)
+  recursive subroutine fluid_read_aerodyn(fluid, primary_path, blade_path, q, span, stat, errmsg)
     class(spar_fluid), intent(inout) :: fluid
     character(*), intent(in) :: primary_path
     character(*), intent(in), optional :: blade_path
@@ -335,7 +335,7 @@ contains
   end subroutine fluid_read_aerodyn
 
   ! The session that a fluid belongs to; none of no fluid.
-  type(c_ptr) function session_of(fluid) result(session)
+  recursive type(c_ptr) function session_of(fluid) result(session)
     type(c_ptr), intent(in) :: fluid
     type(c_ptr) :: member
 
@@ -346,7 +346,7 @@ contains
   end function session_of
 
   ! The session of a trial; none of no trial.
-  type(c_ptr) function session_of_trial(trial) result(session)
+  recursive type(c_ptr) function session_of_trial(trial) result(session)
     type(c_ptr), intent(in) :: trial
 
     session = c_null_ptr
@@ -357,7 +357,7 @@ contains
 
   ! Written by cmake/make-bindings.sh.
 
-  subroutine polar_set_interpolation(self, kind, stat, errmsg)
+  recursive subroutine polar_set_interpolation(self, kind, stat, errmsg)
     class(spar_polar), intent(inout) :: self
     integer, intent(in) :: kind
     integer, intent(out), optional :: stat
@@ -368,7 +368,7 @@ contains
 
   ! Written by cmake/make-bindings.sh.
 
-  subroutine aero_get_chord(self, chord, twist, stat, errmsg)
+  recursive subroutine aero_get_chord(self, chord, twist, stat, errmsg)
     class(spar_aero_object), intent(in) :: self
     real(c_double), contiguous, intent(inout), optional :: chord(:), twist(:)
     integer, intent(out), optional :: stat
@@ -384,7 +384,7 @@ contains
     call finish(spar_aero_get_chord(self%handle, chord, twist), self%session, stat, errmsg)
   end subroutine aero_get_chord
 
-  subroutine aero_set_rotor(self, hub, axis, hub_radius, tip_radius, stat, errmsg)
+  recursive subroutine aero_set_rotor(self, hub, axis, hub_radius, tip_radius, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self
     real(c_double), intent(in) :: hub(3), axis(3), hub_radius, tip_radius
     integer, intent(out), optional :: stat
@@ -393,7 +393,7 @@ contains
     call finish(spar_aero_set_rotor(self%handle, hub, axis, hub_radius, tip_radius), self%session, stat, errmsg)
   end subroutine aero_set_rotor
 
-  subroutine aero_set_turn(self, turn, stat, errmsg)
+  recursive subroutine aero_set_turn(self, turn, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self
     integer, intent(in) :: turn
     integer, intent(out), optional :: stat
@@ -402,7 +402,7 @@ contains
     call finish(spar_aero_set_turn(self%handle, to_c(turn)), self%session, stat, errmsg)
   end subroutine aero_set_turn
 
-  subroutine aero_set_blades(self, total, stat, errmsg)
+  recursive subroutine aero_set_blades(self, total, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self
     integer, intent(in) :: total
     integer, intent(out), optional :: stat
@@ -411,7 +411,7 @@ contains
     call finish(spar_aero_set_blades(self%handle, to_c(total)), self%session, stat, errmsg)
   end subroutine aero_set_blades
 
-  subroutine aero_set_shear(self, law, ground, up, height, parameter, stat, errmsg)
+  recursive subroutine aero_set_shear(self, law, ground, up, height, parameter, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self
     integer, intent(in) :: law
     real(c_double), intent(in) :: ground(3), up(3), height, parameter
@@ -421,7 +421,7 @@ contains
     call finish(spar_aero_set_shear(self%handle, to_c(law), ground, up, height, parameter), self%session, stat, errmsg)
   end subroutine aero_set_shear
 
-  subroutine aero_set_tower(self, base, top, base_radius, top_radius, stat, errmsg)
+  recursive subroutine aero_set_tower(self, base, top, base_radius, top_radius, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self
     real(c_double), intent(in) :: base(3), top(3), base_radius, top_radius
     integer, intent(out), optional :: stat
@@ -430,7 +430,7 @@ contains
     call finish(spar_aero_set_tower(self%handle, base, top, base_radius, top_radius), self%session, stat, errmsg)
   end subroutine aero_set_tower
 
-  subroutine aero_set_effects(self, effects, stat, errmsg)
+  recursive subroutine aero_set_effects(self, effects, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self
     integer, intent(in) :: effects
     integer, intent(out), optional :: stat
@@ -439,7 +439,7 @@ contains
     call finish(spar_aero_set_effects(self%handle, to_c(effects)), self%session, stat, errmsg)
   end subroutine aero_set_effects
 
-  subroutine aero_solve(self, density, inflow, theta, stat, errmsg)
+  recursive subroutine aero_solve(self, density, inflow, theta, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self
     real(c_double), intent(in) :: density
     real(c_double), contiguous, intent(in) :: inflow(:,:,:)
@@ -456,7 +456,7 @@ contains
     call finish(spar_aero_solve(self%handle, density, inflow, theta), self%session, stat, errmsg)
   end subroutine aero_solve
 
-  subroutine aero_get_rotor(self, thrust, torque, power, stat, errmsg)
+  recursive subroutine aero_get_rotor(self, thrust, torque, power, stat, errmsg)
     class(spar_aero_object), intent(in) :: self
     real(c_double), intent(inout), optional :: thrust, torque, power
     integer, intent(out), optional :: stat
@@ -465,7 +465,7 @@ contains
     call finish(spar_aero_get_rotor(self%handle, thrust, torque, power), self%session, stat, errmsg)
   end subroutine aero_get_rotor
 
-  subroutine aero_get_sections(self, alpha, cl, cd, a, a_tangential, stat, errmsg)
+  recursive subroutine aero_get_sections(self, alpha, cl, cd, a, a_tangential, stat, errmsg)
     class(spar_aero_object), intent(in) :: self
     real(c_double), contiguous, intent(inout), optional :: alpha(:,:), cl(:,:), cd(:,:), a(:,:), a_tangential(:,:)
     integer, intent(out), optional :: stat
@@ -485,7 +485,7 @@ contains
     call finish(spar_aero_get_sections(self%handle, alpha, cl, cd, a, a_tangential), self%session, stat, errmsg)
   end subroutine aero_get_sections
 
-  subroutine aero_get_loads(self, per_length, force, moment, stat, errmsg)
+  recursive subroutine aero_get_loads(self, per_length, force, moment, stat, errmsg)
     class(spar_aero_object), intent(in) :: self
     real(c_double), contiguous, intent(inout), optional :: per_length(:,:,:), force(:,:,:), moment(:,:,:)
     integer, intent(out), optional :: stat
@@ -505,7 +505,7 @@ contains
     call finish(spar_aero_get_loads(self%handle, per_length, force, moment), self%session, stat, errmsg)
   end subroutine aero_get_loads
 
-  subroutine aero_get_effect(self, row, in_force, fails, size, motion, reaction, share, stat, errmsg)
+  recursive subroutine aero_get_effect(self, row, in_force, fails, size, motion, reaction, share, stat, errmsg)
     class(spar_aero_object), intent(in) :: self
     integer, intent(in) :: row
     integer, intent(inout), optional :: in_force, fails
@@ -521,11 +521,17 @@ contains
   end subroutine aero_get_effect
 
   ! Of a row of aero%report_effects, from 0 as SPAR_AERO_ROW_*; '' for what is no row.
-  function aero_effect_name(row) result(name)
+  recursive function aero_effect_name(row) result(name)
     integer, intent(in) :: row
-    character(:), allocatable :: name
+    character(length_of_aero_effect_name(row)) :: name
 
-    call copy_text(c_aero_effect_name(to_c(row)), name)
+    call fill_text(c_aero_effect_name(to_c(row)), name)
   end function aero_effect_name
+
+  pure recursive integer(c_int64_t) function length_of_aero_effect_name(row) result(n)
+    integer, intent(in) :: row
+
+    n = text_length(c_aero_effect_name(to_c(row)))
+  end function length_of_aero_effect_name
 
 end module spar_aero

@@ -174,7 +174,7 @@ module spar_aero_calls
       integer(c_int) :: status
     end function spar_aero_get_loads
 
-    function spar_aero_effect_name(row) bind(c) result(text)
+    pure function spar_aero_effect_name(row) bind(c) result(text)
       import :: c_int, c_ptr
       integer(c_int), value :: row
       type(c_ptr) :: text

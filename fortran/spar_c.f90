@@ -15,19 +15,19 @@ module spar_calls
 
   interface
     ! spar.h
-    function spar_session_message(session) bind(c) result(text)
+    pure function spar_session_message(session) bind(c) result(text)
       import :: c_ptr
       type(c_ptr), value :: session
       type(c_ptr) :: text
     end function spar_session_message
 
-    function spar_status_text(status) bind(c) result(text)
+    pure function spar_status_text(status) bind(c) result(text)
       import :: c_int, c_ptr
       integer(c_int), value :: status
       type(c_ptr) :: text
     end function spar_status_text
 
-    function spar_version() bind(c) result(text)
+    pure function spar_version() bind(c) result(text)
       import :: c_ptr
       type(c_ptr) :: text
     end function spar_version
@@ -170,7 +170,7 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_set_log
 
-    function spar_session_get_warning(session, i) bind(c) result(text)
+    pure function spar_session_get_warning(session, i) bind(c) result(text)
       import :: c_int64_t, c_ptr
       type(c_ptr), value :: session
       integer(c_int64_t), value :: i
@@ -604,7 +604,7 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_get_session
 
-    function spar_member_get_name(member) bind(c) result(text)
+    pure function spar_member_get_name(member) bind(c) result(text)
       import :: c_ptr
       type(c_ptr), value :: member
       type(c_ptr) :: text
@@ -1081,7 +1081,7 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_get_member
 
-    function spar_fluid_get_name(fluid) bind(c) result(text)
+    pure function spar_fluid_get_name(fluid) bind(c) result(text)
       import :: c_ptr
       type(c_ptr), value :: fluid
       type(c_ptr) :: text
@@ -1477,7 +1477,7 @@ module spar_calls
       integer(c_int) :: status
     end function spar_trial_get_cost
 
-    function spar_effect_name(row) bind(c) result(text)
+    pure function spar_effect_name(row) bind(c) result(text)
       import :: c_int, c_ptr
       integer(c_int), value :: row
       type(c_ptr) :: text

@@ -1,11 +1,12 @@
 ! spar_support: what the modules spar and spar_aero share, and no host needs: statuses and messages, shapes of arrays, numbers and
-! text between Fortran and C.
+! text between Fortran and C. All procedures are recursive: a callback may call another session, and threads each their own.
 module spar_support
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_int64_t, c_null_char, c_ptr
   use spar_c, only: SPAR_OK, SPAR_ERR_ARGUMENT, SPAR_ERR_STATE, spar_session_message, c_status_text => spar_status_text
   implicit none
   private
-  public :: append_extents, c_text, copy_text, finish, flag, forbid_copy, hand, narrow, need, occupied, refuse, tell, text_of, to_c
+  public :: append_extents, c_text, copy_text, fill_text, finish, flag, forbid_copy, hand, narrow, need, occupied, refuse, tell, &
+      text_length, text_of, to_c
 
   interface
     pure function strlen(text) bind(c) result(n)
@@ -21,7 +22,7 @@ contains
 
   ! How every call ends: the status goes to the caller that takes it; where none does, a failure stops the program with the
   ! message.
-  subroutine finish(status, session, stat, errmsg)
+  recursive subroutine finish(status, session, stat, errmsg)
     integer(c_int), intent(in) :: status
     type(c_ptr), intent(in) :: session ! whose message tells; none: this thread's
     integer, intent(out), optional :: stat
@@ -36,7 +37,7 @@ contains
   end subroutine finish
 
   ! How a call ends whose arguments the library has not seen.
-  subroutine refuse(place, fault, stat, errmsg, name)
+  recursive subroutine refuse(place, fault, stat, errmsg, name)
     character(*), intent(in) :: place, fault
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
@@ -50,7 +51,7 @@ contains
     end if
   end subroutine refuse
 
-  subroutine occupied(place, stat, errmsg)
+  recursive subroutine occupied(place, stat, errmsg)
     character(*), intent(in) :: place
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
@@ -59,7 +60,7 @@ contains
     call tell(place // ': the variable holds one already; destroy it first, or use another variable', present(stat), errmsg)
   end subroutine occupied
 
-  subroutine tell(text, taken, errmsg)
+  recursive subroutine tell(text, taken, errmsg)
     character(*), intent(in) :: text
     logical, intent(in) :: taken
     character(*), intent(inout), optional :: errmsg
@@ -69,7 +70,7 @@ contains
   end subroutine tell
 
   ! Two uncreated variables are alike, and a variable is like itself; anything else would make a second owner.
-  subroutine forbid_copy(what, left, right)
+  recursive subroutine forbid_copy(what, left, right)
     character(*), intent(in) :: what
     type(c_ptr), intent(in) :: left, right
 
@@ -85,7 +86,7 @@ contains
 
   ! Puts into fault what is wrong with the shape of an array, unless something is there already. Where there is nothing to be
   ! read or written, any array without elements will do.
-  subroutine need(fault, array, has, needs)
+  recursive subroutine need(fault, array, has, needs)
     character(:), allocatable, intent(inout) :: fault
     character(*), intent(in) :: array
     integer(c_int64_t), intent(in) :: has(:), needs(:)
@@ -97,7 +98,7 @@ contains
     call append_extents(fault, needs)
   end subroutine need
 
-  subroutine append_extents(text, extents)
+  recursive subroutine append_extents(text, extents)
     character(:), allocatable, intent(inout) :: text
     integer(c_int64_t), intent(in) :: extents(:)
     integer :: i
@@ -108,7 +109,7 @@ contains
     text = text // ')'
   end subroutine append_extents
 
-  pure function text_of(number) result(text)
+  pure recursive function text_of(number) result(text)
     integer(c_int64_t), intent(in) :: number
     character(20) :: text
 
@@ -116,7 +117,7 @@ contains
   end function text_of
 
   ! A count for a caller with 32-bit integers.
-  subroutine narrow(status, from, to, place, session, stat, errmsg)
+  recursive subroutine narrow(status, from, to, place, session, stat, errmsg)
     integer(c_int), intent(in) :: status
     integer(c_int64_t), intent(in) :: from
     integer(c_int), intent(inout) :: to
@@ -136,7 +137,7 @@ contains
   end subroutine narrow
 
   ! A result of C in the host's kind of integer, which may be absent.
-  pure subroutine hand(status, from, to)
+  pure recursive subroutine hand(status, from, to)
     integer(c_int), intent(in) :: status, from
     integer, intent(inout), optional :: to
 
@@ -144,14 +145,14 @@ contains
   end subroutine hand
 
   ! An integer of the host for C; what C cannot hold becomes the largest that it can, which no call takes.
-  elemental integer(c_int) function to_c(number)
+  elemental recursive integer(c_int) function to_c(number)
     integer, intent(in) :: number
     integer, parameter :: largest = huge(0_c_int)
 
     to_c = int(max(-largest, min(number, largest)), c_int)
   end function to_c
 
-  integer(c_int) function flag(on)
+  recursive integer(c_int) function flag(on)
     logical, intent(in) :: on
 
     flag = merge(1_c_int, 0_c_int, on)
@@ -159,27 +160,42 @@ contains
 
   ! ---- text across the border ----
 
-  pure function c_text(text) result(c)
+  pure recursive function c_text(text) result(c)
     character(*), intent(in) :: text
     character(kind=c_char, len=len_trim(text) + 1) :: c
 
     c = trim(text) // c_null_char
   end function c_text
 
-  ! Not a function: gfortran keeps the length of what a function allocates in one place for all threads.
-  subroutine copy_text(c, text)
+  ! Texts of C as results of functions: text_length says how long the result is, fill_text fills it. No function allocates its result,
+  ! because gfortran keeps the length of such a result in one place for all threads, in the caller.
+  pure recursive integer(c_int64_t) function text_length(c) result(n)
     type(c_ptr), intent(in) :: c
-    character(kind=c_char, len=:), allocatable, intent(out) :: text
-    character(kind=c_char), pointer :: letters(:)
-    integer(c_int64_t) :: i, n
 
     n = 0
     if (c_associated(c)) n = strlen(c)
-    allocate (character(kind=c_char, len=n) :: text)
+  end function text_length
+
+  recursive subroutine fill_text(c, text)
+    type(c_ptr), intent(in) :: c
+    character(kind=c_char, len=*), intent(out) :: text
+    character(kind=c_char), pointer :: letters(:)
+    integer(c_int64_t) :: i, n
+
+    text = ' '
+    n = min(text_length(c), len(text, kind=c_int64_t))
     if (n == 0) return
     call c_f_pointer(c, letters, [n])
     do i = 1, n
       text(i:i) = letters(i)
     end do
+  end subroutine fill_text
+
+  recursive subroutine copy_text(c, text)
+    type(c_ptr), intent(in) :: c
+    character(kind=c_char, len=:), allocatable, intent(out) :: text
+
+    allocate (character(kind=c_char, len=text_length(c)) :: text)
+    call fill_text(c, text)
   end subroutine copy_text
 end module spar_support

@@ -39,6 +39,14 @@ if(SPAR_AWK)
   spar_set_test(fortran_arguments_fails fortran 60)
 endif()
 
+# Sessions in callbacks of others, and in threads, with gfortran's checks.
+if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CROSSCOMPILING AND NOT CMAKE_C_FLAGS MATCHES "sanitize"
+   AND NOT CMAKE_C_FLAGS_DEBUG MATCHES "sanitize")
+  add_test(NAME fortran_reentrant COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/reentrant" "${CMAKE_Fortran_COMPILER}" "$<TARGET_FILE:spar>"
+    "${PROJECT_BINARY_DIR}/tests/reentrant")
+  spar_set_test(fortran_reentrant fortran 120)
+endif()
+
 # One kind of real in each call.
 add_test(NAME fortran_kinds COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/kinds" "${CMAKE_Fortran_COMPILER}"
   "$<TARGET_PROPERTY:spar_fortran,Fortran_MODULE_DIRECTORY>" "${PROJECT_BINARY_DIR}/tests/kinds")

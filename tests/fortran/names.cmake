@@ -52,7 +52,7 @@ endfunction()
 
 matches(functions "${headers}" "SPAR_API [^()]*(spar_[a-z0-9_]+) *\\(")
 matches(mapped "${map}" "(spar_[a-z0-9_]+)")
-matches(bound "${raw}" "\n *[a-z]+ (spar_[a-z0-9_]+)\\(")
+matches(bound "${raw}" "\n *[a-z ]+ (spar_[a-z0-9_]+)\\(")
 matches(tested "${test}" "(spar_[a-z0-9_]+)\\(")
 matches(used "${module}" "(spar_[a-z0-9_]+)")
 list(LENGTH functions count)

@@ -127,6 +127,7 @@ program test_coupling
   call free_body()
   call turned_point()
   call moved_mesh()
+  call layouts()
   call oscillator()
   call failing_fluid()
   call logging()
@@ -335,6 +336,61 @@ contains
     call fluid%get_kind(SPAR_NODES_MOTION, kind)
     call check(kind == SPAR_KIND_STATIONS, 'motion nodes as sections')
   end subroutine moved_mesh
+
+  ! Each layout has arrays of its shape; others are refused, also with as many numbers (their sums were wrong). The sum of forces
+  ! 1 to 4 along y is 10, in each layout.
+  subroutine layouts()
+    type(spar_session) :: session
+    type(spar_member) :: point
+    type(spar_fluid) :: fluid
+    real(c_double) :: x(3,4), columns(4,3), padded(6,3), records(8,4), flat(12,1)
+    integer :: i
+
+    x = 0
+    columns = 0
+    padded = 0
+    records = 0
+    flat = 0
+    do i = 1, 4
+      x(2,i) = i
+      columns(i,2) = i
+      padded(i,2) = i
+      records(2,i) = i
+    end do
+    call session%create()
+    call point%create_point(session, 'point', origin, unit)
+    call point%commit()
+    call fluid%create(point, 'layouts')
+    call fluid%set_force_nodes(0 * x)
+    call fluid%map()
+    call pushes(fluid, 3, 1, x, [.true., .false., .false., .false., .false.], columns, padded, records, flat)
+    call pushes(fluid, 1, 4, x, [.false., .true., .false., .false., .false.], columns, padded, records, flat)
+    call pushes(fluid, 1, 6, x, [.false., .false., .true., .false., .false.], columns, padded, records, flat)
+    call pushes(fluid, 8, 1, x, [.false., .false., .false., .true., .false.], columns, padded, records, flat)
+  end subroutine layouts
+
+  subroutine pushes(fluid, node, component, x, taken, columns, padded, records, flat)
+    type(spar_fluid), intent(inout) :: fluid
+    integer, intent(in) :: node, component
+    logical, intent(in) :: taken(5)
+    real(c_double), intent(in) :: x(:,:), columns(:,:), padded(:,:), records(:,:), flat(:,:)
+    real(c_double) :: total(3)
+    integer :: stat(5)
+
+    call fluid%set_layout(SPAR_NODES_FORCE, int(node, c_int64_t), int(component, c_int64_t))
+    call fluid%push_forces(x, stat=stat(1))
+    call fluid%push_forces(columns, stat=stat(2))
+    call fluid%push_forces(padded, stat=stat(3))
+    call fluid%push_forces(records, stat=stat(4))
+    call fluid%push_forces(flat, stat=stat(5))
+    call check(all((stat == SPAR_OK) .eqv. taken), 'a layout takes arrays of its shape alone')
+    if (taken(1)) call fluid%push_forces(x)
+    if (taken(2)) call fluid%push_forces(columns)
+    if (taken(3)) call fluid%push_forces(padded)
+    if (taken(4)) call fluid%push_forces(records)
+    call fluid%sum_loads(force=total)
+    call check(all(abs(total - [0, 10, 0]) < 1e-14_c_double), 'the sum of forces in each layout')
+  end subroutine pushes
 
   subroutine check_and_accept(session)
     type(spar_session), intent(inout) :: session
