@@ -14,11 +14,10 @@ static void find_side(spari_constraint *l, int side, double s, double dt) {
     const spar_joint *j = l->joint;
     const spari_component *of = l->component[side];
     spari_node_pose *p = &l->pose[side];
-    spari_pose x = {.q = {0, 0, 0, 1, 0, 0, 0}};
-    const double *q = x.q, *v = x.v, *a = x.a;
+    spari_pose x = {.q = {0, 0, 0, 1, 0, 0, 0}}; /* the ground */
     if (of) {
         const int u = j->unique[side];
-        q = of->state->q + 7 * u, v = of->state->v + 6 * u, a = of->state->a + 6 * u;
+        x = spari_pose_of(of->state->q + 7 * u, of->state->v + 6 * u, of->state->a + 6 * u);
     } else if (j->member[side]) {
         const spari_motion *now = &j->member[side]->now, *after = &j->member[side]->after; /* prescribed */
         const int64_t i = j->seat[side];
@@ -27,11 +26,11 @@ static void find_side(spari_constraint *l, int side, double s, double dt) {
         x = spari_drive_between(&from, &to, s, dt);
     }
     for (int k = 0; k < 3; k++) {
-        p->x[k] = q[k] + j->reference[side][k];
+        p->x[k] = x.q[k] + j->reference[side][k];
     }
-    memcpy(p->q, q + 3, sizeof p->q);
-    memcpy(l->v + 6 * side, v, sizeof x.v);
-    memcpy(l->a + 6 * side, a, sizeof x.a);
+    memcpy(p->q, x.q + 3, sizeof p->q);
+    memcpy(l->v + 6 * side, x.v, sizeof x.v);
+    memcpy(l->a + 6 * side, x.a, sizeof x.a);
 }
 
 void spari_constraint_times(double B[6][12], const double v[12], double rate[6]) {

@@ -764,7 +764,7 @@ static void read_multipliers(spari_constraint *l, double scale, const double *b,
 }
 
 /* Corrections of the multipliers of clusters, which balance the remaining forces y on their nodes, from the ends of
-   the tree on. y NULL: there are none. */
+   the tree on. y NULL: there are no clusters of several nodes. */
 static void find_constraint_loads(spari_assembly *a, double *y, int c) {
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
@@ -779,7 +779,7 @@ static void find_constraint_loads(spari_assembly *a, double *y, int c) {
             continue;
         }
         spari_constraint *l = a->constraint + v->constraint;
-        if (v->cluster == a->order[n]) {
+        if (!y || v->cluster == a->order[n]) {
             read_multipliers(l, 1, column_of(a, v->block, c) + 6 * a->columns, a->columns, y);
             if (l->ball && l->node[1] >= 0) {
                 add_loads_of_rotation(l, a->x + 6 * l->node[1] + 3);

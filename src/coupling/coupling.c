@@ -361,8 +361,11 @@ static double error_of_added_mass(const spar_session *s) {
             f2 += f * f;
         }
     }
+    if (!(f2 > 0)) {
+        return 0;
+    }
     const double rounding = 8 * (DBL_EPSILON + rounding_of_accelerations(s));
-    return f2 > 0 ? fmax(rounding, correction_part * s->coupling.rtol) * sqrt(f2) : 0;
+    return fmax(rounding, correction_part * s->coupling.rtol) * sqrt(f2);
 }
 
 static int not_converged(spar_session *s, const char *call) {

@@ -568,7 +568,7 @@ static void fill_point(const spar_member *member, spari_body *b, int e, int i, d
     for (int j = 0; j < 3; j++) {
         b->stiffest = fmax(b->stiffest, section[7 * j]);
     }
-    if (b->D) { /* sqrt(mu_i mu_j) C_ij: positive semidefinite for any coupling, mu_i C_ii on the diagonal */
+    if (mu) { /* sqrt(mu_i mu_j) C_ij: positive semidefinite for any coupling, mu_i C_ii on the diagonal */
         for (int j = 0; j < 36; j++) {
             section[j] *= sqrt(mu[j / 6] * mu[j % 6]);
         }

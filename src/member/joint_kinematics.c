@@ -139,6 +139,24 @@ static void rotations(const spari_joint_kinematics *t, const double r[4], double
     }
 }
 
+/* Both ends; reach: a's point relative to node b; way: relative to b's point. */
+static void carry_ends(const spari_joint_kinematics *t, const spari_node_pose *a, const spari_node_pose *b,
+                       joint_end e[2], double reach[3], double way[3]) {
+    carry_end(t, 0, a, &e[0]);
+    carry_end(t, 1, b, &e[1]);
+    for (int k = 0; k < 3; k++) {
+        reach[k] = a->x[k] + e[0].arm[k] - b->x[k];
+        way[k] = reach[k] - e[1].arm[k];
+    }
+}
+
+/* Rotation of a's axes relative to b's. */
+static void relative_rotation(const joint_end e[2], double r[4]) {
+    double back[4];
+    spari_quat_conj(e[1].axes, back);
+    spari_quat_mul(back, e[0].axes, r);
+}
+
 static void line_motion(const joint_end e[2], const double w[3], double z[6], double B[6][12]) {
     double n[3];
     memset(z, 0, 6 * sizeof *z);
@@ -155,13 +173,8 @@ static void line_motion(const joint_end e[2], const double w[3], double z[6], do
 void spari_kinematics_motion(const spari_joint_kinematics *t, const spari_node_pose *a, const spari_node_pose *b,
                              double z[6], double B[6][12]) {
     joint_end e[2];
-    double w[3], back[4], r[4], D[9], reach[3];
-    carry_end(t, 0, a, &e[0]);
-    carry_end(t, 1, b, &e[1]);
-    for (int k = 0; k < 3; k++) {
-        reach[k] = a->x[k] + e[0].arm[k] - b->x[k]; /* a's point relative to node b */
-        w[k] = reach[k] - e[1].arm[k];
-    }
+    double w[3], r[4], D[9], reach[3];
+    carry_ends(t, a, b, e, reach, w);
     if (t->line) {
         line_motion(e, w, z, B);
         return;
@@ -171,8 +184,7 @@ void spari_kinematics_motion(const spari_joint_kinematics *t, const spari_node_p
     for (int k = 0; k < 3; k++) {
         z[k] = R[k] * w[0] + R[3 + k] * w[1] + R[6 + k] * w[2];
     }
-    spari_quat_conj(e[1].axes, back);
-    spari_quat_mul(back, e[0].axes, r);
+    relative_rotation(e, r);
     rotations(t, r, z + 3, D);
     for (int m = 0; m < 3 && B; m++) {
         const double none[3] = {0}, axis[3] = {R[m], R[3 + m], R[6 + m]}, *d = D + 3 * m;
@@ -254,14 +266,9 @@ static void moment_tangent(const spari_joint_kinematics *t, const double r[4], c
 
 static void find_joint_forces(const spari_joint_kinematics *t, const spari_node_pose *a, const spari_node_pose *b,
                               const double load[6], joint_forces *f) {
-    double w[3], back[4], r[4], z[3], D[9], R[9];
+    double w[3], r[4], z[3], D[9], R[9];
     memset(f, 0, sizeof *f);
-    carry_end(t, 0, a, &f->end[0]);
-    carry_end(t, 1, b, &f->end[1]);
-    for (int k = 0; k < 3; k++) {
-        f->reach[k] = a->x[k] + f->end[0].arm[k] - b->x[k];
-        w[k] = f->reach[k] - f->end[1].arm[k];
-    }
+    carry_ends(t, a, b, f->end, f->reach, w);
     if (t->line) {
         double length = spari_norm(w);
         for (int k = 0; k < 3 && length > 0; k++) {
@@ -277,8 +284,7 @@ static void find_joint_forces(const spari_joint_kinematics *t, const spari_node_
     if (load[3] == 0 && load[4] == 0 && load[5] == 0) {
         return;
     }
-    spari_quat_conj(f->end[1].axes, back);
-    spari_quat_mul(back, f->end[0].axes, r);
+    relative_rotation(f->end, r);
     rotations(t, r, z, D);
     spari_matrix_times_back(D, load + 3, f->moment);
     spari_matrix_times(R, f->moment, f->moment);
