@@ -231,10 +231,12 @@ enum {
    prescribed  Fixed or driven root. No inertia, no weight; the support takes all loads.
    rigid       Any root. Mass, centre and inertia come from the sections. A static solution does not move it.
    linear      Fixed or driven root: the root moves exactly, the deformation relative to it is linear, with Coriolis,
-               gyroscopic and centrifugal terms and centrifugal stiffening. Second-order terms of the deformation are
-               neglected, and stiffening by other loads. The factorisation stays while dt and the root's angular
-               velocity do. Free or pinned root: linear about the reference configuration; a node that rotates by half
-               a turn is SPAR_ERR_NUMERIC. No joints: there an exact beam costs about as much.
+               gyroscopic and centrifugal terms. Axial forces of the root's motion (a blade on a hub) and of weight (a
+               mast) stiffen or soften it, unless the root is free. Neglected are second-order terms of the deformation,
+               and stiffening by transverse forces and by applied and fluid loads. The factorisation stays while dt does
+               and the root's angular velocity and acceleration, gravity included, stay in its own axes. Free or pinned
+               root: linear about the reference configuration; a node that rotates by half a turn is SPAR_ERR_NUMERIC.
+               No joints: there an exact beam costs about as much.
    modal       As linear, with the lowest `modes` modes with the root constrained; free and pinned roots count their 6
                or 3 rigid modes. The initial deformation is projected onto the modes.
    SPAR_ERR_ARGUMENT at the commit: too many modes for the nodes, or fewer than the rigid ones; SPAR_ERR_STATE:

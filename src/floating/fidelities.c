@@ -2,6 +2,7 @@
 #include "frame.h"
 
 #include "../base/session.h"
+#include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied_loads.h"
 #include "../member/beam.h"
@@ -10,6 +11,7 @@
 #include "../time/fidelity.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* ---- life ---- */
 
@@ -81,15 +83,14 @@ static void frame_free(void *solution) {
         SPARI_FREE(f->N[k], f->f[k], f->rigid[k]);
     }
     for (int k = 0; k < 3; k++) {
-        SPARI_FREE(f->G[k], f->E[k]);
+        SPARI_FREE(f->G[k], f->E[k], f->P[k]);
     }
     spari_linear_free(f->linear);
     spari_snapshot_free(&f->before);
     free(f);
 }
 
-/* Lever arms [nodes][3] of the unknowns' nodes from the root. */
-static double *arms_of(const spar_member *m) {
+double *spari_frame_arms(const spar_member *m) {
     double *arm = spari_zalloc(3 * (int64_t)m->body->unique, sizeof *arm);
     if (arm) {
         spari_member_to_unique(m, 3, m->xr, arm);
@@ -104,7 +105,7 @@ static double *arms_of(const spar_member *m) {
 
 /* The matrices, of the nodes or of m->modes modes. */
 static int fill_frame(spari_frame *f, const spar_member *m) {
-    double *arm = arms_of(m);
+    double *arm = spari_frame_arms(m);
     int more = (int)m->modes + spari_member_constrained(m) - 6, most = 6 * (f->nodes - 1);
     int cols = 6 + (more < most ? more : most);
     int status = arm && allocate_matrices(f, m) == 0 ? spari_frame_form(f, m->body, arm) : SPAR_ERR_MEMORY;
@@ -121,7 +122,34 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
         status = status == SPAR_OK && spari_frame_project(f, m, cols) ? SPAR_ERR_MEMORY : status;
     }
     free(arm);
-    return status == SPAR_OK && allocate_work(f, m) ? SPAR_ERR_MEMORY : status;
+    status = status == SPAR_OK && allocate_work(f, m) ? SPAR_ERR_MEMORY : status;
+    const double accelerates[3] = {f->N[0] != NULL};
+    status = status == SPAR_OK ? spari_frame_weigh(f, m, accelerates) : status;
+    return status == SPAR_OK ? spari_frame_weigh(f, m, m->body->gravity) : status;
+}
+
+int spari_frame_weigh(spari_frame *f, const spar_member *m, const double field[3]) {
+    if (f->P[0] || !f->M || m->root == SPAR_ROOT_FREE || !(spari_norm(field) > 0)) {
+        return SPAR_OK;
+    }
+    const int64_t size = 36 * (int64_t)m->mesh.elements * m->mesh.per_element * m->mesh.per_element;
+    double *arm = spari_frame_arms(m), *P[3] = {0};
+    int ok = arm && (f->sumK || (f->sumK = spari_zalloc(f->size, sizeof *f->sumK)));
+    for (int k = 0; k < 3; k++) {
+        ok = ok && (P[k] = spari_zalloc(size, sizeof *P[k]));
+    }
+    ok = ok && spari_frame_form_translations(m->body, arm, P) == SPAR_OK;
+    for (int k = 0; k < 3 && f->basis; k++) {
+        ok = ok && spari_frame_project_matrix(f, m->body, f->n, &P[k]) == 0;
+    }
+    free(arm);
+    f->combined = 0; /* there is a sum now */
+    if (!ok) {
+        SPARI_FREE(P[0], P[1], P[2]);
+        return SPAR_ERR_MEMORY;
+    }
+    memcpy(f->P, P, sizeof f->P);
+    return SPAR_OK;
 }
 
 static int frame_create(spar_member *m) {

@@ -32,15 +32,8 @@ static void gather_loads_of(spari_frame *f, const spar_member *m, const spari_fr
     }
 }
 
-/* r := M R (a - g, alpha) + f(omega, omega) - loads, with the acceleration (a, alpha) of the root and gravity g */
-static void add_inertia_and_loads(spari_frame *f, const spar_member *m, const spari_pose *root, int still,
-                                  double factor, double *r) {
-    double rate[6];
-    for (int k = 0; k < 6; k++) {
-        rate[k] = (still ? 0 : root->a[k]) - (k < 3 ? factor * m->body->gravity[k] : 0);
-    }
-    spari_rotate_back(root->q + 3, rate, rate);
-    spari_rotate_back(root->q + 3, rate + 3, rate + 3);
+/* r := M (a - g, alpha) + f(omega, omega) - loads, with the acceleration (a, alpha) of the root and gravity g */
+static void add_inertia_and_loads(spari_frame *f, const double rates[SPARI_FRAME_RATES], double factor, double *r) {
     if (f->sumf) {
         memcpy(r, f->sumf, (size_t)f->n * sizeof *r);
     } else {
@@ -49,8 +42,9 @@ static void add_inertia_and_loads(spari_frame *f, const spar_member *m, const sp
     spari_frame_gather(f, f->loads, f->dx);
     cblas_daxpy(f->n, -1, f->dx, 1, r, 1);
     for (int k = 0; k < 6 && f->rigid[0]; k++) {
-        if (rate[k] != 0) {
-            cblas_daxpy(f->n, rate[k], f->rigid[k], 1, r, 1);
+        const double rate = rates[k < 3 ? 6 + k : k];
+        if (rate != 0) {
+            cblas_daxpy(f->n, rate, f->rigid[k], 1, r, 1);
         }
     }
     cblas_daxpy(f->pull ? f->n : 0, factor, f->pull, 1, r, 1);
@@ -67,14 +61,11 @@ static double largest_force(int n, const double *x) {
 
 double spari_frame_forces(spari_frame *f, const spar_member *m, const spari_frame_state *s, int still, double factor,
                           double *r) {
-    double rates[6] = {0};
-    spari_rotate_back(s->root.q + 3, s->root.v + 3, rates);
-    if (!still) {
-        spari_rotate_back(s->root.q + 3, s->root.a + 3, rates + 3);
-    }
-    spari_frame_combine(f, rates);
+    double rates[SPARI_FRAME_RATES];
+    spari_frame_rates(m, &s->root, still, factor, rates);
+    const double lost = spari_frame_combine(f, m, rates) == SPAR_OK ? 0 : NAN;
     gather_loads_of(f, m, s, still, factor);
-    add_inertia_and_loads(f, m, &s->root, still, factor, r);
+    add_inertia_and_loads(f, rates, factor, r);
     memset(f->elastic, 0, (size_t)f->n * sizeof *f->elastic);
     spari_frame_add_times(f, f->sumK ? f->sumK : f->K, s->y, 1, f->elastic);
     double scale = fmax(largest_force(f->n, r), largest_force(f->n, f->elastic));
@@ -86,6 +77,7 @@ double spari_frame_forces(spari_frame *f, const spar_member *m, const spari_fram
         spari_frame_add_times(f, f->M, s->a, 1, r);
     }
     memset(r, 0, (size_t)f->constrained * sizeof *r);
+    r[f->n - 1] += lost;
     return scale;
 }
 

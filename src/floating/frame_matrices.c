@@ -1,6 +1,5 @@
 /* The matrices of a frame, from the tangents of the exact member at the reference. */
 #include "../algebra/cblas.h"
-#include "../math/basis.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
 #include "frame.h"
@@ -123,116 +122,12 @@ static void polarise(spari_frame *f) {
     }
 }
 
-/* Acceleration at the lever arm d in the product k of rotation rates: omega_i omega_j = 1. */
-static void centripetal(int k, const double d[3], double a[3]) {
-    const int i = spari_frame_pair[k][0], j = spari_frame_pair[k][1];
-    memset(a, 0, 3 * sizeof *a);
-    if (i == j) {
-        memcpy(a, d, 3 * sizeof *a);
-        a[i] = 0;
-        a[(i + 1) % 3] *= -1;
-        a[(i + 2) % 3] *= -1;
-    } else { /* e_i x (e_j x d) + e_j x (e_i x d) */
-        a[i] = d[j];
-        a[j] = d[i];
-    }
-}
-
-/* Centrifugal force at a point of element e, and the position of the point on the element. */
-static double point_pull(const setup *w, int k, int e, int point, double force[3]) {
-    const spari_body *b = w->body;
-    const int P = b->per_element;
-    const int64_t slot = b->slot[e] + point;
-    const double *phi = b->phi + (int64_t)(b->first[e] + point) * P, *arm = w->arm + 3 * (int64_t)e * (P - 1);
-    double x[SPARI_MAX_NODES], mass[10], d[3] = {0}, xi = 0;
-    spari_gll(P, x, NULL, NULL);
-    spari_slot_get(b->mass, 10, slot, mass);
-    for (int l = 0; l < P; l++) {
-        xi += phi[l] * x[l];
-        for (int c = 0; c < 3; c++) {
-            d[c] += phi[l] * arm[3 * l + c];
-        }
-    }
-    for (int c = 0; c < 3; c++) { /* of the mass and of its first moment */
-        d[c] = mass[0] * d[c] + mass[1 + c];
-    }
-    centripetal(k, d, force);
-    for (int c = 0; c < 3; c++) {
-        force[c] *= -b->weight[slot];
-    }
-    return xi;
-}
-
-/* Point masses are points without stiffness. */
-static int is_point_mass(const spari_body *b, int64_t slot) {
-    return *SPARI_BLOCK(b->C, 36, slot) == 0;
-}
-
-/* Puts the axial force in element e from product k of rotation rates into b->pre: at each point the forces on all that
-   lies beyond it. beyond: the force beyond the end of the element; on return, beyond its beginning. */
-static void element_tension(const setup *w, const spari_body *b, int k, int e, double beyond[3]) {
-    const int P = b->per_element, points = b->first[e + 1] - b->first[e];
-    double x[SPARI_MAX_NODES], share[SPARI_MAX_NODES], load[3 * SPARI_MAX_NODES] = {0}, force[3];
-    spari_gll(P, x, NULL, NULL);
-    for (int i = 0; i < points; i++) {
-        const double *phi = b->phi + (int64_t)(b->first[e] + i) * P;
-        (void)point_pull(w, k, e, i, force);
-        for (int l = 0; l < P && !is_point_mass(b, b->slot[e] + i); l++) {
-            cblas_daxpy(3, phi[l], force, 1, load + 3 * l, 1);
-        }
-    }
-    for (int i = 0; i < points && !is_point_mass(b, b->slot[e] + i); i++) { /* the point masses come last */
-        double sum[3] = {beyond[0], beyond[1], beyond[2]}, pre[6] = {0}, t[3];
-        const double xi = point_pull(w, k, e, i, force);
-        spari_share_beyond(P, x, xi, share);
-        for (int l = 0; l < P; l++) {
-            cblas_daxpy(3, share[l], load + 3 * l, 1, sum, 1);
-        }
-        for (int j = 0; j < points; j++) {
-            if (is_point_mass(b, b->slot[e] + j) && point_pull(w, k, e, j, force) > xi) {
-                cblas_daxpy(3, 1, force, 1, sum, 1);
-            }
-        }
-        spari_slot_get(b->tangent, 3, b->slot[e] + i, t);
-        cblas_daxpy(3, spari_dot(t, sum), t, 1, pre, 1);
-        spari_slot_put(b->pre, 6, b->slot[e] + i, pre);
-    }
-    for (int i = 0; i < points; i++) {
-        (void)point_pull(w, k, e, i, force);
-        cblas_daxpy(3, 1, force, 1, beyond, 1);
-    }
-}
-
-/* Geometric stiffness of the axial forces from each product of rotation rates. The deformation under these forces does
-   not enter. It bends the member, and bending without its shortening, which is of second order, stretches it. */
-static int stretch_terms(spari_frame *f, const setup *w) {
-    const double large = 0x1p60; /* as in spari_body_rates: the subtraction loses no digits */
-    const int64_t mm = (int64_t)w->m * w->m;
-    spari_body tense = *w->body;
-    if (spari_body_set_pre(&tense)) {
-        return SPAR_ERR_MEMORY;
-    }
-    for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
-        double beyond[3] = {0}, *to = f->N[k], *S = w->S[0];
-        tense.pre_part = large;
-        for (int e = tense.elements - 1; e >= 0; e--) {
-            element_tension(w, &tense, k, e, beyond);
-            spari_body_tangent(&tense, e, w->q, NULL, NULL, 0, 0, 0, NULL, S);
-            for (int64_t i = 0; i < mm; i++) {
-                to[mm * e + i] += (S[i] - f->K[mm * e + i]) / large;
-            }
-        }
-    }
-    free(tense.pre);
-    return SPAR_OK;
-}
-
 /* X += m x theta / 2 on the rotation theta of each node, for the moments m there. The tangents are those of moments
    under small rotations, the equations those of rotation vectors, on which a moment m acts as m + m x theta / 2. This
    makes N symmetric. */
-static void add_half_moments(const spari_frame *f, const setup *w, const double *moments, double *X) {
+static void add_half_moments(const setup *w, const double *moments, double *X) {
     const int P = w->m / 6;
-    for (int e = 0; e < f->elements; e++) {
+    for (int e = 0; e < w->body->elements; e++) {
         for (int l = e > 0; l < P; l++) { /* a node of two elements counts once */
             double W[9];
             spari_skew(moments + 6 * (e * (P - 1) + l) + 3, W);
@@ -255,14 +150,17 @@ static int rotation_terms(spari_frame *f, const setup *w) {
         cblas_daxpy(f->pull ? 6 * f->nodes : 0, -1, f->pull, 1, f->f[k], 1);
         if (k < 3) {
             euler_matrices(f, w, omega, f->E[k]);
-            add_half_moments(f, w, f->rigid[3 + k], f->E[k]);
+            add_half_moments(w, f->rigid[3 + k], f->E[k]);
         }
     }
     polarise(f);
     for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
-        add_half_moments(f, w, f->f[k], f->N[k]);
+        add_half_moments(w, f->f[k], f->N[k]);
     }
-    return stretch_terms(f, w);
+    double *X[SPARI_TRANSLATIONS];
+    memcpy(X, f->N, sizeof f->N);
+    memcpy(X + SPARI_SPIN_PRODUCTS, f->E, sizeof f->E);
+    return spari_frame_add_stretch(w->body, w->arm, w->q, 0, SPARI_TRANSLATIONS, X);
 }
 
 /* M times the rigid accelerations of the frame. */
@@ -283,21 +181,31 @@ static void rigid_forces(spari_frame *f, const setup *w) {
     }
 }
 
+/* Returns 0, or 1 if there is no memory. */
+static int begin_setup(setup *w, const spari_body *body, const double *arm) {
+    const int64_t n = body->unique;
+    *w = (setup){.body = body, .m = 6 * body->per_element, .arm = arm};
+    const int64_t mm = (int64_t)w->m * w->m;
+    w->q = spari_zalloc(7 * n + 13 * n + 4 * mm + 6 * n, sizeof *w->q);
+    if (!w->q) {
+        return 1;
+    }
+    w->v = w->q + 7 * n, w->a = w->v + 6 * n, w->field = w->a + 7 * n;
+    for (int k = 0; k < 4; k++) {
+        w->S[k] = w->field + 6 * n + mm * k;
+    }
+    for (int64_t i = 0; i < n; i++) {
+        w->q[7 * i + 3] = 1;
+    }
+    return 0;
+}
+
 int spari_frame_form(spari_frame *f, const spari_body *damped, const double *arm) {
     spari_body undragged = *damped, *body = &undragged;
     body->mass_damping = 0; /* it is added to D below, for the deformation alone */
-    setup w = {.body = body, .m = 6 * body->per_element, .arm = arm};
-    int64_t mm = (int64_t)w.m * w.m, n = f->nodes;
-    w.q = spari_zalloc(7 * n + 13 * n + 4 * mm + 6 * n, sizeof *w.q);
-    if (!w.q) {
+    setup w;
+    if (begin_setup(&w, body, arm)) {
         return SPAR_ERR_MEMORY;
-    }
-    w.v = w.q + 7 * n, w.a = w.v + 6 * n, w.field = w.a + 7 * n;
-    for (int k = 0; k < 4; k++) {
-        w.S[k] = w.field + 6 * n + mm * k;
-    }
-    for (int64_t i = 0; i < n; i++) {
-        w.q[7 * i + 3] = 1;
     }
     for (int e = 0; e < body->elements; e++) { /* without motion and loads the tangent is K + cv D + cm M */
         int64_t at = (int64_t)w.m * w.m * e;
@@ -312,6 +220,46 @@ int spari_frame_form(spari_frame *f, const spari_body *damped, const double *arm
     if (damped->mass_damping > 0 && f->M) {
         cblas_daxpy((int)f->size, damped->mass_damping, f->M, 1, f->D, 1);
     }
+    free(w.q);
+    return status;
+}
+
+/* Matrices of the accelerations 1 of the root along the axes: the moments of their forces turn with the sections. */
+static int translation_terms(const setup *w, double *const P[3]) {
+    const double large = 0x1p60; /* the forces are linear in the acceleration: the subtraction loses no digits */
+    const int64_t mm = (int64_t)w->m * w->m;
+    for (int k = 0; k < 3; k++) {
+        memset(w->v, 0, (size_t)(6 * w->body->unique) * sizeof *w->v);
+        memset(w->a, 0, (size_t)(6 * w->body->unique) * sizeof *w->a);
+        for (int64_t i = 0; i < w->body->unique; i++) {
+            w->a[6 * i + k] = large;
+        }
+        for (int e = 0; e < w->body->elements; e++) {
+            double *still = w->S[0], *S = w->S[1];
+            spari_body_tangent(w->body, e, w->q, NULL, NULL, 0, 0, 0, NULL, still);
+            spari_body_tangent(w->body, e, w->q, w->v, w->a, 0, 0, 0, NULL, S);
+            for (int64_t i = 0; i < mm; i++) {
+                P[k][mm * e + i] = (S[i] - still[i]) / large;
+            }
+        }
+        for (int64_t i = 0; i < w->body->unique; i++) {
+            w->a[6 * i + k] = 1;
+        }
+        spari_body_residual(w->body, w->q, w->v, w->a, 0, w->field, NULL);
+        add_half_moments(w, w->field, P[k]);
+    }
+    return spari_frame_add_stretch(w->body, w->arm, w->q, SPARI_TRANSLATIONS, 3, P);
+}
+
+int spari_frame_form_translations(const spari_body *damped, const double *arm, double *const P[3]) {
+    spari_body loose = *damped;
+    loose.mass_damping = 0;
+    loose.pre = NULL;
+    setup w;
+    if (begin_setup(&w, &loose, arm)) {
+        return SPAR_ERR_MEMORY;
+    }
+    int status = translation_terms(&w, P);
     free(w.q);
     return status;
 }

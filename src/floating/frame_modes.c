@@ -113,15 +113,14 @@ int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols) {
     return status;
 }
 
-/* *X := basis^T X basis */
-static int project_matrix(const spari_frame *f, int cols, double **X) {
-    int m = f->block, step = f->block - f->overlap;
+int spari_frame_project_matrix(const spari_frame *f, const spari_body *body, int cols, double **X) {
+    int m = 6 * body->per_element, step = m - 6;
     double *to = spari_zalloc((int64_t)cols * cols, sizeof *to), *half = spari_zalloc((int64_t)m * cols, sizeof *half);
     if (!to || !half) {
         SPARI_FREE(to, half);
         return 1;
     }
-    for (int e = 0; e < f->elements; e++) {
+    for (int e = 0; e < body->elements; e++) {
         const double *b = f->basis + (int64_t)e * step * cols;
         SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, cols, m, 1, *X + (int64_t)m * m * e, m, b,
                                cols, 0, half, cols));
@@ -153,7 +152,7 @@ int spari_frame_project(spari_frame *f, const spar_member *m, int cols) {
         all[7 + SPARI_SPIN_PRODUCTS + k] = &f->E[k];
     }
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
-        bad = bad || (*all[k] && project_matrix(f, cols, all[k]));
+        bad = bad || (*all[k] && spari_frame_project_matrix(f, m->body, cols, all[k]));
     }
     double *part = spari_zalloc(cols, sizeof *part);
     double *const *const vectors[] = {f->f, f->rigid, &f->pull};
@@ -203,23 +202,32 @@ void spari_frame_remass(spar_member *m) {
 
 /* ---- about a state ---- */
 
+/* The terms of the stiffness about member->after, in steady motion: without angular acceleration. */
+static int terms_about(const spar_member *m, double rates[SPARI_FRAME_RATES], spari_frame_term term[SPARI_FIELDS],
+                       int *terms) {
+    spari_pose root = spari_member_pose(m, &m->after);
+    memcpy(root.a, m->root == SPAR_ROOT_DRIVEN ? m->after.a : root.a, 3 * sizeof *root.a);
+    spari_frame_rates(m, &root, !(m->effects & SPAR_EFFECT_INERTIA), 1, rates);
+    SPARI_TRY(spari_frame_weigh(m->solution, m, rates + 6));
+    *terms = spari_frame_terms(m->solution, rates, term);
+    return SPAR_OK;
+}
+
 int spari_frame_problem(const spar_member *m, spari_pencil *to) {
     const spari_frame *f = m->solution;
-    const spari_pose pose = spari_member_pose(m, &m->after);
-    int constrained = spari_member_constrained(m), step = f->block - f->overlap;
+    int constrained = spari_member_constrained(m), step = f->block - f->overlap, terms = 0;
     int64_t size = (int64_t)f->block * f->block;
-    double omega[3], *K = spari_zalloc(size, sizeof *K);
+    double rates[SPARI_FRAME_RATES];
+    spari_frame_term term[SPARI_FIELDS];
+    SPARI_TRY(terms_about(m, rates, term, &terms));
+    double *K = spari_zalloc(size, sizeof *K);
     if (!K) {
         return SPAR_ERR_MEMORY;
     }
-    spari_rotate_back(pose.q + 3, pose.v + 3, omega);
     for (int e = 0; e < f->elements; e++) {
         memcpy(K, f->K + size * e, (size_t)size * sizeof *K);
-        for (int k = 0; k < SPARI_SPIN_PRODUCTS && f->N[0]; k++) {
-            double c = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
-            for (int64_t i = 0; i < size; i++) {
-                K[i] += c * f->N[k][size * e + i];
-            }
+        for (int k = 0; k < terms; k++) {
+            cblas_daxpy((int)size, term[k].factor, term[k].X + size * e, 1, K, 1);
         }
         spari_pencil_add_symmetric(to, e * step - constrained, f->block, K, f->M + size * e);
     }
@@ -237,23 +245,22 @@ int spari_frame_linearise(const spar_member *m, const double w[3], spari_pencil 
     if (spari_norm(difference) > 1e-4 * fmax(own, spari_norm(w))) {
         return SPAR_ERR_UNSUPPORTED;
     }
-    const spari_pose pose = spari_member_pose(m, &m->after);
-    int constrained = spari_member_constrained(m), step = f->block - f->overlap;
+    int constrained = spari_member_constrained(m), step = f->block - f->overlap, terms = 0;
     int64_t mm = (int64_t)f->block * f->block;
-    double omega[3];
-    spari_rotate_back(pose.q + 3, pose.v + 3, omega);
+    double omega[SPARI_FRAME_RATES];
+    spari_frame_term term[SPARI_FIELDS];
+    SPARI_TRY(terms_about(m, omega, term, &terms));
     for (int e = 0; e < f->elements; e++) {
         int64_t at = mm * e;
         spari_pencil_add(to, e * step - constrained, f->block, f->block, f->K + at, f->D ? f->D + at : NULL,
                          f->M ? f->M + at : NULL);
-        for (int i = 0; i < f->block * f->block && f->N[0]; i++) {
+        for (int i = 0; i < f->block * f->block && (f->N[0] || terms > 0); i++) {
             int row = e * step - constrained + i / f->block, column = e * step - constrained + i % f->block;
             spari_pencil_entry x = {to->base + row, to->base + column, 0, 0, 0};
-            for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
-                double c = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
-                x.k += c * f->N[k][at + i];
+            for (int k = 0; k < terms; k++) {
+                x.k += term[k].factor * term[k].X[at + i];
             }
-            for (int k = 0; k < 3; k++) {
+            for (int k = 0; k < 3 && f->N[0]; k++) {
                 x.c += omega[k] * f->G[k][at + i];
             }
             if (row >= 0 && column >= 0) {

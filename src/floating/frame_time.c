@@ -133,49 +133,89 @@ void spari_frame_publish(spar_member *m) {
 
 /* ---- time ---- */
 
-/* Whether two rotation rates are the same except for rounding; that of accelerations is relative to omega squared. */
-static int is_same_rotation(const double before[6], const double rates[6]) {
+/* Whether two sets of rates are the same except for rounding; that of angular accelerations is relative to omega
+   squared. */
+static int is_same_motion(const double before[SPARI_FRAME_RATES], const double rates[SPARI_FRAME_RATES]) {
     const double speed = spari_norm(rates), rate = spari_norm(rates + 3) + speed * speed;
-    double change[6];
-    for (int k = 0; k < 6; k++) {
+    double change[SPARI_FRAME_RATES];
+    for (int k = 0; k < SPARI_FRAME_RATES; k++) {
         change[k] = rates[k] - before[k];
     }
-    return spari_norm(change) <= 1e-13 * speed && spari_norm(change + 3) <= 1e-13 * rate;
+    return spari_norm(change) <= 1e-13 * speed && spari_norm(change + 3) <= 1e-13 * rate &&
+           spari_norm(change + 6) <= 1e-13 * spari_norm(rates + 6);
 }
 
-void spari_frame_combine(spari_frame *f, const double rates[6]) {
-    const double *omega = rates;
-    if (f->combined && is_same_rotation(f->rates, rates)) {
-        return;
+void spari_frame_rates(const spar_member *m, const spari_pose *root, int still, double factor,
+                       double rates[SPARI_FRAME_RATES]) {
+    double field[3];
+    for (int k = 0; k < 3; k++) {
+        field[k] = (still ? 0 : root->a[k]) - factor * m->body->gravity[k];
     }
+    memset(rates, 0, SPARI_FRAME_RATES * sizeof *rates);
+    spari_rotate_back(root->q + 3, root->v + 3, rates);
+    if (!still) {
+        spari_rotate_back(root->q + 3, root->a + 3, rates + 3);
+    }
+    spari_rotate_back(root->q + 3, field, rates + 6);
+}
+
+int spari_frame_terms(const spari_frame *f, const double rates[SPARI_FRAME_RATES],
+                      spari_frame_term term[SPARI_FIELDS]) {
+    int n = 0;
+    for (int k = 0; k < SPARI_SPIN_PRODUCTS && f->N[0]; k++) {
+        const double c = rates[spari_frame_pair[k][0]] * rates[spari_frame_pair[k][1]];
+        if (c != 0) {
+            term[n++] = (spari_frame_term){c, f->N[k]};
+        }
+    }
+    for (int k = 0; k < 6; k++) {
+        const double *X = k < 3 ? f->E[k] : f->P[k - 3];
+        if (X && rates[3 + k] != 0) {
+            term[n++] = (spari_frame_term){rates[3 + k], X};
+        }
+    }
+    return n;
+}
+
+/* D + G(omega) */
+static void combine_rates(spari_frame *f, const double omega[3]) {
+    memset(f->sumC, 0, (size_t)f->size * sizeof *f->sumC);
+    if (f->D) {
+        memcpy(f->sumC, f->D, (size_t)f->size * sizeof *f->sumC);
+    }
+    for (int k = 0; k < 3; k++) {
+        if (f->G[k] && omega[k] != 0) {
+            cblas_daxpy((int)f->size, omega[k], f->G[k], 1, f->sumC, 1);
+        }
+    }
+}
+
+int spari_frame_combine(spari_frame *f, const spar_member *m, const double rates[SPARI_FRAME_RATES]) {
+    if (f->combined && is_same_motion(f->rates, rates)) {
+        return SPAR_OK;
+    }
+    SPARI_TRY(spari_frame_weigh(f, m, rates + 6));
     memcpy(f->rates, rates, sizeof f->rates);
     f->combined = 1;
     if (f->sumC) {
-        for (int64_t i = 0; i < f->size; i++) {
-            f->sumC[i] = f->D ? f->D[i] : 0;
+        combine_rates(f, rates);
+    }
+    if (f->sumf) {
+        memset(f->sumf, 0, (size_t)f->n * sizeof *f->sumf);
+        for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
+            const double c = rates[spari_frame_pair[k][0]] * rates[spari_frame_pair[k][1]];
+            cblas_daxpy(c != 0 ? f->n : 0, c, f->f[k], 1, f->sumf, 1);
         }
     }
-    if (!f->N[0]) {
-        return;
-    }
-    memcpy(f->sumK, f->K, (size_t)f->size * sizeof *f->sumK);
-    memset(f->sumf, 0, (size_t)f->n * sizeof *f->sumf);
-    double c[SPARI_SPIN_PRODUCTS];
-    for (int k = 0; k < SPARI_SPIN_PRODUCTS; k++) {
-        c[k] = omega[spari_frame_pair[k][0]] * omega[spari_frame_pair[k][1]];
-        if (c[k] != 0) {
-            cblas_daxpy((int)f->size, c[k], f->N[k], 1, f->sumK, 1);
-            cblas_daxpy(f->n, c[k], f->f[k], 1, f->sumf, 1);
+    if (f->sumK) {
+        spari_frame_term term[SPARI_FIELDS];
+        const int terms = spari_frame_terms(f, rates, term);
+        memcpy(f->sumK, f->K, (size_t)f->size * sizeof *f->sumK);
+        for (int k = 0; k < terms; k++) {
+            cblas_daxpy((int)f->size, term[k].factor, term[k].X, 1, f->sumK, 1);
         }
     }
-    for (int k = 0; k < 3; k++) {
-        if (omega[k] != 0) {
-            cblas_daxpy((int)f->size, omega[k], f->G[k], 1, f->sumC, 1);
-        }
-        if (rates[3 + k] != 0) {
-            cblas_daxpy((int)f->size, rates[3 + k], f->E[k], 1, f->sumK, 1);
-        }
-    }
+    return SPAR_OK;
 }
 
 void spari_frame_gather(const spari_frame *f, const double *x, double *out) {
@@ -372,8 +412,8 @@ void spari_frame_restart(spar_member *m) {
 
 enum {
     STATE_HEAD = 13,
-    STATE_ROTATION = STATE_HEAD,
-    STATE_BEGUN = STATE_ROTATION + 12,
+    STATE_RATES = STATE_HEAD,
+    STATE_BEGUN = STATE_RATES + 2 * SPARI_FRAME_RATES,
     STATE_ENDS = STATE_BEGUN + sizeof(spari_frame_tangent_state) / sizeof(double),
     STATE_ROOT = sizeof(spari_pose) / sizeof(double)
 };
@@ -407,8 +447,8 @@ void spari_frame_save(const spar_member *m, double *state) {
                                      (double)f->factors};
     const spari_frame_state *const ends[2] = {&f->begin, &f->to};
     memcpy(state, head, sizeof head);
-    memcpy(state + STATE_ROTATION, f->rates, sizeof f->rates);
-    memcpy(state + STATE_ROTATION + 6, f->tangent.rates, sizeof f->tangent.rates);
+    memcpy(state + STATE_RATES, f->rates, sizeof f->rates);
+    memcpy(state + STATE_RATES + SPARI_FRAME_RATES, f->tangent.rates, sizeof f->tangent.rates);
     memcpy(state + STATE_BEGUN, &f->begun, sizeof f->begun);
     double *at = state + STATE_ENDS;
     for (int k = 0; k < 2; k++, at += STATE_ROOT + 4 * (int64_t)f->n) {
@@ -435,7 +475,7 @@ int spari_frame_is_state(const spar_member *m, const double *state, int64_t coun
            (factors == 0 || spari_linear_is_state(f->linear, state + at + before));
 }
 
-/* Forms the sums for the saved rotation rates again, with the same bits. */
+/* Forms the sums for the saved rates again, with the same bits. */
 void spari_frame_load(spar_member *m, const double *state) {
     spari_frame *f = m->solution;
     spari_frame_state *const ends[2] = {&f->begin, &f->to};
@@ -444,13 +484,13 @@ void spari_frame_load(spar_member *m, const double *state) {
     f->steps.started = state[4] != 0;
     f->combined = 0;
     if (state[5] != 0) {
-        spari_frame_combine(f, state + STATE_ROTATION);
+        (void)spari_frame_combine(f, m, state + STATE_RATES);
     }
     f->tangent.left = state[6];
     f->steps.begin = (spari_pattern){state[7], (int)state[8]};
     f->steps.solved = (spari_pattern){state[9], (int)state[10]};
     f->solves = (int64_t)state[11], f->factors = (int64_t)state[12];
-    memcpy(f->tangent.rates, state + STATE_ROTATION + 6, sizeof f->tangent.rates);
+    memcpy(f->tangent.rates, state + STATE_RATES + SPARI_FRAME_RATES, sizeof f->tangent.rates);
     memcpy(&f->begun, state + STATE_BEGUN, sizeof f->begun);
     const double *at = state + STATE_ENDS;
     for (int k = 0; k < 2; k++, at += STATE_ROOT + 4 * (int64_t)f->n) {
@@ -475,6 +515,10 @@ static double half_form(spari_frame *f, const double *X, const double *x) {
 int spari_frame_energy(const spar_member *m, double energy[4]) {
     spari_frame *f = m->solution;
     SPARI_TRY(spari_energy_of_body(m, energy));
+    const spari_pose pose = spari_member_pose(m, &m->after);
+    double rates[SPARI_FRAME_RATES];
+    spari_frame_rates(m, &pose, 1, 1, rates);
+    SPARI_TRY(spari_frame_weigh(f, m, rates + 6));
     double *y = spari_zalloc(2 * (int64_t)f->n, sizeof *y), *rate = y + f->n;
     if (!y) {
         return SPAR_ERR_MEMORY;
@@ -488,6 +532,9 @@ int spari_frame_energy(const spar_member *m, double energy[4]) {
         for (int k = 0; k < 3 && f->M; k++) {
             energy[2] -= m->body->gravity[k] * cblas_ddot(f->n, f->rigid[k], 1, y, 1);
         }
+    }
+    for (int k = 0; k < 3 && f->P[k]; k++) { /* weight and the shortening of a bent line */
+        energy[2] += rates[6 + k] != 0 ? rates[6 + k] * half_form(f, f->P[k], y) : 0;
     }
     free(y);
     return SPAR_OK;

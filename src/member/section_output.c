@@ -102,14 +102,16 @@ static void forces_of_strains(const spar_member *m, double eta, const double loc
 }
 
 /* Section forces from equilibrium of the part beyond. */
-static void forces_of_balance(const spari_beyond *beyond, const spar_member *m, const spari_station *s,
-                              const point_one *p, double force[6]) {
-    double global[6];
+static void forces_of_balance(const spari_beyond *beyond, const spari_station *s, const point_one *p, double force[6]) {
+    double global[2][6];
     spari_beyond_at(beyond, s, global);
-    for (int k = 0; k < 6 && !spari_beyond_is_undeformed(m); k += 3) {
-        spari_rotate_back(p->r, global + k, global + k);
+    for (int k = 0; k < 6; k += 3) {
+        spari_rotate_back(p->r, global[1] + k, global[1] + k);
     }
-    to_local(s->R, global, force);
+    for (int k = 0; k < 6; k++) {
+        global[0][k] += global[1][k];
+    }
+    to_local(s->R, global[0], force);
 }
 
 /* Requested results at each position; may be NULL. */
@@ -136,7 +138,7 @@ static void section_output(const spar_member *m, const spari_station *s, double 
     if (to->force && !beyond) {
         forces_of_strains(m, eta, local, rate, to->force + 6 * i);
     } else if (to->force) {
-        forces_of_balance(beyond, m, s, &p, to->force + 6 * i);
+        forces_of_balance(beyond, s, &p, to->force + 6 * i);
     }
     for (int k = 0; k < 3 && to->x; k++) {
         to->x[3 * i + k] = s->x[k] + f[SPARI_LANES * (U + k)];

@@ -18,14 +18,19 @@ typedef struct point_force {
     double xi, x[3], force[6];
 } point_force;
 
-struct spari_beyond {
-    const spar_member *member;
+/* Forces on a line. */
+typedef struct line_forces {
     int64_t masses;
     point_force *mass; /* [masses] */
-    double *x;         /* [nodes][3] positions of the nodes, deformed if the equations are geometrically exact */
+    double *x;         /* [nodes][3] positions of the nodes */
     double *spread;    /* [nodes][6] */
     double *point;     /* [nodes][6] */
     double *sum;       /* [elements + 1][6] of all elements from e on, about the first node */
+} line_forces;
+
+struct spari_beyond {
+    const spar_member *member;
+    line_forces *on[2]; /* that act on the reference, and where the line is; NULL: none */
     double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES], gauss[SPARI_MAX_NODES], weight[SPARI_MAX_NODES];
 };
 
@@ -34,14 +39,18 @@ int spari_beyond_is_known(const spar_member *m) {
            m->body->elements == m->mesh.elements && m->body->per_element == m->mesh.per_element;
 }
 
-int spari_beyond_is_undeformed(const spar_member *m) {
-    return spari_member_is_linear_at_rest(m) && !m->body->pre;
+int spari_member_is_undeformed(const spar_member *m) {
+    return spari_member_is_linear_at_rest(m) && !(m->body && m->body->pre);
 }
 
 void spari_beyond_free(spari_beyond *b) {
-    if (b) {
-        SPARI_FREE(b->mass, b->x, b->spread, b->point, b->sum, b);
+    for (int k = 0; k < 2 && b; k++) {
+        line_forces *f = b->on[k];
+        if (f) {
+            SPARI_FREE(f->mass, f->x, f->spread, f->point, f->sum, f);
+        }
     }
+    free(b);
 }
 
 static void add_about(const double center[3], const double x[3], const double f[6], double sum[6]) {
@@ -56,13 +65,7 @@ static void add_about(const double center[3], const double x[3], const double f[
 
 /* ---- inertia and weight ---- */
 
-/* The motion as in the equilibrium equations; for linear members in a fixed frame, accelerations at the reference. */
-typedef struct inertial {
-    double *q, *v, *a, *workspace; /* [unique] 7, 6, 6, 6 */
-    int still;
-} inertial;
-
-static void fill_motion(const spar_member *m, inertial *w) {
+void spari_inertial_fill(const spar_member *m, const spari_inertial *w) {
     const spari_body *body = m->body;
     const int64_t n = body->unique;
     for (int64_t i = 0; i < n; i++) {
@@ -88,8 +91,9 @@ static void fill_motion(const spar_member *m, inertial *w) {
     }
 }
 
-/* Nodal forces [P][6] of inertia minus weight on element e, with the points' weights [slots]. */
-static void element_inertia(const spari_body *body, const inertial *w, int e, double *weights, double *r) {
+/* Nodal forces [P][6] of inertia minus `factor` times weight on element e, with the points' weights [slots]. */
+static void element_inertia(const spari_body *body, const spari_inertial *w, double factor, int e, double *weights,
+                            double *r) {
     const int64_t first = (int64_t)e * (body->per_element - 1);
     spari_body part = *body;
     part.elements = 1, part.unique = body->per_element;
@@ -99,11 +103,12 @@ static void element_inertia(const spari_body *body, const inertial *w, int e, do
     part.pool = NULL;
     part.weight = weights;
     (void)spari_body_residual(&part, w->q + 7 * first, w->still ? NULL : w->v + 6 * first,
-                              w->still ? NULL : w->a + 6 * first, 1, r, NULL);
+                              w->still ? NULL : w->a + 6 * first, factor, r, NULL);
 }
 
 /* Force of each point mass of element e on the beam; their weights are then 0. */
-static void take_masses(spari_beyond *b, const inertial *w, int e, double *weights) {
+static void take_masses(const spari_beyond *b, line_forces *on, const spari_inertial *w, double factor, int e,
+                        double *weights) {
     const spar_member *m = b->member;
     const spari_body *body = m->body;
     const int P = m->mesh.per_element, points = body->first[e + 1] - body->first[e],
@@ -115,21 +120,21 @@ static void take_masses(spari_beyond *b, const inertial *w, int e, double *weigh
         if (spari_point_mass_element(m, k, &xi) != e) {
             continue;
         }
-        point_force *p = b->mass + b->masses++;
+        point_force *p = on->mass + on->masses++;
         double *alone = weights + body->slot[body->elements]; /* all others: 0 */
         memset(alone, 0, (size_t)body->slot[body->elements] * sizeof *alone);
         alone[body->slot[e] + next] = 1;
-        element_inertia(body, w, e, alone, r);
+        element_inertia(body, w, factor, e, alone, r);
         at[next++] = 0;
         *p = (point_force){.element = e, .xi = xi};
         spari_lagrange(P, b->gll, b->bary, xi, phi, NULL);
         for (int l = 0; l < P; l++) {
             for (int c = 0; c < 3; c++) {
-                p->x[c] += phi[l] * b->x[3 * ((int64_t)e * P + l) + c];
+                p->x[c] += phi[l] * on->x[3 * ((int64_t)e * P + l) + c];
             }
         }
         for (int l = 0; l < P; l++) {
-            add_about(p->x, b->x + 3 * ((int64_t)e * P + l), r + 6 * l, p->force);
+            add_about(p->x, on->x + 3 * ((int64_t)e * P + l), r + 6 * l, p->force);
         }
         for (int c = 0; c < 6; c++) {
             p->force[c] = -p->force[c];
@@ -137,7 +142,8 @@ static void take_masses(spari_beyond *b, const inertial *w, int e, double *weigh
     }
 }
 
-static int add_inertia(spari_beyond *b) {
+/* weight: 1 of it, 0, or -1: it alone, where the nodes are. */
+static int add_inertia(const spari_beyond *b, line_forces *on, int weight) {
     const spar_member *m = b->member;
     const spari_body *body = m->body;
     const int64_t n = body->unique, slots = body->slot[body->elements];
@@ -146,16 +152,19 @@ static int add_inertia(spari_beyond *b) {
     if (!workspace) {
         return SPAR_ERR_MEMORY;
     }
-    inertial w = {workspace, workspace + 7 * n, workspace + 13 * n, workspace + 19 * n,
-                  !(m->effects & SPAR_EFFECT_INERTIA)};
-    fill_motion(m, &w);
+    const spari_inertial w = {workspace, workspace + 7 * n, workspace + 13 * n, workspace + 19 * n,
+                              weight < 0 || !(m->effects & SPAR_EFFECT_INERTIA)};
+    spari_inertial_fill(m, &w);
+    if (weight < 0) {
+        spari_member_to_unique(m, 7, m->after.q, w.q);
+    }
     memcpy(weights, body->weight, (size_t)slots * sizeof *weights);
     for (int e = 0; e < m->mesh.elements && body->mass; e++) {
-        double r[6 * SPARI_MAX_NODES], *to = b->spread + 6 * (int64_t)e * m->mesh.per_element;
+        double r[6 * SPARI_MAX_NODES], *to = on->spread + 6 * (int64_t)e * m->mesh.per_element;
         if (lumped) {
-            take_masses(b, &w, e, weights);
+            take_masses(b, on, &w, weight != 0, e, weights);
         }
-        element_inertia(body, &w, e, weights, r);
+        element_inertia(body, &w, weight != 0, e, weights, r);
         for (int i = 0; i < 6 * m->mesh.per_element; i++) {
             to[i] -= r[i];
         }
@@ -166,18 +175,17 @@ static int add_inertia(spari_beyond *b) {
 
 /* ---- loads ---- */
 
-static void gather_loads_at(spari_beyond *b) {
-    const spar_member *m = b->member;
+static void gather_loads_at(const spar_member *m, line_forces *on) {
     const double *follower = spari_applied_follower(m);
     const int turns = !spari_member_is_linear_at_rest(m);
     if (spari_carries_loads(m)) {
-        spari_applied_nodal(m, m->after.q, b->spread);
+        spari_applied_nodal(m, m->after.q, on->spread);
     }
     for (int64_t i = 0; i < m->nodes; i++) {
         double at_node[6] = {0};
         for (int k = 0; k < 6; k++) {
             at_node[k] = m->load.dead[6 * i + k];
-            b->spread[6 * i + k] += m->load.solved[1][6 * i + k] - at_node[k];
+            on->spread[6 * i + k] += m->load.solved[1][6 * i + k] - at_node[k];
         }
         for (int k = 0; k < 6 && follower; k += 3) {
             double f[3];
@@ -187,70 +195,86 @@ static void gather_loads_at(spari_beyond *b) {
             }
             for (int c = 0; c < 3; c++) {
                 at_node[k + c] += f[c];
-                b->spread[6 * i + k + c] -= f[c];
+                on->spread[6 * i + k + c] -= f[c];
             }
         }
         if (m->session->joints) {
             spari_joints_on(m, i, at_node);
         }
-        memcpy(b->point + 6 * i, at_node, sizeof at_node);
+        memcpy(on->point + 6 * i, at_node, sizeof at_node);
     }
 }
 
 /* ---- assembly ---- */
 
-static void sum_elements(spari_beyond *b) {
-    const spar_member *m = b->member;
+static void sum_elements(const spar_member *m, line_forces *on) {
     const int P = m->mesh.per_element;
     for (int e = m->mesh.elements - 1; e >= 0; e--) {
-        double *sum = b->sum + 6 * (int64_t)e;
+        double *sum = on->sum + 6 * (int64_t)e;
         for (int k = 0; k < 6; k++) {
             sum[k] = sum[6 + k];
         }
         for (int64_t i = (int64_t)e * P; i < (int64_t)(e + 1) * P; i++) {
-            add_about(b->x, b->x + 3 * i, b->spread + 6 * i, sum);
-            add_about(b->x, b->x + 3 * i, b->point + 6 * i, sum);
+            add_about(on->x, on->x + 3 * i, on->spread + 6 * i, sum);
+            add_about(on->x, on->x + 3 * i, on->point + 6 * i, sum);
         }
-        for (int64_t k = 0; k < b->masses; k++) {
-            if (b->mass[k].element == e) {
-                add_about(b->x, b->mass[k].x, b->mass[k].force, sum);
+        for (int64_t k = 0; k < on->masses; k++) {
+            if (on->mass[k].element == e) {
+                add_about(on->x, on->mass[k].x, on->mass[k].force, sum);
             }
         }
     }
 }
 
+/* The forces on the reference (moved 0) or on the line where it is. NULL: no memory. */
+static line_forces *line_forces_of(const spari_beyond *b, int moved, int loads, int weight) {
+    const spar_member *m = b->member;
+    line_forces *on = spari_zalloc(1, sizeof *on);
+    if (!on) {
+        return NULL;
+    }
+    on->x = spari_zalloc(3 * m->nodes, sizeof *on->x);
+    on->spread = spari_zalloc(6 * m->nodes, sizeof *on->spread);
+    on->point = spari_zalloc(6 * m->nodes, sizeof *on->point);
+    on->sum = spari_zalloc(6 * ((int64_t)m->mesh.elements + 1), sizeof *on->sum);
+    on->mass = spari_zalloc(m->beam->point_masses.count + 1, sizeof *on->mass);
+    int ok = on->x && on->spread && on->point && on->sum && on->mass;
+    for (int64_t i = 0; i < 3 * m->nodes && ok; i++) {
+        on->x[i] = m->xr[i] + (moved ? m->after.q[7 * (i / 3) + i % 3] : 0);
+    }
+    if (ok && loads) {
+        gather_loads_at(m, on);
+    }
+    if (!ok || add_inertia(b, on, weight) != SPAR_OK) {
+        SPARI_FREE(on->mass, on->x, on->spread, on->point, on->sum, on);
+        return NULL;
+    }
+    sum_elements(m, on);
+    return on;
+}
+
+/* Weight moves with a linear member at rest, as in its equations (floating/frame.h); all other forces stay. */
 spari_beyond *spari_beyond_create(const spar_member *m) {
     spari_beyond *b = spari_zalloc(1, sizeof *b);
     if (!b) {
         return NULL;
     }
     b->member = m;
-    b->x = spari_zalloc(3 * m->nodes, sizeof *b->x);
-    b->spread = spari_zalloc(6 * m->nodes, sizeof *b->spread);
-    b->point = spari_zalloc(6 * m->nodes, sizeof *b->point);
-    b->sum = spari_zalloc(6 * ((int64_t)m->mesh.elements + 1), sizeof *b->sum);
-    b->mass = spari_zalloc(m->beam->point_masses.count + 1, sizeof *b->mass);
-    if (!b->x || !b->spread || !b->point || !b->sum || !b->mass) {
-        spari_beyond_free(b);
-        return NULL;
-    }
     spari_gll(m->mesh.per_element, b->gll, NULL, b->bary);
     spari_gauss(m->mesh.per_element, b->gauss, b->weight);
-    for (int64_t i = 0; i < 3 * m->nodes; i++) {
-        b->x[i] = m->xr[i] + (spari_beyond_is_undeformed(m) ? 0 : m->after.q[7 * (i / 3) + i % 3]);
-    }
-    gather_loads_at(b);
-    if (add_inertia(b) != SPAR_OK) {
+    const int undeformed = spari_member_is_undeformed(m), apart = undeformed && spari_norm(m->body->gravity) > 0;
+    b->on[!undeformed] = line_forces_of(b, !undeformed, 1, !apart);
+    b->on[1] = apart ? line_forces_of(b, 1, 0, -1) : b->on[1];
+    if (!b->on[!undeformed] || (apart && !b->on[1])) {
         spari_beyond_free(b);
         return NULL;
     }
-    sum_elements(b);
     return b;
 }
 
 /* Distributed loads on the station's element beyond it: forces by their shares. Their moment is the integral of the
    line's slope times the force beyond, which Gauss quadrature integrates exactly. */
-static void add_share(const spari_beyond *b, const spari_station *s, double force[6]) {
+static void add_share(const spari_beyond *b, const line_forces *on, const spari_station *s, double force[6]) {
     const int P = b->member->mesh.per_element;
     const int64_t from = (int64_t)s->element * P;
     double share[SPARI_MAX_NODES], phi[SPARI_MAX_NODES], dphi[SPARI_MAX_NODES];
@@ -258,7 +282,7 @@ static void add_share(const spari_beyond *b, const spari_station *s, double forc
     spari_share_beyond(P, b->gll, s->xi, share);
     for (int l = 0; l < P; l++) {
         for (int k = 0; k < 6; k++) {
-            force[k] += share[l] * b->spread[6 * (from + l) + k];
+            force[k] += share[l] * on->spread[6 * (from + l) + k];
         }
     }
     for (int g = 0; g < P; g++) {
@@ -268,8 +292,8 @@ static void add_share(const spari_beyond *b, const spari_station *s, double forc
         spari_share_beyond(P, b->gll, at, share);
         for (int l = 0; l < P; l++) {
             for (int k = 0; k < 3; k++) {
-                slope[k] += dphi[l] * b->x[3 * (from + l) + k];
-                f[k] += share[l] * b->spread[6 * (from + l) + k];
+                slope[k] += dphi[l] * on->x[3 * (from + l) + k];
+                f[k] += share[l] * on->spread[6 * (from + l) + k];
             }
         }
         spari_cross(slope, f, moment);
@@ -279,18 +303,17 @@ static void add_share(const spari_beyond *b, const spari_station *s, double forc
     }
 }
 
-void spari_beyond_at(const spari_beyond *b, const spari_station *s, double force[6]) {
-    const spar_member *m = b->member;
-    const int P = m->mesh.per_element;
-    const double *sum = b->sum + 6 * ((int64_t)s->element + 1), near = 1e-9;
+static void forces_beyond(const spari_beyond *b, const line_forces *on, const spari_station *s, double force[6]) {
+    const int P = b->member->mesh.per_element;
+    const double *sum = on->sum + 6 * ((int64_t)s->element + 1), near = 1e-9;
     double x[3] = {0}, phi[SPARI_MAX_NODES], moment[3];
     spari_lagrange(P, b->gll, b->bary, s->xi, phi, NULL);
     for (int l = 0; l < P; l++) {
         for (int k = 0; k < 3; k++) {
-            x[k] += phi[l] * b->x[3 * ((int64_t)s->element * P + l) + k];
+            x[k] += phi[l] * on->x[3 * ((int64_t)s->element * P + l) + k];
         }
     }
-    const double arm[3] = {b->x[0] - x[0], b->x[1] - x[1], b->x[2] - x[2]};
+    const double arm[3] = {on->x[0] - x[0], on->x[1] - x[1], on->x[2] - x[2]};
     spari_cross(arm, sum, moment);
     for (int k = 0; k < 3; k++) {
         force[k] = sum[k];
@@ -299,13 +322,22 @@ void spari_beyond_at(const spari_beyond *b, const spari_station *s, double force
     for (int l = 1; l < P; l++) { /* the first node belongs to the root or to the element before */
         int64_t i = (int64_t)s->element * P + l;
         if (b->gll[l] >= s->xi - near) {
-            add_about(x, b->x + 3 * i, b->point + 6 * i, force);
+            add_about(x, on->x + 3 * i, on->point + 6 * i, force);
         }
     }
-    for (int64_t k = 0; k < b->masses; k++) {
-        if (b->mass[k].element == s->element && b->mass[k].xi >= s->xi - near && b->mass[k].xi > -1) {
-            add_about(x, b->mass[k].x, b->mass[k].force, force);
+    for (int64_t k = 0; k < on->masses; k++) {
+        if (on->mass[k].element == s->element && on->mass[k].xi >= s->xi - near && on->mass[k].xi > -1) {
+            add_about(x, on->mass[k].x, on->mass[k].force, force);
         }
     }
-    add_share(b, s, force);
+    add_share(b, on, s, force);
+}
+
+void spari_beyond_at(const spari_beyond *b, const spari_station *s, double force[2][6]) {
+    memset(force, 0, 2 * sizeof *force);
+    for (int k = 0; k < 2; k++) {
+        if (b->on[k]) {
+            forces_beyond(b, b->on[k], s, force[k]);
+        }
+    }
 }
