@@ -235,6 +235,7 @@ void spari_member_end_start(spar_member *m, int found) {
     memmove(m->now.a, a, (size_t)(6 * m->nodes) * sizeof(double));
     if (found) {
         copy_solved(m, 1, 0);
+        m->state.balanced[0] = 1;
     }
     spari_member_reject(m);
     if (found && m->added) {

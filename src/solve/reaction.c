@@ -38,37 +38,6 @@ void spari_member_reaction_in(const spar_member *m, double *workspace, double lo
     }
 }
 
-int64_t spari_reaction_at_root_size(const spar_member *m) {
-    return 25 * (int64_t)m->body->unique;
-}
-
-void spari_reaction_at_root(const spar_member *m, double *workspace, double load[6]) {
-    memset(load, 0, 6 * sizeof *load);
-    const spari_body *b = m->body;
-    int constrained = spari_member_constrained(m);
-    if (constrained == 0) {
-        return;
-    }
-    int64_t n = b->unique;
-    int still = !(m->effects & SPAR_EFFECT_INERTIA);
-    double *q = workspace, *v = q + 7 * n, *a = v + 6 * n, *r = a + 6 * n;
-    spari_member_to_unique(m, 7, m->after.q, q);
-    spari_member_to_unique(m, 6, m->after.v, v);
-    spari_member_to_unique(m, 6, m->after.a, a);
-    spari_body_residual(b, q, still && !b->D ? NULL : v, still ? NULL : a, 1, r, NULL);
-    if (spari_carries_loads(m)) {
-        spari_applied_residual(m, q, 1, r);
-    }
-    double joint_load[6] = {0};
-    spari_joints_on(m, 0, joint_load);
-    for (int i = 0; i < constrained; i++) { /* the root is node 0, which no element shares */
-        load[i] = r[i] - m->load.solved[1][i] - joint_load[i];
-    }
-    if (spari_member_plane(m)) {
-        spari_plane_project(spari_member_plane(m), 1, load);
-    }
-}
-
 int64_t spari_reaction_of_whole_size(const spar_member *m) {
     return (m->body ? 31 * (int64_t)m->body->unique : 0) + 18 * m->nodes;
 }

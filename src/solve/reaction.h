@@ -9,11 +9,9 @@
 int64_t spari_member_reaction_size(const spar_member *member);
 void spari_member_reaction_in(const spar_member *member, double *workspace, double load[6]);
 
-/* For the rows of the table: from the balance of the root's node, for members whose internal forces are known. */
-int64_t spari_reaction_at_root_size(const spar_member *member);
-void spari_reaction_at_root(const spar_member *member, double *workspace, double load[6]);
-/* From the balance of the whole member: inertia less weight less loads, each at its node; in linear theory, in axes
-   at rest, at the reference position of the node. Internal forces do not enter. */
+/* For the rows of the table: the balance of the whole member, so that the reaction is the rate of its momentum less its
+   weight and loads, with the accelerations that are published. Internal forces do not enter. Initial accelerations are
+   filtered (assembly.c): only this balance holds with them, not that of the root's node. */
 int64_t spari_reaction_of_whole_size(const spar_member *member);
 void spari_reaction_of_whole(const spar_member *member, double *workspace, double load[6]);
 /* Kinetic, strain and potential energy of the body at t^{n+1}. Returns 0 or SPAR_ERR_MEMORY. */
