@@ -140,6 +140,8 @@ static int check(uint64_t at, int k, double *worst) {
     if (usual.status != SPAR_OK || strict.status != SPAR_OK || half.status != SPAR_OK) {
         print_message("%3d: refused: defaults in step %d: %s; strictest in step %d: %s\n", k, usual.steps,
                       usual.message, strict.steps, strict.message);
+        print_message("    added mass %.3g, drag %.3g\n", ratio, drag);
+        scene_print(&c);
         failed = usual.status != SPAR_OK;
     } else {
         const double scale = fmax(strict.scale, DBL_MIN), size = fmax(strict.largest, DBL_MIN),
