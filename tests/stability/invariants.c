@@ -167,7 +167,7 @@ static void run(const motion_scene *c, int strictest, int halves, flight *f) {
         if (f->status == SPAR_OK && (k + 1) % (steps / LOOKS) == 0 && k / (steps / LOOKS) < LOOKS) {
             find(&w, f->at[k / (steps / LOOKS)]);
         }
-        f->slow = scene_is_slow(&w, k, steps * halves);
+        f->slow = scene_is_slow(&w, steps * halves);
         if (f->slow) {
             break;
         }

@@ -96,7 +96,7 @@ static history run(const motion_scene *c, int strictest, int halves, int most, d
                 balance[k] = h.last;
             }
         }
-        h.slow = scene_is_slow(&w, k, most * halves);
+        h.slow = scene_is_slow(&w, most * halves);
         if (h.slow) {
             break;
         }

@@ -46,7 +46,7 @@ static void run(const motion_scene *c, int strictest, int halves, outcome *o) {
             o->largest = fmax(o->largest, sqrt(spari_dot(w.tip, w.tip)));
             o->steps++;
         }
-        if (scene_is_slow(&w, k, halves * c->steps)) {
+        if (scene_is_slow(&w, halves * c->steps)) {
             o->stopped = 1;
             break;
         }

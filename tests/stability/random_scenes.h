@@ -384,8 +384,8 @@ static inline int64_t scene_iterations(const motion_world *w) {
 /* A run of this many iterations a step on average is stopped, so that a scene that hardly converges fails in time. */
 enum { SCENE_ITERATIONS = 40 };
 
-static inline int scene_is_slow(const motion_world *w, int step, int steps) {
-    return step % 8 == 7 && scene_iterations(w) > (int64_t)SCENE_ITERATIONS * steps;
+static inline int scene_is_slow(const motion_world *w, int steps) {
+    return scene_iterations(w) > (int64_t)SCENE_ITERATIONS * steps;
 }
 
 #endif
