@@ -265,7 +265,8 @@ SPAR_API int spar_point_create(spar_session *session, const char *name, const do
      q[4]: in, reference orientation, NULL: none
      mass[36]: in, about the node, in its own frame, [m I, -m c~; m c~, J] with the centre of mass at c; kg, kg m,
            kg m^2
-     member: out */
+     member: out
+   SPAR_ERR_ARGUMENT: no body has such moments of inertia: the largest exceeds the sum of the others. */
 SPAR_API int spar_rigid_create(spar_session *session, const char *name, const double x[3], const double q[4],
                                const double mass[36], spar_member **member);
 /* Creates a geometrically exact (Simo-Reissner) beam of Legendre spectral elements. It needs a line and sections before
@@ -349,7 +350,8 @@ SPAR_API int spar_member_get_motion(const spar_member *member, double *q, double
      a[nodes][6]: in, NULL: unchanged */
 SPAR_API int spar_member_set_motion(spar_member *member, const double *q, const double *v, const double *a);
 /* Prescribes the motion of a driven root, or of a point, at the end of the next step. It is interpolated within the
-   step. Between steps only. Without a new call the root stays where it is.
+   step. Between steps only. Without a new call the root stays where it is. A static solution does not use it: steady
+   rotation comes from spar_member_set_initial_velocity.
      q[7]: in
      v[6]: in, NULL: 0
      a[6]: in, NULL: 0 */

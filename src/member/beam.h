@@ -27,7 +27,10 @@ struct spari_beam {
 int spari_beam_place_nodes(spar_member *member);
 /* Logs a warning if elements have too few nodes for the stiffness of their sections. */
 void spari_beam_tell_locking(const spar_member *member);
-/* Warns if its twist or its estimated first frequency is implausible; logs mass, length and this frequency. */
+/* Warns if its line swings between the axis points. */
+void spari_beam_tell_line(const spar_member *member);
+/* Warns if its twist, sections or estimated first frequency are implausible; logs mass, length and this
+   frequency. */
 void spari_beam_tell_plausible(const spar_member *member);
 /* Builds the body of a checked description. massive: with mass, whatever effects are in force. mu: damping
    coefficients; NULL: none. */
@@ -52,6 +55,8 @@ int spari_beam_rule(const spari_beam *beam);
 /* NULL if the stiffness is symmetric (1e-6 of the diagonal) and positive definite, otherwise a text that describes
    the error. */
 const char *spari_stiffness_fault(const double C[36]);
+/* Whether a section's stiffness looks as if it were in the order of BeamDyn. */
+int spari_section_is_other_order(const double K[36]);
 
 /* A point of a beam's reference line. The caller sets element and xi. */
 typedef struct spari_station {
@@ -75,6 +80,9 @@ int spari_rigid_build(spar_member *member, spari_body **body);
 /* Splits a 6x6 mass matrix in the order (axial, shear y, shear z, torsion, bending y, bending z) into m, c, J.
    Returns NULL, or a text that describes the error. */
 const char *spari_mass_split(const double M[36], double *m, double c[3], double J[6]);
+/* Whether no body has such an inertia: the largest principal moment [2] exceeds the sum of the others [0], [1]. moment:
+   out, about the centre of mass, ascending. */
+int spari_inertia_is_impossible(const double M[36], double moment[3]);
 /* The same, rotated by R (row-major, local to global), as a row of spari_body.mass. */
 void spari_mass_rotate(const double R[9], const double M[36], double out[10]);
 

@@ -91,6 +91,11 @@ int spar_rigid_create(spar_session *session, const char *name, const double x[3]
     const char *wrong = spari_mass_split(mass, &m0, c, J);
     SPARI_REQUIRE(session, !wrong, SPAR_ERR_ARGUMENT, "%s: '%s': the mass matrix is not that of a rigid body: %s",
                   __func__, label, wrong);
+    double moment[3];
+    SPARI_REQUIRE(session, !spari_inertia_is_impossible(mass, moment), SPAR_ERR_ARGUMENT,
+                  "%s: '%s': no body has the moments of inertia %.4g, %.4g, %.4g about its centre of mass: the largest "
+                  "is at most the sum of the others; check the axes and the point they refer to",
+                  __func__, label, moment[0], moment[1], moment[2]);
     spar_member *m;
     SPARI_TRY(member_create(session, __func__, name, SPARI_RIGID, member ? &m : NULL));
     set_place(m, x, q);

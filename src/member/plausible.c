@@ -1,5 +1,5 @@
 /* Warns at the commit about beams that are legal and probably wrong: angles in degrees, stiffness or lengths in other
-   units. */
+   units or in another order, inertia that no section has. */
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "beam.h"
@@ -75,8 +75,36 @@ static void warn_of_twist(const spar_member *m) {
     }
 }
 
+/* One warning of each kind, for the first such section. */
+static void warn_of_sections(const spar_member *m) {
+    const spari_beam *b = m->beam;
+    int64_t swapped = 0;
+    for (int64_t i = 0; i < b->section_count; i++) {
+        swapped += spari_section_is_other_order(b->stiffness + 36 * i);
+    }
+    if (swapped == b->section_count && swapped > 0) {
+        spari_warn(
+            m->session,
+            "member '%s': the stiffness of its sections looks like BeamDyn's order (axial %.3g below shear along "
+            "z %.3g N); give it as axial, shears, torsion, bendings, or read BeamDyn's file with "
+            "spar_beam_read_beamdyn",
+            m->name, b->stiffness[0], b->stiffness[14]);
+    }
+    for (int64_t i = 0; b->mass && i < b->section_count; i++) {
+        double moment[3];
+        if (spari_inertia_is_impossible(b->mass + 36 * i, moment)) {
+            spari_warn(m->session,
+                       "member '%s': no section has the moments of inertia %.4g, %.4g, %.4g kg m of section %lld about "
+                       "its centre of mass: the largest is at most the sum of the others; check the order of the axes",
+                       m->name, moment[0], moment[1], moment[2], (long long)i);
+            return;
+        }
+    }
+}
+
 void spari_beam_tell_plausible(const spar_member *m) {
     warn_of_twist(m);
+    warn_of_sections(m);
     means a = means_of(m);
     if (!(a.mass > 0)) {
         return;

@@ -51,6 +51,11 @@ int spar_beam_set_masses(spar_member *beam, int64_t n, const double *eta, const 
         SPARI_REQUIRE(beam->session, !wrong, SPAR_ERR_ARGUMENT,
                       "%s: '%s': the mass of body %lld is not that of a rigid body: %s", __func__, beam->name,
                       (long long)i, wrong);
+        double moment[3];
+        SPARI_REQUIRE(beam->session, !spari_inertia_is_impossible(mass + 36 * i, moment), SPAR_ERR_ARGUMENT,
+                      "%s: '%s': no body has the moments of inertia %.4g, %.4g, %.4g of body %lld about its centre of "
+                      "mass: the largest is at most the sum of the others; check the axes and the point they refer to",
+                      __func__, beam->name, moment[0], moment[1], moment[2], (long long)i);
     }
     return spari_line_table_set(beam, __func__, "bodies", n, 36, eta, mass, &beam->beam->point_masses);
 }

@@ -276,11 +276,10 @@ static void describe_mass(const double M[36], described *d) {
     d->findings |= fabs(d->polar - d->sum) > 1e-3 * fmax(J[0], J[3] + J[5]) ? SPAR_FINDING_POLAR : 0;
 }
 
-/* Whether the matrices are in the order shear, shear, axial, bending, bending, torsion: the axial stiffness is the
-   largest of its three, the inertia about the axis the sum of the other two. */
-static int is_other_order(const double K[36], const double *M) {
-    double by_spar = M ? fabs(M[21] - M[28] - M[35]) : 0, by_other = M ? fabs(M[35] - M[21] - M[28]) : 0;
-    return K[14] > 1.5 * fmax(K[0], K[7]) && (!M || by_other < 1e-3 * M[35]) && (!M || by_spar > 1e-3 * M[35]);
+/* Whether the stiffness is in the order shear, shear, axial, bending, bending, torsion: the third is the largest of its
+   three, and the last is less than the two before. The mass does not matter: it may be in spar's order. */
+int spari_section_is_other_order(const double K[36]) {
+    return K[14] > 1.5 * fmax(K[0], K[7]) && K[35] < K[21] + K[28];
 }
 
 /* Ratios that structures of known materials keep, in SI units */
@@ -323,7 +322,7 @@ static int describe(const char *call, const double *stiffness, const double *mas
     if (mass) {
         describe_mass(mass, d);
     }
-    d->findings |= is_other_order(stiffness, mass) ? SPAR_FINDING_ORDER : 0;
+    d->findings |= spari_section_is_other_order(stiffness) ? SPAR_FINDING_ORDER : 0;
     if (!(d->findings & SPAR_FINDING_INDEFINITE)) {
         double ratio[RATIOS];
         find_ratios(d->p, ratio);

@@ -100,12 +100,14 @@ typedef struct spari_initial {
     double *acceleration_next; /* the same for a file being loaded */
 } spari_initial;
 
+enum { SPARI_DRIVE_TOLD = 2 }; /* drive_given: a static solution has warned that it does not use it */
+
 /* State of a member, beside its motion. */
 typedef struct spari_member_state {
     int balanced[2];        /* whether the motion `now`, and `after`, is in equilibrium with its loads */
     int overturned;         /* linear: a node has rotated by more than half a revolution */
     int motion_given;       /* set_motion was called in this step */
-    int drive_given;        /* drive_root was called for this or the next step */
+    int drive_given;        /* spar_member_drive was called for this or the next step */
     double dissipated;      /* energy dissipated by damping up to t^n */
     double dissipated_step; /* energy dissipated by damping in this step */
     spari_cuts cuts;        /* of this step; for connected members, those of the first one */

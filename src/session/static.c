@@ -32,6 +32,33 @@ static int check_held(const spar_member *m, const char *call) {
     return SPAR_OK;
 }
 
+/* Whether m is solved together with a member (by joints, or the member itself); NULL: all are. */
+static int is_with(const spar_member *member, const spar_member *m) {
+    return !member || m == member || (m->assembly && m->assembly == member->assembly);
+}
+
+/* Whether two motions of a root differ in position or rate. */
+static int differs(const spari_pose *a, const spari_pose *b) {
+    return memcmp(a->q, b->q, sizeof a->q) != 0 || memcmp(a->v, b->v, sizeof a->v) != 0;
+}
+
+/* Roots at rest that have been driven already: the call was for the next step, and the host may take it for the state
+   in which the equilibrium is. Told once for each such call of spar_member_drive. */
+static void tell_drives(spar_session *s, const spar_member *only, const char *call) {
+    static const double rest[6] = {0};
+    for (spar_member *m = s->members; m; m = m->next) {
+        if (is_with(only, m) && m->root == SPAR_ROOT_DRIVEN && m->state.drive_given == 1 &&
+            memcmp(m->drive[0].v, rest, sizeof rest) == 0 && differs(&m->drive[0], &m->drive[1])) {
+            m->state.drive_given = SPARI_DRIVE_TOLD;
+            spari_warn(
+                s,
+                "%s: '%s' was driven before, which counts from the next step on; this equilibrium is that of its "
+                "root at rest where it is; for steady rotation call spar_member_set_initial_velocity before",
+                call, m->name);
+        }
+    }
+}
+
 static int check_member_static(const spar_member *m, const char *call, int load_steps) {
     spar_session *s = m->session;
     SPARI_TRY(spari_need_committed(m, call));
@@ -44,11 +71,6 @@ static int check_member_static(const spar_member *m, const char *call, int load_
                   call, m->name);
     SPARI_TRY(check_held(m, call));
     return s->clock.started ? SPAR_OK : spari_session_pushes(s, call);
-}
-
-/* Whether m is solved together with a member (by joints, or the member itself); NULL: all are. */
-static int is_with(const spar_member *member, const spar_member *m) {
-    return !member || m == member || (m->assembly && m->assembly == member->assembly);
 }
 
 static const double *pushed(const spar_member *m) {
@@ -187,6 +209,7 @@ int spar_member_solve_static(spar_member *member, int load_steps) {
     int status = spari_solvers_place(s, __func__);
     status = status == SPAR_OK ? spari_session_seal(s, save_state(s, member, &saved_state)) : status;
     if (status == SPAR_OK) {
+        tell_drives(s, member, __func__);
         for (spar_member *m = s->members; m; m = m->next) {
             if (is_with(member, m)) {
                 copy_loads(m, m->load.pushed, m->load.before);
@@ -377,6 +400,7 @@ int spar_session_solve_static(spar_session *session, int load_steps, spar_fluid_
         free(saved_state);
         return spari_named(s, __func__, status);
     }
+    tell_drives(s, NULL, __func__);
     status = begin_static(s);
     status = status == SPAR_OK ? find_equilibrium(s, __func__, load_steps, solve, context) : status;
     SPARI_GIVE(iterations, s->state.iteration);

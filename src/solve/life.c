@@ -480,6 +480,7 @@ int spar_member_commit(spar_member *member) {
     }
     member->committed = 1;
     if (member->kind == SPARI_BEAM && member->row->solved && spari_comm_rank(s->ranks.comm) == 0) {
+        spari_beam_tell_line(member);
         spari_beam_tell_plausible(member);
         if (!member->row->whole) {
             spari_beam_tell_locking(member);

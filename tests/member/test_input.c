@@ -46,6 +46,30 @@ static void test_null_handles(void **state) {
     spar_session_destroy(&none);
 }
 
+/* No body has the moments 200, 300, 900, in any axes and about any point; rounded to two digits, or with moments left
+   out, a body may have them. */
+static void test_impossible_inertia(void **state) {
+    (void)state;
+    static const double J[6][3] = {{200, 300, 900}, {200, 900, 300}, {1, 1, 2.1},
+                                   {900, 0, 0},     {300, 200, 500}, {0, 3, 3}};
+    const double x[3] = {0}, straight[4] = {1, 0, 0, 0}, tip = 1;
+    for (int k = 0; k < 6; k++) {
+        double mass[36], c[3] = {0, k == 1 ? 0.4 : 0, 0};
+        spar_session *s = scene_session();
+        spar_member *b, *beam = scene_beam(s, "beam", 1, 12, 10, K, M);
+        scene_mass(mass, 50, c, J[k]);
+        if (k < 2) {
+            REFUSED(s, SPAR_ERR_ARGUMENT, "no body has the moments of inertia",
+                    spar_rigid_create(s, "body", x, straight, mass, &b));
+            REFUSED(s, SPAR_ERR_ARGUMENT, "of body 0", spar_beam_set_masses(beam, 1, &tip, mass));
+        } else {
+            OK(s, spar_rigid_create(s, "body", x, straight, mass, &b));
+            OK(s, spar_beam_set_masses(beam, 1, &tip, mass));
+        }
+        spar_session_destroy(&s);
+    }
+}
+
 static void test_session_settings(void **state) {
     (void)state;
     spar_session *s = scene_session();
@@ -529,6 +553,7 @@ int main(void) {
         cmocka_unit_test(test_read_members),
         cmocka_unit_test(test_layers_above),
         cmocka_unit_test(test_null_handles),
+        cmocka_unit_test(test_impossible_inertia),
         cmocka_unit_test(test_session_settings),
         cmocka_unit_test(test_members),
         cmocka_unit_test(test_beam_description),

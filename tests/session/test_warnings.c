@@ -211,10 +211,102 @@ static void many(void **state) {
     spar_session_destroy(&s);
 }
 
+/* A prebent blade of 60 m by nine key points spaced as cosines, and one a millimetre after the fifth. To ten digits
+   the curve through them is a parabola; to millimetres the pair is 45 degrees steep, or not at all, and the curve
+   swings through all of the blade. A quarter of a circle by five points bends as much and is meant. */
+static void key_points(void **state) {
+    (void)state;
+    enum { N = 10, PAIR = 5 };
+    for (int run = 0; run < 3; run++) {
+        const double digit = run == 1 ? 1e-3 : 1e-10;
+        double eta[N], xyz[3 * N], K[36], M[36];
+        for (int i = 0; i < N; i++) {
+            const int k = i < PAIR ? i : i - 1;
+            const double x = 60 * (0.5 - 0.5 * cos(3.141592653589793 * k / (N - 2))) + (i == PAIR ? 1e-3 : 0);
+            eta[i] = i == N - 1 ? 1 : x / 60;
+            xyz[3 * i] = round(x / digit) * digit;
+            xyz[3 * i + 1] = 0;
+            xyz[3 * i + 2] = round(3 * x * x / 3600 / digit) * digit;
+        }
+        for (int i = 0; i < 5 && run == 2; i++) {
+            const double turn = 1.5707963267948966 * i / 4;
+            eta[i] = i / 4.0;
+            xyz[3 * i] = 60 * sin(turn), xyz[3 * i + 2] = 60 * (1 - cos(turn));
+        }
+        spar_session *s = scene_session();
+        steel(K, M, 1e6);
+        spar_member *b = scene_beam(s, "blade", 1, 10, 60, K, M);
+        OK(s, spar_beam_set_axis(b, run == 2 ? 5 : N, eta, xyz, NULL));
+        OK(s, spar_member_commit(b));
+        if (run == 1) {
+            warned_of(s, "points 4 and 5 are only 0.001 m apart");
+        } else {
+            assert_string_equal(spar_session_get_warning(s, 0), "");
+        }
+        spar_session_destroy(&s);
+    }
+}
+
+/* Stiffness alone in BeamDyn's order (shears, axial, bendings, torsion), the mass in spar's: told. A section whose
+   largest moment of inertia is more than the sum of the others: told; rounded, a slice, or with moments left out: not.
+ */
+static void sections(void **state) {
+    (void)state;
+    static const double J[5][3] = {{0.2, 0.3, 0.9}, {2.1, 1, 1}, {0.9, 0, 0}, {0.5, 0.2, 0.3}, {0.5, 0.5, 0.5}};
+    for (int run = 0; run < 6; run++) {
+        double K[36], M[36];
+        spar_session *s = scene_session();
+        scene_diagonal(K, 2e9, 6e8, 5e8, 1e9, 2e9, 3e9);
+        scene_diagonal(M, 80, 80, 80, J[run % 5][0], J[run % 5][1], J[run % 5][2]);
+        if (run == 5) {
+            scene_diagonal(K, 6e8, 5e8, 2e9, 2e9, 3e9, 1e9);
+            scene_diagonal(M, 80, 80, 80, 0.5, 0.2, 0.3);
+        }
+        spar_member *b = scene_beam(s, "beam", 1, 6, 20, K, M);
+        OK(s, spar_member_commit(b));
+        if (run == 0 || run == 5) {
+            warned_of(s, run ? "BeamDyn's order" : "no section has the moments of inertia 0.2, 0.3, 0.9");
+        } else {
+            assert_string_equal(spar_session_get_warning(s, 0), "");
+        }
+        spar_session_destroy(&s);
+    }
+}
+
+/* A root that is driven with a rate before the static solution stays at rest in it, which is told once; after
+   spar_member_set_initial_velocity with this rate the solution has it, and nothing is told. */
+static void drive_before_static(void **state) {
+    (void)state;
+    const double omega[3] = {0, 0, 2}, v[6] = {0, 0, 0, 0, 0, 2}, q[7] = {0, 0, 0, 1, 0, 0, 0};
+    for (int given = 0; given < 2; given++) {
+        for (int all = 0; all < 2; all++) {
+            double tip[7];
+            spar_session *s = scene_session();
+            spar_member *b = beam_of(s, 2.7, 1, 1);
+            OK(s, spar_member_set_root(b, SPAR_ROOT_DRIVEN));
+            OK(s, given ? spar_member_set_initial_velocity(b, NULL, NULL, omega) : SPAR_OK);
+            OK(s, spar_member_commit(b));
+            OK(s, spar_member_drive(b, q, v, NULL));
+            for (int twice = 0; twice < 2; twice++) {
+                OK(s, all ? spar_session_solve_static(s, 1, NULL, NULL, NULL) : spar_member_solve_static(b, 1));
+            }
+            scene_tip(b, tip);
+            assert_int_equal(tip[0] > 1e-9, given); /* m omega^2 L^3 / (3 EA) = 1e-6 m */
+            if (given) {
+                assert_string_equal(spar_session_get_warning(s, 0), "");
+            } else {
+                warned_of(s, "'beam' was driven before, which counts from the next step on");
+            }
+            spar_session_destroy(&s);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(description), cmocka_unit_test(frequency), cmocka_unit_test(twist),
         cmocka_unit_test(far_nodes),   cmocka_unit_test(habits),    cmocka_unit_test(many),
+        cmocka_unit_test(key_points),  cmocka_unit_test(sections),  cmocka_unit_test(drive_before_static),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -203,10 +203,80 @@ static void test_least_squares(void **state) {
     spar_session_destroy(&s);
 }
 
+/* A tower of 82 m, its top mass off the axis: the bending modes 0 to 3 at 1, 1, 2, 2 % are met by a torsion of 1000 %,
+   which is told; with the torsion, mode 4, among those chosen, nothing is. */
+static void test_other_modes(void **state) {
+    (void)state;
+    enum { CHOSEN = 5 };
+    const double d[2] = {4.6, 0.027}, eta[2] = {0, 1}, xyz[6] = {0, 0, 0, 0, 0, 82}, tip = 1, c[3] = {1.8, -0.3, 0},
+                 J[3] = {3e6, 2.6e7, 2.4e7}, ratio[CHOSEN] = {0.01, 0.01, 0.02, 0.02, 0.02};
+    const int64_t mode[CHOSEN] = {0, 1, 2, 3, 4};
+    for (int n = CHOSEN - 1; n <= CHOSEN; n++) {
+        double p[SPAR_SECTION_COUNT], K[36], M[36], R[36], mu[6], f[CHOSEN];
+        spar_session *s = scene_session();
+        spar_member *b = NULL;
+        OK(s, spar_section_from_shape(SPAR_SHAPE_TUBE, 2, d, 210e9, 0.3, 8500, SPAR_SECTION_COUNT, p));
+        OK(s, spar_section_build(SPAR_SECTION_COUNT, p, K, M));
+        OK(s, spar_beam_create(s, "tower", 4, 5, &b));
+        OK(s, spar_beam_set_axis(b, 2, eta, xyz, NULL));
+        OK(s, spar_beam_set_sections(b, 1, eta, K, M));
+        scene_mass(R, 3.1e5, c, J);
+        OK(s, spar_beam_set_masses(b, 1, &tip, R));
+        OK(s, spar_member_commit(b));
+        OK(s, spar_member_solve_modes(b, CHOSEN, f, NULL));
+        OK(s, spar_beam_fit_damping(b, n, mode, ratio, NULL));
+        OK(s, spar_beam_get_damping(b, mu));
+        const double torsion = mu[3] * 0.5 * two_pi * f[4];
+        const char *text = spar_session_get_warning(s, 0);
+        if (n < CHOSEN) {
+            const char *said = strstr(text, "mode 4 (3.8");
+            assert_non_null(said);
+            NEAR(atof(strstr(said, "ratio") + 6), torsion, 0.1 * torsion); /* bending has a little part in it */
+        } else {
+            assert_string_equal(text, "");
+            assert_true(torsion < 0.1);
+        }
+        spar_session_destroy(&s);
+    }
+}
+
+/* A mass of ten times its own, welded to a beam's tip: its ratios of 1 % become less. What the warning says is what the
+   eigenvalue has, -Re / |lambda|, to its three digits. If the joint comes later, that is told. */
+static void test_joined_mass(void **state) {
+    (void)state;
+    const int64_t mode[2] = {0, 1};
+    const double ratio[2] = {0.01, 0.01}, J[3] = {0.1, 0.1, 0.1}, x[3] = {3, 0, 0};
+    for (int run = 0; run < 4; run++) {
+        const int late = run / 2, fit = run % 2;
+        double K[36], M[36], value[2];
+        spar_session *s = scene_session();
+        scene_diagonal(K, 1e6, 1e6, 1e6, 50, 10, 40);
+        scene_diagonal(M, 2, 2, 2, 1e-3, 1e-3, 1e-3);
+        spar_member *b = scene_beam(s, "b", 1, 8, 3, K, M), *top;
+        OK(s, spar_member_commit(b));
+        top = scene_body(s, "top", x, 60, J);
+        (void)(late ? NULL : scene_joint(s, "weld", b, 7, top, 0, 0));
+        OK(s, fit ? spar_beam_fit_damping(b, 2, mode, ratio, NULL) : spar_beam_set_modal_damping(b, mode, ratio, NULL));
+        assert_int_equal(spar_session_get_warning(s, 0)[0] != 0, !late);
+        (void)(late ? scene_joint(s, "weld", b, 7, top, 0, 0) : NULL);
+        const char *text = spar_session_get_warning(s, 0), *said = strstr(text, "gets the damping ratio");
+        if (late) {
+            assert_non_null(strstr(text, "before joint 'weld' was created"));
+        } else {
+            OK(s, spar_member_solve_eigenvalues(b, 1, NULL, value, NULL, NULL));
+            assert_non_null(said);
+            NEAR(atof(said + 23), -value[0] / hypot(value[0], value[1]), 6e-3 * 0.01);
+        }
+        assert_string_equal(spar_session_get_warning(s, 1), "");
+        spar_session_destroy(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_uncoupled), cmocka_unit_test(test_four_modes), cmocka_unit_test(test_least_squares),
-        cmocka_unit_test(test_decay),     cmocka_unit_test(test_refusals),   cmocka_unit_test(test_rigid_modes),
+        cmocka_unit_test(test_uncoupled),   cmocka_unit_test(test_four_modes),  cmocka_unit_test(test_least_squares),
+        cmocka_unit_test(test_decay),       cmocka_unit_test(test_refusals),    cmocka_unit_test(test_rigid_modes),
+        cmocka_unit_test(test_other_modes), cmocka_unit_test(test_joined_mass),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
