@@ -38,6 +38,9 @@ spari_fade *spari_fade_copy(const spari_fade *from, int64_t n) {
 }
 
 int spari_fade_map(spari_fade *fade, const spari_nodes *nodes) {
+    if (!nodes) {
+        return 0;
+    }
     spari_nodes *made = spari_nodes_shorten(nodes, fade->reach);
     if (made) {
         spari_nodes_free_shortened(fade->nodes);

@@ -274,7 +274,7 @@ int spar_fluid_map(spar_fluid *fluid) {
         status = spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, __func__, "no memory for the node forces");
     }
     spari_fade *fade = fluid->set[SPAR_NODES_MOTION].fade;
-    if (status == SPAR_OK && fade && made[SPAR_NODES_MOTION] && spari_fade_map(fade, made[SPAR_NODES_MOTION])) {
+    if (status == SPAR_OK && fade && spari_fade_map(fade, made[SPAR_NODES_MOTION])) {
         status = no_memory_to_map(fluid, __func__, made[SPAR_NODES_MOTION]->n, SPAR_NODES_MOTION);
     }
     for (int which = 0; which < 2; which++) {

@@ -43,7 +43,7 @@ static void take_weights(spari_node_set *set, double *weight, double *home, spar
 static int use_weights(spar_fluid *fluid, double *weight, spari_fade *fade, const char *caller) {
     const spari_nodes *nodes = fluid->set[SPAR_NODES_MOTION].nodes;
     double *home = reference_positions(fluid);
-    if (!weight || !home || (fade && nodes && spari_fade_map(fade, nodes))) {
+    if (!weight || !home || (fade && spari_fade_map(fade, nodes))) {
         SPARI_FREE(weight, home);
         spari_fade_free(fade);
         return spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, caller, "no memory for the weights of %lld motion nodes",
