@@ -203,7 +203,8 @@ SPAR_API int spar_session_solve_static(spar_session *session, int load_steps, sp
 /* ---- step-size control ------------------------------------------------------------------------------------------- */
 
 /* Callback before a step of dt from t, where the library makes the steps: drive roots, set loads, save the fluid's
-   state. Answer 0 for success; anything else ends the call with SPAR_ERR_USER. */
+   state. It must not change settings, threads or steps (SPAR_ERR_STATE). Answer 0 for success; anything else ends the
+   call with SPAR_ERR_USER. */
 typedef int (*spar_before_step)(spar_session *session, double t, double dt, void *context);
 /* Tolerance of the time integration. The local error of a step divided by dt, as a velocity (root mean square over the
    member's nodes, relative to a driven root), is kept below drift + rtol * (largest velocity so far). It is estimated

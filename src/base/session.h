@@ -25,7 +25,8 @@ typedef struct spari_ranks {
 typedef struct spari_callbacks {
     spar_log log;
     void *log_context;
-    const char *in_progress; /* callback in progress: the public call that runs the host's fluid solver; or NULL */
+    const char *in_progress; /* callback in progress: the public call that runs the host's fluid solver, or its function
+                                before a step; or NULL */
 } spari_callbacks;
 
 /* Settings of the time integration. */

@@ -64,7 +64,7 @@ int spar_step_adaptive(spar_session *session, double *dt, spar_before_step befor
     SPARI_TRY(spari_enter_agreed(s, __func__, must_agree, 2, check_within(s, __func__, dt, h)));
     tries done = {0};
     for (int k = 0; k < TRIES && done.stuck < STUCK && (k == 0 || h > clock_resolves * fabs(s->clock.time)); k++) {
-        SPARI_TRY(spari_named(s, __func__, spari_callback_before_step(s, before, h, context)));
+        SPARI_TRY(spari_named(s, __func__, spari_callback_before_step(s, __func__, before, h, context)));
         SPARI_TRY(spari_named(s, __func__, spar_step_begin(s, h)));
         SPARI_TRY(spari_step_run(s, __func__, solve, context));
         count_try(&done, h, spari_step_control_ratio(s));

@@ -7,8 +7,9 @@
 int spari_callback_refuse(spar_session *s, const char *call) {
     SPARI_REQUIRE(NULL, s, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     SPARI_REQUIRE(s, !s->callbacks.in_progress, SPAR_ERR_STATE,
-                  "%s: %s is in progress and has called this fluid solver; only pull and push in the solver, or make "
-                  "the step with spar_step_begin, spar_step_solve, spar_step_check, spar_step_accept",
+                  "%s: %s is in progress and has called this function of the host; in a fluid solver only pull and "
+                  "push, before a step only drive roots and set loads, or make the steps with spar_step_begin, "
+                  "spar_step_solve, spar_step_check, spar_step_accept",
                   call, s->callbacks.in_progress);
     return SPAR_OK;
 }
@@ -36,7 +37,7 @@ int spari_callback_run(spar_session *s, const char *lender, spar_fluid_solver so
                       s->state.iteration, told ? ": " : "", told ? s->message : "");
 }
 
-int spari_callback_before_step(spar_session *s, spar_before_step before, double dt, void *context) {
+int spari_callback_before_step(spar_session *s, const char *lender, spar_before_step before, double dt, void *context) {
     if (!before) {
         return SPAR_OK;
     }
@@ -44,7 +45,9 @@ int spari_callback_before_step(spar_session *s, spar_before_step before, double 
     s->ranks.calls_differ = 0;
     spari_host host;
     spari_host_begin(&host);
+    s->callbacks.in_progress = lender;
     int result = before(s, s->clock.time, dt, context), status = SPAR_OK;
+    s->callbacks.in_progress = NULL;
     spari_host_end(&host);
     if (s->ranks.calls_differ) { /* only this rank made a collective call here; the other ranks have found that */
         return SPAR_ERR_COMM;

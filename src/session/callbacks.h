@@ -4,7 +4,7 @@
 
 #include "../base/session.h"
 
-/* ---- the fluid solver, in a call that goes on with what it has pushed: spar_step, or a static solution ---- */
+/* ---- the fluid solver, or the function before a step, in a call that goes on afterwards ---- */
 
 /* Refuses, while it runs, a call that would end or move on what is under way, which belongs to the call that runs it;
    and a session that is NULL.
@@ -14,7 +14,8 @@ int spari_callback_refuse(spar_session *session, const char *call);
    on this rank alone, and the others noticed. Other failures are this rank's own. Local. */
 int spari_callback_run(spar_session *session, const char *lender, spar_fluid_solver solve, double dt, void *context);
 /* Calls the host's function before a step of dt; NULL on all ranks: nothing to call. Collective. */
-int spari_callback_before_step(spar_session *session, spar_before_step before, double dt, void *context);
+int spari_callback_before_step(spar_session *session, const char *lender, spar_before_step before, double dt,
+                               void *context);
 
 /* ---- progress: the host hears how far a call that makes trials is, ahead of each of its runs, and may stop it ---- */
 

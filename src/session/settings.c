@@ -9,6 +9,7 @@
 #include "../member/mean_acceleration.h"
 #include "../member/structure.h"
 #include "../solve/life.h"
+#include "callbacks.h"
 
 #include <assert.h>
 #include <float.h>
@@ -156,7 +157,7 @@ static int settable(spar_session *session, const char *call) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", call);
     SPARI_REQUIRE(session, session->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is in progress; change settings between steps", call);
-    return SPAR_OK;
+    return spari_callback_refuse(session, call);
 }
 
 /* Checks the arguments of a setter, in order, against their ranges. */

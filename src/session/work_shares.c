@@ -11,6 +11,7 @@
 #include "../member/structure.h"
 #include "../solve/life.h"
 #include "../time/fidelity.h"
+#include "callbacks.h"
 
 #include <stdlib.h>
 
@@ -211,6 +212,7 @@ int spar_session_set_threads(spar_session *session, int threads) {
     spar_session *s = session;
     SPARI_REQUIRE(s, s->state.phase == SPARI_IDLE, SPAR_ERR_STATE,
                   "%s: a step is in progress; change the number of threads between steps", __func__);
+    SPARI_TRY(spari_callback_refuse(session, __func__));
     SPARI_REQUIRE(s, threads >= 1 && threads <= SPARI_MOST_THREADS, SPAR_ERR_ARGUMENT, "%s: %d threads; give 1 to %d",
                   __func__, threads, SPARI_MOST_THREADS);
     if (threads == spari_thread_pool_threads(s->pool)) {

@@ -132,7 +132,7 @@ static int run_period(spar_session *s, void *self) {
     s->clock.started = 0;
     SPARI_TRY(spar_session_solve_initial(s, run->dt, run->solve, run->solve_context, &iterations));
     for (int64_t i = 0; i <= f->steps; i++) {
-        SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->before_context));
+        SPARI_TRY(spari_callback_before_step(s, "spar_trial_solve_floquet", run->before, run->dt, run->before_context));
         SPARI_TRY(spar_step(s, run->dt, run->solve, run->solve_context, &iterations));
         if (i == 0 && f->mode < 0) {
             spari_shapes_keep_motion(s, f->base);

@@ -185,7 +185,7 @@ static int move_there(spar_session *s, void *self) {
     place_members(s, of, 0, law_of(of, 0, 1), 1);
     for (int64_t i = 0; i < steps; i++) {
         double t = ask->run.dt * (double)(i + 1);
-        SPARI_TRY(spari_callback_before_step(s, ask->run.before, ask->run.dt, ask->run.before_context));
+        SPARI_TRY(spari_callback_before_step(s, of->call, ask->run.before, ask->run.dt, ask->run.before_context));
         place_members(s, of, t, law_of(of, i, 0), 1);
         SPARI_TRY(spari_forced_step(s, of->call, ask->run.dt, ask->run.solve, ask->run.solve_context));
         see_loads(s, ask, t, of->load + ask->modes * i, of->scale);

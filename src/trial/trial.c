@@ -180,8 +180,9 @@ static void watch_loads(const spar_session *s, int64_t i, int64_t steps, spari_r
 
 static int march(spar_session *s, const spari_run *run, spari_record *r) {
     double size[4] = {0};
+    const char *call = run->progress ? run->progress->call : "spar_trial_run";
     for (int64_t i = 1; i <= run->steps; i++) {
-        SPARI_TRY(spari_callback_before_step(s, run->before, run->dt, run->before_context));
+        SPARI_TRY(spari_callback_before_step(s, call, run->before, run->dt, run->before_context));
         int iterations = 0;
         const clock_t since = clock();
         int status = spar_step(s, run->dt, run->solve, run->solve_context, &iterations);

@@ -800,6 +800,11 @@ static int meddle(spar_session *s, double t, double dt, void *context) {
     assert_int_equal(spar_fluid_set_motion_nodes(c->f, 0, NULL), SPAR_ERR_STATE);
     assert_int_equal(spar_fluid_map(c->f), SPAR_ERR_STATE);
     assert_int_equal(spar_session_save(s, "trial_never.spar"), SPAR_ERR_STATE);
+    REFUSED(s, SPAR_ERR_STATE, "spar_trial_run is in progress", spar_session_set_reproducible(s, 1));
+    REFUSED(s, SPAR_ERR_STATE, "spar_trial_run is in progress", spar_session_set_threads(s, 2));
+    REFUSED(s, SPAR_ERR_STATE, "spar_trial_run is in progress", spar_session_set_predictor(s, 1));
+    REFUSED(s, SPAR_ERR_STATE, "spar_trial_run is in progress", spar_session_set_option(s, "newton.jacobian", "x"));
+    REFUSED(s, SPAR_ERR_STATE, "spar_trial_run is in progress", spar_step(s, dt, NULL, NULL, NULL));
     return keep(s, t, dt, context);
 }
 
@@ -814,6 +819,33 @@ static void test_meddling(void **state) {
     OK(c.s, trial_run(c.s, 0.01, 8, meddle, press, &c, 0, report));
     step(&c, 0.01, 2);
     spar_session_destroy(&c.s);
+}
+
+static int no_fluid(spar_session *s, double t, double dt, int iteration, void *context) {
+    (void)s, (void)t, (void)dt, (void)iteration, (void)context;
+    return 0;
+}
+
+/* A fluid that has faded its motion and never got motion nodes, in trials of a beam with other nodes. */
+static void test_fade_without_nodes(void **state) {
+    (void)state;
+    double K[36], M[36];
+    spar_session *s = scene_session();
+    spar_fluid *f = NULL;
+    spar_trial *t = NULL;
+    scene_diagonal(K, 9e4, 9e4, 9e4, 1500, 1500, 1500);
+    scene_diagonal(M, 0.7, 0.7, 0.7, 0.1, 0.05, 0.05);
+    spar_member *b = scene_beam(s, "b", 1, 2, 1, K, M);
+    OK(s, spar_member_commit(b));
+    OK(s, spar_fluid_create(b, "f", &f));
+    OK(s, spar_fluid_map(f));
+    OK(s, spar_fluid_fade_motion(f, 0.2, 0.43, 0, NULL, NULL));
+    OK(s, spar_trial_create(s, &t));
+    OK(s, spar_trial_set_steps(t, 1e-3, 8));
+    OK(s, spar_trial_set_callbacks(t, NULL, NULL, no_fluid, NULL));
+    OK(s, spar_trial_advise(t, 0.2, 0.0078));
+    OK(s, spar_trial_run(t, 0));
+    spar_session_destroy(&s);
 }
 
 /* A fluid that is destroyed within a trial: the trial takes as many solutions as one without it, and afterwards the run
@@ -1159,6 +1191,7 @@ int main(void) {
         cmocka_unit_test(test_destroyed_while_it_runs),
         cmocka_unit_test(test_bad_input),
         cmocka_unit_test(test_meddling),
+        cmocka_unit_test(test_fade_without_nodes),
         cmocka_unit_test(test_asking),
         cmocka_unit_test(test_destroyed_within),
         cmocka_unit_test(test_capacities),
