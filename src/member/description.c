@@ -429,11 +429,27 @@ static uint64_t hash_table(uint64_t h, const spari_line_table *table, int width)
     return n > 0 ? spari_hash_bytes(spari_hash_bytes(h, table->eta, n), table->value, (size_t)width * n) : h;
 }
 
-/* FNV-1a hash of everything the ranks must agree on. */
+static int any_not_zero(int64_t n, const double *x) {
+    int any = 0;
+    for (int64_t i = 0; i < n && x; i++) {
+        any |= x[i] != 0;
+    }
+    return any;
+}
+
+/* Points of a quadrature rule that are in force: those of an element by default, but where sections decide. */
+static int points_in_force(const spar_member *m) {
+    const spari_beam *b = m->beam;
+    return b->points > 0 || spari_beam_rule(b) == SPAR_QUADRATURE_SECTIONS ? b->points : m->mesh.per_element;
+}
+
+/* FNV-1a hash of everything the ranks must agree on: what is in force, not how it was said. */
 uint64_t spari_member_copy_hash(const spar_member *m) {
     uint64_t h = SPARI_HASH_BEGIN;
-    int numbers[] = {m->kind,          m->external,         m->root,     m->effects,    m->effects_off,
-                     m->mesh.elements, m->mesh.per_element, m->fidelity, (int)m->modes, m->added_by_velocity};
+    const int modes = m->fidelity == SPAR_FIDELITY_MODAL ? (int)m->modes : 0;
+    int numbers[] = {
+        m->kind, m->external,         m->root, m->effects, m->mesh.elements, m->mesh.per_element, m->fidelity,
+        modes,   m->added_by_velocity};
     h = spari_hash_bytes(h, numbers, sizeof numbers);
     h = spari_hash_bytes(h, m->mass, sizeof m->mass);
     h = hash_table(h, &m->guess, 36);
@@ -441,14 +457,15 @@ uint64_t spari_member_copy_hash(const spar_member *m) {
     const spari_beam *b = m->beam;
     if (b) {
         size_t n = (size_t)b->axis_count, s = (size_t)b->section_count, d = sizeof(double);
-        int more[] = {b->rule,           b->points,         b->eta != NULL, b->twist != NULL,
-                      b->node_x != NULL, b->node_q != NULL, b->mass != NULL};
+        const int twisted = any_not_zero(b->axis_count, b->twist);
+        int more[] = {spari_beam_rule(b), points_in_force(m), b->eta != NULL, twisted,
+                      b->node_x != NULL,  b->node_q != NULL,  b->mass != NULL};
         h = spari_hash_bytes(h, more, sizeof more);
         h = spari_hash_bytes(h, b->mu, sizeof b->mu);
         h = spari_hash_bytes(h, &b->mass_damping, sizeof b->mass_damping);
         h = b->planar ? spari_hash_bytes(h, b->normal, sizeof b->normal) : h;
         h = b->eta ? spari_hash_bytes(spari_hash_bytes(h, b->eta, n * d), b->xyz, 3 * n * d) : h;
-        h = b->twist ? spari_hash_bytes(h, b->twist, n * d) : h;
+        h = twisted ? spari_hash_bytes(h, b->twist, n * d) : h;
         h = b->node_x ? spari_hash_bytes(h, b->node_x, 3 * (size_t)m->nodes * d) : h;
         h = b->node_q ? spari_hash_bytes(h, b->node_q, 4 * (size_t)m->nodes * d) : h;
         h = b->section_eta ? spari_hash_bytes(spari_hash_bytes(h, b->section_eta, s * d), b->stiffness, 36 * s * d) : h;
@@ -464,6 +481,6 @@ uint64_t spari_member_hash(const spar_member *m) {
     uint64_t h = spari_hash_bytes(spari_member_copy_hash(m), m->name, strlen(m->name));
     h = spari_hash_bytes(h, m->placement.x, sizeof m->placement.x);
     h = spari_hash_bytes(h, m->placement.q, sizeof m->placement.q);
-    h = spari_hash_bytes(h, &m->initial.velocity_given, sizeof m->initial.velocity_given);
-    return spari_hash_bytes(h, m->initial.velocity, sizeof m->initial.velocity);
+    const int moves = any_not_zero(6, m->initial.velocity[1]);
+    return moves ? spari_hash_bytes(h, m->initial.velocity, sizeof m->initial.velocity) : h;
 }

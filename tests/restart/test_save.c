@@ -507,6 +507,38 @@ static void large_file(void **state) {
     assert_int_equal(errors, 0);
 }
 
+/* What a description says in other words is the same description: the default by its name, zeros, effects switched off
+   that are not there. Another number of points is another. */
+static void same_meaning(void **state) {
+    (void)state;
+    enum { PLAIN, GAUSS, POINTS, VELOCITY, TWIST, EFFECTS, MODES, OTHER, WAYS };
+    const double none[3] = {0}, twist[2] = {0}, eta[2] = {0, 1}, xyz[6] = {0, 0, 0, 1, 0, 0};
+    double K[36], M[36];
+    for (int way = 0; way < WAYS; way++) {
+        spar_session *s = scene_session();
+        scene_box(K, M);
+        spar_member *b = scene_beam(s, "beam", 2, 4, 1, K, M);
+        OK(s, way == GAUSS    ? spar_beam_set_quadrature(b, SPAR_QUADRATURE_GAUSS, 0)
+              : way == POINTS ? spar_beam_set_quadrature(b, SPAR_QUADRATURE_GAUSS, 4)
+              : way == OTHER  ? spar_beam_set_quadrature(b, SPAR_QUADRATURE_GAUSS, 5)
+                              : SPAR_OK);
+        OK(s, way == VELOCITY ? spar_member_set_initial_velocity(b, xyz + 3, none, none) : SPAR_OK);
+        OK(s, way == TWIST ? spar_beam_set_axis(b, 2, eta, xyz, twist) : SPAR_OK);
+        OK(s, way == EFFECTS ? spar_member_set_effects(b, 0, SPAR_EFFECT_FOUNDATION) : SPAR_OK);
+        OK(s, way == MODES ? spar_member_set_fidelity(b, SPAR_FIDELITY_EXACT, 5) : SPAR_OK);
+        OK(s, spar_member_commit(b));
+        if (way == PLAIN) {
+            OK(s, spar_step(s, 1e-3, NULL, NULL, NULL));
+            OK(s, spar_session_save(s, file));
+        } else if (way == OTHER) {
+            REFUSED(s, SPAR_ERR_ARGUMENT, "a different description of member 'beam'", spar_session_load(s, file));
+        } else {
+            OK(s, spar_session_load(s, file));
+        }
+        spar_session_destroy(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits),
                                        cmocka_unit_test(same_bits_without_loads),
@@ -515,6 +547,7 @@ int main(void) {
                                        cmocka_unit_test(bad_files),
                                        cmocka_unit_test(other_settings),
                                        cmocka_unit_test(leaves_one_file),
+                                       cmocka_unit_test(same_meaning),
                                        cmocka_unit_test(large_file)};
     return cmocka_run_group_tests(tests, name_file, remove_file);
 }
