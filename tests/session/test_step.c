@@ -154,7 +154,7 @@ static void test_clock_beyond_numbers(void **state) {
     assert_non_null(strstr(spar_session_message(s), "clock"));
     OK(s, spar_session_get_time(s, &t, NULL, NULL));
     assert_true(t == 1e308);
-    OK(s, spar_step(s, 1, nothing, NULL, NULL));
+    OK(s, spar_step(s, 1e300, nothing, NULL, NULL));
     static const double dt[] = {1e308, 1e302, 5e-324};
     for (size_t k = 0; k < sizeof dt / sizeof *dt; k++) {
         assert_int_equal(trial_run(s, dt[k], 8, NULL, nothing, NULL, 0, report), SPAR_ERR_ARGUMENT);
@@ -193,6 +193,25 @@ static void test_a_fluid_solver_ends_no_step(void **state) {
     pistons_destroy(&p);
 }
 
+/* What rounding leaves of a window: a step of less than 1e-12 of the last one, or one that the clock does not resolve,
+   is refused by name, and the run goes on. 1e-11 of the last one is a step. */
+static void test_least_step(void **state) {
+    (void)state;
+    const double r = 0;
+    pistons p;
+    pistons_create(&p, 1, &r);
+    spar_session *s = p.session;
+    OK(s, spar_step(s, 0.01, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "do not resolve it", spar_step_begin(s, 1e-18));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "after a step of 0.01 s", spar_step_begin(s, 0.9e-14));
+    OK(s, spar_step(s, 1e-13, NULL, NULL, NULL));
+    OK(s, spar_step(s, 1000, NULL, NULL, NULL));
+    OK(s, spar_step(s, 1e-8, NULL, NULL, NULL));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "spar_step_begin: dt is 1e-14 s", spar_step_begin(s, 1e-14)); /* 1000 s + 1e-14 s */
+    OK(s, spar_step(s, 0.01, NULL, NULL, NULL));
+    pistons_destroy(&p);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_refused_before_the_first_step),
@@ -201,6 +220,7 @@ int main(void) {
         cmocka_unit_test(test_no_accept_after_a_failed_check),
         cmocka_unit_test(test_clock_beyond_numbers),
         cmocka_unit_test(test_clock_of_many_steps),
+        cmocka_unit_test(test_least_step),
         cmocka_unit_test(test_a_fluid_solver_ends_no_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
