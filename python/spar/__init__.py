@@ -134,6 +134,7 @@ class _Call:
         self.asked_names = [p.name for p in self.asked]
         self.values = {p.name for p in self.parameters if p.how == 'value'}
         self.handles = [p for p in self.asked if p.type in _table.CLASSES]
+        self.required = [p.name for p in self.asked if not (p.array or p.null or p.type == 'char')]
         self.shaped = [p for p in self.parameters if p.array or p.how == 'list']
         self.single = None  # the call of the same name in single precision
         self.laid = self.owner == 'fluid' and self.python_name.replace('_f32', '') in _LAID
@@ -244,6 +245,8 @@ def _real(call, p, value):
         return ctypes.c_double(value).value
     except TypeError:
         raise _wrong(call, p, f'of the type {type(value).__name__}; it must be a number') from None
+    except OverflowError:
+        raise _refused(f'{call.name}: {p.name} is too large for a number of C') from None
 
 
 def _text(call, p, value):
@@ -269,9 +272,11 @@ def _array(call, p, value):
     value = numpy.asarray(value)
     if value.dtype == kind:
         return value.copy() if p.result else value  # read and written: not the caller's
-    if value.size and not numpy.can_cast(value.dtype, kind, 'same_kind'):
+    if value.size == 0:
+        return numpy.zeros(value.shape, kind)
+    if not numpy.can_cast(value.dtype, kind, 'same_kind'):
         raise _wrong(call, p, f'of {value.dtype}; it must be of {kind}')
-    if kind.kind == 'i' and value.dtype.kind in 'iu' and value.size:
+    if kind.kind == 'i' and value.dtype.kind in 'iu':
         limits = numpy.iinfo(kind)
         if not (limits.min <= int(value.min()) and int(value.max()) <= limits.max):
             raise _refused(f'{call.name}: {p.name} has numbers beyond {limits.min} to {limits.max}')
@@ -338,6 +343,9 @@ class _Running:
     def __init__(self, call, owner, given):
         self.call, self.owner = call, owner
         self.sizes, self.results, self.raised, self.keep, self.callbacks = {}, [], [], [], {}
+        for name in call.required:
+            if name not in given:
+                raise TypeError(f'{call.name} lacks {name}')
         self.given = {name: call.converters[name](call, call.by_name[name], value) for name, value in given.items()}
         self.things = [] if owner is None else [owner]
         self.session = owner.session if owner is not None else None
@@ -382,7 +390,7 @@ class _Running:
         self.strides = self.owner.strides(call, self.given) if call.laid else None  # numbers between nodes, components
         for p in call.shaped:
             if p.how == 'list':
-                self.sizes[p.dims[0]] = len(self.given.get(p.name, []))
+                self.sizes[p.dims[0]] = len(self.given[p.name])
             elif self.given.get(p.name) is not None:
                 self.array_given(p)
         answer = self.called([way(self, p) for p, way in call.steps])
@@ -457,7 +465,7 @@ class _Running:
             return value
         if p.result:
             raise TypeError(f'{p.name}: it is filled in place, so its strides must be {strides}; they are {value.strides}')
-        copy = _room(value.shape, value.dtype, strides)
+        copy = self.room(p, value.shape, value.dtype, strides)
         copy[...] = value
         return copy
 
@@ -506,24 +514,18 @@ class _Running:
             return self.given[p.name]
         if p.name == 'capacity' and not p.word:  # of as many as a constant says
             return next(q.dims[0] for q in self.call.shaped if q.result)
-        size = self.size(p.name) if p.name not in self.call.asked_names else None
-        if size is None:
-            if p.name in self.call.asked_names:
-                raise TypeError(f'{self.call.name} lacks {p.name}')
-            return 0  # of no array
-        return size
+        size = self.size(p.name)
+        return size if size is not None else 0  # of no array
 
     def handle(self, p):
         """Handles that are given, and a handle that the call makes."""
         if p.how == 'list':
-            things = self.given.get(p.name, [])
+            things = self.given[p.name]
             handles = (ctypes.c_void_p * len(things))(*[thing.handle for thing in things])
             self.keep.append(handles)
             return ctypes.cast(handles, ctypes.c_void_p) if things else None
         if p.how == 'value':
             value = self.given.get(p.name)
-            if value is None and not p.null:
-                raise TypeError(f'{self.call.name} lacks {p.name}')
             return value.handle if value is not None else None
         made = ctypes.c_void_p()
         self.results.append(lambda: self.made(p, made.value))
@@ -554,10 +556,8 @@ class _Running:
         if value is None and p.result and p.name not in self.given:
             shape = [self.size(d) for d in p.dims]
             kind = _NUMBERS[p.type][1]
-            if self.strides is not None and p.dims[1:] == [3]:
-                value = _room(shape, kind, tuple(kind.itemsize * number for number in self.strides))
-            else:
-                value = self.packed(p, shape, kind)
+            laid = self.strides is not None and p.dims[1:] == [3]
+            value = self.room(p, shape, kind, tuple(kind.itemsize * number for number in self.strides) if laid else None)
         if value is None:
             return None
         self.keep.append(value)
@@ -565,11 +565,11 @@ class _Running:
             self.results.append(value)
         return value.ctypes.data
 
-    def packed(self, p, shape, kind):
+    def room(self, p, shape, kind, strides):
         """Room for an array of this shape, where the machine has it."""
         try:
-            return _room(shape, kind)
-        except (MemoryError, ValueError):
+            return _room(shape, kind, strides)
+        except (MemoryError, ValueError, OverflowError):
             fault = f'{self.call.name}: no memory for {p.name} of the shape {shape}'
             raise _failed(CONSTANTS['SPAR_ERR_MEMORY'], fault) from None
 
@@ -578,8 +578,6 @@ class _Running:
         value = self.given.get(p.name, 0)
         if value is None:
             return None
-        if p.name not in self.given and p.name in self.call.asked_names:
-            raise TypeError(f'{self.call.name} lacks {p.name}')
         number, address = _number(_NUMBERS[p.type][0], value)
         self.results.append(lambda: number.value)
         return address
