@@ -194,7 +194,7 @@ CALLS = {
     'spar_member_get_iterations': lambda k: k.rich.get_iterations(),
     'spar_session_get_predictor': lambda k: k.session.get_predictor(),
     'spar_session_get_relaxation': lambda k: k.session.get_relaxation(),
-    'spar_session_get_option': lambda k: k.session.get_option('newton.stop'),
+    'spar_session_get_option': lambda k: k.session.get_option('coupling.norm'),
     'spar_session_get_iterations': [lambda k: k.session.get_iterations(), lambda k: stepped(k, k.session.get_iterations)],
     'spar_session_get_residual': lambda k: stepped(k, k.session.get_residual),
     'spar_session_get_report': lambda k: stepped(k, k.session.get_report),
