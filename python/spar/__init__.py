@@ -368,10 +368,10 @@ class _Running:
         uses = [self.session.use] if self.session is not None else []
         if self.call.handles or not uses:
             uses += [thing.use for thing in self.things if thing.session is None]
-        entered, faults = [], []
+        entered, faults, wait = [], [], not _this_thread.calls
         try:
             for use in uses:
-                use.enter(self.call.name)
+                use.enter(self.call.name, wait)
                 entered.append(use)
             return self.answer()
         finally:
@@ -637,6 +637,14 @@ def _answered(name, answer):
     return status
 
 
+class _ThisThread(threading.local):
+    """What this thread has in its calls, and has not lent to a callback."""
+    calls = 0
+
+
+_this_thread = _ThisThread()
+
+
 class _Use:
     """Who calls a session, or what belongs to none: one thread at a time, and others while a callback runs."""
     __slots__ = ('lock', 'thread', 'callbacks', 'open', 'left', 'replaced', 'faults')
@@ -650,14 +658,17 @@ class _Use:
         self.replaced = []  # callbacks that C may be in
         self.faults = []  # what the log has raised in this call
 
-    def enter(self, name):
-        """Waits until this thread may call."""
+    def enter(self, name, wait):
+        """Waits until this thread may call; not in a log or a __del__, for whom it waits may be waiting for the call around these."""
         thread = threading.get_ident()
         if self.thread == thread:
             fault = f'{name}: a call of this session is in progress; a log and a __del__ must not call it'
             raise _failed(CONSTANTS['SPAR_ERR_STATE'], fault)
-        self.lock.acquire()  # pylint: disable=consider-using-with
+        if not self.lock.acquire(wait):  # pylint: disable=consider-using-with
+            fault = f'{name}: another thread is in a call of this session; a log and a __del__ do not wait for it'
+            raise _failed(CONSTANTS['SPAR_ERR_STATE'], fault)
         self.thread = thread
+        _this_thread.calls += 1
         if not self.callbacks and (self.left or self.replaced):
             self.replaced.clear()
             while self.left and self.open:
@@ -669,6 +680,7 @@ class _Use:
         if self.faults:
             faults = self.faults.copy()
             self.faults.clear()
+        _this_thread.calls -= 1
         self.thread = None
         self.lock.release()
         return faults
@@ -676,6 +688,7 @@ class _Use:
     def lend(self):
         """A callback begins: it may call, and so may other threads."""
         self.callbacks += 1
+        _this_thread.calls -= 1
         self.thread = None
         self.lock.release()
 
@@ -683,6 +696,7 @@ class _Use:
         """It has ended."""
         self.lock.acquire()  # pylint: disable=consider-using-with
         self.thread = threading.get_ident()
+        _this_thread.calls += 1
         self.callbacks -= 1
 
 
@@ -719,7 +733,7 @@ class _Thing:
         if name not in _calls:
             raise _failed(CONSTANTS['SPAR_ERR_UNSUPPORTED'], f'a {self.kind} goes with its session; close that')
         use, faults = (self.session or self).use, []
-        use.enter(name)
+        use.enter(name, not _this_thread.calls)
         try:
             self.close_in(use)
         finally:

@@ -765,6 +765,35 @@ class Hostile(unittest.TestCase):
             s.get_gravity()
             self.assertFalse(s.use.left)
 
+    def test_logs_of_threads(self):
+        """Two logs that call each other's session, each while the other is in a call, are refused: waiting would never end."""
+        sessions, meet, refused = [spar.Session(), spar.Session()], threading.Barrier(2), []
+
+        def run(own, other):
+            def log(_level, _text):
+                meet.wait()
+                try:
+                    other.get_gravity()
+                except spar.StateError as fault:
+                    refused.append(str(fault))
+                meet.wait()
+
+            own.set_log(log)
+            with self.assertRaises(spar.ArgumentError):
+                own.set_predictor(7)
+
+        threads = [threading.Thread(target=run, args=pair, daemon=True) for pair in (sessions, sessions[::-1])]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(60)
+            self.assertFalse(thread.is_alive())
+        self.assertEqual(len(refused), 2)
+        self.assertIn('a log and a __del__ do not wait', refused[0])
+        for session in sessions:
+            session.set_log(None)
+            session.close()
+
     def test_threads(self):
         """Calls of one session wait for each other; another thread may call it during a callback."""
         with spar.Session() as s:
