@@ -20,7 +20,7 @@ char *spari_messages_redirect(char *text) {
 }
 
 void spari_log(const spar_session *s, int level, const char *text) {
-    if (s->callbacks.log) {
+    if (s->callbacks.log && !s->callbacks.muted) {
         spari_host host;
         spari_host_begin(&host);
         s->callbacks.log(s, level, text, s->callbacks.log_context);

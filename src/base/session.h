@@ -25,6 +25,7 @@ typedef struct spari_ranks {
 typedef struct spari_callbacks {
     spar_log log;
     void *log_context;
+    int muted;               /* a trial run is in progress, which tells the log nothing */
     const char *in_progress; /* callback in progress: the public call that runs the host's fluid solver, or its function
                                 before a step; or NULL */
 } spari_callbacks;

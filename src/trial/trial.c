@@ -46,7 +46,8 @@ static void copy_saved(spar_session *to, const spar_session *from) {
     to->failures = from->failures;
     to->ranks.calls_differ = from->ranks.calls_differ;
     to->ranks.reproducible = from->ranks.reproducible;
-    to->callbacks = from->callbacks;
+    to->callbacks.in_progress = from->callbacks.in_progress;
+    to->callbacks.muted = from->callbacks.muted;
     to->integrator = from->integrator;
     to->newton = from->newton;
     to->coupling = from->coupling;
@@ -89,7 +90,7 @@ static int snapshot_create(spar_session *s, snapshot *t) {
     own->coupling = NULL;
     s->coupling.stale = 1;
     own->exchange = (spari_exchange){0};
-    s->callbacks.log = NULL;
+    s->callbacks.muted = 1;
     return SPAR_OK;
 }
 

@@ -765,6 +765,26 @@ class Hostile(unittest.TestCase):
             s.get_gravity()
             self.assertFalse(s.use.left)
 
+    def test_log_set_in_trial(self):
+        """A log that is set during a trial's run holds from then on; the run told the one before again, whose memory may be gone."""
+        told = []
+        with spar.Session() as s:
+            _, fluid = body(s)
+            s.set_log(lambda *_: told.append('first'))
+            trial = s.trial_create()
+            trial.set_steps(0.1, 8)
+
+            def solve(*_):
+                s.set_log(lambda *_: told.append('second'))
+                fluid.push_forces([[0, 0, 0]])
+
+            trial.set_callbacks(None, solve)
+            trial.run(0)
+            gc.collect()
+            with self.assertRaises(spar.ArgumentError):
+                s.set_predictor(7)
+            self.assertEqual(told, ['second'])
+
     def test_logs_of_threads(self):
         """Two logs that call each other's session, each while the other is in a call, are refused: waiting would never end."""
         sessions, meet, refused = [spar.Session(), spar.Session()], threading.Barrier(2), []
