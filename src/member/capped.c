@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Eigenvalues mu, ascending, and eigenvectors as rows of V, of a section in which curvatures count at `length`. */
-static int principal(const double C[36], double length, double V[36], double mu[6]) {
+static int stiffnesses_of_strains(const double C[36], double length, double V[36], double mu[6]) {
     double workspace[SPARI_SYMMETRIC_ROOM(6)];
     for (int i = 0; i < 36; i++) {
         V[i] = 0.5 * (C[i] + C[i % 6 * 6 + i / 6]) / ((i / 6 < 3 ? 1 : length) * (i % 6 < 3 ? 1 : length));
@@ -23,7 +23,7 @@ static double softest(const spari_body *body, const double *blocks) {
     for (int64_t slot = 0; slot < body->slot[body->elements]; slot++) {
         double C[36], V[36], mu[6];
         spari_slot_get(blocks, 36, slot, C);
-        if (principal(C, body->length, V, mu)) {
+        if (stiffnesses_of_strains(C, body->length, V, mu)) {
             return 0;
         }
         for (int k = 0; k < 6; k++) {
@@ -34,12 +34,12 @@ static double softest(const spari_body *body, const double *blocks) {
 }
 
 /* to := blocks, with no stiffness above `most`. */
-static void cap_blocks(const spari_body *body, const double *blocks, double most, double *to) {
+static void cap_sections(const spari_body *body, const double *blocks, double most, double *to) {
     const double length = body->length;
     for (int64_t slot = 0; slot < body->slot[body->elements]; slot++) {
         double C[36], V[36], mu[6];
         spari_slot_get(blocks, 36, slot, C);
-        int known = principal(C, length, V, mu) == SPAR_OK && mu[5] > most;
+        int known = stiffnesses_of_strains(C, length, V, mu) == SPAR_OK && mu[5] > most;
         for (int i = 0; i < 36 && known; i++) {
             C[i] = 0;
             for (int k = 0; k < 6; k++) {
@@ -52,7 +52,7 @@ static void cap_blocks(const spari_body *body, const double *blocks, double most
 }
 
 /* The section forces of the state beyond those of the capped stiffness, as pretension. */
-static void keep_forces(const spari_body *body, const double *q, double *z, double *f, spari_body *capped) {
+static void keep_section_forces(const spari_body *body, const double *q, double *z, double *f, spari_body *capped) {
     for (int e = 0; e < body->elements; e++) {
         spari_point_gather(body, e, q, NULL, NULL, z);
         spari_lanes_interpolate(body, e, SPARI_ROTATIONS | SPARI_SLOPES, z, f);
@@ -94,12 +94,12 @@ int spari_body_cap(const spari_body *body, const double *q, double ratio, spari_
     capped->pre_part = 1;
     double *D = capped->pre + 6 * slots, *f = D + 36 * slots, *z = f + POINT_ROWS * widest;
     const double least = softest(body, body->C), least_of_D = body->D ? softest(body, body->D) : 0;
-    cap_blocks(body, body->C, least > 0 ? ratio * least : INFINITY, capped->C);
+    cap_sections(body, body->C, least > 0 ? ratio * least : INFINITY, capped->C);
     if (body->D) {
-        cap_blocks(body, body->D, least_of_D > 0 ? ratio * least_of_D : INFINITY, D);
+        cap_sections(body, body->D, least_of_D > 0 ? ratio * least_of_D : INFINITY, D);
         capped->D = D;
     }
-    keep_forces(body, q, z, f, capped);
+    keep_section_forces(body, q, z, f, capped);
     return SPAR_OK;
 }
 

@@ -34,7 +34,7 @@ typedef struct eigenvalue_search {
     double complex shift, *value, *x; /* [n], [n][unknowns] */
 } eigenvalue_search;
 
-static int solve_pairs(void *context, spari_pairs *pairs) {
+static int solve_eigenvalues(void *context, spari_pairs *pairs) {
     const eigenvalue_search *of = context;
     const int64_t size = of->motions->size;
     SPARI_TRY(solve_small_motions(of->motions, pairs->n, of->shift, of->value, of->x));
@@ -63,10 +63,10 @@ static void shape_of_vector(const spari_small_motions *w, const spari_motion_par
 }
 
 /* With a shift, motions with stiff strains may be sought, which less stiff ones would move. */
-static int pairs_of(spari_small_motions *w, const spar_member *m, int64_t n, double complex shift, double *eigenvalue,
-                    double *shapes) {
+static int best_eigenvalues(spari_small_motions *w, const spar_member *m, int64_t n, double complex shift,
+                            double *eigenvalue, double *shapes) {
     eigenvalue_search of = {.motions = w, .shift = shift, .value = spari_zalloc(n, sizeof *of.value)};
-    spari_pairs p = {.n = (int)n, .width = 2, .vectors = 2, .solve = solve_pairs, .context = &of};
+    spari_pairs p = {.n = (int)n, .width = 2, .vectors = 2, .solve = solve_eigenvalues, .context = &of};
     of.x = spari_zalloc(n * w->size, sizeof *of.x);
     p.square = spari_zalloc(n * (4 + 2 * (int64_t)w->size), sizeof *p.square);
     p.error = p.square + n, p.value = p.error + n, p.x = p.value + 2 * n;
@@ -92,7 +92,7 @@ static int eigenvalues_of(spar_member *m, int64_t n, double complex shift, doubl
         status = spari_fail(s, SPAR_ERR_ARGUMENT, "'%s': %lld eigenvalues; there are %d unknowns", m->name,
                             (long long)n, w.size);
     }
-    status = status == SPAR_OK && n > 0 ? pairs_of(&w, m, n, shift, eigenvalue, shapes) : status;
+    status = status == SPAR_OK && n > 0 ? best_eigenvalues(&w, m, n, shift, eigenvalue, shapes) : status;
     if (status == SPAR_OK) {
         spari_give(frame, w.w, 3);
     }

@@ -56,7 +56,7 @@ typedef struct modes_search {
     int connected;
 } modes_search;
 
-static int solve_pairs(void *context, spari_pairs *pairs) {
+static int solve_described(void *context, spari_pairs *pairs) {
     const modes_search *of = context;
     const spari_small_motions *w = of->motions;
     int available = w->size, status = SPAR_ERR_MEMORY;
@@ -86,7 +86,7 @@ static int solve_modes(spari_small_motions *w, const spar_member *m, int connect
         return check_found(w, m, connected, n, w->size, SPAR_ERR_ARGUMENT);
     }
     modes_search of = {w, m, connected};
-    spari_pairs p = {.n = (int)n, .width = 1, .vectors = 1, .solve = solve_pairs, .context = &of};
+    spari_pairs p = {.n = (int)n, .width = 1, .vectors = 1, .solve = solve_described, .context = &of};
     p.square = spari_zalloc(n * (3 + (int64_t)w->size), sizeof *p.square);
     p.value = p.square + n, p.error = p.value + n, p.x = p.error + n;
     int status = p.square ? spari_pairs_solve(w, &p, 1) : check_found(w, m, connected, n, 0, SPAR_ERR_MEMORY);

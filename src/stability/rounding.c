@@ -40,23 +40,25 @@ static int find_energies(spari_small_motions *w, const spari_pairs *p, double ra
     return SPAR_OK;
 }
 
-static double noise_of(const pair_energies *e, int j) {
+static double rounding_of_energy(const pair_energies *e, int j) {
     return DBL_EPSILON * e->terms[j];
 }
 
 /* Relative errors of the pairs. Behind a pair that is another one, the order is not theirs. */
-static void judge(const spari_pairs *p, const pair_energies *e, double *error) {
+static void judge_pairs(const spari_pairs *p, const pair_energies *e, double *error) {
     double least = INFINITY;
     int same = 1;
     for (int j = 0; j < p->n; j++) {
-        int clear = noise_of(e, j) < most * p->square[j];
+        int clear = rounding_of_energy(e, j) < most * p->square[j];
         least = clear ? fmin(least, p->square[j]) : least;
     }
     for (int j = 0; j < p->n; j++) {
         double of = fmax(p->square[j], part * fmax(e->soft[j], isfinite(least) ? least : 0)), far = fabs(e->changed[j]);
         far += p->square[j] > 0 ? 0 : fabs(e->energy[j]); /* one without stiffness has no energy */
         same = same && (fabs(e->changed[j]) <= other * of || !(fabs(e->changed[j]) > 0));
-        error[j] = !(e->terms[j] > 0) || !isfinite(p->square[j]) ? 0 : same ? (noise_of(e, j) + far) / of : INFINITY;
+        error[j] = !(e->terms[j] > 0) || !isfinite(p->square[j]) ? 0
+                   : same                                        ? (rounding_of_energy(e, j) + far) / of
+                                                                 : INFINITY;
     }
 }
 
@@ -81,17 +83,17 @@ static int has_softest(const spari_small_motions *w) {
 }
 
 /* Errors of the pairs as described. */
-static int judge_plain(spari_small_motions *w, spari_pairs *p, pair_energies *e) {
+static int judge_as_described(spari_small_motions *w, spari_pairs *p, pair_energies *e) {
     int which;
     if (p->vectors > 1) {
         SPARI_TRY(find_energies(w, p, 0, e->energy, e->terms)); /* the solution has scaled the equations */
     } else {
         add_energies(w, p, e->energy, e->terms);
     }
-    judge(p, e, p->error);
+    judge_pairs(p, e, p->error);
     if (worst_of(p, &which) > small && has_softest(w)) {
         SPARI_TRY(find_energies(w, p, 1, e->other, e->soft));
-        judge(p, e, p->error);
+        judge_pairs(p, e, p->error);
     }
     return SPAR_OK;
 }
@@ -109,7 +111,7 @@ static int solve_capped(spari_small_motions *w, spari_pairs *p, double ratio, pa
     for (int j = 0; j < n; j++) {
         e->changed[j] = 2 * (e->energy[j] - e->other[j]);
     }
-    judge(&own, e, own.error);
+    judge_pairs(&own, e, own.error);
     for (int j = 0, known = 1; j < n; j++) {
         known = known && own.error[j] <= most; /* then a larger pair is another one: p has missed this one */
         int missed = known && own.square[j] * (1 + 2 * own.error[j]) < p->square[j] * (1 - 2 * p->error[j]);
@@ -144,7 +146,7 @@ static int solve_best(spari_small_motions *w, spari_pairs *p, int cures, double 
     for (int j = 0; j < n; j++) {
         p->error[j] = INFINITY;
     }
-    SPARI_TRY(status == SPAR_OK ? judge_plain(w, p, &e) : SPAR_OK);
+    SPARI_TRY(status == SPAR_OK ? judge_as_described(w, p, &e) : SPAR_OK);
     for (int k = 0; k < 3 && cures && has_softest(w) && worst_of(p, &which) > small; k++) {
         char message[SPARI_MESSAGE_SIZE];
         (void)spari_messages_redirect(message); /* that this attempt fails is no failure */
