@@ -7,6 +7,7 @@
 #include "../base/session.h"
 #include "../math/rotation.h"
 #include "../member/body.h"
+#include "../member/plane.h"
 #include "../time/fidelity.h"
 
 #include <math.h>
@@ -227,11 +228,23 @@ static int find_frame(spari_small_motions *w) {
     return fill_motions(w, w->session->joints);
 }
 
+/* The largest unbalanced force of a part; moments count over the member's length. Its nodes end with a rotation. */
+static double largest_unbalanced(const spari_pencil *p, const spari_motion_part *part) {
+    const int plane = spari_member_plane(part->member) != NULL, node = plane ? 3 : 6, rotations = plane ? 1 : 3;
+    const double length = spari_member_length(part->member);
+    double most = 0;
+    for (int i = 0; i < part->size; i++) {
+        int rotation = (part->size - 1 - i) % node < rotations;
+        most = fmax(most, fabs(p->left[part->at + i]) / (rotation ? length : 1));
+    }
+    return most;
+}
+
 static int check_motions(const spari_small_motions *w) {
     const spari_pencil *p = &w->pencil;
     double most = 0, size = 0;
-    for (int i = 0; i < w->size; i++) {
-        most = fmax(most, fabs(p->left[i]));
+    for (int i = 0; i < w->parts; i++) {
+        most = fmax(most, largest_unbalanced(p, w->part + i));
     }
     for (int64_t i = 0; i < p->entries; i++) {
         size += fabs(p->entry[i].k) + fabs(p->entry[i].c) + fabs(p->entry[i].m);
