@@ -365,8 +365,8 @@ SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
      frequency_hz[n]: out, ascending; negative if the stiffness is, infinite without mass
      shapes[n][nodes][6]: out, displacement and rotation of this member's nodes, for unit modal mass of all connected
            members, NULL: not wanted
-   SPAR_ERR_NUMERIC: no convergence; or rounding of very stiff strains leaves an error beyond 5e-4 of a frequency. That
-   of exact beams is right beside stretch of any stiffness. */
+   SPAR_ERR_NUMERIC: no convergence; or rounding of very stiff strains leaves an error beyond 5e-4 of a frequency. Of
+   linear and modal beams a warning says so instead. */
 SPAR_API int spar_member_solve_modes(spar_member *member, int64_t n, double *frequency_hz, double *shapes);
 /* Eigenvalues lambda of small motions x e^(lambda t) about the present state, at rest or in steady rotation. Damping,
    Coriolis, gyroscopic and unsymmetric stiffness terms are included (docs/explanation/theory.md). lambda is growth
