@@ -182,7 +182,6 @@ typedef struct motion_world {
 
 /* The strictest settings: tolerances at rounding. */
 static inline void scene_strictest(spar_session *s) {
-    (void)spar_session_set_option(s, "newton.stop", "strict"); /* where that is an option */
     OK(s, spar_session_set_newton(s, 1e-15, 1e-14, 100));
 }
 
@@ -294,7 +293,6 @@ static inline void scene_read_end(const motion_world *w, int part, int last, dou
 static inline void scene_try_tolerance(spar_session *s) {
     const char *rtol = getenv("SPAR_NEWTON");
     if (rtol) {
-        (void)spar_session_set_option(s, "newton.stop", "strict");
         OK(s, spar_session_set_newton(s, 1e-15, atof(rtol), 50));
     }
 }
