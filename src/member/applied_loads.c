@@ -14,6 +14,8 @@
 
 /* Kind of a line load beside SPAR_LOAD_DEAD and SPAR_LOAD_FOLLOWER. */
 enum { SPARI_LINE_SPRINGS = 2 };
+/* Maximum number of Gauss points of a load between two stations in an element. */
+enum { LINE_POINTS = SPARI_MAX_NODES + 4 };
 
 /* A distributed load, with its own quadrature points: it may jump where sections do not. */
 typedef struct line_load {
@@ -237,8 +239,9 @@ static void add_followers(const spar_member *m, int e, const double *follower, d
     }
 }
 
-/* out [P][6] += factor * loads of element e for the state q [P][7] of its nodes, without springs */
-static void element_loads(const spar_member *m, int e, const double *q, double factor, double *out) {
+/* out [P][6] += factor * loads of element e for the state q [P][7] of its nodes, without springs; lines: with those
+   along the line */
+static void element_loads(const spar_member *m, int e, const double *q, int lines, double factor, double *out) {
     const spari_applied *a = m->load.applied;
     int P = m->mesh.per_element;
     double z[SPARI_MAX_NODES][4], g[7 * SPARI_MAX_NODES] = {0};
@@ -246,7 +249,7 @@ static void element_loads(const spar_member *m, int e, const double *q, double f
         return;
     }
     element_field(m, q, z);
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2 && lines; k++) {
         double left = left_of(m, 1 << k);
         line_forces(m, &a->line[k], k == SPAR_LOAD_FOLLOWER, e, 1 - left, z, g);
         if (left > 0) {
@@ -279,7 +282,7 @@ double spari_applied_residual(const spar_member *m, const double *q, double fact
     for (int e = 0; e < m->mesh.elements; e++) {
         int64_t first = (int64_t)e * (P - 1);
         memset(out, 0, sizeof out);
-        element_loads(m, e, q + 7 * first, factor, out);
+        element_loads(m, e, q + 7 * first, 1, factor, out);
         if (springs_apart(m)) {
             (void)element_springs(m, e, q + 7 * first, factor, out);
         }
@@ -291,13 +294,134 @@ double spari_applied_residual(const spar_member *m, const double *q, double fact
     return largest;
 }
 
-void spari_applied_nodal(const spar_member *m, const double *q, double *load) {
+static void nodal_loads(const spar_member *m, const double *q, int lines, double *load) {
     for (int e = 0; e < m->mesh.elements; e++) {
         int64_t first = (int64_t)e * m->mesh.per_element;
-        element_loads(m, e, q + 7 * first, 1, load + 6 * first);
+        element_loads(m, e, q + 7 * first, lines, 1, load + 6 * first);
     }
     if (m->load.foundation) {
         spari_foundation_nodal(m, q, 1, load);
+    }
+}
+
+void spari_applied_nodal(const spar_member *m, const double *q, double *load) {
+    nodal_loads(m, q, 1, load);
+}
+
+void spari_applied_nodal_but_lines(const spar_member *m, const double *q, double *load) {
+    nodal_loads(m, q, 0, load);
+}
+
+/* ---- beyond a section ---- */
+
+/* Part of element e between load stations i and i + 1, in its coordinate. Returns the number of its Gauss points. */
+static int load_interval(const spar_member *m, int e, int64_t n, const double *eta, int64_t i, double *from,
+                         double *to) {
+    const double E = m->mesh.elements;
+    *from = n == 1 ? -1 : fmax(2 * (eta[i] * E - e) - 1, -1);
+    *to = n == 1 ? 1 : fmin(2 * (eta[i + 1] * E - e) - 1, 1);
+    /* the whole element: degree 2 P + 1 */
+    return *to - *from < 1e-12 ? 0 : 2 + (int)ceil(0.5 * (*to - *from) * (m->mesh.per_element - 1) - 1e-9);
+}
+
+/* Lagrange basis on n Gauss points. */
+static void gauss_basis(int n, const double *x, double at, double *phi) {
+    for (int k = 0; k < n; k++) {
+        phi[k] = 1;
+        for (int j = 0; j < n; j++) {
+            phi[k] *= j == k ? 1 : (at - x[j]) / (x[k] - x[j]);
+        }
+    }
+}
+
+/* One element beyond a section, and the sum of forces and moments about the section. */
+typedef struct beyond {
+    int P;
+    double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES], xi, origin[3], sum[6];
+    const double *x; /* [P][3] */
+} beyond;
+
+static void position_at(const beyond *b, const double *phi, double x[3]) {
+    memset(x, 0, 3 * sizeof *x);
+    for (int l = 0; l < b->P; l++) {
+        for (int c = 0; c < 3; c++) {
+            x[c] += phi[l] * b->x[3 * l + c];
+        }
+    }
+}
+
+static void add_at(beyond *b, const double *phi, double factor, const double force[6]) {
+    double x[3], moment[3];
+    position_at(b, phi, x);
+    const double arm[3] = {x[0] - b->origin[0], x[1] - b->origin[1], x[2] - b->origin[2]};
+    spari_cross(arm, force, moment);
+    for (int c = 0; c < 3; c++) {
+        b->sum[c] += factor * force[c];
+        b->sum[3 + c] += factor * (force[3 + c] + moment[c]);
+    }
+}
+
+/* Part of one line load. The interval in which the section lies has the polynomial through its Gauss points: from the
+   beginning of the interval on, its integral is their sum. */
+SPARI_APART static void line_beyond(const spar_member *m, const line_load *line, int follows, int e, double part,
+                                    double z[][4], beyond *b) {
+    const int64_t n = line->stations;
+    double gx[LINE_POINTS], gw[LINE_POINTS], px[LINE_POINTS], pw[LINE_POINTS], load[LINE_POINTS][6], from, to;
+    double shape[SPARI_MAX_NODES], on[LINE_POINTS], r[4];
+    int k = line->first ? line->first[e] : 0;
+    for (int64_t i = 0; line->first && i < (n == 1 ? 1 : n - 1); i++) {
+        const int points = load_interval(m, e, n, line->eta, i, &from, &to);
+        const double start = fmax(from, b->xi), half = 0.5 * (to - start);
+        for (int g = 0; g < points; g++, k++) {
+            const double *phi = line->phi + (int64_t)k * b->P;
+            (void)point_rotation(b->P, phi, z, r);
+            load_now(line->load + 6 * (int64_t)k, follows, r, load[g], load[g] + 3);
+            if (start <= from) {
+                add_at(b, phi, part, load[g]);
+            }
+        }
+        if (points == 0 || start <= from || to <= start) {
+            continue;
+        }
+        spari_gauss(points, gx, gw);
+        spari_gauss(LINE_POINTS, px, pw); /* exact: the line and the load are polynomials */
+        for (int p = 0; p < LINE_POINTS; p++) {
+            const double at = start + half * (1 + px[p]);
+            double force[6] = {0};
+            gauss_basis(points, gx, (2 * at - from - to) / (to - from), on);
+            for (int g = 0; g < points; g++) {
+                for (int c = 0; c < 6; c++) {
+                    force[c] += on[g] * load[g][c] / gw[g];
+                }
+            }
+            spari_lagrange(b->P, b->gll, b->bary, at, shape, NULL);
+            add_at(b, shape, part * 2 * half / (to - from) * pw[p], force);
+        }
+    }
+}
+
+void spari_applied_lines_beyond(const spar_member *m, const double *q, const double *x, int e, double xi,
+                                double force[6]) {
+    const spari_applied *a = m->load.applied;
+    const int P = m->mesh.per_element;
+    double z[SPARI_MAX_NODES][4], phi[SPARI_MAX_NODES];
+    beyond b = {.P = P, .xi = xi, .x = x + 3 * (int64_t)e * P};
+    if (!a) {
+        return;
+    }
+    spari_gll(P, b.gll, NULL, b.bary);
+    spari_lagrange(P, b.gll, b.bary, xi, phi, NULL);
+    position_at(&b, phi, b.origin);
+    element_field(m, q + 7 * (int64_t)e * P, z);
+    for (int k = 0; k < 2; k++) {
+        const double left = left_of(m, 1 << k);
+        line_beyond(m, &a->line[k], k == SPAR_LOAD_FOLLOWER, e, 1 - left, z, &b);
+        if (left > 0) {
+            line_beyond(m, &m->load.ramp->before.line[k], k == SPAR_LOAD_FOLLOWER, e, left, z, &b);
+        }
+    }
+    for (int k = 0; k < 6; k++) {
+        force[k] += b.sum[k];
     }
 }
 
@@ -455,16 +579,14 @@ void spari_applied_tangent(const spar_member *m, int e, const double *q, double 
    stored beside it. */
 static int load_points(const spar_member *m, int e, int64_t n, const double *eta, spari_station *s, double *w,
                        double *at) {
-    double gx[SPARI_MAX_NODES + 4], gw[SPARI_MAX_NODES + 4], E = m->mesh.elements;
+    double gx[LINE_POINTS], gw[LINE_POINTS], from, to;
     int count = 0, whole = n == 1;
     for (int64_t i = 0; i < (whole ? 1 : n - 1); i++) {
-        double from = whole ? -1 : fmax(2 * (eta[i] * E - e) - 1, -1),
-               to = whole ? 1 : fmin(2 * (eta[i + 1] * E - e) - 1, 1);
-        if (to - from < 1e-12) {
+        const int points = load_interval(m, e, n, eta, i, &from, &to);
+        double half = 0.5 * (to - from);
+        if (points == 0) {
             continue;
         }
-        double half = 0.5 * (to - from);
-        int points = 2 + (int)ceil(half * (m->mesh.per_element - 1) - 1e-9); /* the whole element: degree 2 P + 1 */
         spari_gauss(points, gx, gw);
         for (int k = 0; k < points && s; k++) {
             s[count + k].element = e;

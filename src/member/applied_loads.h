@@ -27,8 +27,14 @@ static inline int spari_carries_loads(const spar_member *member) {
 double spari_applied_residual(const spar_member *member, const double *q, double factor, double *r);
 /* Adds their exact tangent to the tangent S [6P][6P] of element e. */
 void spari_applied_tangent(const spar_member *member, int e, const double *q, double factor, double *S);
-/* load [nodes][6] += the loads for the motion q [nodes][7] of the host's nodes. */
+/* load [nodes][6] += the loads for the motion q [nodes][7] of the host's nodes; and without dead and follower loads
+   along the line. */
 void spari_applied_nodal(const spar_member *member, const double *q, double *load);
+void spari_applied_nodal_but_lines(const spar_member *member, const double *q, double *load);
+/* force += force and moment about the section at xi of element e, of the line loads on the element beyond it. q, x
+   [nodes]: motion of the host's nodes, and their positions for lever arms. */
+void spari_applied_lines_beyond(const spar_member *member, const double *q, const double *x, int e, double xi,
+                                double force[6]);
 /* Whether the loads have a potential: dead forces and springs only. */
 int spari_applied_potential(const spar_member *member);
 /* Whether dead distributed loads have components perpendicular to the unit vector `axis`. */

@@ -1,7 +1,8 @@
 /* Resultant of all loads on the part of a beam beyond a section: see section_resultants.h. Loads are kept per element,
-   with each element's own share at nodes in common with its neighbours. Distributed loads (inertia, weight, line
-   loads, foundation, fluid) are nodal sums weighted with shape functions; spari_share_beyond gives the fraction of
-   them that acts beyond a position in the element. Loads at nodes, joints and point masses act where they are. */
+   with each element's own share at nodes in common with its neighbours. Distributed loads (inertia, weight,
+   foundation, fluid) are nodal sums weighted with shape functions; spari_share_beyond gives the fraction of
+   them that acts beyond a position in the element. Loads at nodes, along the line, of joints and of point masses act
+   where they are. */
 #include "section_resultants.h"
 
 #include "../math/rotation.h"
@@ -177,9 +178,9 @@ static int add_inertia(const spari_beyond *b, line_forces *on, int weight) {
 
 static void gather_loads_at(const spar_member *m, line_forces *on) {
     const double *follower = spari_applied_follower(m);
-    const int turns = !spari_member_is_linear_at_rest(m);
+    const int turns = !spari_member_is_linear_in_place(m); /* as in their nodal loads */
     if (spari_carries_loads(m)) {
-        spari_applied_nodal(m, m->after.q, on->spread);
+        spari_applied_nodal_but_lines(m, m->after.q, on->spread);
     }
     for (int64_t i = 0; i < m->nodes; i++) {
         double at_node[6] = {0};
@@ -207,8 +208,9 @@ static void gather_loads_at(const spar_member *m, line_forces *on) {
 
 /* ---- assembly ---- */
 
-static void sum_elements(const spar_member *m, line_forces *on) {
+static void sum_elements(const spar_member *m, line_forces *on, int loads) {
     const int P = m->mesh.per_element;
+    double lines[6];
     for (int e = m->mesh.elements - 1; e >= 0; e--) {
         double *sum = on->sum + 6 * (int64_t)e;
         for (int k = 0; k < 6; k++) {
@@ -217,6 +219,11 @@ static void sum_elements(const spar_member *m, line_forces *on) {
         for (int64_t i = (int64_t)e * P; i < (int64_t)(e + 1) * P; i++) {
             add_about(on->x, on->x + 3 * i, on->spread + 6 * i, sum);
             add_about(on->x, on->x + 3 * i, on->point + 6 * i, sum);
+        }
+        if (loads) {
+            memset(lines, 0, sizeof lines);
+            spari_applied_lines_beyond(m, m->after.q, on->x, e, -1, lines);
+            add_about(on->x, on->x + 3 * (int64_t)e * P, lines, sum);
         }
         for (int64_t k = 0; k < on->masses; k++) {
             if (on->mass[k].element == e) {
@@ -249,7 +256,7 @@ static line_forces *line_forces_of(const spari_beyond *b, int moved, int loads, 
         SPARI_FREE(on->mass, on->x, on->spread, on->point, on->sum, on);
         return NULL;
     }
-    sum_elements(m, on);
+    sum_elements(m, on, loads);
     return on;
 }
 
@@ -303,7 +310,8 @@ static void add_share(const spari_beyond *b, const line_forces *on, const spari_
     }
 }
 
-static void forces_beyond(const spari_beyond *b, const line_forces *on, const spari_station *s, double force[6]) {
+static void forces_beyond(const spari_beyond *b, const line_forces *on, int loads, const spari_station *s,
+                          double force[6]) {
     const int P = b->member->mesh.per_element;
     const double *sum = on->sum + 6 * ((int64_t)s->element + 1), near = 1e-9;
     double x[3] = {0}, phi[SPARI_MAX_NODES], moment[3];
@@ -331,13 +339,16 @@ static void forces_beyond(const spari_beyond *b, const line_forces *on, const sp
         }
     }
     add_share(b, on, s, force);
+    if (loads) {
+        spari_applied_lines_beyond(b->member, b->member->after.q, on->x, s->element, s->xi, force);
+    }
 }
 
 void spari_beyond_at(const spari_beyond *b, const spari_station *s, double force[2][6]) {
     memset(force, 0, 2 * sizeof *force);
     for (int k = 0; k < 2; k++) {
         if (b->on[k]) {
-            forces_beyond(b, b->on[k], s, force[k]);
+            forces_beyond(b, b->on[k], k == 0 || !b->on[0], s, force[k]);
         }
     }
 }

@@ -1,6 +1,6 @@
 /* Section forces from the equilibrium of the part of a beam beyond the section: its loads minus its inertia. They
-   are as accurate as the nodal equilibrium, and hence as the reaction; stiffness times strain is one order less
-   accurate. */
+   are as accurate as the nodal equilibrium, and hence as the reaction, except near a jump of mass, foundation or fluid
+   load inside an element, which nodal sums smooth; stiffness times strain is one order less accurate. */
 #ifndef SPARI_SECTION_RESULTANTS_H
 #define SPARI_SECTION_RESULTANTS_H
 

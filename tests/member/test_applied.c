@@ -366,6 +366,36 @@ static void test_refusals(void **state) {
     spar_session_destroy(&s);
 }
 
+/* A force and a moment along the line from eta 0.3 to 0.6, inside elements: section forces are those of statics
+   everywhere, on both sides of the jumps, for any nodes. Shares of nodal sums were 3 to 11 % off. */
+static void section_forces_know_where_a_line_load_ends(void **state) {
+    (void)state;
+    const int fidelities[] = {SPAR_FIDELITY_EXACT, SPAR_FIDELITY_LINEAR, SPAR_FIDELITY_MODAL},
+              meshes[][2] = {{1, 4}, {1, 9}, {3, 5}};
+    const double eta[2] = {0.3, 0.6}, p[12] = {0, 0, 2, 0, 0, 0.3, 0, 0, 2, 0, 0, 0.3}, L = 2;
+    double stiffness[36], mass[36];
+    scene_diagonal(stiffness, 1e8, 4e7, 4e7, 6e7, 1.2e8, 2e8);
+    scene_diagonal(mass, 1, 1, 1, 1e-3, 1e-3, 1e-3);
+    for (int run = 0; run < 18; run++) {
+        const int *mesh = meshes[run % 3], kind = run / 3 % 2 ? SPAR_LOAD_FOLLOWER : SPAR_LOAD_DEAD;
+        spar_session *s = scene_session();
+        spar_member *b = scene_beam(s, "b", mesh[0], mesh[1], L, stiffness, mass);
+        OK(s, spar_member_set_fidelity(b, fidelities[run / 6], 6 * mesh[0] * (mesh[1] - 1)));
+        OK(s, spar_member_commit(b));
+        OK(s, spar_beam_set_line_load(b, kind, 2, eta, p));
+        OK(s, spar_member_solve_static(b, 1));
+        for (int i = 0; i <= 80; i++) {
+            const double at = i / 80.0, x = L * at, from = fmax(x, 0.6), over = fmax(1.2 - from, 0);
+            double f[6];
+            OK(s, spar_beam_evaluate(b, 1, &at, NULL, f, NULL, NULL));
+            NEAR(f[2], 2 * over, 2e-8);
+            NEAR(f[4], -2 * over * ((from + 1.2) / 2 - x), 2e-8);
+            NEAR(f[5], 0.3 * over, 2e-8);
+        }
+        spar_session_destroy(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_tangent),
@@ -376,6 +406,7 @@ int main(void) {
         cmocka_unit_test(test_rigid_thrust),
         cmocka_unit_test(test_saved),
         cmocka_unit_test(test_refusals),
+        cmocka_unit_test(section_forces_know_where_a_line_load_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
