@@ -341,7 +341,7 @@ static int project(spari_assembly *a, double s, double dt) {
         if (worst <= 8 * DBL_EPSILON * size) {
             return 0;
         }
-        if (spari_system_shift_rates(a, a->component[0].scheme.cv, 1, 0)) {
+        if (spari_system_shift_rates(a, a->component[0].scheme.cv, 1, 0, 0)) {
             return 1;
         }
     }
@@ -465,7 +465,44 @@ static int shift_for_alpha(spari_assembly *a, double cv, double time) {
         }
         l->joint->after = found;
     }
-    return spari_system_shift_rates(a, cv, 1, 0);
+    return spari_system_shift_rates(a, cv, 1, 0, 0);
+}
+
+/* Acceleration at t^0 of driven motion k, if the motion begins smoothly. Rate and acceleration at the end of the first
+   step give a cubic, which has to meet the position there. Motions of degree 5 miss it by dt^2 (|z''^0| + |z''|) / 30,
+   those given without accelerations by 1/12 or more, and impulsive ones by more. */
+static int begins_smoothly(const spar_joint *j, int k, double dt, double *acceleration) {
+    static const double most = 1.0 / 20;
+    const spari_driven *from = &j->drive[0], *to = &j->drive[1];
+    const double a = 2 * (to->rate[k] - from->rate[k]) / dt - to->acceleration[k],
+                 met = from->z[k] + dt * from->rate[k] + dt * dt * (2 * a + to->acceleration[k]) / 6;
+    *acceleration = a;
+    return j->drive_given && (j->driven >> k & 1) &&
+           fabs(to->z[k] - met) < most * dt * dt * (fabs(a) + fabs(to->acceleration[k]));
+}
+
+static double step_of(const spari_assembly *a) {
+    return a->component[0].alpha.h * a->session->integrator.substeps;
+}
+
+/* The shift of velocities for the motion of driven joints in the first step; and the scheme's memory begins with b^0 =
+   a^0 + (alpha_m - alpha_f) h a'^0 (Arnold & Bruls 2007). Returns 0 or 1. */
+static int shift_for_drives(spari_assembly *a) {
+    const spari_scheme *c = &a->component[0].alpha;
+    const double dt = step_of(a);
+    int moves = 0;
+    for (int i = 0; i < a->constraints; i++) {
+        const spar_joint *j = a->constraint[i].joint;
+        for (int k = 0; k < 6; k++) {
+            double begin, *gap = a->constraint[i].gap + k;
+            *gap = spari_constraint_holds(a->constraint + i, k) && begins_smoothly(j, k, dt, &begin)
+                       ? (j->drive[1].acceleration[k] - begin) / dt
+                       : 0;
+            moves = moves || *gap != 0;
+        }
+    }
+    return moves &&
+           spari_system_shift_rates(a, 0, spari_scheme_error(c) * c->h * c->h, 0, -(c->alpha_m - c->alpha_f) * c->h);
 }
 
 /* ---- consistent initial accelerations ---- */
@@ -490,13 +527,14 @@ static void start_residual(spari_assembly *a, double cm) {
 }
 
 /* At t^0 a driven motion begins with the motion of its members; later with the motion that it was driven to. */
-static void begin_drive(spari_constraint *l) {
+static void begin_drive(spari_constraint *l, double dt) {
     spar_joint *j = l->joint;
     for (int k = 0; k < 6; k++) {
         if (j->session->clock.step == 0 && (j->driven >> k & 1)) {
             j->drive[0].z[k] = j->after.z[k];
             j->drive[0].rate[k] = j->after.rate[k];
-            j->drive[0].acceleration[k] = 0;
+            double smooth;
+            j->drive[0].acceleration[k] = begins_smoothly(j, k, dt, &smooth) ? smooth : 0;
         }
     }
     l->drive = j->drive[0];
@@ -516,7 +554,7 @@ static int start_all(spari_assembly *a) {
     }
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint_find(a->constraint + i, 0, 0, 1);
-        begin_drive(a->constraint + i);
+        begin_drive(a->constraint + i, step_of(a));
     }
     a->system_serves = 0;
     singular = singular || project(a, 0, 0);
@@ -533,7 +571,7 @@ static int start_all(spari_assembly *a) {
     }
     if (a->session->clock.step ==
         0) { /* later the accelerations that a trial begins with are not those of a steady motion */
-        singular = singular || shift_for_alpha(a, 0, 0);
+        singular = singular || shift_for_alpha(a, 0, 0) || shift_for_drives(a);
     }
     a->factored = 0;
     spari_assembly_name(a, name, sizeof name);

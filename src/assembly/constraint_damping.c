@@ -36,5 +36,5 @@ int spari_system_damp_constraints(spari_assembly *a, double s, double dt) {
     }
     find_ringing(a, s, dt);
     /* velocities are on the constraints already */
-    return spari_system_shift_rates(a, c->cv, a->constrains_rates ? 0 : 0.25 * (1 - r) * (1 - r) * c->h, 1 - r * r);
+    return spari_system_shift_rates(a, c->cv, a->constrains_rates ? 0 : 0.25 * (1 - r) * (1 - r) * c->h, 1 - r * r, 0);
 }

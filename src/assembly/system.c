@@ -908,7 +908,7 @@ int spari_system_solve_rates(spari_assembly *a, double cv) {
     return 0;
 }
 
-int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acceleration) {
+int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acceleration, double memory) {
     if (a->constraints == 0) {
         return 0;
     }
@@ -918,7 +918,7 @@ int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acce
     for (int i = 0; i < a->components; i++) {
         spari_component_clear(a->component + i);
         spari_component_expand(a->component + i, a->x + a->component[i].at);
-        spari_component_shift_rates(a->component + i, v, acceleration, 0);
+        spari_component_shift_rates(a->component + i, v, acceleration, memory);
     }
     return 0;
 }

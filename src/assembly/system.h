@@ -110,9 +110,9 @@ int spari_system_solve_rates(spari_assembly *a, double cv);
    spari_component_expand compute the corrections of a component from its part. loads: whether those of the multipliers
    are needed. */
 int spari_system_solve_gaps(spari_assembly *a, double cv, int loads);
-/* The same for the rates at the end: shifts velocities by v, and accelerations by `acceleration`, times the
-   corrections. Without constraints it does nothing. */
-int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acceleration);
+/* The same for the rates at the end: shifts velocities by v, accelerations by `acceleration`, and the accelerations
+   that the scheme carries by `memory`, times the corrections. Without constraints it does nothing. */
+int spari_system_shift_rates(spari_assembly *a, double cv, double v, double acceleration, double memory);
 /* Constraint damping: damps oscillations along the constraints at the end of a substep, at the part s of the step
    dt. Returns 0 or 1. */
 int spari_system_damp_constraints(spari_assembly *a, double s, double dt);
