@@ -19,7 +19,7 @@
 enum { ELEMENTS = 2, PER_ELEMENT = 7, NODES = 14, POINTS = 9, STEPS = 60, MODES = 4, FIGURES = 6 };
 typedef enum root_motion { HUB, PUSHED, SPUN, STANDING, HANGING, ROOTS } root_motion;
 
-static const double FLOOR = 2.5e-3, COARSE = 0.04, FINE = 0.01, DT = 4e-3;
+static const double FLOOR = 4e-3, COARSE = 0.04, FINE = 0.01, DT = 4e-3;
 static const char *const root_name[] = {"hub", "pushed", "spun", "standing", "hanging"};
 static const char *const figure_name[FIGURES] = {"static tip",  "static root moment",  "modes",
                                                  "eigenvalues", "tip after the steps", "root moment after the steps"};
