@@ -2,7 +2,6 @@
 #include "frame.h"
 
 #include "../base/session.h"
-#include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied_loads.h"
 #include "../member/beam.h"
@@ -11,7 +10,6 @@
 #include "../time/fidelity.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- life ---- */
 
@@ -90,19 +88,6 @@ static void frame_free(void *solution) {
     free(f);
 }
 
-double *spari_frame_arms(const spar_member *m) {
-    double *arm = spari_zalloc(3 * (int64_t)m->body->unique, sizeof *arm);
-    if (arm) {
-        spari_member_to_unique(m, 3, m->xr, arm);
-        for (int64_t i = m->body->unique - 1; i >= 0; i--) {
-            for (int k = 0; k < 3; k++) {
-                arm[3 * i + k] -= arm[k];
-            }
-        }
-    }
-    return arm;
-}
-
 /* The matrices, of the nodes or of m->modes modes. */
 static int fill_frame(spari_frame *f, const spar_member *m) {
     double *arm = spari_frame_arms(m);
@@ -126,30 +111,6 @@ static int fill_frame(spari_frame *f, const spar_member *m) {
     const double accelerates[3] = {f->N[0] != NULL};
     status = status == SPAR_OK ? spari_frame_weigh(f, m, accelerates) : status;
     return status == SPAR_OK ? spari_frame_weigh(f, m, m->body->gravity) : status;
-}
-
-int spari_frame_weigh(spari_frame *f, const spar_member *m, const double field[3]) {
-    if (f->P[0] || !f->M || m->root == SPAR_ROOT_FREE || !(spari_norm(field) > 0)) {
-        return SPAR_OK;
-    }
-    const int64_t size = 36 * (int64_t)m->mesh.elements * m->mesh.per_element * m->mesh.per_element;
-    double *arm = spari_frame_arms(m), *P[3] = {0};
-    int ok = arm && (f->sumK || (f->sumK = spari_zalloc(f->size, sizeof *f->sumK)));
-    for (int k = 0; k < 3; k++) {
-        ok = ok && (P[k] = spari_zalloc(size, sizeof *P[k]));
-    }
-    ok = ok && spari_frame_form_translations(m->body, arm, P) == SPAR_OK;
-    for (int k = 0; k < 3 && f->basis; k++) {
-        ok = ok && spari_frame_project_matrix(f, m->body, f->n, &P[k]) == 0;
-    }
-    free(arm);
-    f->combined = 0; /* there is a sum now */
-    if (!ok) {
-        SPARI_FREE(P[0], P[1], P[2]);
-        return SPAR_ERR_MEMORY;
-    }
-    memcpy(f->P, P, sizeof f->P);
-    return SPAR_OK;
 }
 
 static int frame_create(spar_member *m) {

@@ -113,25 +113,6 @@ int spari_frame_fill_basis(spari_frame *f, const double *arm, int cols) {
     return status;
 }
 
-int spari_frame_project_matrix(const spari_frame *f, const spari_body *body, int cols, double **X) {
-    int m = 6 * body->per_element, step = m - 6;
-    double *to = spari_zalloc((int64_t)cols * cols, sizeof *to), *half = spari_zalloc((int64_t)m * cols, sizeof *half);
-    if (!to || !half) {
-        SPARI_FREE(to, half);
-        return 1;
-    }
-    for (int e = 0; e < body->elements; e++) {
-        const double *b = f->basis + (int64_t)e * step * cols;
-        SPARI_BLAS(cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, cols, m, 1, *X + (int64_t)m * m * e, m, b,
-                               cols, 0, half, cols));
-        SPARI_BLAS(
-            cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, cols, cols, m, 1, b, cols, half, cols, 1, to, cols));
-    }
-    SPARI_FREE(half, *X);
-    *X = to;
-    return 0;
-}
-
 /* Makes the strain of rigid motions exactly 0. */
 static void no_strain(const spari_frame *f, double *X) {
     for (int i = 0; i < f->n && X; i++) {
