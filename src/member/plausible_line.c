@@ -18,7 +18,7 @@ static const double near_part = 0.1;
    shapes on 6 meshes by 3 to 24 points, a pair of them 1 to 50 mm apart, rounded to 1 and 0.1 mm. */
 static const double rise = 0.25, of_chord = 5e-3;
 
-static double apart(const double *a, const double *b) {
+static double separation(const double *a, const double *b) {
     return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
 }
 
@@ -30,8 +30,8 @@ static int64_t separate(const spari_beam *b, int64_t *kept) {
     kept[0] = 0;
     for (int64_t i = 1; i < n; i++) {
         const int64_t k = kept[count - 1];
-        const double gap = apart(x + 3 * k, x + 3 * i), before = k > 0 ? apart(x + 3 * k, x + 3 * k - 3) : 0,
-                     after = i + 1 < n ? apart(x + 3 * i, x + 3 * i + 3) : 0;
+        const double gap = separation(x + 3 * k, x + 3 * i), before = k > 0 ? separation(x + 3 * k, x + 3 * k - 3) : 0,
+                     after = i + 1 < n ? separation(x + 3 * i, x + 3 * i + 3) : 0;
         if (gap >= near_part * fmax(before, after)) {
             kept[count++] = i;
         } else if (i == n - 1 && count > 1) {
@@ -66,8 +66,9 @@ static void velocity(const spari_beam *b, int64_t from, int64_t to, double v[3])
 /* Length of interval i over that of its longer neighbour. */
 static double relative_gap(const spari_beam *b, int64_t i) {
     const double *x = b->xyz + 3 * i;
-    const double before = i > 0 ? apart(x, x - 3) : 0, after = i + 2 < b->axis_count ? apart(x + 3, x + 6) : 0;
-    return apart(x, x + 3) / fmax(before, after);
+    const double before = i > 0 ? separation(x, x - 3) : 0,
+                 after = i + 2 < b->axis_count ? separation(x + 3, x + 6) : 0;
+    return separation(x, x + 3) / fmax(before, after);
 }
 
 static void warn_of_line(const spar_member *m, int64_t from, int64_t to, double off, double chord) {
@@ -82,7 +83,7 @@ static void warn_of_line(const spar_member *m, int64_t from, int64_t to, double 
                    "than the points bend; points %lld and %lld are only %.3g m apart: leave one of them out, or give "
                    "them with more digits",
                    m->name, off, (long long)from, (long long)to, chord, (long long)pair, (long long)pair + 1,
-                   apart(b->xyz + 3 * pair, b->xyz + 3 * pair + 3));
+                   separation(b->xyz + 3 * pair, b->xyz + 3 * pair + 3));
         return;
     }
     spari_warn(m->session,
@@ -109,15 +110,15 @@ static double excess(const spar_member *m, const double *gll, const double *bary
         for (int c = 0; c < 3; c++) {
             straight[c] = ends[0][c] + part * (ends[1][c] - ends[0][c]);
         }
-        *off = fmax(*off, apart(at, straight));
+        *off = fmax(*off, separation(at, straight));
     }
     if (k > 0) {
         velocity(b, kept[k - 1], kept[k], beside);
-        change = fmax(change, apart(v, beside));
+        change = fmax(change, separation(v, beside));
     }
     if (k + 2 < count) {
         velocity(b, kept[k + 1], kept[k + 2], beside);
-        change = fmax(change, apart(v, beside));
+        change = fmax(change, separation(v, beside));
     }
     return (*off / (to - from) - rise * change) / spari_norm(v);
 }
@@ -139,7 +140,7 @@ void spari_beam_tell_line(const spar_member *m) {
     }
     if (told > 0) {
         warn_of_line(m, kept[worst], kept[worst + 1], told,
-                     apart(b->xyz + 3 * kept[worst], b->xyz + 3 * kept[worst + 1]));
+                     separation(b->xyz + 3 * kept[worst], b->xyz + 3 * kept[worst + 1]));
     }
     free(kept);
 }

@@ -253,7 +253,7 @@ static void test_drivetrain(void **state) {
     const double J[2] = {3, 50}, k = 700, omega = sqrt(k * (1 / J[0] + 1 / J[1]));
     double K[36], f[3], shape[2][2][6];
     spar_session *s = scene_session();
-    spar_member *b[2] = {scene_body(s, "generator", zero, 1, (double[]){J[0], 1, 1}),
+    spar_member *b[2] = {scene_body(s, "generator", zero, 1, (double[]){J[0], 2, 2}),
                          scene_body(s, "rotor", zero, 40, (double[]){J[1], 30, 30})};
     (void)scene_joint(s, "bearing", b[0], 0, NULL, 0, SPAR_FREE_RX);
     spar_joint *shaft = scene_joint(s, "shaft", b[1], 0, b[0], 0, SPAR_FREE_RX);
