@@ -42,6 +42,7 @@ typedef struct equilibrium {
     spari_linear *path; /* the tangent of a member without joints, if its path is watched */
     int on_path;        /* the last point is on the path */
     double unbalanced;  /* largest residual of the latest iterate; infinite if the loads have no potential */
+    int loose;          /* a motion is not constrained where the iteration began or ended, not only on its way */
     double *before;     /* nodal forces that balance the first state without the loads; NULL: not known */
     char motion[240];   /* that is not constrained or unstable */
 } equilibrium;
@@ -231,6 +232,7 @@ static outcome find_nearby(equilibrium *t, double f) {
         }
         int singular = solve_static(a, f);
         if (a->constraints > 0 && (singular || spari_system_is_loose(a, t->unbalanced))) {
+            t->loose = it == 0;
             return LOOSE;
         }
         if (singular || (t->path && t->on_path && spari_linear_sign(t->path) < 0)) {
@@ -280,6 +282,7 @@ static outcome find_point(equilibrium *t, double f, int first) {
         a->shift = 0;
         if (found == LOOSE || found == UNSTABLE) { /* where the downhill iteration has ended */
             why = found;
+            t->loose = found == LOOSE;
             spari_system_name_free(a, t->motion, sizeof t->motion);
         }
     }
@@ -337,7 +340,7 @@ static double follow_loads(equilibrium *t, int load_steps, outcome *why) {
             continue;
         }
         step *= 0.5;
-        halvings += *why == LOOSE && done == 0 ? HALVINGS : 1;
+        halvings += *why == LOOSE && t->loose && done == 0 ? HALVINGS : 1;
     }
     return done;
 }
