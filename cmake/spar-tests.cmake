@@ -159,7 +159,7 @@ include("${PROJECT_SOURCE_DIR}/tests/rooms.cmake")
 # torture_threads has sessions of several threads, torture_memory_shortest the scenes of torture_memory.
 set(spar_not_short test_rotor test_turbine test_trial test_learned_mass test_learned_mass_life test_floquet test_error_scenes
   test_advice_kept test_advice_findings test_transfer_scalar test_transfer_wide test_body_scalar test_body_wide test_nodes_scalar
-  test_nodes_wide test_assembly test_coupling test_added_mass test_explicit_stability test_idle_loads test_linear_beams test_pace test_threads
+  test_nodes_wide test_assembly test_coupling test_added_mass test_explicit_stability test_idle_loads test_light_structures test_linear_beams test_pace test_threads
   test_modes test_static test_dynamic test_newton torture_traps torture_upward torture_ftz torture_comma torture_twins torture_memory torture_memory_np2 torture_fuzz
   torture_twins_fresh torture_ranks_np3 torture_ranks_binned_np2 test_advice test_step_invariance test_limit test_newton_scenes
   test_angular_momentum test_turning test_eigenvalues test_added_mass_life)

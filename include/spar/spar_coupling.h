@@ -75,7 +75,7 @@ SPAR_API int spar_session_get_relaxation(const spar_session *session, double *om
    coupling.columns       1 to 10000, default 30: IQN-ILS, largest number of difference columns
    coupling.reuse         0 to 10000, default 5: IQN-ILS, accepted steps whose columns are used again. Choose 0 for
                           fluids that change quickly
-   coupling.filter        0 to 0.5, default 1e-4: IQN-ILS, a column is dropped if newer ones contain all but this part
+   coupling.filter        0 to 0.5, default 1e-4: IQN-ILS, a column is dropped if others contain all but this part
    coupling.motion_atol   >= 0, m, default 0, and
    coupling.motion_rtol   0 to 1, default 0: if one is set, the iteration also continues until the nodes move between
                           iterations by less than atol + rtol times their displacement in the step
@@ -106,7 +106,7 @@ enum {
     SPAR_REPORT_ADDED_MASS = 1, /* of iterations: added mass / mass in the directions that were iterated, over this step
                                    and, with decreasing weight, those before; 0: not known */
     SPAR_REPORT_COLUMNS = 2,    /* IQN-ILS: columns of the last least-squares problem */
-    SPAR_REPORT_DROPPED = 3,    /* IQN-ILS: columns filtered out in this step */
+    SPAR_REPORT_DROPPED = 3,    /* IQN-ILS: columns filtered out of this problem */
     SPAR_REPORT_ERROR = 4,      /* last accepted step: |final loads - predicted loads| / |final loads| */
     SPAR_REPORT_WORK_DEFECT = 5,       /* last accepted step: work of the fluid less work on the structure, J */
     SPAR_REPORT_UNCONVERGED = 6,       /* number of steps accepted without convergence (coupling.unconverged) */

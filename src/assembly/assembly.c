@@ -315,7 +315,7 @@ static void end_solution(void *self, int iterations, int fresh) {
     if (t->a->constraints == 0) {
         p->row->end_solution(p, iterations, fresh);
     } else {
-        t->a->factored = serve_on(t->a, iterations, fresh);
+        t->a->factored = serve_on(t->a, iterations, fresh) && !t->a->session->state.renew;
     }
 }
 

@@ -92,6 +92,7 @@ typedef struct spari_step_state {
     int order; /* order of the predictor in the current step */
     int iterating;       /* the last check asked for another iteration */
     int rough;           /* the loads of this iteration are far from converged */
+    int renew;           /* the coupling needs the tangents of the end of the solution, not reused ones */
     int failed;          /* the last check of the current step failed */
     int static_solution; /* a static solution, or that of the initial accelerations, is in progress: there is one state,
                             whatever theta a fluid pulls at */

@@ -1,5 +1,6 @@
-/* Acceleration of the coupling iteration: constant relaxation, Aitken relaxation, and quasi-Newton (quasi_newton.c). */
-#include "quasi_newton.h"
+/* Acceleration of the coupling iteration: constant relaxation, Aitken relaxation, and quasi-Newton
+   (fluid_secants.c, iqn_ils.c). */
+#include "accelerator.h"
 
 #include "../base/poison.h"
 #include "../base/status.h"
@@ -22,26 +23,32 @@ spari_accelerator *spari_accelerator_create(int64_t n, int period, int split,
     a->period = period;
     a->split = split;
     a->omega = settings->omega;
-    int64_t m = a->scheme->columns ? settings->columns : 0;
-    a->slots = (int)(2 * m);
-    int64_t k = settings->imaged ? m : 0;
+    int64_t m = a->scheme->columns ? settings->columns : 0, k = settings->imaged ? m : 0, nk = k > 0 ? n : 0;
     int ok = (a->x = spari_zalloc(n, sizeof *a->x)) && (a->g = spari_zalloc(n, sizeof *a->g)) &&
-             (a->column = spari_zalloc(2 * m, sizeof *a->column)) && (a->v = spari_zalloc(2 * m * n, sizeof *a->v)) &&
-             (a->w = spari_zalloc(2 * m * n, sizeof *a->w)) && (a->q = spari_zalloc(m * n, sizeof *a->q)) &&
-             (a->r = spari_zalloc(m * m, sizeof *a->r)) && (a->alpha = spari_zalloc(m, sizeof *a->alpha)) &&
-             (a->order = spari_zalloc(m, sizeof *a->order)) && (a->image = spari_zalloc(2 * n, sizeof *a->image)) &&
              (a->change = spari_zalloc(2 * n, sizeof *a->change)) &&
              (a->response = spari_zalloc(2 * n + 1, sizeof *a->response)) &&
-             (a->iv = spari_zalloc(2 * k * n + 1, sizeof *a->iv)) &&
-             (a->iw = spari_zalloc(2 * k * n + 1, sizeof *a->iw)) && (a->b = spari_zalloc(2 * k * n, sizeof *a->b)) &&
-             (a->ib = spari_zalloc(2 * k * n + 1, sizeof *a->ib)) &&
-             (a->lead = spari_zalloc(k > 0 ? 2 * n + 1 : 0, sizeof *a->lead)) &&
-             (a->last = spari_zalloc(k > 0 ? n : 0, sizeof *a->last)) && (a->p = spari_zalloc(k * n, sizeof *a->p)) &&
-             (k == 0 || (a->secants = spari_secants_create(n, (int)k)));
+             (a->column = spari_zalloc(2 * m, sizeof *a->column)) && (a->p = spari_zalloc(2 * m * n, sizeof *a->p)) &&
+             (a->y = spari_zalloc(2 * m * n, sizeof *a->y)) && (a->b = spari_zalloc(2 * k * n, sizeof *a->b)) &&
+             (a->axes = spari_zalloc(2 * k * (n / 6 * 4), sizeof *a->axes)) &&
+             (a->stretch = spari_zalloc(nk, sizeof *a->stretch)) && (a->lead = spari_zalloc(nk, sizeof *a->lead)) &&
+             (a->last = spari_zalloc(nk, sizeof *a->last)) && (a->basis = spari_zalloc(m * n, sizeof *a->basis)) &&
+             (a->loads = spari_zalloc((k + 1) * nk, sizeof *a->loads)) &&
+             (a->images = spari_zalloc((k + 1) * nk + 1, sizeof *a->images)) &&
+             (a->matrix = spari_zalloc(m * m, sizeof *a->matrix)) && (a->alpha = spari_zalloc(m, sizeof *a->alpha)) &&
+             (a->slots = spari_zalloc(m, sizeof *a->slots)) &&
+             (a->combinations = spari_zalloc(k * k, sizeof *a->combinations)) &&
+             (a->left = spari_zalloc(k + 1, sizeof *a->left));
     if (!ok) {
         spari_accelerator_free(&a);
     }
+    for (int64_t i = 0; a && i < nk; i++) {
+        a->stretch[i] = 1;
+    }
     return a;
+}
+
+double *spari_accelerator_weights(spari_accelerator *a) {
+    return a->stretch;
 }
 
 void spari_accelerator_free(spari_accelerator **accelerator) {
@@ -49,11 +56,8 @@ void spari_accelerator_free(spari_accelerator **accelerator) {
     if (!a) {
         return;
     }
-    SPARI_FREE(a->x, a->g, a->image, a->change, a->response, a->v, a->w, a->iv, a->iw, a->b, a->ib, a->lead, a->last,
-               a->q, a->r, a->p, a->alpha);
-    SPARI_FREE(a->column, a->order);
-    spari_secants_free(a->secants);
-    spari_snapshot_free(&a->before);
+    SPARI_FREE(a->x, a->g, a->change, a->response, a->column, a->p, a->y, a->b, a->axes, a->stretch, a->lead, a->last,
+               a->basis, a->loads, a->images, a->matrix, a->alpha, a->slots, a->combinations, a->left);
     free(a);
     *accelerator = NULL;
 }
@@ -76,19 +80,17 @@ static void measure_kinds(const spari_accelerator *a, const double *x, const dou
     }
 }
 
-/* The step's first loads determine the weights; loads that exceed them tenfold determine new ones. Returns whether
-   they changed. */
-static int set_weights(spari_accelerator *a, const double *x, const double *g) {
+/* The step's first loads determine the weights; loads that exceed them tenfold determine new ones. */
+static void set_weights(spari_accelerator *a, const double *x, const double *g) {
     double size[2];
     measure_kinds(a, x, g, size);
     if (a->iteration > 1 && size[0] <= 10 * a->size[0] && size[1] <= 10 * a->size[1]) {
-        return 0;
+        return;
     }
     for (int k = 0; k < 2; k++) {
         a->size[k] = size[k];
         a->weight[k] = 1 / size[k];
     }
-    return 1;
 }
 
 int spari_accelerator_settled(const spari_accelerator *a, const double *x, const double *g, double *r) {
@@ -131,17 +133,12 @@ static void aitken_learn(spari_accelerator *a) {
 
 /* ---- the schemes ---- */
 
-static const spari_coupling_scheme scheme_explicit = {.name = "explicit"},
-                                   scheme_fixed_point = {.name = "fixed point", .iterates = 1},
-                                   scheme_aitken = {.name = "Aitken",
-                                                    .iterates = 1,
-                                                    .begin = aitken_begin,
-                                                    .learn = aitken_learn},
-                                   scheme_iqn_ils = {.name = "IQN-ILS",
-                                                     .iterates = 1,
-                                                     .columns = 1,
-                                                     .learn = spari_differences_learn,
-                                                     .next = spari_differences_next};
+static const spari_coupling_scheme
+    scheme_explicit = {.name = "explicit"},
+    scheme_fixed_point = {.name = "fixed point", .iterates = 1},
+    scheme_aitken = {.name = "Aitken", .iterates = 1, .begin = aitken_begin, .learn = aitken_learn},
+    scheme_iqn_ils = {
+        .name = "IQN-ILS", .iterates = 1, .columns = 1, .learn = spari_iqn_ils_learn, .next = spari_iqn_ils_next};
 
 const spari_coupling_scheme *spari_coupling_scheme_of(int scheme) {
 #define SPARI_SCHEME(number, name) [SPAR_COUPLING_##number] = &scheme_##name,
@@ -155,25 +152,17 @@ const spari_coupling_scheme *spari_coupling_scheme_of(int scheme) {
 void spari_accelerator_begin(spari_accelerator *a, double dt) {
     a->dt = dt;
     a->iteration = 0;
-    a->dropped = 0;
-    a->used = 0;
+    a->used = a->stalled = a->filtered = 0;
+    a->cut = 0;
+    a->led = a->ended;
     a->ratio = 0;
     a->ratios = (spari_ratios){0};
     a->most_weight = 0;
-    a->begun.imaged = a->imaged;
-    a->begun.ratios = a->ratios_before;
-    spari_snapshot_open(&a->before, 1);
     spari_poison(a->change, a->change ? 2 * a->n : 0);
     spari_poison(a->response, 2 * a->n);
-    spari_poison(a->alpha, a->slots > 0 ? a->set.columns : 0);
     a->omega = a->set.omega;
     if (a->scheme->begin) {
         a->scheme->begin(a);
-    }
-    for (int s = 0; s < a->slots; s++) {
-        if (a->column[s].state == SPARI_LIVE && fabs(a->column[s].dt - dt) > 0.1 * dt) {
-            a->column[s].state = SPARI_RESTING;
-        }
     }
 }
 
@@ -183,12 +172,13 @@ static spari_ratios join(const spari_ratios *a, double p, const spari_ratios *b,
                           p * a->sum2 + q * b->sum2};
 }
 
-/* -dx.dg / dx.dx of the last two iterations */
-static void estimate_ratio(spari_accelerator *a) {
+/* -dx.dg / dx.dx of the last two iterations. The motion due to dx is `moved` minus `part` (NULL: 0); moved NULL: the
+   load norm. */
+static void estimate_ratio(spari_accelerator *a, const double *moved, const double *part) {
     double product = 0, square = 0;
     for (int64_t i = 0; i < a->n; i++) {
         double w = a->weight[i % a->period >= a->split], dg = a->change[a->n + i], dx = dg - a->change[i];
-        double response = a->imaged ? a->response[a->n + i] - a->response[i] : w * w * dx;
+        double response = moved ? moved[i] - (part ? part[i] : 0) : w * w * dx;
         product -= response * dg;
         square += response * dx;
     }
@@ -219,14 +209,10 @@ static void compute_next(spari_accelerator *a, const double *x, const double *g,
     }
 }
 
-/* Columns of one norm are useless in another. */
+/* In another norm an iteration begins anew: differences of the two have no meaning. */
 static void set_norm(spari_accelerator *a, int imaged) {
     if (imaged != a->imaged) {
-        for (int s = 0; s < a->slots; s++) {
-            if (a->column[s].state == SPARI_LIVE) {
-                spari_differences_drop(a, s);
-            }
-        }
+        a->led = a->led && a->iteration == 0;
         a->iteration = a->used = 0;
         a->ratios = a->ratios_before = (spari_ratios){0};
         a->most_weight = 0;
@@ -238,132 +224,105 @@ int spari_accelerator_imaged(const spari_accelerator *a) {
     return a->imaged;
 }
 
-static void measure(spari_accelerator *a, const double *x, const double *g, const double *image) {
-    a->residual = a->imaged ? spari_differences_residual(a, x, g, image, a->change) : 0;
-    if (a->iteration == 1) {
-        a->residual_first = a->residual_least = a->residual;
-        a->rises = 0;
-        a->cut = 0;
-    }
-    a->rises = a->residual > 4 * a->residual_least ? a->rises + 1 : 0;
-    a->residual_least = fmin(a->residual_least, a->residual);
-}
-
-/* A residual that rises twice after it was nearly converged is dominated by columns below the fluid's scatter. */
-static void suspect(spari_accelerator *a) {
-    if (a->secants && a->imaged && a->memory.scatter <= SPARI_SCATTER_AVERAGED && a->rises >= 2 &&
-        a->residual_least < 0.03 * a->residual_first) {
-        a->memory.scatter = 2 * SPARI_SCATTER_AVERAGED;
+/* Changes since the iteration before. */
+static void note_change(spari_accelerator *a, const double *x, const double *g) {
+    for (int64_t i = 0; i < a->n; i++) {
+        a->change[a->n + i] = g[i] - a->g[i];
+        a->change[i] = a->change[a->n + i] - (x[i] - a->x[i]);
     }
 }
 
 /* Differences since the iteration before. They are mapped with the current flexibility. Differencing two mapped
    loads would difference flexibilities times the full loads, which may be much larger. */
 static int learn(spari_accelerator *a, const double *x, const double *g, const spari_images *images) {
-    for (int64_t i = 0; i < a->n; i++) {
-        a->change[a->n + i] = g[i] - a->g[i];
-        a->change[i] = a->change[a->n + i] - (x[i] - a->x[i]);
-    }
-    if (images && a->imaged) {
+    note_change(a, x, g);
+    if (!a->imaged) {
+        estimate_ratio(a, NULL, NULL);
+    } else if (a->scheme->columns) {
+        estimate_ratio(a, images->moved, NULL);
+        double *dx = a->response;
+        for (int64_t i = 0; i < a->n; i++) {
+            dx[i] = x[i] - a->x[i];
+        }
+        return spari_fluid_secants_learn(a, dx, images);
+    } else {
         SPARI_TRY(images->of(images->context, 2, a->change, a->response));
+        estimate_ratio(a, a->response + a->n, a->response);
     }
-    estimate_ratio(a);
     if (a->scheme->learn) {
         a->scheme->learn(a);
-    }
-    a->led = a->imaged && a->secants;
-    if (a->led) {
-        memcpy(a->lead, a->change + a->n, (size_t)a->n * sizeof *a->lead);
-        memcpy(a->lead + a->n, a->response + a->n, (size_t)a->n * sizeof *a->lead);
     }
     return SPAR_OK;
 }
 
-/* Difference between the step's first result and the last one of the step before. */
-static int lead_in(spari_accelerator *a, const double *g, const spari_images *images) {
-    a->led = images && a->ended && spari_accelerator_contradicted(a);
-    for (int64_t i = 0; a->led && i < a->n; i++) {
-        a->lead[i] = g[i] - a->last[i];
-    }
-    return a->led ? images->of(images->context, 1, a->lead, a->lead + a->n) : SPAR_OK;
-}
-
 int spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, const spari_images *images,
                            double *next) {
-    const double *image = images ? images->now : NULL;
-    set_norm(a, image && a->set.imaged);
+    set_norm(a, images && a->set.imaged);
     a->iteration++;
-    int reweighed = set_weights(a, x, g);
-    if (reweighed && a->slots > 0 && !a->imaged) {
-        spari_differences_factor(a);
-    }
-    if (a->iteration == 1 && a->imaged && a->slots > 0) {
-        SPARI_TRY(spari_differences_renew(a, x, g, images));
-        spari_differences_factor(a);
-    }
-    SPARI_TRY(a->iteration > 1 ? learn(a, x, g, images) : lead_in(a, g, images));
-    measure(a, x, g, image);
+    set_weights(a, x, g);
     if (a->iteration > 1) {
-        suspect(a);
+        SPARI_TRY(learn(a, x, g, images));
+    } else if (a->led) {
+        for (int64_t i = 0; i < a->n; i++) {
+            a->lead[i] = g[i] - a->last[i];
+        }
     }
     if (a->n == 0) {
         return SPAR_OK;
     }
     memcpy(a->x, x, (size_t)a->n * sizeof *x);
     memcpy(a->g, g, (size_t)a->n * sizeof *g);
-    if (image && a->imaged) {
-        memcpy(a->image, image, (size_t)(2 * a->n) * sizeof *image);
+    if (a->imaged && a->scheme->columns) {
+        return spari_fluid_secants_next(a, a->x, a->g, images, next);
     }
     compute_next(a, a->x, a->g, next);
     return SPAR_OK;
 }
 
+void spari_accelerator_end(spari_accelerator *a, const double *x, const double *g, const spari_images *images) {
+    if (a->iteration > 0 && a->imaged) {
+        note_change(a, x, g);
+        estimate_ratio(a, images->moved, NULL);
+        spari_fluid_secants_end(a, images);
+    }
+}
+
 void spari_accelerator_accept(spari_accelerator *a, const double *g) {
-    spari_differences_accept(a);
+    static const double FADE = 0.8;
+    spari_columns_accept(a);
+    spari_fluid_secants_accept(a);
     if (a->iteration > 1) {
         a->omega_accepted = a->omega;
     }
-    static const double FADE = 0.8;
     a->ratios_before = all_ratios(a, FADE);
     a->ratios = (spari_ratios){0};
     a->most_weight = 0;
-    a->memory_accepted = a->memory;
-    a->ended = g && spari_accelerator_contradicted(a);
+    a->ended = g && a->set.imaged && a->scheme->columns;
     if (a->ended) {
         memcpy(a->last, g, (size_t)a->n * sizeof *g);
     }
+    a->accepted.imaged = a->imaged, a->accepted.drifts = a->drifts;
+    a->accepted.ratios = a->ratios_before;
+    a->accepted.memory = a->memory;
     a->used = 0;
-    a->renewed = 0;
-    spari_snapshot_close(&a->before);
     a->step++;
 }
 
 void spari_accelerator_reject(spari_accelerator *a) {
-    for (int s = 0; s < a->slots; s++) {
-        spari_difference *c = a->column + s;
-        if (c->state != SPARI_FREE) {
-            c->state = c->step == a->step ? SPARI_FREE : SPARI_LIVE;
-        }
-    }
+    spari_columns_reject(a);
     a->ratios = (spari_ratios){0};
     a->most_weight = 0;
-    a->memory = a->memory_accepted;
-    if (a->before.open) {
-        a->imaged = a->begun.imaged;
-        a->ratios_before = a->begun.ratios;
-        spari_differences_restore(a);
-    }
-    spari_snapshot_close(&a->before);
+    a->imaged = a->accepted.imaged, a->drifts = a->accepted.drifts;
+    a->ratios_before = a->accepted.ratios;
+    a->memory = a->accepted.memory;
     a->used = 0;
     a->iteration = 0;
 }
 
 void spari_accelerator_forget(spari_accelerator *a) {
-    for (int s = 0; s < a->slots; s++) {
-        a->column[s].state = SPARI_FREE;
-    }
+    a->count = 0;
     a->omega_accepted = 0;
-    a->ratios = a->ratios_before = (spari_ratios){0};
+    a->ratios = a->ratios_before = a->accepted.ratios = (spari_ratios){0};
     a->most_weight = 0;
     a->used = 0;
 }
@@ -373,11 +332,19 @@ int spari_accelerator_columns(const spari_accelerator *a) {
 }
 
 int spari_accelerator_dropped(const spari_accelerator *a) {
-    return a->dropped;
+    return a->stalled + a->filtered;
 }
 
 double spari_accelerator_ratio(const spari_accelerator *a) {
     return a->ratio;
+}
+
+double spari_accelerator_carried_over(const spari_accelerator *a) {
+    return spari_rho_of(a);
+}
+
+double spari_accelerator_limited_rotation(const spari_accelerator *a) {
+    return a->imaged && a->cut > 0 ? a->memory.reach / a->cut : 0;
 }
 
 int spari_accelerator_added_mass(const spari_accelerator *a, double *mean, double *spread) {

@@ -1,5 +1,5 @@
 /* State of an accelerator as doubles, for save and load. The same code counts, writes and reads. */
-#include "quasi_newton.h"
+#include "accelerator.h"
 
 #include "../base/status.h"
 
@@ -59,142 +59,83 @@ static void pass_ratios(state_passage *t, spari_ratios *r) {
 }
 
 static void pass_memory(state_passage *t, const spari_accelerator *a, spari_recollection *m) {
-    enum { MEMORY = sizeof *m / sizeof(double) };
-    double words[MEMORY];
-    memcpy(words, m, sizeof words);
-    pass_reals(t, words, MEMORY);
-    memcpy(m, words, sizeof words);
-    int sound = m->contradiction >= 0 && m->contradiction <= 1 && m->rho >= 0 && m->rho < 1 && m->scatter >= 0 &&
-                m->scatter <= 1 && spari_first_nonfinite(&m->told.pairs, 5) < 0;
-    t->bad |= t->job == LOAD && !(sound && (a->secants || (m->contradiction == 0 && m->rho == 0)));
+    pass_finite(t, &m->rho);
+    pass_finite(t, &m->reach);
+    pass_finite(t, &m->off);
+    pass_finite(t, &m->pairs);
+    pass_finite(t, &m->ww);
+    pass_finite(t, &m->wb);
+    pass_finite(t, &m->bb);
+    pass_finite(t, &m->surprise[0]);
+    pass_finite(t, &m->surprise[1]);
+    t->bad |= t->job == LOAD && !(m->rho >= 0 && m->rho < 1 && m->pairs >= 0 && (a->set.imaged || m->rho == 0));
 }
 
-static void pass_head(state_passage *t, spari_accelerator *a, int *occupied) {
-    const int with_images = a->set.imaged ? 2 : 1, with_secants = a->secants ? 2 : 1;
+static void pass_head(state_passage *t, spari_accelerator *a) {
+    const int with_images = a->set.imaged ? 2 : 1;
     int64_t n = a->n;
     pass_large(t, &n);
     t->bad |= n != a->n;
     pass_large(t, &a->step);
-    pass_large(t, &a->serial);
     pass_whole(t, &a->iteration, INT_MAX);
-    pass_whole(t, &a->dropped, INT_MAX);
+    pass_whole(t, &a->stalled, INT_MAX);
+    pass_whole(t, &a->filtered, INT_MAX);
+    pass_whole(t, &a->used, (a->scheme->columns ? a->set.columns : 0) + 1.0);
     pass_reals(t, &a->dt, 1);
     pass_reals(t, &a->ratio, 1);
     pass_reals(t, &a->omega, 1);
     pass_reals(t, &a->omega_accepted, 1);
     pass_reals(t, a->size, 2);
     pass_reals(t, a->weight, 2);
-    pass_whole(t, occupied, a->slots + 1.0);
-    pass_whole(t, &a->used, (a->slots > 0 ? a->set.columns : 0) + 1.0);
     pass_whole(t, &a->imaged, with_images);
-    pass_whole(t, &a->led, with_secants);
-    pass_whole(t, &a->ended, with_secants);
-    pass_reals(t, &a->residual_first, 1);
-    pass_reals(t, &a->residual_least, 1);
-    pass_whole(t, &a->rises, INT_MAX);
+    pass_whole(t, &a->drifts, with_images);
+    pass_whole(t, &a->fixed, with_images);
+    pass_whole(t, &a->led, with_images);
+    pass_whole(t, &a->ended, with_images);
     pass_ratios(t, &a->ratios);
     pass_ratios(t, &a->ratios_before);
     pass_reals(t, &a->most_weight, 1);
-    pass_whole(t, &a->renewed, 2);
-    pass_finite(t, &a->reach);
+    pass_finite(t, &a->turned);
     pass_finite(t, &a->cut);
-    pass_finite(t, &a->cut_residual);
+    pass_finite(t, &a->before);
     pass_memory(t, a, &a->memory);
-    pass_memory(t, a, &a->memory_accepted);
-    pass_whole(t, &a->begun.imaged, with_images);
-    pass_ratios(t, &a->begun.ratios);
+    pass_memory(t, a, &a->accepted.memory);
+    pass_whole(t, &a->accepted.imaged, with_images);
+    pass_whole(t, &a->accepted.drifts, with_images);
+    pass_ratios(t, &a->accepted.ratios);
 }
 
-/* A column: that of slot s, or the next in the state. Without images it has the first two vectors. Each has a slot of
-   its own, and none of this step is out of use. */
-static void pass_column(state_passage *t, const spari_accelerator *a, int s) {
-    spari_difference c = a->column[s];
-    int state = (int)c.state;
-    pass_whole(t, &s, a->slots);
-    pass_whole(t, &state, SPARI_DROPPED + 1.0);
-    pass_large(t, &c.step);
-    pass_large(t, &c.serial);
-    pass_reals(t, &c.dt, 1);
-    pass_whole(t, &c.led, a->secants ? 2 : 1);
-    c.state = (spari_difference_state)state;
-    t->bad |= t->job == LOAD && (a->column[s].state != SPARI_FREE || c.state == SPARI_FREE || c.step > a->step ||
-                                 (c.step == a->step && c.state != SPARI_LIVE));
-    if (t->job == LOAD && !t->bad) {
-        a->column[s] = c;
+/* Column j, whose slot is j after a load. Those of the present step come first, and no step has more than allowed. */
+static void pass_column(state_passage *t, spari_accelerator *a, int j) {
+    spari_column *c = a->column + j, own = *c;
+    pass_large(t, &own.step);
+    pass_reals(t, &own.dt, 1);
+    pass_whole(t, &own.kind, a->set.imaged ? SPARI_OF_RESPONSE + 1.0 : 1);
+    pass_whole(t, &own.led, a->set.imaged ? 2 : 1);
+    if (t->job == LOAD) {
+        own.slot = j;
+        t->bad |= own.step > (j > 0 ? a->column[j - 1].step : a->step) ||
+                  (j >= a->set.columns && own.step == a->column[j - a->set.columns].step);
+        *c = own;
     }
-    double *const vector[6] = {spari_slot_v(a, s),  spari_slot_w(a, s), spari_slot_iv(a, s),
-                               spari_slot_iw(a, s), spari_slot_b(a, s), spari_slot_ib(a, s)};
-    for (int k = 0; k < (a->set.imaged ? 6 : 2); k++) {
-        pass_reals(t, vector[k], a->n);
-    }
+    int64_t at = own.slot * a->n;
+    pass_reals(t, a->p + at, a->n);
+    pass_reals(t, a->y + at, a->n);
+    pass_reals(t, a->b + at, own.led ? a->n : 0);
+    pass_reals(t, a->axes + own.slot * (a->n / 6 * 4), own.kind != SPARI_OF_LOADS ? a->n / 6 * 4 : 0);
 }
 
-/* All columns in use. Neither those of this step nor the older ones are more than allowed. */
-static void pass_columns(state_passage *t, const spari_accelerator *a, int occupied) {
-    int of_step = 0;
-    for (int s = 0; s < a->slots && t->job == LOAD; s++) {
-        a->column[s].state = SPARI_FREE;
-    }
-    for (int k = 0, s = 0; k < occupied && !t->bad; k++, s++) {
-        while (t->job != LOAD && a->column[s].state == SPARI_FREE) {
-            s++;
-        }
-        pass_column(t, a, s);
-    }
-    for (int s = 0; s < a->slots; s++) {
-        of_step += a->column[s].state != SPARI_FREE && a->column[s].step == a->step;
-    }
-    t->bad |= t->job == LOAD && (of_step > a->set.columns || occupied - of_step > a->set.columns);
-}
-
-/* Length of the snapshot of images (quasi_newton.c) that begins with the next number; -1: it is none. */
-static int64_t images_before(const state_passage *t, const spari_accelerator *a) {
-    const double *from = t->state + t->at + SPARI_SNAPSHOT_HEAD;
-    int64_t length = a->slots;
-    if (!a->set.imaged || t->size - t->at - SPARI_SNAPSHOT_HEAD < length) {
-        return -1;
-    }
-    for (int s = 0; s < a->slots; s++) {
-        if (from[s] != -1 && from[s] != 0 && from[s] != 1) {
-            return -1;
-        }
-        length += from[s] < 0 ? 0 : (from[s] > 0 ? 4 : 2) * a->n;
-    }
-    return length;
-}
-
-/* For a reject: images from the beginning of the step. */
-static void pass_snapshot(state_passage *t, spari_accelerator *a) {
-    double *there = t->job == COUNT ? NULL : t->state + t->at;
-    if (t->job == SAVE) {
-        spari_snapshot_save(&a->before, there);
-    } else if (t->job == LOAD) {
-        t->bad |= t->bad || !spari_snapshot_is(there, t->size - t->at, images_before(t, a));
-        spari_snapshot_close(&a->before);
-        if (!t->bad) {
-            spari_snapshot_load(&a->before, there, 1);
-        }
-    }
-    t->at += spari_snapshot_size(&a->before);
-}
-
-/* a: a copy, unless a state is loaded. */
 static void pass_scheme_state(state_passage *t, spari_accelerator *a) {
-    int occupied = 0;
-    for (int s = 0; s < a->slots; s++) {
-        occupied += a->column[s].state != SPARI_FREE;
-    }
-    pass_head(t, a, &occupied);
+    pass_head(t, a);
     pass_reals(t, a->x, a->n);
     pass_reals(t, a->g, a->n);
-    pass_reals(t, a->image, a->set.imaged ? 2 * a->n : 0);
-    pass_reals(t, a->lead, a->secants ? 2 * a->n : 0);
-    pass_reals(t, a->last, a->secants ? a->n : 0);
-    pass_columns(t, a, occupied);
-    for (int j = 0; j < a->used; j++) {
-        pass_whole(t, a->order + j, a->slots);
+    pass_reals(t, a->lead, a->led ? a->n : 0);
+    pass_reals(t, a->last, a->ended ? a->n : 0);
+    pass_whole(t, &a->count, (a->scheme->columns ? 2 * a->set.columns : 0) + 1.0);
+    for (int j = 0; j < a->count && !t->bad; j++) {
+        pass_column(t, a, j);
     }
-    pass_snapshot(t, a);
+    a->count = t->job == LOAD && t->bad ? 0 : a->count;
 }
 
 int64_t spari_accelerator_state_size(const spari_accelerator *a) {
@@ -213,10 +154,5 @@ void spari_accelerator_save(const spari_accelerator *a, double *state) {
 int spari_accelerator_load(spari_accelerator *a, const double *state, int64_t count) {
     state_passage t = {.job = LOAD, .state = (double *)(uintptr_t)state, .size = count};
     pass_scheme_state(&t, a);
-    const int used = t.bad ? 0 : a->used;
-    a->used = 0;
-    for (int j = 0; j < used; j++) { /* in the original order: the same bits */
-        (void)spari_differences_append(a, a->order[j], 0);
-    }
     return !t.bad;
 }

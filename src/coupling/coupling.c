@@ -23,7 +23,7 @@ void spari_coupling_free(spari_coupling **coupling) {
         return;
     }
     SPARI_FREE(c->length, c->unit, c->x, c->g, c->predicted, c->motion, c->residual, c->size, c->image, c->workspace,
-               c->missed, c->missing, c->shift, c->settled);
+               c->missed, c->missing, c->shift, c->settled, c->q_before, c->path, c->axes);
     spari_accelerator_free(&c->accelerator);
     free(c);
     *coupling = NULL;
@@ -43,7 +43,7 @@ static int make_vectors(const spar_session *s, int scheme, spari_coupling *c) {
         largest = m->nodes > largest ? m->nodes : largest;
         shifted = m->added && c->weighs ? n : shifted;
     }
-    images += shifted;
+    int64_t nodes = c->weighs && spari_coupling_scheme_of(scheme)->columns ? n / 6 : 0;
     c->most = iterated ? s->coupling.max : 1;
     return (c->length = spari_zalloc(c->members, sizeof(double))) &&
            (c->unit = spari_zalloc(c->members, sizeof(double))) && (c->x = spari_zalloc(n, sizeof(double))) &&
@@ -52,10 +52,11 @@ static int make_vectors(const spar_session *s, int scheme, spari_coupling *c) {
                 spari_zalloc(iterated && spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0, sizeof(double))) &&
            (c->missed = spari_zalloc(c->n, sizeof(double))) && (c->missing = spari_zalloc(c->n, sizeof(double))) &&
            (c->residual = spari_zalloc(c->most, sizeof(double))) && (c->size = spari_zalloc(c->most, sizeof(double))) &&
-           (c->image = spari_zalloc(images + 1, sizeof(double))) &&
+           (c->image = spari_zalloc(images + c->members + 1, sizeof(double))) &&
            (shifted == 0 || (c->shift = spari_zalloc(shifted, sizeof(double)))) &&
-           (!(c->weighs && spari_coupling_scheme_of(scheme)->columns) ||
-            (c->settled = spari_zalloc(2 * n + 1, sizeof(double)))) &&
+           (nodes == 0 || (c->settled = spari_zalloc(2 * n + 1, sizeof(double)))) &&
+           (c->q_before = spari_zalloc(7 * nodes, sizeof(double))) &&
+           (c->path = spari_zalloc(6 * nodes, sizeof(double))) && (c->axes = spari_zalloc(4 * nodes, sizeof(double))) &&
            (c->workspace = spari_zalloc(images > 0 ? 6 * largest : 0, sizeof(double))) &&
            (!iterated || (c->accelerator = spari_accelerator_create(n, 6, 3, &set)));
 }
@@ -94,6 +95,13 @@ int spari_coupling_create(spar_session *s, int scheme, int static_solution, spar
         c->length[k] = spari_member_length(m);
         (void)frexp(1 / c->length[k], &exponent);
         c->unit[k] = ldexp(1, exponent);
+    }
+    double *weight = c->settled ? spari_accelerator_weights(c->accelerator) : NULL;
+    k = 0;
+    for (const spar_member *m = s->members; m && weight; m = m->next, k++) {
+        for (int64_t i = 0; i < 6 * m->nodes; i++, weight++) {
+            *weight = i % 6 < 3 ? 1 : 0.5 * c->unit[k] * c->length[k];
+        }
     }
     *coupling = c;
     return SPAR_OK;
@@ -243,6 +251,11 @@ int spari_coupling_is_rough(const spar_session *s) {
     return s->state.iteration > 0 && residual > 0.1 * size;
 }
 
+int spari_coupling_renews_tangents(const spar_session *s) {
+    const spari_coupling *c = s->own->coupling;
+    return c->accelerator && spari_accelerator_renews(c->accelerator);
+}
+
 /* Growth factor of the residual in the last iterations; 0: it has not grown. */
 static double grown_lately(const spari_coupling *c) {
     enum { LATELY = 3 };
@@ -263,8 +276,8 @@ static const char *cures_of(const spar_session *s, int diverges) {
         return newton ? "use more iterations or a smaller dt, or reject the step"
                       : "use SPAR_COUPLING_IQN_ILS, a smaller relaxation or dt, or reject the step";
     }
-    return newton ? "use a smaller dt, coupling.reuse 0, a larger coupling.filter or more pressure corrections per "
-                    "fluid solution, or reject the step"
+    return newton ? "give the fluid's added mass or a tenth of it (spar_member_set_added_mass), use a smaller dt, "
+                    "SPAR_COUPLING_AITKEN or more pressure corrections per fluid solution, or reject the step"
                   : "use SPAR_COUPLING_IQN_ILS, a smaller relaxation or dt, or more pressure corrections per fluid "
                     "solution, or reject the step";
 }
@@ -292,12 +305,13 @@ static double largest_load(const spar_member *m, const double *load) {
 /* A larger growth of the loads cannot be a response to the structure's motion. */
 static const double TOO_MUCH = 1e6;
 
-/* Member whose fluid loads have grown most since the steps before, and the two values; NULL: none beyond the limit. */
-static const spar_member *member_overwhelmed(const spar_session *s, double load[2]) {
+/* Member whose loads in use, or pushed, have grown most since the steps before, and the two values; NULL: none beyond
+   the limit. */
+static const spar_member *member_overwhelmed(const spar_session *s, int pushed, double load[2]) {
     const spar_member *worst = NULL;
     double most = TOO_MUCH;
     for (const spar_member *m = s->members; m; m = m->next) {
-        double now = largest_load(m, m->load.used), before = INFINITY;
+        double now = largest_load(m, pushed ? m->load.pushed : m->load.used), before = INFINITY;
         for (int k = 0; k < 3; k++) {
             double of = largest_load(m, m->load.history[k]);
             before = of > 0 ? fmin(before, of) : before;
@@ -319,7 +333,7 @@ int spari_coupling_solve_failed(spar_session *s, const char *call, int status) {
         return status;
     }
     cause_of(s->message, call, why, sizeof why);
-    const spar_member *m = factor > 0 && factor < TOO_MUCH ? NULL : member_overwhelmed(s, load);
+    const spar_member *m = factor > 0 && factor < TOO_MUCH ? NULL : member_overwhelmed(s, 0, load);
     SPARI_REQUIRE(s, !m, status,
                   "%s: the fluid's loads on member '%s' have grown from %.3g to %.3g (N, N m) within a few steps; "
                   "check the fluid for a folded mesh or divergence (%.400s)",
@@ -368,14 +382,39 @@ static double error_of_added_mass(const spar_session *s) {
     return fmax(rounding, correction_part * s->coupling.rtol) * sqrt(f2);
 }
 
+/* Adds to a message what the iterations have shown of the fluid. */
+static void describe_fluid(const spari_coupling *c, size_t size, char *text) {
+    static const double MUCH = 0.3;
+    double mass = c->report[SPAR_REPORT_ADDED_MASS], spread = c->report[SPAR_REPORT_ADDED_MASS_SPREAD];
+    double rho = spari_accelerator_carried_over(c->accelerator);
+    double rotation = spari_accelerator_limited_rotation(c->accelerator);
+    int n = 0;
+    text[0] = '\0';
+    if (mass != 0) {
+        n = snprintf(text, size, "; added mass about %.3g (+- %.2g) of the mass", mass, spread);
+    }
+    if (rho > MUCH) {
+        n += snprintf(text + n, size - (size_t)n,
+                      "; the fluid carries %.0f %% of each change over to its next solution, so correct it more often",
+                      100 * rho);
+    }
+    if (rotation > 0) {
+        (void)snprintf(text + n, size - (size_t)n, "; the last correction would rotate a section by %.2g rad",
+                       rotation);
+    }
+}
+
 static int not_converged(spar_session *s, const char *call) {
     const spari_coupling *c = s->own->coupling;
     int last = c->iterations - 1;
-    char motion[80] = "", mass[80] = "";
-    if (c->report[SPAR_REPORT_ADDED_MASS] != 0) {
-        (void)snprintf(mass, sizeof mass, "; added mass about %.3g (+- %.2g) of the mass",
-                       c->report[SPAR_REPORT_ADDED_MASS], c->report[SPAR_REPORT_ADDED_MASS_SPREAD]);
-    }
+    char motion[80] = "", mass[300];
+    double load[2];
+    const spar_member *m = s->state.static_solution ? NULL : member_overwhelmed(s, 1, load);
+    SPARI_REQUIRE(s, !m, SPAR_ERR_NUMERIC,
+                  "%s: the fluid's loads on member '%s' have grown from %.3g to %.3g (N, N m) within a few steps; "
+                  "check the fluid for a folded mesh or divergence (the coupling has not converged in %d iterations)",
+                  call, m->name, load[0], load[1], s->state.iteration);
+    describe_fluid(c, sizeof mass, mass);
     if (spari_coupling_wants_motion(s)) {
         (void)snprintf(motion, sizeof motion, ", motion by %.3g m of %.3g m", c->moved, c->travelled);
     }
@@ -420,6 +459,7 @@ static int unsettled(spar_session *s, double *motion) {
     }
     const spari_norm_loads w = weighed(c);
     SPARI_TRY(spari_motion_norm_images(s, &w, 1, r, image));
+    spari_motion_norm_add_carried(s, &w, r, image);
     for (int64_t i = 0; i < c->n; i++) {
         square += r[i] * image[i];
     }
@@ -536,20 +576,56 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
 static int image_loads(void *session, int64_t count, const double *loads, double *image) {
     spar_session *s = session;
     const spari_norm_loads w = weighed(s->own->coupling);
-    return spari_motion_norm_images(s, &w, count, loads, image);
+    SPARI_TRY(spari_motion_norm_images(s, &w, count, loads, image));
+    for (int64_t j = 0; j < count && !s->own->coupling->settled; j++) { /* Aitken's products are those of the norm */
+        spari_motion_norm_add_carried(s, &w, loads + j * w.n, image + j * w.n);
+    }
+    return SPAR_OK;
+}
+
+/* Largest rotation of a section, rad, in stacked motions. */
+static double largest_rotation(void *session, const double *motion) {
+    const spar_session *s = session;
+    const double *unit = s->own->coupling->unit;
+    double most = 0;
+    for (const spar_member *m = s->members; m; m = m->next, unit++) {
+        for (int64_t i = 0; i < m->nodes; i++, motion += 6) {
+            double rotation = *unit * spari_norm(motion + 3);
+            most = isfinite(rotation) ? fmax(most, rotation) : INFINITY;
+        }
+    }
+    return most;
+}
+
+/* The motion since the iteration before as the structure made it, and the axes of the sections. */
+static void measure_motion(const spar_session *s) {
+    spari_coupling *c = s->own->coupling;
+    double *before = c->q_before, *moved = c->path, *axes = c->axes, *unit = c->unit;
+    for (const spar_member *m = s->members; m; m = m->next, unit++) {
+        for (int64_t i = 0; i < m->nodes; i++, before += 7, moved += 6, axes += 4) {
+            const double *q = m->after.q + 7 * i;
+            travel(before, q, moved);
+            for (int k = 3; k < 6; k++) {
+                moved[k] /= *unit;
+            }
+            memcpy(before, q, 7 * sizeof *q);
+            memcpy(axes, q + 3, 4 * sizeof *q);
+        }
+    }
 }
 
 int spari_coupling_next(spar_session *s) {
     spari_coupling *c = s->own->coupling;
-    const spari_images images = {c->image, image_loads, s};
+    const spari_images images = {c->image, image_loads, s, c->path, c->axes, largest_rotation};
     const spari_norm_loads w = weighed(c);
-    /* Done first: otherwise a column of loads that move almost nothing would contain arbitrary amounts of loads that
-       move nothing. */
-    int effective = c->weighed && spari_coupling_scheme_of(s->coupling.scheme)->columns;
+    int secants = c->weighed && spari_coupling_scheme_of(s->coupling.scheme)->columns;
     stack(s);
-    SPARI_TRY(effective ? spari_motion_norm_effective_load(s, &w, c->settled, c->x) : SPAR_OK);
+    if (secants) {
+        measure_motion(s);
+    }
     SPARI_TRY(spari_accelerator_next(c->accelerator, c->x, c->g, c->weighed ? &images : NULL, c->x));
-    SPARI_TRY(effective ? spari_motion_norm_effective_load(s, &w, c->settled, c->x) : SPAR_OK);
+    /* loads that move nothing are not in the least squares: they are used as they came back */
+    SPARI_TRY(secants ? spari_motion_norm_effective_load(s, &w, c->settled, c->x) : SPAR_OK);
     unstack(s);
     report_added_mass(c);
     c->report[SPAR_REPORT_COLUMNS] = spari_accelerator_columns(c->accelerator);
@@ -753,9 +829,14 @@ void spari_coupling_accept(spar_session *s) {
         watch(s);
     }
     if (c->accelerator) {
-        int ended = checked && spari_accelerator_contradicted(c->accelerator);
+        int ended = checked && c->settled;
         if (ended) {
             stack(s);
+            if (!s->state.iterating && s->state.iteration > 1) {
+                const spari_images images = {NULL, NULL, NULL, c->path, c->axes, NULL};
+                measure_motion(s);
+                spari_accelerator_end(c->accelerator, c->x, c->g, &images);
+            }
         }
         spari_accelerator_accept(c->accelerator, ended ? c->g : NULL);
     }

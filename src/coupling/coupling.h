@@ -11,20 +11,23 @@
 typedef struct spari_coupling {
     int64_t n; /* six per node of every member */
     int members;
-    int weighs;     /* iterated: loads are measured by the motion they cause */
-    int estimates;  /* explicit: the effect of another iteration is estimated (option coupling.estimate) */
-    int weighed;    /* the same in the last check: `image` is valid */
-    int idle;       /* all loads of the step are zero so far: no fluid, or one at rest */
-    double *length; /* per member: moments are divided by it, rotations multiplied */
-    double *unit;   /* per member: power of two closest to 1/length, which scales moments without rounding */
-    double *x, *g;  /* iterated: loads used and returned, stacked, moments times unit */
-    double *shift;  /* motion norm, with an added mass: contribution of the added mass to x and g; or NULL */
-    double *image;  /* motion norm: [2 n + 1] motion due to g - x and to g, stacked; with a shift [3 n + 1], also due to
-                       the loads; and room for the ranks' status */
+    int weighs;        /* iterated: loads are measured by the motion they cause */
+    int estimates;     /* explicit: the effect of another iteration is estimated (option coupling.estimate) */
+    int weighed;       /* the same in the last check: `image` is valid */
+    int idle;          /* all loads of the step are zero so far: no fluid, or one at rest */
+    double *length;    /* per member: moments are divided by it, rotations multiplied */
+    double *unit;      /* per member: power of two closest to 1/length, which scales moments without rounding */
+    double *x, *g;     /* iterated: loads used and returned, stacked, moments times unit */
+    double *shift;     /* motion norm, with an added mass: contribution of the added mass to x and g; or NULL */
+    double *image;     /* motion norm: [2 n + members + 1] motion due to g - x and to g - shift, stacked; and room
+                          (motion_norm.h) */
     double *workspace; /* motion norm: loads of one member */
     double *settled;   /* motion norm, with columns: [2 n + 1] residual relative to the settled fluid, and its image */
     double *predicted; /* iterated: predicted loads of the step, unscaled */
     double *motion;    /* motion test: positions and quaternions [7] of the iteration before */
+    double *q_before;  /* motion norm, with columns: the same of the iteration before that was not converged */
+    double *path;      /* [n] motion since then, stacked as image */
+    double *axes;      /* [n / 6][4] of the sections */
     spari_accelerator *accelerator; /* iterated */
 
     int iterations, most;    /* of the current or the last step; capacity of the next two */
@@ -66,6 +69,8 @@ int spari_coupling_next(spar_session *session);
 int spari_coupling_check(spar_session *session, const char *call, int *done);
 /* Explains a failed structural solution if the loads have grown from iteration to iteration. Returns status. */
 int spari_coupling_solve_failed(spar_session *session, const char *call, int status);
+/* Whether reused tangents have predicted the motion too badly for the coupling. */
+int spari_coupling_renews_tangents(const spar_session *session);
 /* Whether the last check found loads far from those used, so that their effects in a step give no information. */
 int spari_coupling_is_rough(const spar_session *session);
 /* Before the histories shift. */

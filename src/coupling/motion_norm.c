@@ -1,7 +1,7 @@
 /* The motion norm of the coupling. Loads x move the structure by S x over the step; S is the flexibility, the
    inverse of the step's matrix. The norm is sqrt(x . S x), the root of the work of x on its own response. A load
-   that moves nothing has no weight, forces and moments have one unit, and the derivative of an added mass, -M S, is
-   symmetric. */
+   that moves nothing has no weight, and forces and moments have one unit. S of gyroscopic terms and follower loads is
+   not symmetric: the norm has its symmetric part. */
 #include "motion_norm.h"
 
 #include "../assembly/assembly.h"
@@ -46,23 +46,15 @@ static int respond_stacked(const spari_norm_loads *c, spar_member *m, double uni
     return 0;
 }
 
-/* Stacks the motions of a connected member. LEAST times the flexibility of its assembly's mass alone is added. Loads
-   carried by constraints move nothing, and a norm that ignores them would not control them. They count a hundredth
-   of loads that move the structure. With less, averaged columns still carry loads on rigid beams away. */
-static void stack_assembled(const spar_member *m, double unit, int64_t at, const double *x, const double *from,
-                            double *out) {
-    static const double LEAST = 1e-4;
-    double least = LEAST * spari_assembly_mass_response(m->assembly);
+/* Stacks the motions of a connected member. */
+static void stack_assembled(const spar_member *m, double unit, int64_t at, double *out) {
     for (int64_t i = at; i < at + 6 * m->nodes; i++) {
-        double load = x[i] - (from ? from[i] : 0);
-        out[i] = out[i] / ((i - at) % 6 < 3 ? 1 : unit) + least * load;
+        out[i] /= (i - at) % 6 < 3 ? 1 : unit;
     }
 }
 
-/* And those of members whose loads x[j] - from[j] are stored, the x `apart` numbers from each other; from NULL:
-   nothing is subtracted. */
-static int respond_assembled(spar_session *s, const spari_norm_loads *c, int64_t count, const double *x, int64_t apart,
-                             const double *const *from, double *image) {
+/* Responses of the members whose loads are stored. */
+static int respond_assembled(spar_session *s, const spari_norm_loads *c, int64_t count, double *image) {
     int rank = spari_comm_rank(s->ranks.comm), singular = 0, k = 0;
     int64_t at = 0;
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
@@ -70,7 +62,7 @@ static int respond_assembled(spar_session *s, const spari_norm_loads *c, int64_t
     }
     for (const spar_member *m = s->members; m && s->assemblies; at += 6 * m->nodes, m = m->next, k++) {
         for (int64_t j = 0; j < count && m->assembly && m->owner == rank; j++) {
-            stack_assembled(m, c->unit[k], at, x + j * apart, from ? from[j] : NULL, image + j * c->n);
+            stack_assembled(m, c->unit[k], at, image + j * c->n);
         }
     }
     return singular;
@@ -92,42 +84,63 @@ static double sum_products(const double *a, const double *b, const double *minus
    may be many times as large as those that do: they are in the sizes alone. */
 static const double ROUNDING = 1e-13;
 
-/* Whether x . S y equals y . S x, here for g - x and g, apart from rounding. Otherwise it is no inner product, and
-   orthogonal columns can be nearly equal. The step's matrix is unsymmetric if beams rotate far under large loads,
-   and by gyroscopic terms. Symmetric ones are symmetric to 1e-11. Joints rotate with their loads in each step; a
-   scheme that alternates between two norms learns less than in either. */
-static int is_symmetric(const spari_norm_loads *c, int assembled, const double *response, const double *whole,
-                        double work, double all) {
-    static const double LOPSIDED = 1e-5, ASSEMBLED = 1e-4;
-    double sizes = 0, one = sum_products(c->g, response, NULL, c->n, &sizes),
-           other = sum_products(c->g, whole, c->x, c->n, &sizes);
-    return fabs(one - other) <=
-           (assembled ? ASSEMBLED : LOPSIDED) * sqrt(fmax(work, 0) * fmax(all, 0)) + ROUNDING * fmax(all, sizes);
+/* Loads on connected members may be carried by constraints: they move nothing, and a norm that ignores them would not
+   control them. Their squares, times LEAST and the flexibility of the assembly's mass alone, are added: they count a
+   hundredth of loads that move the structure. This rank's members. */
+static void weigh_carried_loads(const spar_session *s, double *least) {
+    static const double LEAST = 1e-4;
+    for (const spar_member *m = s->members; m && s->assemblies; m = m->next, least++) {
+        if (m->assembly && m->row->component && m->owner == spari_comm_rank(s->ranks.comm)) {
+            *least = LEAST * spari_assembly_mass_response(m->assembly);
+        }
+    }
+}
+
+void spari_motion_norm_add_carried(const spar_session *s, const spari_norm_loads *c, const double *loads,
+                                   double *image) {
+    const double *least = c->image + 2 * c->n;
+    int64_t at = 0;
+    for (const spar_member *m = s->members; m && s->assemblies; at += 6 * m->nodes, m = m->next, least++) {
+        for (int64_t i = at; i<at + 6 * m->nodes && * least> 0; i++) {
+            image[i] += *least * loads[i];
+        }
+    }
+}
+
+/* Their squares, of g - x and of g - shift. */
+static void add_carried_squares(const spar_session *s, const spari_norm_loads *c, double square[2]) {
+    const double *least = c->image + 2 * c->n;
+    int64_t at = 0;
+    for (const spar_member *m = s->members; m && s->assemblies; at += 6 * m->nodes, m = m->next, least++) {
+        for (int64_t i = at; i<at + 6 * m->nodes && * least> 0; i++) {
+            double r = c->g[i] - c->x[i], g = c->g[i] - (c->shift ? c->shift[i] : 0);
+            square[0] += *least * r * r;
+            square[1] += *least * g * g;
+        }
+    }
 }
 
 int spari_motion_norm(spar_session *s, const spari_norm_loads *c, double *residual, double *size, int *ok) {
-    double *response = c->image, *whole = c->image + c->n, *bare = c->shift ? whole + c->n : whole;
-    int64_t at = 0, images = c->shift ? 3 * c->n : 2 * c->n;
+    double *response = c->image, *whole = c->image + c->n, square[2] = {0, 0};
+    int64_t at = 0;
     int rank = spari_comm_rank(s->ranks.comm), singular = 0, k = 0;
-    memset(c->image, 0, (size_t)(images + 1) * sizeof *c->image);
+    memset(c->image, 0, (size_t)(2 * c->n + s->member_count + 1) * sizeof *c->image);
     for (spar_member *m = s->members; m; at += 6 * m->nodes, m = m->next, k++) {
         if (m->owner == rank && m->row->component) {
             singular = singular || respond_stacked(c, m, c->unit[k], at, c->g, c->x, response) ||
-                       respond_stacked(c, m, c->unit[k], at, c->g, NULL, whole) ||
-                       (c->shift && respond_stacked(c, m, c->unit[k], at, c->g, c->shift, bare));
+                       respond_stacked(c, m, c->unit[k], at, c->g, c->shift, whole);
         }
     }
-    const double *const from[3] = {c->x, NULL, c->shift};
-    singular = singular || respond_assembled(s, c, c->shift ? 3 : 2, c->g, 0, from, c->image);
+    singular = singular || respond_assembled(s, c, 2, c->image);
+    weigh_carried_loads(s, c->image + 2 * c->n);
     if (singular) { /* its numbers would make the sums NaN, on every rank */
         c->image[0] = NAN;
     }
-    SPARI_TRY(spari_sum(s, c->image, images));
-    double works = 0, sizes = 0, work = sum_products(c->g, response, c->x, c->n, &works),
-           all = sum_products(c->g, bare, c->shift, c->n, &sizes);
-    double both = c->shift ? fmax(all, sum_products(c->g, whole, NULL, c->n, &sizes)) : all;
-    *ok = isfinite(work) && isfinite(all) && work >= -ROUNDING * works && (all > 0 || work <= 0) &&
-          is_symmetric(c, s->assemblies != NULL, response, whole, work, both);
+    SPARI_TRY(spari_sum(s, c->image, 2 * c->n + s->member_count));
+    add_carried_squares(s, c, square);
+    double works = 0, sizes = 0, work = sum_products(c->g, response, c->x, c->n, &works) + square[0],
+           all = sum_products(c->g, whole, c->shift, c->n, &sizes) + square[1];
+    *ok = isfinite(work) && isfinite(all) && work >= -ROUNDING * works && (all > 0 || work <= 0);
     *residual = sqrt(fmax(work, 0));
     *size = sqrt(fmax(all, 0));
     return SPAR_OK;
@@ -154,7 +167,7 @@ int spari_motion_norm_images(spar_session *s, const spari_norm_loads *c, int64_t
             }
         }
     }
-    if (respond_assembled(s, c, count, loads, c->n, NULL, image)) {
+    if (respond_assembled(s, c, count, image)) {
         image[0] = NAN;
     }
     return spari_sum(s, image, count * c->n);

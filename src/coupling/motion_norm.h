@@ -12,8 +12,7 @@ typedef struct spari_norm_loads {
     const double *unit;  /* per member, in order */
     const double *x, *g; /* [n] used, and returned */
     const double *shift; /* [n] contribution of an added mass to g; NULL: none */
-    double *image; /* [2 n + 1] out: motion due to g - x, and to g; with a shift [3 n + 1], also due to the loads; room
-                      for the ranks' status */
+    double *image;     /* [2 n + members + 1] out: motion due to g - x, and to g - shift; room for the ranks' status */
     double *workspace; /* 6 per node of the largest member */
 } spari_norm_loads;
 
@@ -21,13 +20,17 @@ typedef struct spari_norm_loads {
    (coupling.norm). */
 int spari_motion_norm_is_used(const spar_session *session);
 /* Fills w->image, and the sizes of g - x and of the loads in this norm. All ranks; the owners' results go to the
-   others. *ok: whether it is a norm: finite, nonnegative squares, symmetric flexibility. */
+   others. *ok: whether it is a norm: finite, nonnegative squares. */
 int spari_motion_norm(spar_session *session, const spari_norm_loads *w, double *residual, double *size, int *ok);
 
 /* image [count][n], with room for one more := motions due to `count` loads [count][n], stacked as w->x; uses n, unit
-   and room of w. All ranks. */
+   and workspace of w. All ranks. */
 int spari_motion_norm_images(spar_session *session, const spari_norm_loads *w, int64_t count, const double *loads,
                              double *image);
+/* Adds to image [n] of loads [n] what the norm counts of loads that constraints carry. After spari_motion_norm, whose
+   w->image has it. */
+void spari_motion_norm_add_carried(const spar_session *session, const spari_norm_loads *w, const double *loads,
+                                   double *image);
 
 /* Removes from x [n], stacked as w->g, the part of x - g that moves nothing: this part becomes that of the returned
    loads. Returns a status. All ranks; a message is sent only if an owner must be asked (spari_fidelity's

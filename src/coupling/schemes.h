@@ -2,15 +2,12 @@
    was solved, g = G(x) the loads that came back from the fluids. Independent of session, member and ranks: every
    rank executes the same operations on the same bits.
    Schemes: constant relaxation; Aitken relaxation (Irons & Tuck 1969; Kuettler & Wall 2008); interface quasi-Newton
-     with least squares, IQN-ILS (Degroote, Bathe & Vierendeels 2009), with the QR2 filter of Haelterman et al.
-     (2016): newest columns first, each kept only if enough of it is linearly independent of those before.
-   Images. If the caller passes S (g - x) and S g with x and g, and S times other loads on request, inner products
-     are <a, b> = a . S b, S symmetric positive semidefinite. S may change in each iteration. A fluid whose results
-     contradict each other (noise, unconverged inner iterations) is detected by the error of the columns in
-     predicting its next result. Its derivative is then fitted to all columns (algebra/secants.h).
-   Memory. A fluid that responds only partly gives the rest with the next results, dg_k = J dx_k + rho dg_(k-1). If
-     one rho explains the contradiction, differences, residual and convergence are those of the settled fluid (T31,
-     T32).
+     with least squares, IQN-ILS (Degroote, Bathe & Vierendeels 2009): iqn_ils.c.
+   Images. If the caller passes the motion since the iteration before, S (g - x) and S g with x and g, and S times
+     other loads on request, IQN-ILS learns the fluid alone: fluid_secants.c. S, the flexibility, may change in each
+     iteration and need not be symmetric.
+   Memory. A fluid that responds only partly gives the rest with the next results, dg_k = J dx_k + rho dg_(k-1).
+     Secants, residual and convergence are then those of the settled fluid (T32, T34).
    Without images, entries i with i % period < split are forces, the others moments (already divided by a length).
      Each kind is scaled by its own size, so iterates do not depend on units. */
 #ifndef SPARI_SCHEMES_H
@@ -27,9 +24,10 @@ typedef struct spari_coupling_scheme {
     int iterates;     /* 0: the step is solved once, without accelerator */
     int columns;      /* uses difference columns, which need memory */
     void (*begin)(spari_accelerator *a);
-    /* Evaluates the difference of the last two iterations. */
+    /* Evaluates the difference of the last two iterations; next loads, 0: no result. Columns in the motion norm:
+       fluid_secants.c in place of these. */
     void (*learn)(spari_accelerator *a);
-    int (*next)(spari_accelerator *a, const double *x, const double *g, double *next); /* 0: no result */
+    int (*next)(spari_accelerator *a, const double *x, const double *g, double *next);
 } spari_coupling_scheme;
 
 /* The table: SPAR_COUPLING_* and the name of the row. */
@@ -48,7 +46,7 @@ typedef struct spari_accelerator_settings {
         omega; /* relaxation: constant, or of the first iterations and the maximum at the beginning of an Aitken step */
     int columns;   /* IQN-ILS: maximum number of columns in use, >= 1 */
     int reuse;     /* IQN-ILS: number of accepted steps whose columns are reused, >= 0 */
-    double filter; /* IQN-ILS: minimum linearly independent fraction of a column; 0: any */
+    double filter; /* IQN-ILS: minimum linearly independent part of columns; 0: any */
     int imaged;    /* IQN-ILS: allocate images */
 } spari_accelerator_settings;
 
@@ -56,6 +54,9 @@ typedef struct spari_accelerator_settings {
 spari_accelerator *spari_accelerator_create(int64_t n, int period, int split,
                                             const spari_accelerator_settings *settings);
 void spari_accelerator_free(spari_accelerator **accelerator);
+/* [n] weights of motions in the sums of squares of the motion norm, for lengths that are no powers of two; 1 until they
+   are set. */
+double *spari_accelerator_weights(spari_accelerator *a);
 
 /* Begins a step. Columns of steps with another dt (by more than a tenth) are not used in it, because the map depends
    on dt. */
@@ -66,17 +67,22 @@ typedef struct spari_images {
        vectors cost nothing. The same on all ranks; returns a status. */
     int (*of)(void *context, int64_t count, const double *x, double *image);
     void *context;
+    /* for columns */
+    const double *moved; /* [n] motion since the iteration before */
+    const double *axes;  /* [n / 6][4] of the sections, as quaternions; NULL: those of the loads */
+    double (*rotation)(void *context, const double *motion); /* of the section that rotates most, rad */
 } spari_images;
 
 /* Next x from x and g; next may be x. x must not be converged: g - x is not zero. images may be NULL. Returns the
    status of images->of. */
 int spari_accelerator_next(spari_accelerator *a, const double *x, const double *g, const spari_images *images,
                            double *next);
-/* Whether results contradict each other, so that the next step needs the last result of this one. */
-int spari_accelerator_contradicted(const spari_accelerator *a);
-/* Residual relative to the settled fluid, (T32): r [n] for x and g, which were not passed to `next` yet. Returns 0,
+/* Residual relative to the settled fluid, (T34): r [n] for x and g, which were not passed to `next` yet. Returns 0,
    with r unchanged, if the fluid has no memory. */
 int spari_accelerator_settled(const spari_accelerator *a, const double *x, const double *g, double *r);
+/* A converged step ends with loads g that were not passed to `next`: the last secant, which later steps use. moved and
+   axes of images are needed. */
+void spari_accelerator_end(spari_accelerator *a, const double *x, const double *g, const spari_images *images);
 /* Accepts the step: its columns may serve in later ones. g: the last result; NULL: unknown. */
 void spari_accelerator_accept(spari_accelerator *a, const double *g);
 /* Rejects the step: restores the state of its beginning. Its columns are discarded, because they contain the cause
@@ -92,8 +98,14 @@ int spari_accelerator_dropped(const spari_accelerator *a); /* columns filtered o
 /* The largest -dx.dg / dx.dx of the step: in the piston model the ratio (added mass)/(mass), because the derivative
    of the map is minus this ratio. 0 before the second iteration. */
 double spari_accelerator_ratio(const spari_accelerator *a);
+/* Whether tangents that are reused between solutions have predicted the motion too badly. */
+int spari_accelerator_renews(const spari_accelerator *a);
 /* Whether its columns use the norm of the images. */
 int spari_accelerator_imaged(const spari_accelerator *accelerator);
+/* The fraction of a change of the fluid's loads that recurs in the next evaluation; the rotation that the last
+   correction would have given a section, rad, if it was limited; else 0. */
+double spari_accelerator_carried_over(const spari_accelerator *a);
+double spari_accelerator_limited_rotation(const spari_accelerator *a);
 /* Mean and standard deviation of this ratio over the differences of this step and, decaying, of earlier ones,
    weighted by the roots of their lengths. Returns 0, and zeros, if there are too few. */
 int spari_accelerator_added_mass(const spari_accelerator *a, double *mean, double *spread);

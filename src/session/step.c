@@ -209,6 +209,7 @@ int spar_step_solve(spar_session *session) {
         return spari_start_solve(s, __func__);
     }
     s->state.rough = spari_coupling_is_rough(s);
+    s->state.renew = spari_coupling_renews_tangents(s);
     status = spari_threads_solve(s);
     status = spari_session_share_motion(s, status);
     if (status != SPAR_OK) { /* t^n is unchanged; discards the failed iterate */

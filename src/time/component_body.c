@@ -403,7 +403,7 @@ static void end_solution_of_nodes(spari_component *p, int iterations, int fresh)
         return;
     }
     spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, s->increment);
-    s->factored = serves_on(s, iterations, fresh);
+    s->factored = serves_on(s, iterations, fresh) && !p->member->session->state.renew;
     if (!s->factored) { /* for a response */
         spari_alpha_operators(s, &p->scheme, &p->stage.ends, s->increment);
     }

@@ -495,7 +495,8 @@ static void test_heavy_fluid(void **state) {
                 most = iterate(scheme, pair[k].of_external, pair[k].other, &y);
             snprintf(what, sizeof what, "added mass 10, %s, %s: more iterations", pair[k].of,
                      iqn ? "IQN-ILS" : "Aitken");
-            verify(what, fmax(0, n - most), 0, 0, pair[k].than);
+            /* in the load norm IQN-ILS does not know the structure */
+            verify(what, fmax(0, n - most), 0, iqn && pair[k].external ? 0.2 * most : 0, pair[k].than);
             snprintf(what, sizeof what, "added mass 10, %s, %s: place, m", pair[k].of, iqn ? "IQN-ILS" : "Aitken");
             verify(what, x, y, 1e-7, pair[k].than);
             assert_in_range(most, 100, 600);
