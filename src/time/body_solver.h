@@ -123,6 +123,8 @@ typedef struct spari_tangent_at {
     double factor, cm, cv;
     const struct spari_steady_rotation *rotation; /* equilibrium in a rotating frame; NULL: else */
     double *mass;                                 /* with it: workspace for the matrix of an element */
+    const double *turns; /* angular velocity of the frame that the step is integrated in; NULL: axes at rest */
+    double rate;         /* with it: of velocities with positions */
 } spari_tangent_at;
 /* Forms the tangent. */
 void spari_solver_form(spari_solver *solver, const spar_member *member, const spari_tangent_at *at);

@@ -26,6 +26,9 @@ static void show_nodes(void *context, int64_t from, int64_t to) {
 
 void spari_root_show(const spari_solver *solver, const spar_member *m, spari_ends *e) {
     double R[9], omega[3], alpha[3];
+    if (e->centre) {
+        spari_centre_show(e->centre, e->origin, &e->to, &e->absolute);
+    }
     if (!e->root) {
         return;
     }

@@ -240,6 +240,18 @@ static void advance_span(void *context, int64_t from, int64_t to) {
     t->s->most_by[from / SPARI_SPAN] = size_of_span(t, by);
 }
 
+void spari_alpha_correction_at_centre(const spari_ends *e, double *dx) {
+    double arm[3], way[3];
+    if (!e->centre) {
+        return;
+    }
+    spari_rotate(e->absolute.q + 3, e->centre, arm);
+    spari_cross(dx + 3, arm, way);
+    for (int k = 0; k < 3; k++) {
+        dx[k] += way[k];
+    }
+}
+
 spari_corrected spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c,
                                     spari_ends *e, double *rotation, double longest, double *x, double *dx) {
     double R[9], largest;
@@ -247,6 +259,13 @@ spari_corrected spari_alpha_correct(const spari_solver *s, const spar_member *me
     t.work.dx = dx, t.work.rotation = rotation, t.work.R = e->root ? R : NULL;
     if (e->root) {
         spari_quat_matrix(e->root->q + 3, R);
+    }
+    if (e->centre) {
+        if (rotation) {
+            spari_nodes_rotate_forth(&t.work, 0, s->n);
+            t.work.rotation = NULL;
+        }
+        spari_alpha_correction_at_centre(e, dx);
     }
     if (longest == INFINITY && !c->still) {
         spari_solver_spread(s, advance_span, &t);
