@@ -107,7 +107,7 @@ static double between(const spar_joint *j, int side, int acceleration, int k) {
 }
 
 /* The joint on `side` carries a component, and rotates with what is on its other side. */
-static void carry(spari_component *p, const spari_constraint *l, int side) {
+static void carry_component(spari_component *p, const spari_constraint *l, int side) {
     spari_carrier *c = &p->stage.carrier;
     const spar_joint *j = l->joint;
     const spari_component *other = l->component[1 - side];
@@ -133,7 +133,7 @@ static void carry(spari_component *p, const spari_constraint *l, int side) {
 }
 
 /* A component that no joint carries. */
-static void stand(spari_component *p) {
+static void stand_alone(spari_component *p) {
     spari_carrier *c = &p->stage.carrier;
     const spar_member *m = p->member;
     if (!p->frame && !spari_member_root_is_prescribed(m)) {
@@ -150,16 +150,16 @@ void spari_assembly_find_carriers(spari_assembly *a) {
         return;
     }
     if (a->constraints == 0) {
-        stand(a->component);
+        stand_alone(a->component);
     }
     for (int n = 0; n < a->components && a->constraints > 0; n++) {
         const spari_carried *by = a->carried + n;
         spari_component *p = a->component + by->component;
         if (by->constraint < 0) {
-            stand(p);
+            stand_alone(p);
         } else {
             p->stage.carrier = (spari_carrier){0};
-            carry(p, a->constraint + by->constraint, by->side);
+            carry_component(p, a->constraint + by->constraint, by->side);
         }
     }
     find_base(a);
