@@ -273,10 +273,14 @@ SPAR_API int spar_rigid_create(spar_session *session, const char *name, const do
    the commit. Default root condition: fixed.
      name: in
      elements: in, 1 to 1000000
-     nodes_per_element: in, 2 to 24; the commit warns if a beam with fewer than 5 would lock
+     nodes_per_element: in, 2 to 24; see below
      member: out
    Nodes are the Gauss-Lobatto-Legendre points, numbered from 0, element by element. At an element boundary two nodes
-   stand at one position; they move alike, and their loads add. */
+   stand at one position; they move alike, and their loads add.
+   Elements of few nodes lock if their axial or shear stiffness is large beside bending stiffness / length^2: they bend
+   too little. Equilibria are right with 5 nodes, motions with 7, for any stiffness. With fewer nodes, the commit warns of
+   stiffnesses for which equilibria are wrong, and a step warns of an element of 5 or 6 nodes that is bent so far that
+   its motion may be wrong. More nodes or more elements cure both. */
 SPAR_API int spar_beam_create(spar_session *session, const char *name, int elements, int nodes_per_element,
                               spar_member **member);
 /* Reference line by points, in the beam's own frame. The nodes are fitted by least squares, exactly at both ends.

@@ -27,6 +27,10 @@ struct spari_beam {
 int spari_beam_place_nodes(spar_member *member);
 /* Logs a warning if elements have too few nodes for the stiffness of their sections. */
 void spari_beam_tell_locking(const spar_member *member);
+/* Of a placed beam: finds the bending of an element from which it locks in a motion. After a step: warns once of such
+   an element. */
+void spari_beam_find_locking(spar_member *member);
+void spari_beam_check_locking(spar_member *member);
 /* Warns if its line swings between the axis points. */
 void spari_beam_tell_line(const spar_member *member);
 /* Warns if its twist, sections or estimated first frequency are implausible; logs mass, length and this

@@ -139,6 +139,7 @@ struct spar_member {
     int64_t modes;                    /* of a modal member */
     const struct spari_fidelity *row; /* table row of its fidelity (time/fidelity.h); after commit */
     spari_frame_kind frame;           /* after commit */
+    double locks_from; /* rad, of a beam, once it is built: bending from which a motion is to be warned of */
 
     spari_mesh mesh; /* elements and nodes of its line */
     int64_t nodes;

@@ -16,6 +16,7 @@
 #include "../time/fidelity.h"
 #include "work.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -174,6 +175,7 @@ void spari_member_accept(spar_member *m) {
     forget_begun(m);
     if (m->row->accept && spari_fidelity_is_here(m)) {
         m->row->accept(m);
+        spari_beam_check_locking(m);
     }
 }
 
@@ -408,9 +410,13 @@ static int build_body(spar_member *m) {
 int spari_member_build(spar_member *m) {
     m->row = spari_fidelity_of(m);
     m->frame = m->row->frame;
+    m->locks_from = INFINITY;
     SPARI_TRY(make_node_arrays(m));
     if (m->kind == SPARI_BEAM) {
         SPARI_TRY(spari_beam_place_nodes(m));
+        if (m->row->solved && !m->row->whole) {
+            spari_beam_find_locking(m);
+        }
     } else {
         memcpy(m->xr, m->placement.x, sizeof m->placement.x);
         memcpy(m->qr, m->placement.q, sizeof m->placement.q);
