@@ -401,7 +401,7 @@ enum {
     SPAR_KIND_STATIONS = 1, /* given by eta, not by position */
     SPAR_KIND_SHARED = 2,   /* motion nodes and force nodes at once */
     SPAR_KIND_WEIGHTS = 4,  /* they have weights (spar_fluid_set_motion_weights) */
-    SPAR_KIND_FORCES = 8    /* their forces are kept (SPAR_EFFECT_FLUID_HISTORY) */
+    SPAR_KIND_FORCES = 8    /* their forces are kept (SPAR_EFFECT_FLUID_HISTORY) and known */
 };
 /* which: in, SPAR_NODES_*
    kind: out, SPAR_KIND_* combined */
@@ -472,14 +472,16 @@ SPAR_API int spar_fluid_check_matrices(spar_fluid *fluid, int convention, const 
 /* ---- fluids: loads and states ------------------------------------------------------------------------------------ */
 
 /* The fluid's own node forces at t^n + theta dt, for actuator lines. At t^{n+1} they are the pushed ones, or predicted
-   before the first push of the step; 0 before the first push of all.
+   before the first push of the step; 0 before the first push of all. As many stations given anew keep the forces of
+   those before. For other nodes given anew the forces pushed first count at t^n too.
      theta: in, in [0,1]
      force[force_nodes][3]: out, N
-   SPAR_ERR_STATE: they are not kept (SPAR_EFFECT_FLUID_HISTORY). */
+   SPAR_ERR_STATE: they are not kept (SPAR_EFFECT_FLUID_HISTORY), or the nodes are new, the fluid has loads, and no
+   forces of these nodes have been pushed yet. */
 SPAR_API int spar_fluid_pull_forces(spar_fluid *fluid, double theta, double *force);
 /* The same at t^{n+1} as a getter, for output.
      force[force_nodes][3]: out, N
-   SPAR_ERR_STATE: they are not kept (SPAR_KIND_FORCES). */
+   SPAR_ERR_STATE: they are not kept, or not known (SPAR_KIND_FORCES). */
 SPAR_API int spar_fluid_get_forces(const spar_fluid *fluid, double *force);
 /* Pushes loads of a fluid that makes several steps within dt: the mean loads over the part of the step that ends at
    t^n + theta dt. The loads in use at t^{n+1} are m + (e - e^n) / 2, (T13). m is the mean of the parts so far. e and

@@ -204,12 +204,20 @@ static int map_set(const spar_fluid *fluid, int which, const spari_line *line, s
     return SPAR_OK;
 }
 
-/* Replaces the history by one for n nodes. */
+/* A history for n new force nodes. As many stations as before keep their forces. Of other nodes no forces are known
+   before they are pushed, unless the fluid has no loads. */
 static int renew_history(spar_fluid *fluid, int64_t n) {
+    const spari_history *was = fluid->history;
+    int sections = spari_fluid_set(fluid, SPAR_NODES_FORCE)->sections;
+    if (was && was->sections && sections && was->n == n) {
+        return SPAR_OK;
+    }
     spari_history *h = spari_history_create(n, fluid->member->session->coupling.predictor);
     if (!h) {
         return SPAR_ERR_MEMORY;
     }
+    h->sections = sections;
+    h->known = spari_fluid_has_loads(fluid) ? 0 : SPARI_MOST_PAST;
     spari_history_free(fluid->history);
     fluid->history = h;
     return SPAR_OK;
@@ -223,7 +231,7 @@ static int keeps_forces(const spar_fluid *fluid) {
            (spari_fluid_set(fluid, SPAR_NODES_FORCE)->sections && !(m->effects_off & SPAR_EFFECT_FLUID_HISTORY));
 }
 
-/* Resets all data per force node to zero, or nothing if it fails. */
+/* Makes all data per force node anew, or nothing if it fails. */
 static int renew_by_node(spar_fluid *fluid, int64_t n) {
     spari_states *made = fluid->states ? spari_states_create(n, fluid->states->width) : NULL;
     int status = fluid->states && !made ? SPAR_ERR_MEMORY : SPAR_OK;
@@ -320,7 +328,8 @@ int spar_fluid_get_kind(const spar_fluid *fluid, int which, int *kind) {
     const spari_node_set *set = spari_fluid_set(fluid, which);
     int bears_forces = which == SPAR_NODES_FORCE || fluid->shared;
     *kind = (set->sections ? SPAR_KIND_STATIONS : 0) | (fluid->shared ? SPAR_KIND_SHARED : 0) |
-            (set->weight ? SPAR_KIND_WEIGHTS : 0) | (bears_forces && fluid->history ? SPAR_KIND_FORCES : 0);
+            (set->weight ? SPAR_KIND_WEIGHTS : 0) |
+            (bears_forces && fluid->history && spari_history_is_known(fluid->history) ? SPAR_KIND_FORCES : 0);
     return SPAR_OK;
 }
 

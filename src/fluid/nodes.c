@@ -79,6 +79,7 @@ spari_history *spari_history_create(int64_t n, int order) {
         return NULL;
     }
     h->n = n;
+    h->known = SPARI_MOST_PAST;
     h->after = spari_zalloc(3 * n, sizeof *h->after);
     if (!h->after || spari_history_keep(h->past, 3 * n, order) != SPAR_OK) {
         spari_history_free(h);

@@ -20,6 +20,9 @@ static int check_forces(const spar_fluid *fluid, int has_place, int64_t *n, cons
                                   "node forces are not stored; request SPAR_EFFECT_FLUID_HISTORY with "
                                   "spar_member_set_effects before the member is committed");
     }
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, *n == 0 || spari_history_is_known(fluid->history), SPAR_ERR_STATE,
+                           "the nodes are new, and the fluid has loads: their forces are not known before they are "
+                           "pushed. As many stations as before keep their forces");
     return SPAR_OK;
 }
 
@@ -33,6 +36,7 @@ static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, con
     const spari_layout *layout = spari_fluid_layout(fluid, SPAR_NODES_FORCE);
     int64_t node = layout ? layout->node : 3, component = layout ? layout->component : 1;
     int muted = (fluid->mute & SPARI_MUTE_HISTORY) != 0;
+    theta = h && h->known == 0 ? 1 : theta; /* at t^n they are unknown: those pushed in this step stand for them */
     for (int64_t i = 0; i < 3 * n; i++) {
         double x = muted ? 0 : (1 - theta) * h->past[0][i] + theta * h->after[i];
         int64_t at = i / 3 * node + i % 3 * component;
@@ -67,6 +71,12 @@ int spar_fluid_get_forces(const spar_fluid *fluid, double *force) {
     return SPAR_OK;
 }
 
+/* The forces at t^{n+1} become those of t^n. */
+static void keep_past(spari_history *h) {
+    memcpy(h->past[0], h->after, sizeof *h->after * 3 * (size_t)h->n);
+    h->known = h->known > 0 ? h->known : 1;
+}
+
 static void keep_forces(spar_fluid *fluid, spari_source force) {
     spari_history *h = fluid->history;
     if (!h || h->n == 0 || (!force.d && !force.f)) {
@@ -76,7 +86,7 @@ static void keep_forces(spar_fluid *fluid, spari_source force) {
         h->after[i] = spari_source_at(force, i / 3, (int)(i % 3));
     }
     if (fluid->member->session->state.phase == SPARI_IDLE) {
-        memcpy(h->past[0], h->after, sizeof *h->after * 3 * (size_t)h->n);
+        keep_past(h);
     }
     h->pushed = 1;
 }
@@ -435,6 +445,7 @@ void spari_fluid_begin(spar_fluid *fluid, int order, double dt, const double dt_
         return;
     }
     h->pushed = 0;
+    order = order < h->known ? order : h->known > 0 ? h->known - 1 : 0;
     spari_predictor(order, dt, dt_last, w);
     for (int64_t i = 0; i < 3 * h->n; i++) {
         h->after[i] = w[0] * h->past[0][i];
@@ -453,8 +464,8 @@ void spari_fluid_commit_state(spar_fluid *fluid) {
     }
     spari_fluid_keep_loads(fluid);
     spari_states_accept(fluid->states);
-    if (h && h->n > 0) {
-        memcpy(h->past[0], h->after, sizeof *h->after * 3 * (size_t)h->n);
+    if (h && h->n > 0 && spari_history_is_known(h)) {
+        keep_past(h);
     }
 }
 
@@ -469,6 +480,7 @@ void spari_fluid_accept(spar_fluid *fluid) {
         return;
     }
     size_t size = sizeof *h->after * 3 * (size_t)h->n;
+    h->known += spari_history_is_known(h) && h->known < SPARI_MOST_PAST;
     if (!h->pushed) { /* loads that were not pushed stay unchanged */
         memcpy(h->after, h->past[0], size);
     }

@@ -91,7 +91,7 @@ static int copy_history(const spari_history *from, int order, spari_history **to
     if (!h) {
         return SPAR_ERR_MEMORY;
     }
-    h->pushed = from->pushed;
+    h->pushed = from->pushed, h->known = from->known, h->sections = from->sections;
     size_t size = 3 * (size_t)h->n * sizeof *h->after;
     if (size > 0) {
         memcpy(h->after, from->after, size);

@@ -70,7 +70,7 @@ static void state_head(const spar_fluid *fluid, double head[S_HEAD]) {
     const spari_nodes *s = spari_fluid_set(fluid, SPAR_NODES_FORCE)->nodes;
     const spari_history *h = fluid->history;
     head[S_NODES] = s ? (double)s->n : 0;
-    head[S_KEPT] = h && s;
+    head[S_KEPT] = h && s ? 1 + h->known : 0;
     head[S_PUSHED] = h && h->pushed;
     head[S_PUSHES] = (double)fluid->pushes;
     head[S_MAPPED] = !fluid->load ? 0 : fluid->bins[0] ? HAS_BINS : IS_MAPPED;
@@ -172,8 +172,8 @@ void spari_fluid_give_up(spar_fluid *fluid) {
 
 int spari_fluid_is_state(const spar_member *m, const double *head, int64_t count, int64_t *loads, spari_by_node *by) {
     if (!spari_is_count(head[S_NODES]) || !spari_is_count(head[S_PUSHES]) || !spari_is_count(head[S_PARTS]) ||
-        !spari_is_count(head[S_WIDTH]) || head[S_PARTS] > PARTS_BEFORE + PARTS_NOW ||
-        head[S_WIDTH] > SPARI_MOST_STATES || count != state_size(m, head)) {
+        !spari_is_count(head[S_WIDTH]) || !spari_is_count(head[S_KEPT]) || head[S_KEPT] > 1 + SPARI_MOST_PAST ||
+        head[S_PARTS] > PARTS_BEFORE + PARTS_NOW || head[S_WIDTH] > SPARI_MOST_STATES || count != state_size(m, head)) {
         return 0;
     }
     *loads = state_loads(m, head);
@@ -185,7 +185,9 @@ int spari_fluid_is_state(const spar_member *m, const double *head, int64_t count
 static void sum_heads(spari_taking *t, int count, const double *const *heads) {
     for (int k = 0; k < count; k++) {
         const double *head = heads[k];
-        t->head[S_KEPT] = t->head[S_KEPT] != 0 || head[S_KEPT] != 0;
+        if (head[S_KEPT] != 0 && (head[S_NODES] > 0 || t->head[S_KEPT] == 0)) {
+            t->head[S_KEPT] = t->head[S_KEPT] == 0 ? head[S_KEPT] : fmin(t->head[S_KEPT], head[S_KEPT]);
+        }
         t->head[S_PUSHED] = t->head[S_PUSHED] != 0 || head[S_PUSHED] != 0;
         t->head[S_STATES] = t->head[S_STATES] != 0 || head[S_STATES] != 0;
         t->head[S_WIDTH] = fmax(t->head[S_WIDTH], head[S_WIDTH]);
@@ -231,6 +233,9 @@ static int alloc_nodes(spar_fluid *fluid, const char *call, spari_taking *t, con
     int kept = t->head[S_KEPT] != 0, width = (int)t->head[S_WIDTH];
     t->n = s->n;
     t->history = kept ? spari_history_create(s->n, fluid->member->session->coupling.predictor) : NULL;
+    if (t->history) {
+        t->history->sections = spari_fluid_set(fluid, SPAR_NODES_FORCE)->sections;
+    }
     t->states = width > 0 ? spari_states_create(s->n, width) : NULL;
     t->positions = spari_fluid_positions(fluid, s);
     t->sorted = spari_zalloc(s->n, sizeof *t->sorted);
@@ -476,6 +481,9 @@ void spari_fluid_load(spar_fluid *fluid) {
         spari_states_free(fluid->states);
         fluid->states = t->states, t->states = NULL;
         fluid->states->pushed = t->head[S_STATES] != 0;
+    }
+    if (fluid->history && t->head[S_KEPT] != 0) {
+        fluid->history->known = (int)t->head[S_KEPT] - 1;
     }
     if (fluid->history) {
         fluid->history->pushed = t->head[S_PUSHED] != 0;

@@ -45,12 +45,20 @@ typedef struct spari_fold {
 } spari_fold;
 
 /* Node forces over time, for hosts that pull them back between steps (SPAR_EFFECT_FLUID_HISTORY). */
+enum { SPARI_MOST_PAST = 3 };
 typedef struct spari_history {
-    int pushed; /* pushed in this step */
+    int pushed;   /* pushed in this step */
+    int known;    /* of t^n, t^{n-1}, t^{n-2}, those that are known; 0: other nodes, whose forces at t^n nobody knows */
+    int sections; /* of stations, which keep their forces when as many are given anew */
     int64_t n;
-    double *after;   /* [n][3] at t^{n+1}: predicted, then pushed */
-    double *past[3]; /* at t^n, t^{n-1}, t^{n-2}, as far as the predictor's order needs */
+    double *after;                 /* [n][3] at t^{n+1}: predicted, then pushed */
+    double *past[SPARI_MOST_PAST]; /* at t^n, t^{n-1}, t^{n-2}, as far as the predictor's order needs */
 } spari_history;
+
+/* Whether there are forces at t^{n+1}. */
+static inline int spari_history_is_known(const spari_history *h) {
+    return h->known > 0 || h->pushed;
+}
 
 /* The host's own numbers at the force nodes (states.c): at t^n, and at t^{n+1} once pushed in the step. */
 typedef struct spari_states {
@@ -220,7 +228,7 @@ void spari_fluid_add_twice(spari_bins *sum, double x);
 /* keep: the last pushed loads become those of t^n. revert: the loads of t^n become the last pushed. */
 void spari_fluid_keep_loads(spar_fluid *fluid);
 void spari_fluid_revert_loads(spar_fluid *fluid);
-/* Zero node forces for n nodes and a predictor of this order; NULL: no memory. */
+/* Zero node forces, which are known, for n nodes and a predictor of this order; NULL: no memory. */
 spari_history *spari_history_create(int64_t n, int order);
 void spari_history_free(spari_history *history);
 /* Zero numbers for n nodes; NULL: no memory. begin, accept: step events; states may be NULL. */

@@ -300,6 +300,104 @@ static void apart_saved_and_loaded(void **state) {
     assert_int_equal(remove(file), 0);
 }
 
+/* ---- stations given anew ---- */
+
+static void step_with(const blade *b, spar_fluid *f, double (*force)[3]) {
+    OK(b->session, spar_step_begin(b->session, 0.1));
+    OK(b->session, spar_step_solve(b->session));
+    OK(b->session, spar_fluid_push_forces(f, force[0], NULL));
+    OK(b->session, spar_step_accept(b->session));
+}
+
+static void forces_are(const blade *b, spar_fluid *f, double theta, int n, double (*want)[3], double factor) {
+    double got[N][3];
+    OK(b->session, spar_fluid_pull_forces(f, theta, got[0]));
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < 3; i++) {
+            NEAR(got[j][i], factor * want[j][i], 1e-12);
+        }
+    }
+}
+
+/* Between two steps as many stations are given anew as there were: with the same force in every step the kept ones are
+   this force at any theta, before the push and after. */
+static void as_many_stations_keep_forces(void **state) {
+    (void)state;
+    blade b;
+    double force[N][3];
+    blade_begin(&b, 0);
+    spar_fluid *f = line(&b, "line", 1);
+    some_forces(force, 60);
+    for (int k = 0; k < 3; k++) {
+        step_with(&b, f, force);
+    }
+    OK(b.session, spar_fluid_set_stations(f, N, force_eta, NULL));
+    OK(b.session, spar_fluid_map(f));
+    forces_are(&b, f, 1, N, force, 1);
+    OK(b.session, spar_step_begin(b.session, 0.1));
+    forces_are(&b, f, 0.5, N, force, 1);
+    OK(b.session, spar_step_solve(b.session));
+    OK(b.session, spar_fluid_push_forces(f, force[0], NULL));
+    forces_are(&b, f, 0, N, force, 1);
+    forces_are(&b, f, 0.5, N, force, 1);
+    OK(b.session, spar_step_accept(b.session));
+    blade_end(&b);
+}
+
+/* Other stations, while the fluid has loads: their forces are refused until they are pushed. Then those count for the
+   whole step; the steps after extrapolate from them alone, at first constant, then linear. A run loaded in between
+   knows as little. */
+static void other_stations_have_unknown_forces(void **state) {
+    (void)state;
+    const char *file = "stations.spar";
+    blade b[2];
+    double force[N][3], got[N][3];
+    int kind[2];
+    spar_fluid *f[2];
+    some_forces(force, 60);
+    for (int k = 0; k < 2; k++) {
+        blade_begin(&b[k], 0);
+        f[k] = line(&b[k], "line", 0);
+    }
+    for (int k = 0; k < 3; k++) {
+        step_with(&b[0], f[0], force);
+    }
+    for (int k = 0; k < 2; k++) {
+        OK(b[k].session, spar_fluid_set_stations(f[k], M, motion_eta, NULL));
+        OK(b[k].session, spar_fluid_map(f[k]));
+        OK(b[k].session, spar_fluid_get_kind(f[k], SPAR_NODES_FORCE, &kind[k]));
+    }
+    assert_int_equal(kind[0] & SPAR_KIND_FORCES, 0);
+    assert_int_equal(kind[1] & SPAR_KIND_FORCES, SPAR_KIND_FORCES); /* no loads: zeros are right */
+    OK(b[0].session, spar_session_save(b[0].session, file));
+    OK(b[1].session, spar_session_load(b[1].session, file));
+    for (int k = 0; k < 2; k++) {
+        REFUSED(b[k].session, SPAR_ERR_STATE, "not known before they are pushed", spar_fluid_get_forces(f[k], got[0]));
+        OK(b[k].session, spar_step_begin(b[k].session, 0.1));
+        REFUSED(b[k].session, SPAR_ERR_STATE, "not known before they are pushed",
+                spar_fluid_pull_forces(f[k], 0.5, got[0]));
+        OK(b[k].session, spar_step_solve(b[k].session));
+        OK(b[k].session, spar_fluid_push_forces(f[k], force[0], NULL));
+        forces_are(&b[k], f[k], 0, M, force, 1);
+        forces_are(&b[k], f[k], 0.25, M, force, 1);
+        OK(b[k].session, spar_step_accept(b[k].session));
+        OK(b[k].session, spar_step_begin(b[k].session, 0.1));
+        forces_are(&b[k], f[k], 1, M, force, 1);
+        OK(b[k].session, spar_step_reject(b[k].session));
+        for (int j = 0; j < M; j++) {
+            for (int i = 0; i < 3; i++) {
+                got[j][i] = 3 * force[j][i];
+            }
+        }
+        step_with(&b[k], f[k], got);
+        OK(b[k].session, spar_step_begin(b[k].session, 0.1));
+        forces_are(&b[k], f[k], 1, M, force, 5);
+        forces_are(&b[k], f[k], 0.5, M, force, 4);
+        blade_end(&b[k]);
+    }
+    assert_int_equal(remove(file), 0);
+}
+
 /* In a trial with other nodes both sets stay where they are, at rest to rounding, and come back to the bit. */
 static void apart_in_a_trial(void **state) {
     (void)state;
@@ -449,10 +547,16 @@ static void bad_sections_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_places_same_bits),       cmocka_unit_test(either_set_is_where_asked),
-        cmocka_unit_test(loads_are_conserved),         cmocka_unit_test(force_sections_stay),
-        cmocka_unit_test(apart_saved_and_loaded),      cmocka_unit_test(apart_in_a_trial),
-        cmocka_unit_test(control_points_of_their_own), cmocka_unit_test(bad_sections_are_refused),
+        cmocka_unit_test(same_places_same_bits),
+        cmocka_unit_test(either_set_is_where_asked),
+        cmocka_unit_test(loads_are_conserved),
+        cmocka_unit_test(force_sections_stay),
+        cmocka_unit_test(apart_saved_and_loaded),
+        cmocka_unit_test(as_many_stations_keep_forces),
+        cmocka_unit_test(other_stations_have_unknown_forces),
+        cmocka_unit_test(apart_in_a_trial),
+        cmocka_unit_test(control_points_of_their_own),
+        cmocka_unit_test(bad_sections_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
