@@ -297,6 +297,7 @@ module spar
     procedure :: set_interpolation => fluid_set_interpolation
     procedure :: get_interpolation => fluid_get_interpolation
     procedure :: set_option => fluid_set_option
+    procedure :: map_current => fluid_map_current
     procedure :: get_kind => fluid_get_kind
     procedure :: get_flag_count => fluid_get_flag_count
     procedure :: get_nearest => fluid_get_nearest
@@ -3310,6 +3311,14 @@ contains
 
     call finish(spar_fluid_set_option(self%handle, c_text(key), c_text(value)), self%session, stat, errmsg)
   end subroutine fluid_set_option
+
+  recursive subroutine fluid_map_current(self, stat, errmsg)
+    class(spar_fluid), intent(inout) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call finish(spar_fluid_map_current(self%handle), self%session, stat, errmsg)
+  end subroutine fluid_map_current
 
   recursive subroutine fluid_get_kind(self, which, kind, stat, errmsg)
     class(spar_fluid), intent(in) :: self

@@ -1182,6 +1182,12 @@ module spar_calls
       integer(c_int) :: status
     end function spar_fluid_get_option
 
+    function spar_fluid_map_current(fluid) bind(c) result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: fluid
+      integer(c_int) :: status
+    end function spar_fluid_map_current
+
     function spar_fluid_get_count(fluid, which, n) bind(c) result(status)
       import :: c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid

@@ -393,6 +393,13 @@ SPAR_API int spar_fluid_get_option(const spar_fluid *fluid, const char *key, int
 
 /* ---- fluids: the map --------------------------------------------------------------------------------------------- */
 
+/* As spar_fluid_map, but positions that are new are those of the present configuration, of the member as
+   spar_fluid_get_positions has it between steps: for a flow that meshes the deformed shape anew, or restarts from a
+   deformed mesh. Each node gets the reference position that the present motion moves where it is; from then on it is as
+   if that had been given. Stations mean what they mean to spar_fluid_map. Loads stay until the next push.
+   SPAR_ERR_UNSUPPORTED: motion nodes with weights; SPAR_ERR_MAPPING: as of spar_fluid_map, or a node has no such
+   reference position, because the member is folded there. */
+SPAR_API int spar_fluid_map_current(spar_fluid *fluid);
 /* which: in, SPAR_NODES_*
    n: out, nodes of the set on this rank */
 SPAR_API int spar_fluid_get_count(const spar_fluid *fluid, int which, int64_t *n);

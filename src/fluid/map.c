@@ -259,43 +259,106 @@ static void take_nodes(spari_node_set *set, spari_nodes *nodes) {
     spari_node_set_clear(&was);
 }
 
+/* Replaces positions given in the present configuration by those of the reference, and keeps the former. */
+static int refer_positions(spar_fluid *fluid, const spari_line *line, double *given[2], const char *caller) {
+    for (int which = 0; which < 2; which++) {
+        spari_node_set *set = &fluid->set[which];
+        if (!set->pending || set->sections) {
+            continue;
+        }
+        SPARI_FLUID_REQUIRE_OF(fluid, caller, !set->weight, SPAR_ERR_UNSUPPORTED,
+                               "motion nodes with weights cannot be given in the present configuration; give their "
+                               "reference positions and call spar_fluid_map");
+        double *x = spari_fluid_reference_of_present(fluid, line, set->n, set->x);
+        if (!x) {
+            return no_memory_to_map(fluid, caller, set->n, which);
+        }
+        given[which] = set->x;
+        set->x = x;
+    }
+    return SPAR_OK;
+}
+
+/* Restores the positions as given after a refusal. */
+static void end_referring(spar_fluid *fluid, double *given[2], int status) {
+    for (int which = 0; which < 2; which++) {
+        if (given[which] && status != SPAR_OK) {
+            free(fluid->set[which].x);
+            fluid->set[which].x = given[which];
+        } else {
+            free(given[which]);
+        }
+    }
+}
+
+/* Maps what is new, and remaps positions, into made[2]; the fluid is not changed. */
+static int map_sets(const spar_fluid *fluid, const spari_line *line, double *const given[2], spari_nodes *made[2],
+                    const char *caller) {
+    for (int which = 0; which < 2; which++) {
+        const spari_node_set *set = &fluid->set[which];
+        if (set->pending || (set->nodes && !set->sections)) {
+            SPARI_TRY(map_set(fluid, which, line, &made[which], caller));
+        }
+        if (given[which]) {
+            SPARI_TRY(spari_fluid_check_present(fluid, which, made[which], given[which], caller));
+        }
+    }
+    return SPAR_OK;
+}
+
+/* Puts the map in force. A refusal changes nothing. */
+static int use_map(spar_fluid *fluid, spari_nodes *made[2], const char *caller) {
+    spari_fade *fade = fluid->set[SPAR_NODES_MOTION].fade;
+    const spari_node_set *force = spari_fluid_set(fluid, SPAR_NODES_FORCE);
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, !force->pending || renew_by_node(fluid, force->n) == SPAR_OK, SPAR_ERR_MEMORY,
+                           "no memory for the node forces");
+    if (fade && spari_fade_map(fade, made[SPAR_NODES_MOTION])) {
+        return no_memory_to_map(fluid, caller, made[SPAR_NODES_MOTION]->n, SPAR_NODES_MOTION);
+    }
+    for (int which = 0; which < 2; which++) {
+        if (made[which]) {
+            take_nodes(&fluid->set[which], made[which]);
+            made[which] = NULL;
+        }
+    }
+    return SPAR_OK;
+}
+
+int spari_fluid_map(spar_fluid *fluid, int present, const char *caller) {
+    const spar_member *m = fluid->member;
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, m->committed, SPAR_ERR_STATE,
+                           "the member is not committed; call spar_member_commit first");
+    SPARI_TRY(spari_fluid_check_idle(fluid, caller));
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, prepare_member(fluid) == SPAR_OK, SPAR_ERR_MEMORY, "no memory to map");
+    spari_line *line = spari_line_create(m->mesh.elements, m->mesh.per_element, m->xr);
+    SPARI_FLUID_REQUIRE_OF(fluid, caller, line, SPAR_ERR_MEMORY, "no memory to map");
+    spari_nodes *made[2] = {NULL, NULL};
+    double *given[2] = {NULL, NULL};
+    int status = present ? refer_positions(fluid, line, given, caller) : SPAR_OK;
+    status = status == SPAR_OK ? map_sets(fluid, line, given, made, caller) : status;
+    status = status == SPAR_OK ? use_map(fluid, made, caller) : status;
+    end_referring(fluid, given, status);
+    spari_line_free(line);
+    spari_nodes_free(made[0]);
+    spari_nodes_free(made[1]);
+    return status;
+}
+
 int spar_fluid_map(spar_fluid *fluid) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_FLUID_HANDLE(fluid);
-    const spar_member *m = fluid->member;
-    SPARI_FLUID_REQUIRE(fluid, m->committed, SPAR_ERR_STATE,
-                        "the member is not committed; call spar_member_commit first");
-    SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
-    SPARI_FLUID_REQUIRE(fluid, prepare_member(fluid) == SPAR_OK, SPAR_ERR_MEMORY, "no memory to map");
-    spari_line *line = spari_line_create(m->mesh.elements, m->mesh.per_element, m->xr);
-    SPARI_FLUID_REQUIRE(fluid, line, SPAR_ERR_MEMORY, "no memory to map");
-    spari_nodes *made[2] = {NULL, NULL};
-    int status = SPAR_OK, fresh = spari_fluid_set(fluid, SPAR_NODES_FORCE)->pending;
-    for (int which = 0; which < 2 && status == SPAR_OK; which++) {
-        const spari_node_set *set = &fluid->set[which];
-        if (set->pending || (set->nodes && !set->sections)) {
-            status = map_set(fluid, which, line, &made[which], __func__);
-        }
-    }
-    spari_line_free(line);
-    if (status == SPAR_OK && fresh && renew_by_node(fluid, spari_fluid_set(fluid, SPAR_NODES_FORCE)->n) != SPAR_OK) {
-        status = spari_fluid_refuse(fluid, SPAR_ERR_MEMORY, __func__, "no memory for the node forces");
-    }
-    spari_fade *fade = fluid->set[SPAR_NODES_MOTION].fade;
-    if (status == SPAR_OK && fade && spari_fade_map(fade, made[SPAR_NODES_MOTION])) {
-        status = no_memory_to_map(fluid, __func__, made[SPAR_NODES_MOTION]->n, SPAR_NODES_MOTION);
-    }
-    for (int which = 0; which < 2; which++) {
-        if (status == SPAR_OK && made[which]) {
-            take_nodes(&fluid->set[which], made[which]);
-        } else {
-            spari_nodes_free(made[which]);
-        }
-    }
-    if (status == SPAR_OK) {
-        spari_fluid_warn_far(fluid);
-    }
-    return status;
+    SPARI_TRY(spari_fluid_map(fluid, 0, __func__));
+    spari_fluid_warn_far(fluid);
+    spari_fluid_warn_present(fluid);
+    return SPAR_OK;
+}
+
+int spar_fluid_map_current(spar_fluid *fluid) {
+    SPARI_GUARD_ENVIRONMENT;
+    SPARI_FLUID_HANDLE(fluid);
+    SPARI_TRY(spari_fluid_map(fluid, 1, __func__));
+    spari_fluid_warn_far(fluid);
+    return SPAR_OK;
 }
 
 int spari_fluid_check_which(const spar_fluid *fluid, int which, const char *caller) {

@@ -125,7 +125,7 @@ static int begin(spar_fluid *f, const spar_fluid *old, int same_nodes) {
         for (int which = 0; which < 2; which++) {
             SPARI_TRY(unmap(old, which, &f->set[which]));
         }
-        SPARI_TRY(spar_fluid_map(f));
+        SPARI_TRY(spari_fluid_map(f, 0, "trial"));
         for (int which = 0; which < 2; which++) {
             SPARI_TRY(keep_frames(f, old, which));
         }

@@ -489,4 +489,5 @@ void spari_fluid_load(spar_fluid *fluid) {
         fluid->history->pushed = t->head[S_PUSHED] != 0;
     }
     spari_fluid_give_up(fluid);
+    spari_fluid_warn_present(fluid);
 }

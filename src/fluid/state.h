@@ -4,6 +4,7 @@
 #define SPARI_FLUID_STATE_H
 
 #include "../base/session.h"
+#include "../transfer/projection.h"
 #include "../transfer/transfer.h"
 #include "fluid.h"
 
@@ -142,8 +143,10 @@ struct spar_fluid {
     spari_taking *taking;   /* while a file is loaded (saved_state.c), or after giving up; otherwise NULL */
 };
 
-/* Warnings, once per fluid: at the map, at a pull, and at the end of an accepted step (plausible.c). */
+/* Warnings, once per fluid: at the map or after loading, at a pull, and at the end of an accepted step (plausible.c).
+ */
 void spari_fluid_warn_far(spar_fluid *fluid);
+void spari_fluid_warn_present(spar_fluid *fluid);
 void spari_fluid_warn_fold(spar_fluid *fluid, spari_fold fold);
 void spari_fluid_warn_step(spar_fluid *fluid);
 /* Message that begins with caller, fluid and member; returns status. */
@@ -217,6 +220,17 @@ void spari_fluid_reference(const spar_fluid *fluid, int element, double xi, doub
 void spari_fluid_series(const double *c, int modes, int offset, int n, double xi, double *out);
 /* Reference position and section frame; p: storage position. */
 void spari_fluid_frame(const spar_fluid *fluid, const spari_node_set *set, int64_t p, double x[3], double q[4]);
+/* Maps; present: new positions are those of the present configuration. */
+int spari_fluid_map(spar_fluid *fluid, int present, const char *caller);
+/* Nearest points of x [n][3] on the present line, as spari_line_project. SPAR_ERR_MEMORY without a message. */
+int spari_fluid_project_on_present(const spar_fluid *fluid, int64_t n, const double *x, int *element, double *xi,
+                                   double *nearest);
+/* Reference positions [n][3] that the present motion moves to x; free with free(). NULL: no memory. */
+double *spari_fluid_reference_of_present(const spar_fluid *fluid, const spari_line *reference, int64_t n,
+                                         const double *x);
+/* Refuses nodes that the present motion moves elsewhere than to x. */
+int spari_fluid_check_present(const spar_fluid *fluid, int which, const spari_nodes *nodes, const double *x,
+                              const char *caller);
 /* Reference positions [n][3] of a mapped set, from nearest points and lever arms; free with free(). NULL: no memory. */
 double *spari_fluid_positions(const spar_fluid *fluid, const spari_nodes *nodes);
 /* Creates reproducible sums for the existing loads and those of parts, unless they exist. SPAR_ERR_MEMORY: nothing

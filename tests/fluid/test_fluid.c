@@ -631,6 +631,192 @@ static void history_is_an_effect(void **state) {
     }
 }
 
+/* ---- nodes in the present configuration ---- */
+
+enum { PRESENT = 200 };
+
+static spar_fluid *surface(const rig *r, const char *name, double (*x)[3], int present) {
+    spar_fluid *f = NULL;
+    OK(spar_fluid_create(r->member, name, &f));
+    OK(spar_fluid_set_motion_nodes(f, PRESENT, x[0]));
+    OK(spar_fluid_set_force_nodes(f, PRESENT, x[0]));
+    OK(present ? spar_fluid_map_current(f) : spar_fluid_map(f));
+    return f;
+}
+
+static void same_map(const spar_fluid *a, const spar_fluid *b) {
+    static double eta[2][PRESENT], con[2][PRESENT][3], x[2][PRESENT][3], v[2][PRESENT][3];
+    static int flags[2][PRESENT];
+    for (int which = 0; which < 2; which++) {
+        for (int k = 0; k < 2; k++) {
+            const spar_fluid *f = k == 0 ? a : b;
+            OK(spar_fluid_get_map(f, which, eta[k], NULL, flags[k]));
+            OK(spar_fluid_get_nearest(f, which, NULL, NULL, con[k][0]));
+            OK(spar_fluid_get_positions(f, which, x[k][0], NULL, v[k][0], NULL));
+        }
+        for (int j = 0; j < PRESENT; j++) {
+            CLOSE(eta[0][j], eta[1][j], 1e-12);
+            assert_int_equal(flags[0][j] & SPAR_MAP_END, flags[1][j] & SPAR_MAP_END);
+            for (int i = 0; i < 3; i++) {
+                CLOSE(con[0][j][i], con[1][j][i], 1e-11);
+                CLOSE(x[0][j][i], x[1][j][i], 1e-11);
+                CLOSE(v[0][j][i], v[1][j][i], 1e-11);
+            }
+        }
+    }
+}
+
+/* Reference nodes, among them some beyond the ends, go where a bent, sheared and stretched beam moves them. A second
+   fluid with these positions as present ones has the same map as the first, and both move together afterwards: to
+   rounding, of either interpolation. */
+static void present_nodes_have_the_map_of_reference_nodes(void **state) {
+    (void)state;
+    static double x[PRESENT][3], now[PRESENT][3];
+    for (int k = 0; k < 4; k++) {
+        rig r;
+        unsigned long long seed = 77;
+        rig_start(&r, 0, 0);
+        scatter(x, PRESENT, &seed);
+        for (int j = 0; j < PRESENT; j += 10) {
+            x[j][0] += j % 20 ? 10.3 - x[j][0] : -0.2 - x[j][0];
+        }
+        spar_fluid *f = surface(&r, "reference", x, 0);
+        OK(spar_fluid_set_interpolation(f, k % 2 ? SPAR_INTERPOLATE_CONSISTENT : SPAR_INTERPOLATE_NODAL));
+        bend(&r, k < 2 ? 0.5 : 0);
+        OK(spar_fluid_get_positions(f, SPAR_NODES_MOTION, now[0], NULL, NULL, NULL));
+        spar_fluid *g = surface(&r, "present", now, 1);
+        OK(spar_fluid_set_interpolation(g, k % 2 ? SPAR_INTERPOLATE_CONSISTENT : SPAR_INTERPOLATE_NODAL));
+        same_map(f, g);
+        bend(&r, -0.3);
+        same_map(f, g);
+        assert_string_equal(spar_session_get_warning(r.session, 0), "");
+        rig_end(&r);
+    }
+}
+
+/* A deformed mesh that is given as the reference is told, once; the reference mesh is not. */
+static void a_deformed_mesh_as_reference_is_told(void **state) {
+    (void)state;
+    static double x[PRESENT][3], now[PRESENT][3];
+    rig r;
+    unsigned long long seed = 78;
+    rig_start(&r, 0, 0);
+    scatter(x, PRESENT, &seed);
+    spar_fluid *f = surface(&r, "mesh", x, 0);
+    bend(&r, 1);
+    OK(spar_fluid_get_positions(f, SPAR_NODES_MOTION, now[0], NULL, NULL, NULL));
+    OK(spar_fluid_set_motion_nodes(f, PRESENT, x[0]));
+    OK(spar_fluid_map(f));
+    assert_string_equal(spar_session_get_warning(r.session, 0), "");
+    for (int k = 0; k < 2; k++) {
+        OK(spar_fluid_set_motion_nodes(f, PRESENT, now[0]));
+        OK(spar_fluid_map(f));
+        assert_non_null(strstr(spar_session_get_warning(r.session, 0), "spar_fluid_map_current"));
+        assert_string_equal(spar_session_get_warning(r.session, 1), "");
+    }
+    rig_end(&r);
+}
+
+/* A run goes on from a deformed mesh: the fluid is mapped without nodes, the file is loaded, then the nodes are given
+   where they are. */
+static void restarts_from_a_deformed_mesh(void **state) {
+    (void)state;
+    static double x[PRESENT][3], now[PRESENT][3], force[PRESENT][3], got[2][PRESENT][3];
+    const char *file = "deformed.spar";
+    rig r[2];
+    spar_fluid *f[2];
+    unsigned long long seed = 79;
+    double load[2][MOST][6];
+    scatter(x, PRESENT, &seed);
+    scatter(force, PRESENT, &seed);
+    for (int k = 0; k < 2; k++) {
+        rig_start(&r[k], 0, 0);
+        f[k] = k == 0 ? surface(&r[k], "mesh", x, 0) : NULL;
+    }
+    OK(spar_step_begin(r[0].session, 0.1));
+    bend(&r[0], 0.5);
+    OK(spar_fluid_push_forces(f[0], force[0], NULL));
+    OK(spar_step_solve(r[0].session));
+    OK(spar_step_accept(r[0].session));
+    OK(spar_session_save(r[0].session, file));
+    OK(spar_fluid_get_positions(f[0], SPAR_NODES_MOTION, now[0], NULL, NULL, NULL));
+    OK(spar_fluid_create(r[1].member, "mesh", &f[1]));
+    OK(spar_fluid_map(f[1]));
+    OK(spar_session_load(r[1].session, file));
+    OK(spar_fluid_set_motion_nodes(f[1], PRESENT, now[0]));
+    OK(spar_fluid_set_force_nodes(f[1], PRESENT, now[0]));
+    OK(spar_fluid_map_current(f[1]));
+    same_map(f[0], f[1]);
+    for (int k = 0; k < 2; k++) {
+        OK(spar_member_get_loads(r[k].member, load[k][0]));
+        OK(spar_step_begin(r[k].session, 0.1));
+        bend(&r[k], 0.7);
+        OK(spar_fluid_pull_motion(f[k], 0.5, got[k][0], NULL));
+        rig_end(&r[k]);
+    }
+    assert_memory_equal(load[0], load[1], 16 * sizeof load[0][0]);
+    for (int j = 0; j < PRESENT; j++) {
+        CLOSE(got[0][j][1], got[1][j][1], 1e-11);
+    }
+    assert_int_equal(remove(file), 0);
+}
+
+/* Nodes anywhere around a strongly bent beam, up to 200 m away: each is where it was given once it is mapped, or it is
+   refused because no reference position leads there. Both happen. */
+static void present_nodes_are_right_or_refused(void **state) {
+    (void)state;
+    enum { POINTS = 400 };
+    rig r;
+    unsigned long long seed = 80;
+    int64_t n[2] = {0, 0};
+    rig_start(&r, 0, 0);
+    bend(&r, 5);
+    spar_fluid *f = NULL;
+    OK(spar_fluid_create(r.member, "mesh", &f));
+    for (int k = 0; k < POINTS; k++) {
+        double x[3], back[3];
+        for (int i = 0; i < 3; i++) {
+            x[i] = 200 * line_random(&seed);
+        }
+        OK(spar_fluid_set_motion_nodes(f, 1, x));
+        int status = spar_fluid_map_current(f);
+        assert_true(status == SPAR_OK || (status == SPAR_ERR_MAPPING && says(&r, "folded")));
+        n[status == SPAR_OK]++;
+        if (status == SPAR_OK) {
+            OK(spar_fluid_get_positions(f, SPAR_NODES_MOTION, back, NULL, NULL, NULL));
+            for (int i = 0; i < 3; i++) {
+                CLOSE(back[i], x[i], 1e-6);
+            }
+        } else if (n[0] == 1) { /* a refusal changes nothing: what was given is still there, as a reference position */
+            OK(spar_fluid_map(f));
+            bend(&r, 0);
+            OK(spar_fluid_get_positions(f, SPAR_NODES_MOTION, back, NULL, NULL, NULL));
+            for (int i = 0; i < 3; i++) {
+                CLOSE(back[i], x[i], 1e-12);
+            }
+            bend(&r, 5);
+        }
+    }
+    assert_true(n[0] > 10 && n[1] > 100);
+    rig_end(&r);
+}
+
+static void present_nodes_that_cannot_be(void **state) {
+    (void)state;
+    rig r;
+    double x[3] = {4, 0.5, 0}, w = 1;
+    rig_start(&r, 0, 0);
+    spar_fluid *f = NULL;
+    OK(spar_fluid_create(r.member, "mesh", &f));
+    OK(spar_fluid_set_motion_nodes(f, 1, x));
+    OK(spar_fluid_set_motion_weights(f, 1, &w));
+    assert_int_equal(spar_fluid_map_current(f), SPAR_ERR_UNSUPPORTED);
+    assert_true(says(&r, "weights"));
+    OK(spar_step_begin(r.session, 0.1));
+    assert_int_equal(spar_fluid_map_current(f), SPAR_ERR_STATE);
+    rig_end(&r);
+}
+
 /* ---- loads ---- */
 
 static void total(const rig *r, double (*load)[6], double sum[6]) {
@@ -946,6 +1132,11 @@ int main(void) {
         cmocka_unit_test(node_forces_are_kept_and_predicted),
         cmocka_unit_test(unasked_history_is_refused),
         cmocka_unit_test(history_is_an_effect),
+        cmocka_unit_test(present_nodes_have_the_map_of_reference_nodes),
+        cmocka_unit_test(a_deformed_mesh_as_reference_is_told),
+        cmocka_unit_test(restarts_from_a_deformed_mesh),
+        cmocka_unit_test(present_nodes_are_right_or_refused),
+        cmocka_unit_test(present_nodes_that_cannot_be),
         cmocka_unit_test(loads_of_fluids_add),
         cmocka_unit_test(totals_are_of_one_fluid),
         cmocka_unit_test(travel_is_of_the_step),

@@ -173,6 +173,7 @@ program test_bindings
   call refused(spar_fluid_get_interpolation(none), 'spar_fluid_get_interpolation')
   call refused(spar_fluid_set_option(none), 'spar_fluid_set_option')
   call refused(spar_fluid_get_option(none, capacity=0_c_int64_t), 'spar_fluid_get_option')
+  call refused(spar_fluid_map_current(none), 'spar_fluid_map_current')
   call refused(spar_fluid_get_count(none, 0_c_int), 'spar_fluid_get_count')
   call refused(spar_fluid_get_kind(none, 0_c_int), 'spar_fluid_get_kind')
   call refused(spar_fluid_get_flag_count(none, 0_c_int, 0_c_int), 'spar_fluid_get_flag_count')

@@ -132,6 +132,7 @@
     CALL(spar_fluid_get_interpolation) \
     CALL(spar_fluid_set_option) \
     CALL(spar_fluid_get_option) \
+    CALL(spar_fluid_map_current) \
     CALL(spar_fluid_get_count) \
     CALL(spar_fluid_get_kind) \
     CALL(spar_fluid_get_flag_count) \

@@ -114,3 +114,8 @@ void do_spar_session_get_threads(call *c) {
     int *threads = arg_out(c, (int64_t)sizeof *threads, 0);
     RUN(c, spar_session_get_threads(session->s, threads));
 }
+
+void do_spar_fluid_map_current(call *c) {
+    live_fluid *fluid = arg_fluid(c);
+    RUN(c, spar_fluid_map_current(fluid->f));
+}

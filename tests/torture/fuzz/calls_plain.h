@@ -15,4 +15,5 @@
     CALL(spar_session_get_residual, 30, FUZZ_PURE) \
     CALL(spar_session_get_tolerance, 30, FUZZ_PURE) \
     CALL(spar_session_get_reproducible, 30, FUZZ_PURE) \
-    CALL(spar_session_get_threads, 30, FUZZ_PURE)
+    CALL(spar_session_get_threads, 30, FUZZ_PURE) \
+    CALL(spar_fluid_map_current, 30, FUZZ_CHANGES)
