@@ -440,8 +440,9 @@ SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, int which, double theta, d
 /* ---- save and load ----------------------------------------------------------------------------------------------- */
 
 /* Writes the state of the session to a file, or reads it. A run that continues from the file has the same bits.
-   Collective, between steps.
+   Collective, load between steps.
      path: in, that of rank 0; other ranks may give any text
+   save is legal within a step too: a run that loads the file goes on within it, so the flow must have its state of then.
    save writes path.new and renames it, so path is always a whole file. Rank 0 writes and reads for all; other ranks
    need not see the file. What is not a regular file is SPAR_ERR_IO.
    load needs the same members and joints, committed, and the same mapped fluids by name, on any number of ranks. Nodes

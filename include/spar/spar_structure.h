@@ -503,9 +503,11 @@ SPAR_API int spar_link_set_spring(spar_joint *joint, double stiffness, double da
      rate[6]: out, NULL: not wanted
      acceleration[6]: out, NULL: not wanted */
 SPAR_API int spar_joint_get_motion(const spar_joint *joint, double motion[6], double rate[6], double acceleration[6]);
-/* The load of the joint on a, in the joint's axes at a's side; b gets the opposite.
+/* The load of the joint on a, at the joint's point of a, in the joint's axes as b carries them (the ground's stay); b
+   gets the opposite at the same point. Of two or three free rotations, the moments are those that work on the angles or
+   on the rotation vector.
      load[6]: out, N, N m: of constrained motions the constraint's, of free ones spring, damper and
-           spar_joint_set_load */
+           spar_joint_set_load; a link has its tension, negative in a, in the first */
 SPAR_API int spar_joint_get_load(const spar_joint *joint, double load[6]);
 /* Energies of a joint, J. */
 enum {

@@ -249,9 +249,14 @@ static int renew_by_node(spar_fluid *fluid, int64_t n) {
 
 static void take_nodes(spari_node_set *set, spari_nodes *nodes) {
     spari_node_set was = *set;
+    double farthest = 0;
+    for (int64_t p = 0; p < nodes->n; p++) {
+        farthest = fmax(farthest, spari_norm((const double[3]){nodes->con[0][p], nodes->con[1][p], nodes->con[2][p]}));
+    }
     *set = (spari_node_set){.sections = was.sections,
                             .n = nodes->n,
                             .nodes = nodes,
+                            .farthest = farthest,
                             .weight = was.weight,
                             .home = was.home,
                             .fade = was.fade};

@@ -12,6 +12,7 @@ enum {
     WARNED_VELOCITY = 4,
     WARNED_FOLD = 8,
     WARNED_PRESENT = 16,
+    WARNED_NO_FORCE_NODES = 32,
     STEPS_WITHOUT_PUSH = 2,      /* accepted steps before a missing push is reported */
     STEPS_WITHOUT_VELOCITY = 10, /* and before missing velocities are */
 };
@@ -109,6 +110,19 @@ void spari_fluid_warn_present(spar_fluid *fluid) {
             return;
         }
     }
+}
+
+/* Forces are pushed, and there has never been a set of force nodes, not even an empty one. */
+void spari_fluid_warn_no_force_nodes(spar_fluid *fluid) {
+    const spar_member *m = fluid->member;
+    if (fluid->set[SPAR_NODES_MOTION].n == 0 || fluid->warned & WARNED_NO_FORCE_NODES) {
+        return;
+    }
+    fluid->warned |= WARNED_NO_FORCE_NODES;
+    spari_warn(m->session,
+               "fluid '%s' of member '%s' has motion nodes and no force nodes: the forces that are pushed have no "
+               "effect; call spar_fluid_set_force_nodes, with n = 0 if this rank has none",
+               fluid->name, m->name);
 }
 
 void spari_fluid_warn_fold(spar_fluid *fluid, spari_fold fold) {

@@ -399,6 +399,51 @@ static int pull_set(const spar_fluid *fluid, int which, double theta, const want
     return check_fold(fluid, p.fold[0], caller);
 }
 
+/* Whether a result may exceed FLT_MAX, about 3e38. Omega^2 times a lever arm is the largest product. */
+static int may_exceed_single(const spar_fluid *fluid, const spari_node_set *set) {
+    const spar_member *m = fluid->member;
+    double most = 0, rotation = 0;
+    for (int64_t l = 0; l < m->nodes; l++) {
+        for (int k = 0; k < 2; k++) {
+            const spari_motion *at = k ? &m->after : &m->now;
+            const double *a = spari_means_seen(m, k) + 6 * l, *q = at->q + 7 * l, *v = at->v + 6 * l;
+            for (int i = 0; i < 3; i++) {
+                most = fmax(most, fmax(fmax(fabs(m->xr[3 * l + i]), fabs(q[i])), fmax(fabs(v[i]), fabs(a[i]))));
+                rotation = fmax(rotation, fmax(fabs(v[3 + i]), fabs(a[3 + i])));
+            }
+        }
+    }
+    return most > 1e30 || rotation > 1e9 || set->farthest > 1e9;
+}
+
+/* Results in single precision must be finite. They are looked at only where they may not be. */
+static int check_single(const spar_fluid *fluid, int which, const wanted *w, const char *caller) {
+    const struct {
+        const float *x;
+        const char *name;
+    } all[] = {{w->x.f, "position"},
+               {w->v.f, "velocity"},
+               {w->omega.f, "angular velocity"},
+               {w->accel.f, "acceleration"},
+               {w->alpha.f, "angular acceleration"}};
+    const spari_node_set *set = spari_fluid_set(fluid, which);
+    int64_t node = w->layout ? w->layout->node : 3, component = w->layout ? w->layout->component : 1;
+    int any = all[0].x || all[1].x || all[2].x || all[3].x || all[4].x;
+    if (!any || !set->nodes || !may_exceed_single(fluid, set)) {
+        return SPAR_OK;
+    }
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        for (int64_t i = 0; i < 3 * set->n && all[k].x; i++) {
+            SPARI_FLUID_REQUIRE_OF(fluid, caller, isfinite(all[k].x[i / 3 * node + i % 3 * component]),
+                                   SPAR_ERR_NUMERIC,
+                                   "the %s of node %lld is too large for single precision; check the motion and its "
+                                   "units, or pull it in double precision",
+                                   all[k].name, (long long)(i / 3));
+        }
+    }
+    return SPAR_OK;
+}
+
 /* Public pulls. */
 static int pull_nodes(spar_fluid *fluid, int which, double theta, const wanted *w, const char *caller) {
     const spari_nodes *s;
@@ -419,6 +464,7 @@ static int pull_nodes(spar_fluid *fluid, int which, double theta, const wanted *
     }
     spari_fold fold;
     SPARI_TRY(pull_set(fluid, which, theta, &left, caller, &fold));
+    SPARI_TRY(check_single(fluid, which, &left, caller));
     spari_fluid_warn_fold(fluid, fold);
     return SPAR_OK;
 }

@@ -44,6 +44,9 @@ static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, con
             d[at] = x;
         } else {
             f[at] = (float)x;
+            SPARI_FLUID_REQUIRE_OF(fluid, caller, isfinite(f[at]), SPAR_ERR_NUMERIC,
+                                   "the force of node %lld, %g, is too large for single precision", (long long)(i / 3),
+                                   x);
         }
     }
     return SPAR_OK;
@@ -243,6 +246,9 @@ static int push_loads(spar_fluid *fluid, spari_source force, spari_source moment
                            "before the first step");
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
     if (!s) {
+        if (force.d || force.f) {
+            spari_fluid_warn_no_force_nodes(fluid);
+        }
         return SPAR_OK;
     }
     int status = push(fluid, s, force, moment, caller);
@@ -387,6 +393,9 @@ int spar_fluid_push_forces_at(spar_fluid *fluid, double theta, const double *for
     const spari_nodes *s;
     SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, __func__, &s));
     if (!s) {
+        if (force) {
+            spari_fluid_warn_no_force_nodes(fluid);
+        }
         return SPAR_OK;
     }
     SPARI_FLUID_REQUIRE(fluid, s->n == 0 || force, SPAR_ERR_ARGUMENT,

@@ -34,6 +34,7 @@ typedef struct spari_node_set {
     double *x;          /* [n][3]: positions, or offsets in the section frame; while pending */
     double *eta;        /* [n]: sections only; while pending */
     spari_nodes *nodes; /* after the map */
+    double farthest;    /* its longest lever arm */
     double *frame;      /* [n][4]: frames that sections keep when the line gets other nodes; NULL: the line's frames */
     double *weight, *home; /* [n], [n][3]: motion weight and reference position; NULL: full motion */
     spari_fade *fade;      /* NULL: weights alone, for whole lever arms */
@@ -147,6 +148,7 @@ struct spar_fluid {
  */
 void spari_fluid_warn_far(spar_fluid *fluid);
 void spari_fluid_warn_present(spar_fluid *fluid);
+void spari_fluid_warn_no_force_nodes(spar_fluid *fluid);
 void spari_fluid_warn_fold(spar_fluid *fluid, spari_fold fold);
 void spari_fluid_warn_step(spar_fluid *fluid);
 /* Message that begins with caller, fluid and member; returns status. */

@@ -1196,6 +1196,36 @@ static void test_sprung_at_rest(void **state) {
 
 /* A cantilever of two elements under a large tip load, against two beams welded: the same shape to rounding; the weld
    carries the tip's load and its moment about the weld. */
+/* Two bodies of 1 kg hang from the ground, one on the other, by hinges along y with springs. At rest the lower one is
+   carried with its weight: the load on it has the axes of the upper one, which is b, whatever the lower one's angle;
+   and the hinge's spring has the moment of the weight about the hinge. */
+static void test_load_has_axes_of_b(void **state) {
+    (void)state;
+    const double g = 9.81, half[3] = {0.5, 0, 0}, J[3] = {0.1, 0.1, 0.1}, elbow[3] = {1, 0, 0};
+    double K[36] = {0}, z[2][6], load[6];
+    spar_session *s = scene_session();
+    OK(s, spar_session_set_gravity(s, (double[]){0, 0, -g}));
+    spar_member *upper = add_body(s, "upper", origin, 1, half, J), *lower = add_body(s, "lower", elbow, 1, half, J);
+    spar_joint *j[2] = {add_joint(s, "shoulder", upper, 0, NULL, 0, SPAR_FREE_RY, origin),
+                        add_joint(s, "elbow", lower, 0, upper, 0, SPAR_FREE_RY, elbow)};
+    K[28] = 30;
+    OK(s, spar_joint_set_spring(j[0], K, NULL, NULL));
+    K[28] = 6;
+    OK(s, spar_joint_set_spring(j[1], K, NULL, NULL));
+    OK(s, spar_session_solve_static(s, 4, NULL, NULL, NULL));
+    for (int i = 0; i < 2; i++) {
+        OK(s, spar_joint_get_motion(j[i], z[i], NULL, NULL));
+    }
+    OK(s, spar_joint_get_load(j[1], load));
+    const double up = z[0][4], both = up + z[1][4]; /* a rotation by phi about y takes z to (sin phi, 0, cos phi) */
+    assert_true(fabs(up) > 0.3 && fabs(z[1][4]) > 0.3);
+    NEAR(load[0], -g * sin(up), 1e-6);
+    NEAR(load[2], g * cos(up), 1e-6);
+    NEAR(load[4], -6 * z[1][4], 1e-6);
+    NEAR(load[4], -g * 0.5 * cos(both), 1e-6);
+    spar_session_destroy(&s);
+}
+
 static void test_weld_at_rest(void **state) {
     (void)state;
     const double place[3] = {1, 0, 0};
@@ -1380,6 +1410,7 @@ int main(void) {
         cmocka_unit_test(test_rod),
         cmocka_unit_test(test_cart),
         cmocka_unit_test(test_sprung_at_rest),
+        cmocka_unit_test(test_load_has_axes_of_b),
         cmocka_unit_test(test_weld_at_rest),
         cmocka_unit_test(test_nothing_holds),
         cmocka_unit_test(test_driven_root),

@@ -631,6 +631,36 @@ static void history_is_an_effect(void **state) {
     }
 }
 
+/* What exceeds single precision is refused, with its node; what is just below passes; in double precision all does. */
+static void too_large_for_single(void **state) {
+    (void)state;
+    static const double size[3] = {1e38, 1e39, 1e39};
+    for (int k = 0; k < 3; k++) {
+        rig r;
+        double x[2][3] = {{1, 0, 0}, {2, 0, 0}}, force[2][3] = {{1, 0, 0}, {0, size[k], 0}};
+        float xs[2][3], vs[2][3];
+        spar_fluid *f = NULL;
+        rig_start(&r, SPAR_EFFECT_FLUID_HISTORY, 0);
+        OK(spar_fluid_create(r.member, "far", &f));
+        OK(spar_fluid_set_motion_nodes(f, 2, x[0]));
+        OK(spar_fluid_set_force_nodes(f, 2, x[0]));
+        OK(spar_fluid_map(f));
+        for (int l = 0; l < 16; l++) {
+            r.q[l][1] = k < 2 ? size[k] : 0, r.v[l][2] = k < 2 ? 0 : size[k];
+        }
+        OK(spar_member_set_motion(r.member, r.q[0], r.v[0], NULL));
+        OK(spar_fluid_pull_motion(f, 1, x[0], NULL));
+        assert_int_equal(spar_fluid_pull_motion_f32(f, 1, xs[0], vs[0]), k > 0 ? SPAR_ERR_NUMERIC : SPAR_OK);
+        assert_int_equal(says(&r, k == 1 ? "the position of node 0 is too large" : "the velocity of node 0 is too"),
+                         k > 0);
+        OK(spar_fluid_push_forces(f, force[0], NULL));
+        OK(spar_fluid_pull_forces(f, 1, x[0]));
+        assert_int_equal(spar_fluid_pull_forces_f32(f, 1, xs[0]), k > 0 ? SPAR_ERR_NUMERIC : SPAR_OK);
+        assert_int_equal(says(&r, "the force of node 1, 1e+39, is too large"), k > 0);
+        rig_end(&r);
+    }
+}
+
 /* ---- nodes in the present configuration ---- */
 
 enum { PRESENT = 200 };
@@ -1132,6 +1162,7 @@ int main(void) {
         cmocka_unit_test(node_forces_are_kept_and_predicted),
         cmocka_unit_test(unasked_history_is_refused),
         cmocka_unit_test(history_is_an_effect),
+        cmocka_unit_test(too_large_for_single),
         cmocka_unit_test(present_nodes_have_the_map_of_reference_nodes),
         cmocka_unit_test(a_deformed_mesh_as_reference_is_told),
         cmocka_unit_test(restarts_from_a_deformed_mesh),

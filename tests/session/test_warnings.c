@@ -134,6 +134,33 @@ static void far_nodes(void **state) {
     }
 }
 
+/* Forces for a fluid that has motion nodes alone have no effect, which is told once. An empty set of force nodes says
+   that this is meant. */
+static void forces_without_nodes(void **state) {
+    (void)state;
+    const double x[3] = {1, 0.1, 0}, force[3] = {0, 0, 1};
+    for (int empty = 0; empty < 2; empty++) {
+        spar_session *s = scene_session();
+        spar_member *b = beam_of(s, 2, 1, 1);
+        spar_fluid *f = NULL;
+        OK(s, spar_member_commit(b));
+        OK(s, spar_fluid_create(b, "air", &f));
+        OK(s, spar_fluid_set_motion_nodes(f, 1, x));
+        OK(s, empty ? spar_fluid_set_force_nodes(f, 0, NULL) : SPAR_OK);
+        OK(s, spar_fluid_map(f));
+        OK(s, spar_fluid_push_forces(f, NULL, NULL));
+        assert_int_equal(count(s), 0);
+        OK(s, spar_fluid_push_forces(f, force, NULL));
+        OK(s, spar_fluid_push_forces(f, force, NULL));
+        if (empty) {
+            assert_int_equal(count(s), 0);
+        } else {
+            warned_of(s, "has motion nodes and no force nodes");
+        }
+        spar_session_destroy(&s);
+    }
+}
+
 typedef struct host {
     spar_fluid *fluid;
     int pulls_position, pulls_velocity, pushes;
@@ -304,9 +331,16 @@ static void drive_before_static(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(description), cmocka_unit_test(frequency), cmocka_unit_test(twist),
-        cmocka_unit_test(far_nodes),   cmocka_unit_test(habits),    cmocka_unit_test(many),
-        cmocka_unit_test(key_points),  cmocka_unit_test(sections),  cmocka_unit_test(drive_before_static),
+        cmocka_unit_test(description),
+        cmocka_unit_test(frequency),
+        cmocka_unit_test(twist),
+        cmocka_unit_test(far_nodes),
+        cmocka_unit_test(habits),
+        cmocka_unit_test(many),
+        cmocka_unit_test(key_points),
+        cmocka_unit_test(sections),
+        cmocka_unit_test(drive_before_static),
+        cmocka_unit_test(forces_without_nodes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
