@@ -417,7 +417,10 @@ static int refuse_equilibrium(const equilibrium *t, double done, outcome why) {
     if (t->a->constraints == 0 && why != LONG) {
         say_why_alone(t, why, text, sizeof text);
     } else if (why == LOOSE) {
-        (void)snprintf(text, sizeof text, ": %s is not constrained; constrain it by a joint or a spring", motion);
+        (void)snprintf(
+            text, sizeof text,
+            ": %s is not constrained; constrain it by a joint or a spring; the stiffness of a fluid does not count",
+            motion);
     } else if (why == UNSTABLE) {
         (void)snprintf(text, sizeof text,
                        ": the equilibrium is unstable in %s; start slightly away from it to find a stable one, or "

@@ -90,6 +90,7 @@ typedef struct spari_step_state {
     int past;  /* number of loads known before those of t^n, which limits the order of the next prediction; -1: those
                   of t^n are unknown too */
     int order; /* order of the predictor in the current step */
+    int divergence_told; /* a warning of static divergence has been given in steps */
     int iterating;       /* the last check asked for another iteration */
     int rough;           /* the loads of this iteration are far from converged */
     int renew;           /* the coupling needs the tangents of the end of the solution, not reused ones */

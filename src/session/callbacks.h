@@ -32,4 +32,8 @@ int spari_progress_tell(spar_session *session, spari_progress *progress, double 
 /* The status of a call that has been stopped, else `status`. */
 int spari_progress_ends(const spari_progress *progress, int status);
 
+/* Warns if the last iteration shows that the fluid amplifies changes of its loads on a structure without inertia.
+   Returns whether it does (static.c). */
+int spari_session_warn_divergence(spar_session *session, const char *call);
+
 #endif

@@ -27,8 +27,12 @@ static int check_held(const spar_member *m, const char *call) {
     SPARI_TRY(spari_need_committed(m, call));
     int loose =
         m->joint_count == 0 && (m->root == SPAR_ROOT_FREE || (m->root == SPAR_ROOT_PINNED && m->body && !m->body->C));
-    SPARI_REQUIRE(s, !loose || !spari_fidelity_has_equilibrium(m), SPAR_ERR_STATE,
-                  "%s: '%s' is free to move as a rigid body; fix, pin or drive its root", call, m->name);
+    SPARI_REQUIRE(
+        s, !loose || !spari_fidelity_has_equilibrium(m), SPAR_ERR_STATE,
+        "%s: '%s' is free to move as a rigid body; fix, pin or drive its root. The stiffness of a sea that it floats "
+        "on is the fluid's, which spar does not know: let a floating body settle in steps, with dampers "
+        "(spar_spring_create)",
+        call, m->name);
     return SPAR_OK;
 }
 
@@ -350,6 +354,18 @@ static int stands_under_response(spar_session *s) {
     return same;
 }
 
+int spari_session_warn_divergence(spar_session *s, const char *call) {
+    int learns = spari_coupling_scheme_of(s->coupling.scheme)->learn != NULL;
+    double ratio = learns ? spari_accelerator_ratio(s->own->coupling->accelerator) : 0;
+    if (ratio < -1) { /* such a change grows in time, even if an accelerated iteration converges */
+        spari_warn(s,
+                   "%s: the fluid amplifies a change of its loads by a factor of %.3g: the equilibrium is unstable "
+                   "(static divergence), and a run departs from it",
+                   call, -ratio);
+    }
+    return ratio < -1;
+}
+
 static int find_equilibrium(spar_session *s, const char *call, int load_steps, spar_fluid_solver solve, void *context) {
     int agreed = 0;
     while (!agreed) {
@@ -372,14 +388,7 @@ static int find_equilibrium(spar_session *s, const char *call, int load_steps, s
             SPARI_TRY(spari_coupling_next(s));
         }
     }
-    int learns = spari_coupling_scheme_of(s->coupling.scheme)->learn != NULL;
-    double ratio = learns ? spari_accelerator_ratio(s->own->coupling->accelerator) : 0;
-    if (ratio < -1) { /* such a change grows in time, even if an accelerated iteration converges */
-        spari_warn(s,
-                   "%s: the fluid amplifies a change of its loads by a factor of %.3g: the equilibrium is unstable "
-                   "(static divergence), and a run departs from it",
-                   call, -ratio);
-    }
+    (void)spari_session_warn_divergence(s, call);
     int status = stands_under_response(s) ? SPAR_OK : solve_all(s, NULL, used, load_steps, 1);
     return status == SPAR_OK ? SPAR_OK : not_solved(s, call, status);
 }

@@ -331,6 +331,17 @@ static void learn_added(spar_session *s) {
     }
 }
 
+/* Steps of members without inertia are equilibria one after the other. */
+static void warn_divergence(spar_session *s, const char *call) {
+    int moves = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        moves |= m->external || (m->effects & SPAR_EFFECT_INERTIA) != 0;
+    }
+    if (!moves && !s->state.trial && !s->state.divergence_told) {
+        s->state.divergence_told = spari_session_warn_divergence(s, call);
+    }
+}
+
 int spar_step_accept(spar_session *session) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(spari_callback_refuse(session, __func__));
@@ -351,6 +362,7 @@ int spar_step_accept(spar_session *session) {
         spari_start_accept(s);
         return SPAR_OK;
     }
+    warn_divergence(s, __func__);
     spari_coupling_accept(s);
     spari_joints_each(s, spari_work_of_joint);
     spari_threads_each(s, shift_history, s);
