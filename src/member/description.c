@@ -443,44 +443,110 @@ static int points_in_force(const spar_member *m) {
     return b->points > 0 || spari_beam_rule(b) == SPAR_QUADRATURE_SECTIONS ? b->points : m->mesh.per_element;
 }
 
-/* FNV-1a hash of everything the ranks must agree on: what is in force, not how it was said. */
-uint64_t spari_member_copy_hash(const spar_member *m) {
-    uint64_t h = SPARI_HASH_BEGIN;
-    const int modes = m->fidelity == SPAR_FIDELITY_MODAL ? (int)m->modes : 0;
-    int numbers[] = {
-        m->kind, m->external,         m->root, m->effects, m->mesh.elements, m->mesh.per_element, m->fidelity,
-        modes,   m->added_by_velocity};
-    h = spari_hash_bytes(h, numbers, sizeof numbers);
-    h = spari_hash_bytes(h, m->mass, sizeof m->mass);
-    h = hash_table(h, &m->guess, 36);
-    h = spari_learned_hash(m, h);
-    const spari_beam *b = m->beam;
-    if (b) {
-        size_t n = (size_t)b->axis_count, s = (size_t)b->section_count, d = sizeof(double);
-        const int twisted = any_not_zero(b->axis_count, b->twist);
-        int more[] = {spari_beam_rule(b), points_in_force(m), b->eta != NULL, twisted,
-                      b->node_x != NULL,  b->node_q != NULL,  b->mass != NULL};
-        h = spari_hash_bytes(h, more, sizeof more);
-        h = spari_hash_bytes(h, b->mu, sizeof b->mu);
-        h = spari_hash_bytes(h, &b->mass_damping, sizeof b->mass_damping);
-        h = b->planar ? spari_hash_bytes(h, b->normal, sizeof b->normal) : h;
-        h = b->eta ? spari_hash_bytes(spari_hash_bytes(h, b->eta, n * d), b->xyz, 3 * n * d) : h;
-        h = twisted ? spari_hash_bytes(h, b->twist, n * d) : h;
-        h = b->node_x ? spari_hash_bytes(h, b->node_x, 3 * (size_t)m->nodes * d) : h;
-        h = b->node_q ? spari_hash_bytes(h, b->node_q, 4 * (size_t)m->nodes * d) : h;
-        h = b->section_eta ? spari_hash_bytes(spari_hash_bytes(h, b->section_eta, s * d), b->stiffness, 36 * s * d) : h;
-        h = b->mass ? spari_hash_bytes(h, b->mass, 36 * s * d) : h;
-        h = hash_table(h, &b->springs, 3);
-        h = hash_table(h, &b->pretension, 6);
-        h = hash_table(h, &b->point_masses, 36);
+static uint64_t hash_line(uint64_t h, const spar_member *m, const spari_beam *b) {
+    const size_t n = (size_t)b->axis_count, nodes = (size_t)m->nodes, d = sizeof(double);
+    const int twisted = any_not_zero(b->axis_count, b->twist);
+    const int has[] = {b->eta != NULL, twisted, b->node_x != NULL, b->node_q != NULL};
+    h = spari_hash_bytes(h, has, sizeof has);
+    h = b->planar ? spari_hash_bytes(h, b->normal, sizeof b->normal) : h;
+    h = b->eta ? spari_hash_bytes(spari_hash_bytes(h, b->eta, n * d), b->xyz, 3 * n * d) : h;
+    h = twisted ? spari_hash_bytes(h, b->twist, n * d) : h;
+    h = b->node_x ? spari_hash_bytes(h, b->node_x, 3 * nodes * d) : h;
+    return b->node_q ? spari_hash_bytes(h, b->node_q, 4 * nodes * d) : h;
+}
+
+static uint64_t hash_sections(uint64_t h, const spari_beam *b) {
+    const size_t s = (size_t)b->section_count, d = sizeof(double);
+    h = b->section_eta ? spari_hash_bytes(spari_hash_bytes(h, b->section_eta, s * d), b->stiffness, 36 * s * d) : h;
+    return b->mass ? spari_hash_bytes(h, b->mass, 36 * s * d) : h;
+}
+
+const char *const spari_member_part_name[SPARI_MEMBER_PARTS] = {"kind",
+                                                                "fidelity",
+                                                                "root",
+                                                                "effects",
+                                                                "elements and nodes",
+                                                                "mass",
+                                                                "added mass",
+                                                                "line",
+                                                                "quadrature",
+                                                                "sections",
+                                                                "damping",
+                                                                "foundation",
+                                                                "pretension",
+                                                                "point masses",
+                                                                "initial position",
+                                                                "initial velocity"};
+
+static uint64_t hash_of_beam(const spar_member *m, const spari_beam *b, int part) {
+    const uint64_t h = SPARI_HASH_BEGIN;
+    const int rule[] = {spari_beam_rule(b), points_in_force(m)};
+    switch (part) {
+    case SPARI_PART_LINE:
+        return hash_line(h, m, b);
+    case SPARI_PART_QUADRATURE:
+        return spari_hash_bytes(h, rule, sizeof rule);
+    case SPARI_PART_SECTIONS:
+        return hash_sections(h, b);
+    case SPARI_PART_DAMPING:
+        return spari_hash_bytes(spari_hash_bytes(h, b->mu, sizeof b->mu), &b->mass_damping, sizeof b->mass_damping);
+    case SPARI_PART_FOUNDATION:
+        return hash_table(h, &b->springs, 3);
+    case SPARI_PART_PRETENSION:
+        return hash_table(h, &b->pretension, 6);
+    case SPARI_PART_POINT_MASSES:
+        return hash_table(h, &b->point_masses, 36);
+    default:
+        return h;
+    }
+}
+
+uint64_t spari_member_part_hash(const spar_member *m, int part) {
+    const uint64_t h = SPARI_HASH_BEGIN;
+    const int kind[] = {m->kind, m->external},
+              fidelity[] = {m->fidelity, m->fidelity == SPAR_FIDELITY_MODAL ? (int)m->modes : 0},
+              mesh[] = {m->mesh.elements, m->mesh.per_element};
+    switch (part) {
+    case SPARI_PART_KIND:
+        return spari_hash_bytes(h, kind, sizeof kind);
+    case SPARI_PART_FIDELITY:
+        return spari_hash_bytes(h, fidelity, sizeof fidelity);
+    case SPARI_PART_ROOT:
+        return spari_hash_bytes(h, &m->root, sizeof m->root);
+    case SPARI_PART_EFFECTS:
+        return spari_hash_bytes(h, &m->effects, sizeof m->effects);
+    case SPARI_PART_MESH:
+        return spari_hash_bytes(h, mesh, sizeof mesh);
+    case SPARI_PART_MASS:
+        return spari_hash_bytes(h, m->mass, sizeof m->mass);
+    case SPARI_PART_ADDED_MASS:
+        return spari_learned_hash(
+            m, hash_table(spari_hash_bytes(h, &m->added_by_velocity, sizeof m->added_by_velocity), &m->guess, 36));
+    case SPARI_PART_POSITION:
+        return spari_hash_bytes(spari_hash_bytes(h, m->placement.x, sizeof m->placement.x), m->placement.q,
+                                sizeof m->placement.q);
+    case SPARI_PART_VELOCITY:
+        return any_not_zero(6, m->initial.velocity[1])
+                   ? spari_hash_bytes(h, m->initial.velocity, sizeof m->initial.velocity)
+                   : h;
+    default:
+        return m->beam ? hash_of_beam(m, m->beam, part) : h;
+    }
+}
+
+static uint64_t hash_parts(const spar_member *m, uint64_t h, int end) {
+    for (int part = 0; part < end; part++) {
+        const uint64_t one = spari_member_part_hash(m, part);
+        h = spari_hash_bytes(h, &one, sizeof one);
     }
     return h;
 }
 
+/* FNV-1a hash of everything the ranks must agree on: what is in force, not how it was said. */
+uint64_t spari_member_copy_hash(const spar_member *m) {
+    return hash_parts(m, SPARI_HASH_BEGIN, SPARI_PART_POSITION);
+}
+
 uint64_t spari_member_hash(const spar_member *m) {
-    uint64_t h = spari_hash_bytes(spari_member_copy_hash(m), m->name, strlen(m->name));
-    h = spari_hash_bytes(h, m->placement.x, sizeof m->placement.x);
-    h = spari_hash_bytes(h, m->placement.q, sizeof m->placement.q);
-    const int moves = any_not_zero(6, m->initial.velocity[1]);
-    return moves ? spari_hash_bytes(h, m->initial.velocity, sizeof m->initial.velocity) : h;
+    return hash_parts(m, spari_hash_bytes(SPARI_HASH_BEGIN, m->name, strlen(m->name)), SPARI_MEMBER_PARTS);
 }

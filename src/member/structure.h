@@ -198,6 +198,29 @@ static inline int spari_gravity_changes(const spar_session *session) {
 }
 /* Hash of the description without the owner. */
 uint64_t spari_member_hash(const spar_member *member);
+/* The parts of a description, whose hashes are apart in a saved file so that a message can name the one that differs.
+   Those from SPARI_PART_POSITION on may differ between identical members. */
+enum {
+    SPARI_PART_KIND,
+    SPARI_PART_FIDELITY,
+    SPARI_PART_ROOT,
+    SPARI_PART_EFFECTS,
+    SPARI_PART_MESH,
+    SPARI_PART_MASS,
+    SPARI_PART_ADDED_MASS,
+    SPARI_PART_LINE,
+    SPARI_PART_QUADRATURE,
+    SPARI_PART_SECTIONS,
+    SPARI_PART_DAMPING,
+    SPARI_PART_FOUNDATION,
+    SPARI_PART_PRETENSION,
+    SPARI_PART_POINT_MASSES,
+    SPARI_PART_POSITION,
+    SPARI_PART_VELOCITY,
+    SPARI_MEMBER_PARTS
+};
+extern const char *const spari_member_part_name[SPARI_MEMBER_PARTS];
+uint64_t spari_member_part_hash(const spar_member *member, int part);
 /* Hash without name, placement and initial velocity: equal for identical members. */
 uint64_t spari_member_copy_hash(const spar_member *member);
 /* Converts arrays of `width` doubles per node from host nodes (element boundaries twice) to unique nodes (once), and

@@ -354,19 +354,42 @@ static void put_coupling(passage *t, const spar_session *s) {
     }
 }
 
-/* A member or joint, which must be the same in the file. */
-static int pass_name(passage *t, const spar_session *s, const char *what, const char *name, uint64_t hash) {
+/* The name of a member or joint, in the order of the file. */
+static int pass_name(passage *t, const spar_session *s, const char *what, const char *name) {
     if (t->mode == WRITE) {
         spari_image_put_text(t->image, name);
-        spari_image_put(t->image, &hash, 1);
         return SPAR_OK;
     }
     SPARI_REQUIRE(s, spari_image_is_text(t->image, name), SPAR_ERR_ARGUMENT,
                   "the file does not match this session: %s '%s' is out of order; create members and joints in the "
                   "order of the saved run",
                   what, name);
-    SPARI_REQUIRE(s, (uint64_t)spari_image_get_int(t->image) == hash, SPAR_ERR_ARGUMENT,
-                  "the file does not match this session: it has a different description of %s '%s'", what, name);
+    return SPAR_OK;
+}
+
+/* A hash that must be the same in the file. Returns whether it is. */
+static int pass_hash(passage *t, uint64_t hash) {
+    if (t->mode == WRITE) {
+        spari_image_put(t->image, &hash, 1);
+        return 1;
+    }
+    return (uint64_t)spari_image_get_int(t->image) == hash;
+}
+
+static int pass_description(passage *t, const spar_session *s, const spar_member *m) {
+    SPARI_TRY(pass_name(t, s, "member", m->name));
+    for (int part = 0; part < SPARI_MEMBER_PARTS; part++) {
+        SPARI_REQUIRE(s, pass_hash(t, spari_member_part_hash(m, part)), SPAR_ERR_ARGUMENT,
+                      "the file does not match this session: it has a different description of member '%s': its %s",
+                      m->name, spari_member_part_name[part]);
+    }
+    return SPAR_OK;
+}
+
+static int pass_joint_description(passage *t, const spar_session *s, const spar_joint *j) {
+    SPARI_TRY(pass_name(t, s, "joint", j->name));
+    SPARI_REQUIRE(s, pass_hash(t, spari_joint_hash(j)), SPAR_ERR_ARGUMENT,
+                  "the file does not match this session: it has a different description of joint '%s'", j->name);
     return SPAR_OK;
 }
 
@@ -379,14 +402,14 @@ static int pass_names(passage *t, const spar_session *s, int *ranks) {
                   "the file does not match this session: it has %d members, this session has %d", members,
                   s->member_count);
     for (const spar_member *m = s->members; m; m = m->next) {
-        SPARI_TRY(pass_name(t, s, "member", m->name, spari_member_hash(m)));
+        SPARI_TRY(pass_description(t, s, m));
     }
     pass_int(t, &joints);
     SPARI_REQUIRE(s, joints == s->joint_count || t->image->failed, SPAR_ERR_ARGUMENT,
                   "the file does not match this session: it has %d joints, this session has %d", joints,
                   s->joint_count);
     for (const spar_joint *j = s->joints; j; j = j->next) {
-        SPARI_TRY(pass_name(t, s, "joint", j->name, spari_joint_hash(j)));
+        SPARI_TRY(pass_joint_description(t, s, j));
     }
     return SPAR_OK;
 }

@@ -539,6 +539,42 @@ static void same_meaning(void **state) {
     }
 }
 
+/* A member that differs from the saved one in one part of its description is refused with the name of this part. */
+static void difference_is_named(void **state) {
+    (void)state;
+    static const char *const part[] = {"fidelity", "root",       "effects",  "elements and nodes", "added mass",
+                                       "line",     "quadrature", "sections", "initial velocity",   NULL};
+    enum { SAVED = sizeof part / sizeof *part - 1 };
+    const double none[3] = {0}, fast[3] = {1, 0, 0}, eta[2] = {0, 1}, bent[6] = {0, 0, 0, 1, 0.1, 0};
+    double K[36], M[36], added[36] = {0};
+    added[7] = 1;
+    for (int k = SAVED; k >= -1; k--) { /* saved, then each difference, then the same again */
+        const int way = k == SAVED || k < 0 ? SAVED : k;
+        spar_session *s = scene_session();
+        scene_box(K, M);
+        K[0] *= way == 7 ? 1 + 1e-12 : 1;
+        spar_member *b = scene_beam(s, "beam", way == 3 ? 1 : 2, way == 3 ? 8 : 4, 1, K, M);
+        OK(s, way == 0 ? spar_member_set_fidelity(b, SPAR_FIDELITY_LINEAR, 0) : SPAR_OK);
+        OK(s, way == 1 ? spar_member_set_root(b, SPAR_ROOT_PINNED) : SPAR_OK);
+        OK(s, way == 2 ? spar_member_set_effects(b, 0, SPAR_EFFECT_GRAVITY) : SPAR_OK);
+        OK(s, way == 4 ? spar_member_set_added_mass(b, 1, eta, added) : SPAR_OK);
+        OK(s, way == 5 ? spar_beam_set_axis(b, 2, eta, bent, NULL) : SPAR_OK);
+        OK(s, way == 6 ? spar_beam_set_quadrature(b, SPAR_QUADRATURE_GAUSS, 5) : SPAR_OK);
+        OK(s, way == 8 ? spar_member_set_initial_velocity(b, none, fast, none) : SPAR_OK);
+        OK(s, spar_member_commit(b));
+        if (k == SAVED) {
+            OK(s, spar_session_save(s, file));
+        } else if (k < 0) {
+            OK(s, spar_session_load(s, file));
+        } else {
+            char text[100];
+            (void)snprintf(text, sizeof text, "a different description of member 'beam': its %s", part[way]);
+            REFUSED(s, SPAR_ERR_ARGUMENT, text, spar_session_load(s, file));
+        }
+        spar_session_destroy(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits),
                                        cmocka_unit_test(same_bits_without_loads),
@@ -548,6 +584,7 @@ int main(void) {
                                        cmocka_unit_test(other_settings),
                                        cmocka_unit_test(leaves_one_file),
                                        cmocka_unit_test(same_meaning),
+                                       cmocka_unit_test(difference_is_named),
                                        cmocka_unit_test(large_file)};
     return cmocka_run_group_tests(tests, name_file, remove_file);
 }
