@@ -88,3 +88,12 @@ void spari_fluid_add_bins(const spar_fluid *fluid, spari_bins *load) {
         }
     }
 }
+
+/* A fluid from a file, or one that was rebuilt, has the arrays. */
+int spari_fluid_has_loads(const spar_fluid *fluid) {
+    int has = fluid->asked & SPARI_ASKED_LOADS ? 1 : 0;
+    for (int64_t i = 0; !has && fluid->load && i < 6 * fluid->member->nodes; i++) {
+        has = fluid->load[i] != 0;
+    }
+    return has;
+}

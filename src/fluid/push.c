@@ -422,15 +422,6 @@ int spar_fluid_get_audit(const spar_fluid *fluid, int64_t capacity, double *audi
 
 /* ---- for the session ---- */
 
-/* A fluid from a file, or one that was rebuilt, has the arrays. */
-int spari_fluid_has_loads(const spar_fluid *fluid) {
-    int has = fluid->asked & SPARI_ASKED_LOADS ? 1 : 0;
-    for (int64_t i = 0; !has && fluid->load && i < 6 * fluid->member->nodes; i++) {
-        has = fluid->load[i] != 0;
-    }
-    return has;
-}
-
 int spari_fluid_node_load(const spar_fluid *fluid, int64_t i, double load[6]) {
     if (fluid->load) {
         memcpy(load, fluid->load + 6 * i, 6 * sizeof *load);

@@ -344,6 +344,7 @@ static void as_many_stations_keep_forces(void **state) {
     blade_end(&b);
 }
 
+#ifndef SPREAD_H
 /* Other stations, while the fluid has loads: their forces are refused until they are pushed. Then those count for the
    whole step; the steps after extrapolate from them alone, at first constant, then linear. A run loaded in between
    knows as little. */
@@ -397,6 +398,7 @@ static void other_stations_have_unknown_forces(void **state) {
     }
     assert_int_equal(remove(file), 0);
 }
+#endif
 
 /* In a trial with other nodes both sets stay where they are, at rest to rounding, and come back to the bit. */
 static void apart_in_a_trial(void **state) {
@@ -553,7 +555,9 @@ int main(void) {
         cmocka_unit_test(force_sections_stay),
         cmocka_unit_test(apart_saved_and_loaded),
         cmocka_unit_test(as_many_stations_keep_forces),
+#ifndef SPREAD_H /* what is known, a rank knows of its own nodes */
         cmocka_unit_test(other_stations_have_unknown_forces),
+#endif
         cmocka_unit_test(apart_in_a_trial),
         cmocka_unit_test(control_points_of_their_own),
         cmocka_unit_test(bad_sections_are_refused),
