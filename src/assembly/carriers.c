@@ -211,7 +211,7 @@ int spari_assembly_order_carriers(spari_assembly *a) {
     int count = 0;
     a->carried = spari_zalloc(a->components + 1, sizeof *a->carried);
     if (!a->carried) {
-        return SPAR_ERR_MEMORY;
+        return spari_fail(a->session, SPAR_ERR_MEMORY, "no memory for the order of %d joined members", a->components);
     }
     for (int i = 0; i < a->components; i++) {
         a->component[i].carried = 0;

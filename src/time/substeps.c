@@ -34,6 +34,7 @@ static int try_to_stay(const spari_stepper *how, void *self, const spari_scheme 
     int status = try_part(how, self, alpha, even, part, c);
     if (!last) {
         (void)spari_messages_redirect(before);
+        SPARI_REQUIRE(session, status == SPAR_OK || status == SPAR_ERR_NUMERIC, status, "%s", text);
     }
     if (status == SPAR_OK && how->gains && !c->still && !session->state.rough && how->gains(self, part)) {
         status = SPAR_ERR_NUMERIC;
