@@ -74,6 +74,7 @@ void spari_solver_free(spari_solver *s) {
     }
     free(s->own[0].q);
     free(s->own[1].q);
+    free(s->share);
     free(s->increment);
     free(s->steps.load);
     free(s->steps.load0);

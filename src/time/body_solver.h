@@ -60,6 +60,7 @@ struct spari_solver {
     double *best;             /* static: state to go back to */
     spari_state begin;        /* at t^n */
     spari_state own[2];       /* ends of a substep relative to a driven root or a rigid motion; NULL: none so far */
+    double *share;            /* [n] parts of the mass, of a member that flies alone and turns; NULL: not so far */
     double *block[3];         /* the memory of the three states */
     /* the factored tangent, reused while it contracts */
     int factored;

@@ -59,11 +59,49 @@ static int make_own_states(spari_solver *s) {
     return s->own[1].q ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-/* The algorithmic acceleration of the scheme's variables. Its difference from the true one, which rotates with the
-   member, is what a step hands to the next one: it does not depend on the frames of the two. */
-static void take_algorithmic(const spari_solver *s, double ratio, const spari_state *from, spari_state *own) {
+static int make_turning_states(spari_solver *s, const spari_turning_frame *f) {
+    if (f->kind == SPARI_TURNS_WITH_FRAME && f->alone && !s->share) {
+        s->share = spari_zalloc(s->n, sizeof *s->share);
+        SPARI_TRY(s->share ? SPAR_OK : SPAR_ERR_MEMORY);
+    }
+    return make_own_states(s);
+}
+
+/* The difference of the algorithmic acceleration from the true one is what a step hands to the next one. It rotates
+   with the member, apart from the mean of a member that flies alone, and does not depend on the frames of the two
+   steps. difference: [n][6], rotates it by R = q, or back. */
+static void rotate_difference(const spari_solver *s, int follows, const double q[4], int back, double *difference) {
+    double mean[3] = {0};
+    if (follows) {
+        spari_root_mean(s, difference, 6, mean);
+    }
+    for (int i = 0; i < 6 * s->n; i += 3) {
+        const double part = i % 6 == 0 ? 1 : 0;
+        double rest[3];
+        for (int k = 0; k < 3; k++) {
+            rest[k] = difference[i + k] - part * mean[k];
+        }
+        if (back) {
+            spari_rotate_back(q, rest, rest);
+        } else {
+            spari_rotate(q, rest, rest);
+        }
+        for (int k = 0; k < 3; k++) {
+            difference[i + k] = rest[k] + part * mean[k];
+        }
+    }
+}
+
+static void take_algorithmic(const spari_solver *s, double ratio, const spari_state *from, const spari_ends *e,
+                             const double rotation[4]) {
     for (int i = 0; i < 6 * s->n; i++) {
-        own->b[i] = own->a[i] + ratio * (from->b[i] - from->a[i]);
+        e->from.b[i] = from->b[i] - from->a[i];
+    }
+    if (e->root) {
+        rotate_difference(s, e->follows != NULL, rotation, 1, e->from.b);
+    }
+    for (int i = 0; i < 6 * s->n; i++) {
+        e->from.b[i] = e->from.a[i] + ratio * e->from.b[i];
     }
 }
 
@@ -83,29 +121,32 @@ static spari_ends ends_of_turning(const spari_solver *s, const spar_member *m, c
     } else {
         e.root = &g->turned;
         e.root_motion = spari_root_motion(&before, &g->turned, s->body->length);
+        if (f->alone) {
+            spari_turning_shares(s, s->share);
+            spari_root_follow(s, m, &s->from, &before);
+            e.follows = &g->turned;
+        }
         spari_root_look_from(s, m, &before, &s->from, &e.from);
     }
     if (c->rule == SPARI_ALPHA) {
-        take_algorithmic(s, part->ratio > 0 ? part->ratio : 1, &s->from, &e.from);
+        take_algorithmic(s, part->ratio > 0 ? part->ratio : 1, &s->from, &e, before.q + 3);
     }
     return e;
 }
 
 /* After the substep: the inverse of take_algorithmic, in global axes. */
 static void give_algorithmic(const spari_solver *s, const spari_ends *e) {
-    for (int i = 0; i < 6 * s->n; i += 3) {
-        double more[3];
-        for (int k = 0; k < 3; k++) {
-            more[k] = e->to.b[i + k] - e->to.a[i + k];
-        }
-        if (e->root) {
-            spari_rotate(e->root->q + 3, more, more);
-        }
-        for (int k = 0; k < 3; k++) {
-            e->absolute.b[i + k] = e->absolute.a[i + k] + more[k];
-        }
+    double *b = e->absolute.b;
+    for (int i = 0; i < 6 * s->n; i++) {
+        b[i] = e->to.b[i] - e->to.a[i];
     }
-    memcpy(e->to.b, e->absolute.b, (size_t)(6 * s->n) * sizeof *e->to.b); /* where spari_root_show reads it */
+    if (e->root) {
+        rotate_difference(s, e->follows != NULL, e->root->q + 3, 0, b);
+    }
+    for (int i = 0; i < 6 * s->n; i++) {
+        b[i] += e->absolute.a[i];
+    }
+    memcpy(e->to.b, b, (size_t)(6 * s->n) * sizeof *b); /* where spari_root_show reads it */
 }
 
 /* ---- the first step ---- */
@@ -169,7 +210,7 @@ int spari_stage_begin(spari_solver *s, const spar_member *m, const spari_scheme 
         spari_quat_between(g->before.q + 3, g->root.q + 3, g->rotation);
     }
     if (turns) {
-        SPARI_REQUIRE(m->session, make_own_states(s) == SPAR_OK, SPAR_ERR_MEMORY,
+        SPARI_REQUIRE(m->session, make_turning_states(s, &g->turning) == SPAR_OK, SPAR_ERR_MEMORY,
                       "member '%s': no memory for its rotation", m->name);
         g->ends = ends_of_turning(s, m, c, part, g);
     } else {

@@ -252,6 +252,18 @@ void spari_alpha_correction_at_centre(const spari_ends *e, double *dx) {
     }
 }
 
+/* The mean moves in axes at rest: x' of a node takes R^T (dx - mean) + mean of a correction. */
+static void add_mean_correction(const spari_solver *s, const double R[9], double *dx) {
+    double mean[3], rotated[3];
+    spari_root_mean(s, dx, 6, mean);
+    spari_matrix_times(R, mean, rotated);
+    for (int64_t i = 0; i < s->n; i++) {
+        for (int k = 0; k < 3; k++) {
+            dx[6 * i + k] += rotated[k] - mean[k];
+        }
+    }
+}
+
 spari_corrected spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c,
                                     spari_ends *e, double *rotation, double longest, double *x, double *dx) {
     double R[9], largest;
@@ -260,12 +272,13 @@ spari_corrected spari_alpha_correct(const spari_solver *s, const spar_member *me
     if (e->root) {
         spari_quat_matrix(e->root->q + 3, R);
     }
-    if (e->centre) {
-        if (rotation) {
-            spari_nodes_rotate_forth(&t.work, 0, s->n);
-            t.work.rotation = NULL;
-        }
-        spari_alpha_correction_at_centre(e, dx);
+    if (rotation && (e->centre || e->follows)) {
+        spari_nodes_rotate_forth(&t.work, 0, s->n);
+        t.work.rotation = NULL;
+    }
+    spari_alpha_correction_at_centre(e, dx);
+    if (e->follows) {
+        add_mean_correction(s, R, dx);
     }
     if (longest == INFINITY && !c->still) {
         spari_solver_spread(s, advance_span, &t);

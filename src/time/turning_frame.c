@@ -61,6 +61,26 @@ void spari_centre_show(const double c[3], const spari_pose *origin, const spari_
     }
 }
 
+void spari_turning_shares(const spari_solver *s, double *share) {
+    const spari_body *b = s->body;
+    const int P = b->per_element;
+    double mass = 0;
+    memset(share, 0, (size_t)s->n * sizeof *share);
+    for (int e = 0; e < b->elements; e++) {
+        for (int k = b->first[e]; k < b->first[e + 1]; k++) {
+            const int64_t slot = b->slot[e] + k - b->first[e];
+            const double part = *SPARI_BLOCK(b->weight, 1, slot) * *SPARI_BLOCK(b->mass, 10, slot);
+            mass += part;
+            for (int l = 0; l < P; l++) {
+                share[e * (P - 1) + l] += part * b->phi[(int64_t)k * P + l];
+            }
+        }
+    }
+    for (int i = 0; i < s->n; i++) {
+        share[i] /= mass;
+    }
+}
+
 /* x := A^-1 y of a symmetric matrix. */
 static void solve3(const double A[9], const double y[3], double x[3]) {
     double c[3][3];
@@ -189,6 +209,7 @@ void spari_turning_frame_find(const spari_solver *s, const spar_member *m, spari
     const double half = rule == SPARI_ALPHA && m->joint_count > 0 ? 0 : 0.5 * dt;
     const int body = spari_turning_centre(s, m, f->centre);
     double way[3];
+    f->alone = m->joint_count == 0 && spari_member_constrained(m) == 0;
     f->kind = SPARI_TURNS_NOT; /* multipliers of generalised-alpha may oscillate: then the rotation at t^n */
     if (!carrier->turns || !s->body->mass || (s->n == 1 && !body)) {
         return;

@@ -3,8 +3,8 @@
    velocities along chords: what is stiff is strained, and the scheme's damping takes energy from the rotation.
 
    The frame rotates with a constant angular velocity. Its origin is the joint that carries the member, and moves in a
-   circle with what the joint is fixed to; without a joint it is the mass centre. A steady rotation of an assembly is
-   then rest in the frames of its members. Frames follow from the momenta of members at t^n and from the velocities that
+   circle with what the joint is fixed to. Without a joint it is the mass centre; of a member that flies alone, whose
+   mean then moves in axes at rest and keeps its momentum. A steady rotation of an assembly is then rest in the frames of its members. Frames follow from the momenta of members at t^n and from the velocities that
    are published there, which are on the constraints: oscillations of accelerations and of multipliers do not reach them
    (docs/evidence/beam.md, "Members that turn").
 
@@ -32,6 +32,7 @@ typedef enum spari_turning_kind { SPARI_TURNS_NOT, SPARI_TURNS_WITH_FRAME, SPARI
 typedef struct spari_turning_frame {
     spari_turning_kind kind;
     spari_pose begin; /* at t^n: its origin, relative to the root's reference position, and its rotation */
+    int alone;        /* no joint carries it: its origin follows the mean of the nodes */
     double path[3];   /* angular velocity of the path of the origin */
     double steady[3]; /* the part of the origin's acceleration that does not rotate with the path */
     double centre[3]; /* of a body: from the node to the point that is integrated, at the reference, */
@@ -50,6 +51,8 @@ void spari_turning_frame_find(const spari_solver *solver, const spar_member *mem
                               const spari_carrier *carrier, spari_turning_frame *frame);
 /* Its pose after so much time. */
 spari_pose spari_turning_frame_at(const spari_turning_frame *frame, double time);
+/* The parts of the mass that count at the unique nodes: share [n]. */
+void spari_turning_shares(const spari_solver *solver, double *share);
 /* Whether a free body has one node. c: from it to the mass centre, at the reference. */
 int spari_turning_centre(const spari_solver *solver, const spar_member *member, double c[3]);
 
