@@ -40,6 +40,9 @@ struct spari_linear {
     double *y;         /* dense: [n, rounded up to eights] room */
     double *workspace; /* of the last two */
     int *band_swap;    /* banded */
+    double moments;    /* spari_linear_weigh; 0: not asked for */
+    double
+        *weight; /* of rows, workspace: [n], or [elements][own] of a chain whose elements have unknowns to themselves */
     double *symmetric; /* spari_linear_watch; NULL: not asked for */
     /* of a chain whose elements have unknowns to themselves; else NULL, 0 */
     spari_linear *ends;             /* the chain without these */
@@ -119,8 +122,26 @@ void spari_linear_free(spari_linear *s) {
     if (s) {
         spari_linear_free(s->ends);
         SPARI_FREE(s->parts, s->part_swap, s->z, s->ends_x, s->bad, s->A.block, s->swap, s->workspace, s->band_swap,
-                   s->symmetric, s);
+                   s->weight, s->symmetric, s);
     }
+}
+
+int spari_linear_weigh(spari_linear *s, double moments) {
+    if (moments == 1) {
+        return 0;
+    }
+    s->moments = moments;
+    s->weight = s->weight ? s->weight
+                          : spari_zalloc(s->ends ? s->elements * (int64_t)s->own : (int64_t)s->n, sizeof *s->weight);
+    return !s->weight || (s->ends && spari_linear_weigh(s->ends, moments));
+}
+
+/* Weights of n rows from `weight` on, before any is exchanged; NULL if rows are compared as they are. */
+static double *weights(const spari_linear *s, double *weight, size_t n) {
+    for (size_t i = 0; i < n && s->weight; i++) {
+        weight[i] = i % 6 < 3 ? 1 : s->moments;
+    }
+    return s->weight ? weight : NULL;
 }
 
 void spari_linear_share(spari_linear *s, spari_thread_pool *const *pool) {
@@ -277,9 +298,10 @@ static int factor_matrix(spari_linear *s) {
     if (s->swap) {
         leave_out_lead(s);
         bad = kernels_here()->factor_dense((int64_t)s->order_of, (int64_t)s->order_of, s->A.data, (int64_t)s->A.step,
-                                           s->swap, s->corners);
+                                           s->swap, weights(s, s->weight, s->order_of), s->corners);
     } else {
-        bad = kernels_here()->factor_band((int64_t)s->n, (int64_t)s->band, s->A.data, (int64_t)s->A.step, s->band_swap);
+        bad = kernels_here()->factor_band((int64_t)s->n, (int64_t)s->band, s->A.data, (int64_t)s->A.step, s->band_swap,
+                                          weights(s, s->weight, s->n));
     }
     if (bad) {
         return 1;
@@ -301,9 +323,10 @@ static int factor_matrix(spari_linear *s) {
 /* Eliminates the interior unknowns of an element, which leaves the block of its ends. */
 static int factor_element(const spari_linear *s, size_t e) {
     size_t m = (size_t)s->block;
-    double *A = s->parts + m * m * e;
+    double *A = s->parts + m * m * e, *weight = weights(s, s->weight ? s->weight + s->own * e : NULL, s->own);
     if (spari_first_nonfinite(A, (int64_t)(m * m)) >= 0 ||
-        kernels_here()->factor_dense((int64_t)m, (int64_t)s->own, A, (int64_t)m, s->part_swap + s->own * e, NULL)) {
+        kernels_here()->factor_dense((int64_t)m, (int64_t)s->own, A, (int64_t)m, s->part_swap + s->own * e, weight,
+                                     NULL)) {
         return 1;
     }
     for (size_t i = 0; i < s->own; i++) {

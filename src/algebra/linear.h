@@ -13,6 +13,10 @@ spari_linear *spari_linear_create(int elements, int block, int overlap);
 void spari_linear_free(spari_linear *system);
 /* Threads for the elements of a chain (base/thread_pool.h) from now on; NULL: the calling thread. */
 void spari_linear_share(spari_linear *system, spari_thread_pool *const *pool);
+/* Of six unknowns in turn the last three are rotations: rows are exchanged as if their equations, of moments, were
+   multiplied by this number, an inverse length. Forces and moments have different units, and which row is the largest
+   must not depend on them. 1, or never called: rows are compared as they are. Returns 0, or 1 if there is no memory. */
+int spari_linear_weigh(spari_linear *system, double moments);
 void spari_linear_zero(spari_linear *system);
 void spari_linear_add(spari_linear *system, int element, const double *S); /* S row-major [block][block] */
 /* Row and column of unknown i, [unknowns] each. Call before factoring. */

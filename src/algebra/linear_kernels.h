@@ -8,8 +8,8 @@
 enum { SPARI_CORNER = 8, SPARI_CORNERS = 4 };
 
 typedef struct spari_linear_kernels {
-    int (*factor_dense)(int64_t n, int64_t inner, double *A, int64_t step, int *swap, double *corners);
-    int (*factor_band)(int64_t n, int64_t band, double *columns, int64_t step, int *swap);
+    int (*factor_dense)(int64_t n, int64_t inner, double *A, int64_t step, int *swap, double *weight, double *corners);
+    int (*factor_band)(int64_t n, int64_t band, double *columns, int64_t step, int *swap, double *weight);
     void (*corner)(int64_t n, int64_t j, int loaded, const double *A, int64_t step, double *corner);
     int (*dense)(int64_t n, const double *A, int64_t step, const double *corners, double *y);
     void (*forth_dense)(int64_t n, int64_t inner, const double *A, double *x);

@@ -365,6 +365,29 @@ HERE int64_t NAME(pivot_of)(int64_t n, const double *x) {
     return i;
 }
 
+/* The same of |x[n]| times weight[n]; weight NULL: 1. */
+HERE int64_t NAME(weighed_pivot_of)(int64_t n, const double *x, const double *weight) {
+    int64_t at = 0;
+    double most = -1;
+    if (!weight) {
+        return NAME(pivot_of)(n, x);
+    }
+    for (int64_t i = 0; i < n; i++) {
+        double size = fabs(x[i]) * weight[i];
+        at = size > most ? i : at;
+        most = size > most ? size : most;
+    }
+    return at;
+}
+
+HERE void NAME(exchange_weights)(double *weight, int64_t i, int64_t j) {
+    if (weight) {
+        double there = weight[i];
+        weight[i] = weight[j];
+        weight[j] = there;
+    }
+}
+
 HERE void NAME(scale)(int64_t n, double by, double *x) {
     L spread = SPLAT(&by);
     int64_t i = 0;
@@ -482,16 +505,20 @@ HERE void NAME(take_from)(int64_t n, int64_t first, int64_t end, const double *A
 /* Factors A [n][step] in place, eight columns at a time.
    inner: rows are exchanged among the first `inner`, which are eliminated; the rest is left as their Schur
      complement
-   swap: row j is exchanged with row swap[j] - 1, that of the largest entry
+   swap: row j is exchanged with row swap[j] - 1, that of the largest entry times the weight of its row
+   weight [inner]: of the rows, exchanged with them; NULL: 1
    corners: receives the lower inverses of whole blocks of eight for solve_dense; may be NULL
    Columns without entries are skipped. In the elimination order of a tree of parts these are most, the more so the
      fewer rows are exchanged. Returns 0, or 1 if a pivot is 0 or not finite. */
-TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double *A, int64_t step, int *swap, double *corners) {
+TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double *A, int64_t step, int *swap, double *weight,
+                                     double *corners) {
     double inverse[SPARI_CORNER * SPARI_CORNER];
     for (int64_t j = 0; j < inner; j++) {
         double *x = A + step * j;
-        int64_t p = j + NAME(pivot_of)(inner - j, x + j), first = j - j % SPARI_CORNER, c = j + 1;
+        int64_t p = j + NAME(weighed_pivot_of)(inner - j, x + j, weight ? weight + j : NULL);
+        int64_t first = j - j % SPARI_CORNER, c = j + 1;
         swap[j] = (int)p + 1;
+        NAME(exchange_weights)(weight, j, p);
         for (double *row = A; p != j && row < A + step * n; row += step) {
             double there = row[p];
             row[p] = row[j];
@@ -517,7 +544,7 @@ TARGET static int NAME(factor_dense)(int64_t n, int64_t inner, double *A, int64_
 }
 
 /* The same for a band, as forth_band and back_band need it. Rows are exchanged from column j on. */
-TARGET static int NAME(factor_band)(int64_t n, int64_t band, double *columns, int64_t step, int *swap) {
+TARGET static int NAME(factor_band)(int64_t n, int64_t band, double *columns, int64_t step, int *swap, double *weight) {
     for (int64_t j = 0; j < n; j++) {
         double *x = columns + step * j + 2 * band - j; /* x[i]: row i */
         int64_t end = j + band + 1 < n ? j + band + 1 : n;
@@ -530,8 +557,9 @@ TARGET static int NAME(factor_band)(int64_t n, int64_t band, double *columns, in
                 (1, n - 1 - k < band ? n - 1 - k : band, columns + step * k + 2 * band + 1, step, x + k, x + k + 1);
             }
         }
-        int64_t p = j + NAME(pivot_of)(end - j, x + j);
+        int64_t p = j + NAME(weighed_pivot_of)(end - j, x + j, weight ? weight + j : NULL);
         swap[j] = (int)p;
+        NAME(exchange_weights)(weight, j, p);
         double there = x[p];
         x[p] = x[j];
         x[j] = there;

@@ -44,7 +44,8 @@ static int allocate_matrices(spari_frame *f, const spar_member *m) {
         ok = ok && (!rotates || (f->G[k] = spari_zalloc(f->size, sizeof(double))));
         ok = ok && (!rotates || (f->E[k] = spari_zalloc(f->size, sizeof(double))));
     }
-    return ok && (f->linear = spari_linear_create(f->elements, f->block, f->overlap)) ? 0 : 1;
+    ok = ok && (f->linear = spari_linear_create(f->elements, f->block, f->overlap));
+    return ok && !spari_linear_weigh(f->linear, m->body->length > 0 ? 1 / m->body->length : 1) ? 0 : 1;
 }
 
 static int allocate_work(spari_frame *f, const spar_member *m) {

@@ -46,6 +46,7 @@ spari_solver *spari_solver_create(const spar_member *member, const spari_body *b
     }
     ok = ok && (s->anderson = spari_anderson_create(n));
     ok = ok && (s->linear = spari_linear_create(body->elements, (int)m, 6));
+    ok = ok && !spari_linear_weigh(s->linear, body->length > 0 ? 1 / body->length : 1);
     if (!ok) {
         spari_solver_free(s);
         return NULL;
