@@ -19,16 +19,27 @@ int spari_turning_centre(const spari_solver *s, const spar_member *m, double c[3
     return mass[0] > 0;
 }
 
+/* y := R x - x, without their difference: steps that are short feel its rounding as accelerations. */
+static void change_of(const double q[4], const double x[3], double y[3]) {
+    double once[3], twice[3];
+    spari_cross(q + 1, x, once);
+    spari_cross(q + 1, once, twice);
+    for (int k = 0; k < 3; k++) {
+        y[k] = 2 * (q[0] * once[k] + twice[k]);
+    }
+}
+
 /* to := the motion of the point of a body at `by` R c from the point with the motion `from`. */
 static void shift_point(const double c[3], double by, const spari_state *from, spari_state *to) {
     const double *w = from->v + 3;
-    double arm[3], spin[3], inward[3], grow[3];
+    double arm[3], moved[3], spin[3], inward[3], grow[3];
     spari_rotate(from->q + 3, c, arm);
+    change_of(from->q + 3, c, moved);
     spari_cross(w, arm, spin);
     spari_cross(w, spin, inward);
     spari_cross(from->a + 3, arm, grow);
     for (int k = 0; k < 3; k++) {
-        to->q[k] = from->q[k] + by * (arm[k] - c[k]);
+        to->q[k] = from->q[k] + by * moved[k];
         to->v[k] = from->v[k] + by * spin[k];
         to->a[k] = from->a[k] + by * (inward[k] + grow[k]);
         to->q[4 + k] = from->q[4 + k];
@@ -259,16 +270,20 @@ static void follow_path(const spari_turning_frame *f, double t, spari_pose *out)
 
 spari_pose spari_turning_frame_at(const spari_turning_frame *f, double t) {
     spari_pose out = f->begin;
+    for (int k = 0; k < 3 && f->kind == SPARI_TURNS_AS_BODY; k++) {
+        out.q[k] = 0;
+    }
     const double *w = f->begin.v + 3, psi[3] = {t * w[0], t * w[1], t * w[2]};
     follow_path(f, t, &out);
     spari_quat_exp(psi, out.q + 3);
-    if (f->kind == SPARI_TURNS_AS_BODY) { /* the point at `arm` */
-        double arm[3], spin[3], inward[3];
+    if (f->kind == SPARI_TURNS_AS_BODY) { /* the point at `arm`, from where it is at t^n */
+        double arm[3], moved[3], spin[3], inward[3];
         spari_rotate(out.q + 3, f->arm, arm);
+        change_of(out.q + 3, f->arm, moved);
         spari_cross(w, arm, spin);
         spari_cross(w, spin, inward);
         for (int k = 0; k < 3; k++) {
-            out.q[k] += arm[k];
+            out.q[k] += moved[k];
             out.v[k] += spin[k];
             out.a[k] += inward[k];
         }
