@@ -4,8 +4,9 @@
 
    The frame rotates with a constant angular velocity. Its origin is the joint that carries the member, and moves in a
    circle with what the joint is fixed to. Without a joint it is the mass centre; of a member that flies alone, whose
-   mean then moves in axes at rest and keeps its momentum. A steady rotation of an assembly is then rest in the frames of its members. Frames follow from the momenta of members at t^n and from the velocities that
-   are published there, which are on the constraints: oscillations of accelerations and of multipliers do not reach them
+   mean then moves in axes at rest and keeps its momentum. A steady rotation of an assembly is then rest in the frames
+   of its members. Frames follow from the momenta of members at t^n and from the velocities that are published there,
+   which are on the constraints: oscillations of accelerations and of multipliers do not reach them
    (docs/evidence/beam.md, "Members that turn").
 
    A member that deforms has its motion in the axes of its frame. A rigid body of one node is integrated in axes at rest
