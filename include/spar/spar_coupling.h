@@ -16,9 +16,9 @@ extern "C" {
 
 /* The integrator. Steps of equal length use generalised-alpha on the Lie group (Bruels, Cardona, Arnold 2012). A step
    whose length differs by more than 0.1 % from one of the two before it uses TR-BDF2, with two solutions of one
-   tangent. Members that turn freely are integrated in frames that turn with them: a steady rotation keeps its energy in
-   steps of up to 1 rad. A substep without a solution, or whose solution gains energy that no load supplies, is divided,
-   down to 1/1024 (SPAR_ERR_NUMERIC).
+   tangent. An exact beam that spins at Omega without a driven root uses TR-BDF2 where 1 - rho_inf < 1.5 Omega dt. A
+   substep without a solution, or whose solution gains energy that no load supplies, is divided, down to 1/1024
+   (SPAR_ERR_NUMERIC).
      rho_inf: in, spectral radius of generalised-alpha at infinite frequency, in [0,1]; default 0.9. Choose less to damp
            unresolved modes, 1 to conserve energy. 0 has 5.4 times the error of 0.9
      substeps: in, structural steps per coupling step, >= 1; default 1. Loads change linearly in them. Choose more

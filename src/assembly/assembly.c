@@ -436,18 +436,22 @@ static int newton_all(spari_assembly *a, double s, double dt) {
    the rate of the acceleration, with C of (E1), because h v + h^2 ((1/2 - beta) b^n + beta b^{n+1}) is the whole
    increment. It begins smoothly if the velocities have this error from the beginning; else accelerations and
    multipliers oscillate with an amplitude of first order. At t^0 (time 0) the rates of the accelerations at the
-   joints are those of a steady rotation, later those of the time since t^n, in the variables of the scheme. Returns 0
-   or 1. */
+   joints are those of a steady rotation, later those of the time since t^n. Returns 0 or 1. */
 static int shift_for_alpha(spari_assembly *a, double cv, double time) {
     const spari_scheme *c = &a->component[0].alpha;
     double C = spari_scheme_error(c);
     for (int i = 0; i < a->constraints; i++) {
         spari_constraint *l = a->constraint + i;
         double jerk[12] = {0}, rate[6];
-        for (int side = 0; side < 2; side++) {
-            if (l->component[side]) {
-                spari_component_jerk(l->component[side], l->joint->unique[side], l->joint->seat[side], time,
-                                     jerk + 6 * side);
+        for (int k = 0; k < 12; k += 3) {
+            int side = k / 6;
+            const spar_member *m = l->joint->member[side];
+            if (l->component[side] && time > 0) {
+                for (int j = k; j < k + 3; j++) {
+                    jerk[j] = (l->a[j] - m->now.a[6 * l->joint->seat[side] + j % 6]) / time;
+                }
+            } else if (l->component[side] && k % 6 == 0) {
+                spari_steady_rate(m, l->v + 6 * side + 3, l->a + k, jerk + k);
             }
         }
         spari_constraint_times(l->B, jerk, rate);
@@ -691,7 +695,6 @@ static int begin_step(spari_assembly *a, double dt) {
     for (int i = 0; i < a->components; i++) {
         a->component[i].row->begin(a->component + i);
     }
-    spari_assembly_find_carriers(a);
     return SPAR_OK;
 }
 
@@ -797,6 +800,16 @@ static void enter_all(void *self, const spari_part *part) {
     }
 }
 
+static double rotation_rate_of_all(const void *self) {
+    const spari_assembly *a = self;
+    double most = 0;
+    for (int i = 0; i < a->components; i++) {
+        const spari_component *p = a->component + i;
+        most = fmax(most, p->frame ? 0 : spari_stage_rotation_rate(p->solver, p->member));
+    }
+    return most;
+}
+
 /* Coefficients of a stage, of each member by whether it has inertia. */
 static void set_scheme(spari_assembly *a, const spari_scheme *c) {
     for (int i = 0; i < a->components; i++) {
@@ -848,7 +861,8 @@ static int finish_all(void *self, const spari_scheme *c, const spari_part *part)
 }
 
 int spari_assembly_advance(spari_assembly *a, double dt, int responses) {
-    static const spari_stepper how = {enter_all, stage_of_all, finish_all, gains_of_all, spari_assembly_name};
+    static const spari_stepper how = {enter_all,  rotation_rate_of_all, stage_of_all,
+                                      finish_all, gains_of_all,         spari_assembly_name};
     if (!a->here) {
         return SPAR_OK;
     }

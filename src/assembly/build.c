@@ -118,7 +118,6 @@ static int make_system(spari_assembly *a) {
     }
     SPARI_TRY(spari_system_drop_redundant(a));
     a->mass = mass_of_all(a);
-    SPARI_TRY(spari_assembly_order_carriers(a));
     return spari_system_create(a);
 }
 

@@ -26,11 +26,6 @@ typedef struct spari_interface {
     double E[9];    /* of a node in the cluster of another: its small rotation by the rotation of the constraint */
 } spari_interface;
 
-/* A component, and the joint that carries it, by its side of the constraint; -1: none. */
-typedef struct spari_carried {
-    int component, constraint, side;
-} spari_carried;
-
 /* Solutions with the present tangents, and their cost with that of the tangents, in iterations. */
 typedef struct spari_tangent_reuse {
     int64_t served, spent;
@@ -46,7 +41,6 @@ struct spari_assembly {
     double mass;                  /* of the components */
     int rotates;                  /* the present equilibrium is in steady rotation (rotation_check.h) */
     spari_rotating_frame rotating;
-    spari_carried *carried; /* [components], a component after what carries it */
     int interfaces;
     spari_interface *interface;
     int *order;                 /* of the interface nodes: parents first */
@@ -87,9 +81,6 @@ static inline spari_assembly spari_assembly_of_one(spari_component *p) {
 void spari_assembly_name(const void *assembly, char *text, int size);
 /* Motions and springs of joints whose nodes all have prescribed motion, at the end of a step dt. */
 void spari_assembly_look(spari_assembly *a, double dt);
-/* What carries each component (time/turning_frame.h): the order, 0 or SPAR_ERR_MEMORY, and the motion at t^n. */
-int spari_assembly_order_carriers(spari_assembly *a);
-void spari_assembly_find_carriers(spari_assembly *a);
 /* As spari_system_solve, or the component's own solution where there are no constraints. */
 int spari_assembly_solve(spari_assembly *a, double cv);
 /* Subtracts the part `cut` of the multipliers' corrections. */

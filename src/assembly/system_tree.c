@@ -309,7 +309,6 @@ void spari_system_free(spari_assembly *a) {
     spari_blocks_free(a->system);
     free(a->interface);
     free(a->order);
-    free(a->carried);
     free(a->x);
     free(a->y);
     free(a->b);

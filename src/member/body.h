@@ -92,17 +92,6 @@ static inline double *spari_body_matrix(const spari_body *body) {
 void spari_body_complete(spari_body *body);
 /* kg */
 double spari_body_mass(const spari_body *body);
-/* Mass, momenta and inertia about a fixed point, of the motion of all sections. */
-typedef struct spari_momenta {
-    double mass;
-    double first[3];              /* mass times position */
-    double linear[3], angular[3]; /* momenta, */
-    double force[3], moment[3];   /* and their rates */
-    double inertia[9];
-} spari_momenta;
-/* position: reference positions of the host's nodes [n][3]; q [n][7], v, a [n][6]: their motion. origin: the point. */
-void spari_body_momenta(const spari_body *body, const double *position, const double *q, const double *v,
-                        const double *a, const double origin[3], spari_momenta *momenta);
 void spari_body_free(spari_body *body);
 
 /* Sums over elements are processed in tiles of this many elements, odd tiles after even ones. Neighbouring tiles
@@ -148,5 +137,7 @@ void spari_body_rates(const spari_body *body, int e, const double *q, const doub
 
 /* energy: kinetic, strain, gravity potential (zero at the reference), dissipated power; v NULL: at rest */
 void spari_body_energy(const spari_body *body, const double *q, const double *v, double energy[4]);
+/* Position and velocity of the centre of mass. Returns the mass; 0: there is no centre. */
+double spari_body_center(const spari_body *body, const double *q, const double *v, double center[6]);
 
 #endif

@@ -166,3 +166,40 @@ void spari_body_energy(const spari_body *body, const double *q, const double *v,
         }
     }
 }
+
+/* ---- centre of mass ---- */
+
+static void add_center(const spari_body *body, int64_t slot, const double *position, const point_one *s, double *mass,
+                       double center[6]) {
+    double m[10], u[3], ud[3], x[3], spin[3], offset[3];
+    const double w = body->weight[slot];
+    spari_slot_get(body->mass, 10, slot, m);
+    rows_one(3, s->f + SPARI_LANES * U, u);
+    rows_one(3, s->f + SPARI_LANES * UD, ud);
+    spari_cross(s->omega, m + 1, x);
+    spari_rotate(s->r, x, spin);
+    spari_rotate(s->r, m + 1, offset);
+    *mass += w * m[0];
+    for (int i = 0; i < 3; i++) {
+        center[i] += w * (m[0] * (position[i] + u[i]) + offset[i]);
+        center[3 + i] += w * (m[0] * ud[i] + spin[i]);
+    }
+}
+
+double spari_body_center(const spari_body *body, const double *q, const double *v, double center[6]) {
+    double *z = spari_body_scratch(body), *f = z + ROW * SPARI_MAX_NODES, mass = 0;
+    memset(center, 0, 6 * sizeof *center);
+    for (int e = 0; e < body->elements && body->mass; e++) {
+        spari_point_gather(body, e, q, v, NULL, z);
+        spari_lanes_interpolate(body, e, SPARI_PLACES, z, f);
+        for (int k = 0; k < body->first[e + 1] - body->first[e]; k++) {
+            point_one s;
+            fields_one(1, SPARI_BLOCK(f, POINT_ROWS, k), &s);
+            add_center(body, body->slot[e] + k, body->position + 3 * (int64_t)(body->first[e] + k), &s, &mass, center);
+        }
+    }
+    for (int i = 0; i < 6 && mass > 0; i++) {
+        center[i] /= mass;
+    }
+    return mass;
+}

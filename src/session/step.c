@@ -37,7 +37,7 @@ static int wrong_phase(spar_session *s, const char *call, const char *cure) {
 
 /* Whether fluids are to see mean accelerations from the step dt on (member/mean_acceleration.h). */
 static int is_uneven(const spar_session *s, double dt) {
-    return s->clock.uneven[0] || !spari_steps_even(&s->clock, dt);
+    return s->clock.uneven[0] || !spari_steps_even(&s->clock, dt) || spari_substeps_rotate_fast(s, dt);
 }
 
 /* A step that the clock does not resolve, or beside which the last one is so long that accelerations by differences are

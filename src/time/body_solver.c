@@ -3,7 +3,6 @@
 
 #include "../base/poison.h"
 #include "../base/session.h"
-#include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied_loads.h"
 #include "../member/plane.h"
@@ -75,7 +74,6 @@ void spari_solver_free(spari_solver *s) {
     }
     free(s->own[0].q);
     free(s->own[1].q);
-    free(s->share);
     free(s->increment);
     free(s->steps.load);
     free(s->steps.load0);
@@ -179,27 +177,6 @@ typedef struct tangent_state {
     const spari_tangent_at *at;
 } tangent_state;
 
-/* In a turning frame accelerations also change with velocities and positions of the nodes: 2 w x and w x (w x). With
-   the masses of the nodes, because this part is small. */
-static void add_turning(const spari_body *b, int e, const spari_tangent_at *t, double *S) {
-    const int P = b->per_element, n = 6 * P;
-    const double *w = t->turns, square = spari_dot(w, w);
-    double W[9];
-    spari_skew(w, W);
-    for (int l = 0; l < P; l++) {
-        double mass = 0;
-        for (int k = b->first[e]; k < b->first[e + 1]; k++) {
-            const int64_t slot = b->slot[e] + k - b->first[e];
-            mass += *SPARI_BLOCK(b->weight, 1, slot) * *SPARI_BLOCK(b->mass, 10, slot) * b->phi[(int64_t)k * P + l];
-        }
-        for (int i = 0; i < 9; i++) {
-            const int row = 6 * l + i / 3, column = 6 * l + i % 3;
-            const double twice = w[i / 3] * w[i % 3] - (i % 4 == 0 ? square : 0);
-            S[(int64_t)row * n + column] += mass * (2 * t->rate * W[i] + twice);
-        }
-    }
-}
-
 static void add_tangents(const spari_body *body, int tile, int from, int to, void *context) {
     const tangent_state *state = context;
     const spari_tangent_at *t = state->at;
@@ -213,9 +190,6 @@ static void add_tangents(const spari_body *body, int tile, int from, int to, voi
             spari_steady_rotation_tangent(body, t->rotation, e, t->q, t->v, t->a, t->factor, matrix, t->mass);
         } else {
             spari_body_tangent(body, e, t->q, t->v, t->a, t->factor, t->cm, t->cv, t->tinv, matrix);
-        }
-        if (t->turns) {
-            add_turning(body, e, t, matrix);
         }
         if (spari_solver_has_applied(s, m) && t->factor != 0) {
             spari_applied_tangent(m, e, t->q, t->factor, matrix);

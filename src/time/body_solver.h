@@ -60,7 +60,6 @@ struct spari_solver {
     double *best;             /* static: state to go back to */
     spari_state begin;        /* at t^n */
     spari_state own[2];       /* ends of a substep relative to a driven root or a rigid motion; NULL: none so far */
-    double *share;            /* [n] parts of the mass, of a member that flies alone and turns; NULL: not so far */
     double *block[3];         /* the memory of the three states */
     /* the factored tangent, reused while it contracts */
     int factored;
@@ -124,8 +123,6 @@ typedef struct spari_tangent_at {
     double factor, cm, cv;
     const struct spari_steady_rotation *rotation; /* equilibrium in a rotating frame; NULL: else */
     double *mass;                                 /* with it: workspace for the matrix of an element */
-    const double *turns; /* angular velocity of the frame that the step is integrated in; NULL: axes at rest */
-    double rate;         /* with it: of velocities with positions */
 } spari_tangent_at;
 /* Forms the tangent. */
 void spari_solver_form(spari_solver *solver, const spar_member *member, const spari_tangent_at *at);

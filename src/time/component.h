@@ -101,7 +101,6 @@ typedef struct spari_component {
     spari_steps *steps;
     double *left;                         /* remaining correction of Newton, without ends */
     const spari_rotating_frame *rotating; /* equilibrium in a rotating frame; NULL: in one at rest */
-    int carried;                          /* as its assembly orders its components: it is in the order */
     double moved_in_step;                 /* of a component without ends: the motion of the stage; 0: not known */
     int moved, owner_before; /* during creation: the rank that had the member before, and the solution of this rank */
     void *solution_before;
@@ -148,9 +147,6 @@ double spari_component_correct(spari_component *p, double cut);
 /* Subtracts the corrections, times v, a and b, from the velocities, accelerations and algorithmic accelerations at the
    end. */
 void spari_component_shift_rates(spari_component *p, double v, double a, double b);
-/* The rate of the acceleration at an end, a unique node and the same node of the host, as the scheme's variables have
-   it: since t^n, `time` ago, or, at t^0 (time 0), that of a steady rotation. */
-void spari_component_jerk(const spari_component *p, int unique, int64_t node, double time, double jerk[6]);
 /* Finds the rotations of the nodes since the tangent was formed, if the reduced residual did not need them. */
 void spari_component_find_rotations(const spari_component *p);
 /* The rotation of a node since the tangent was formed. */

@@ -266,10 +266,7 @@ static int form_tangent(const spari_component *p, const spari_state *at) {
     spari_solver *s = p->solver;
     const spari_scheme *c = &p->scheme;
     const double *v = c->still && !s->body->D ? NULL : at->v, *a = c->still ? NULL : at->a;
-    const spari_ends *e = &p->stage.ends;
-    const double *turns = e->root && p->member->root != SPAR_ROOT_DRIVEN ? p->stage.turning.begin.v + 3 : NULL;
-    return spari_solver_factor(
-        s, p->member, &(spari_tangent_at){at->q, v, a, s->tinv, 1, c->cm, c->cv, .turns = turns, .rate = c->rate});
+    return spari_solver_factor(s, p->member, &(spari_tangent_at){at->q, v, a, s->tinv, 1, c->cm, c->cv, NULL, NULL});
 }
 
 static int tangent_of_nodes(spari_component *p) {
@@ -423,69 +420,8 @@ void spari_component_shift_rates(spari_component *p, double v, double a, double 
             spari_rotate_back(p->stage.ends.root->q + 3, s->dx + k, s->dx + k);
         }
     }
-    spari_alpha_correction_at_centre(&p->stage.ends, s->dx);
     spari_alpha_shift_rates(s, &p->scheme, &p->stage.ends, v, a, b);
     spari_root_show(s, p->member, &p->stage.ends);
-}
-
-/* Of the mass centre of a body; the error of its velocity is that of the node, less the rotation's. */
-static void jerk_of_body(const spari_component *p, const double c[3], double time, double jerk[6]) {
-    const spar_member *m = p->member;
-    double block[2][25], arm[3], way[3];
-    spari_state now = spari_state_in(block[0], 1), before = spari_state_in(block[1], 1);
-    const spari_state begun = {m->now.q, m->now.v, m->now.a, m->now.a};
-    spari_centre_look(c, NULL, p->state, &now);
-    memset(jerk, 0, 6 * sizeof *jerk);
-    if (time > 0) {
-        spari_centre_look(c, NULL, &begun, &before);
-        for (int k = 0; k < 6; k++) {
-            jerk[k] = (now.a[k] - before.a[k]) / time;
-        }
-        spari_rotate(now.q + 3, c, arm);
-        spari_cross(jerk + 3, arm, way);
-        for (int k = 0; k < 3; k++) {
-            jerk[k] -= way[k];
-        }
-    } else {
-        spari_steady_rate(m, now.v + 3, now.a, jerk);
-    }
-}
-
-/* In a frame that turns with w, the third derivative less that of a steady rotation w x (w x v), and
-   -3 w x what the acceleration has beyond it; of rotations w'' - 2 w x w'. */
-static void jerk_in_frame(const spari_component *p, const double *v, const double *a, double time, double jerk[6]) {
-    const double *w = p->stage.turning.begin.v + 3;
-    const spari_carrier *u = &p->stage.carrier;
-    double velocity[3], steady[3], third[3], rest[3], spin[3];
-    for (int k = 0; k < 3; k++) {
-        velocity[k] = v[k] - u->base_v[k] - time * u->base_a[k];
-    }
-    spari_cross(w, velocity, steady);
-    spari_cross(w, steady, third);
-    for (int k = 0; k < 3; k++) {
-        rest[k] = a[k] - u->base_a[k] - steady[k];
-    }
-    spari_cross(w, rest, rest);
-    spari_cross(w, a + 3, spin);
-    for (int k = 0; k < 3; k++) {
-        jerk[k] -= third[k] + 3 * rest[k];
-        jerk[3 + k] -= 2 * spin[k];
-    }
-}
-
-void spari_component_jerk(const spari_component *p, int unique, int64_t node, double time, double jerk[6]) {
-    const double *a = p->state->a + 6 * unique, *before = p->member->now.a + 6 * node;
-    double centre[3];
-    if (spari_turning_centre(p->solver, p->member, centre)) {
-        jerk_of_body(p, p->stage.carrier.held ? p->stage.carrier.point : centre, time, jerk);
-        return;
-    }
-    for (int k = 0; k < 6; k++) {
-        jerk[k] = time > 0 ? (a[k] - before[k]) / time : 0;
-    }
-    if (time > 0 && p->stage.turning.kind == SPARI_TURNS_WITH_FRAME) {
-        jerk_in_frame(p, p->state->v + 6 * unique, a, time, jerk);
-    }
 }
 
 /* ---- response to loads ---- */
@@ -502,7 +438,7 @@ static void response_of_nodes(spari_component *p, double *motion) {
 static void restore_nodes(spari_component *p) {
     spari_solver *s = p->solver;
     p->scheme = spari_scheme_last(p->member, s->body->D != NULL, &s->steps.solved);
-    p->stage.ends = (spari_ends){.from = s->from, .to = s->to, .absolute = s->to};
+    p->stage.ends = (spari_ends){s->from, s->to, s->to, NULL, 0};
     p->state = &p->stage.ends.absolute;
 }
 
@@ -516,7 +452,7 @@ static int start_nodes(spari_component *p) {
         memset(s->begin.v, 0, (size_t)end * sizeof(double));
     }
     p->state = &s->begin;
-    p->stage.ends = (spari_ends){.from = s->begin, .to = s->begin, .absolute = s->begin};
+    p->stage.ends = (spari_ends){s->begin, s->begin, s->begin, NULL, 0};
     return spari_solver_factor(s, p->member, &(spari_tangent_at){.q = s->begin.q, .cm = p->scheme.cm});
 }
 
@@ -562,7 +498,7 @@ static void begin_static_of_nodes(spari_component *p, const double *fluid, int o
     }
     memset(s->to.v, 0, (size_t)(18 * s->n) * sizeof *s->to.v);
     p->state = &s->to;
-    p->stage.ends = (spari_ends){.from = s->to, .to = s->to, .absolute = s->to};
+    p->stage.ends = (spari_ends){s->to, s->to, s->to, NULL, 0};
 }
 
 /* Rates of the nodes at their present positions, in the steady rotation of the member. */

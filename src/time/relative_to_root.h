@@ -3,19 +3,15 @@
 #ifndef SPARI_RELATIVE_TO_ROOT_H
 #define SPARI_RELATIVE_TO_ROOT_H
 
+#include "body_solver.h"
 #include "scheme.h"
-#include "turning_frame.h"
 
 /* The ends of a substep in the variables of the scheme: relative to a driven root, else absolute. `absolute` is the end
    as the body takes it. */
 typedef struct spari_ends {
     spari_state from, to, absolute;
-    const spari_pose *root; /* reference of the motion at the end: a driven root, or a turning frame; NULL: none */
-    double root_motion;  /* how far the reference moves the member: rotation, and displacement relative to its length */
-    spari_pose *follows; /* the same frame, if its origin moves so that the mean of the nodes has its motion in
-                            axes at rest; NULL: else */
-    const double *centre;     /* of a body that is integrated at its mass centre: from its node to there; NULL: else */
-    const spari_pose *origin; /* and what this motion is relative to */
+    const spari_pose *root; /* reference of the motion at the end: a driven root, or a rigid motion; NULL: none */
+    double root_motion; /* how far the reference moves the member: rotation, and displacement relative to its length */
 } spari_ends;
 
 /* How far a root moves the member: rotation, and displacement relative to its length. */
@@ -23,13 +19,7 @@ double spari_root_motion(const spari_pose *from, const spari_pose *to, double le
 /* own := the motion of all nodes relative to a root. b is relative already. */
 void spari_root_look_from(const spari_solver *solver, const spar_member *member, const spari_pose *root,
                           const spari_state *state, spari_state *own);
-/* Where `follows` is the origin: sets it from the mean motion of the nodes, which is the same
-   relative to the frame and absolute. */
-void spari_root_follow(const spari_solver *solver, const spar_member *member, const spari_state *state,
-                       spari_pose *follows);
-/* The mean of vectors of the nodes that are `step` doubles apart, in parts of the mass. */
-void spari_root_mean(const spari_solver *solver, const double *of, int step, double mean[3]);
-/* The inverse: sets the absolute motion that the body takes. Also from the motion of a mass centre. */
+/* The inverse: sets the absolute motion that the body takes. */
 void spari_root_show(const spari_solver *solver, const spar_member *member, spari_ends *ends);
 /* If the root jumps within h, the nodes keep position and velocity: the jump is subtracted from `own`. */
 void spari_root_subtract_jump(const spari_solver *solver, const spar_member *member, double h, const spari_pose *from,

@@ -122,6 +122,19 @@ spari_scheme spari_scheme_last(const spar_member *m, int damped, const spari_pat
     return pattern->even < SPARI_EVEN && !c.still ? spari_scheme_stage(&c, SPARI_BACKWARD) : c;
 }
 
+void spari_mean_rotation(int64_t n, const double *v, double w[3]) {
+    memset(w, 0, 3 * sizeof *w);
+    for (int64_t i = 0; i < n; i++) {
+        for (int k = 0; k < 3; k++) {
+            w[k] += v[6 * i + 3 + k] / (double)n;
+        }
+    }
+}
+
+int spari_member_rotates_stiffly(const spar_member *m) {
+    return m->body && m->fidelity != SPAR_FIDELITY_RIGID && m->body->unique > 1 && !spari_member_root_is_prescribed(m);
+}
+
 spari_scheme spari_scheme_resize(const spari_scheme *alpha, double h) {
     spari_scheme c = *alpha;
     double r = alpha->h / h;

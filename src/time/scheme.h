@@ -82,6 +82,13 @@ spari_scheme spari_scheme_resize(const spari_scheme *alpha, double h);
 /* If dt is within 0.1 % of the last step, generalised-alpha continues. Its algorithmic acceleration b^n, which
    stands for the acceleration at t^n + (alpha_m - alpha_f) h, follows: b := a + ratio (b - a). */
 void spari_scheme_stretch(double ratio, int n, const double *a, double *b);
+/* Whether the member has stiff parts that rotate freely. TR-BDF2 finds their velocities from positions. In a stage
+   the velocities are off by a multiple of h^2 times the third derivative of the position, which is W^3 times the
+   radius for a rotation at W. If dt changes, this error excites oscillations. Relative to the mean rigid motion of
+   the member, the rotation is rest. */
+int spari_member_rotates_stiffly(const spar_member *member);
+/* w: the mean angular velocity of n nodes with velocities v [n][6]. */
+void spari_mean_rotation(int64_t n, const double *v, double w[3]);
 /* After a substep of TR-BDF2 from accelerations a0 to a: the b that generalised-alpha would go on with. */
 void spari_scheme_restart(const spari_scheme *c, int n, const double *a0, const double *a, double *b);
 

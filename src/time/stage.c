@@ -11,7 +11,7 @@
 /* The ends [from, to] of a substep of a root. ratio: of the algorithmic accelerations, see spari_scheme_stretch. */
 static spari_ends ends_of_root(const spari_solver *s, const spar_member *m, const spari_scheme *c,
                                const spari_pose *root, double ratio, const spari_state *from, const spari_state *to) {
-    spari_ends e = {.from = *from, .to = *to, .absolute = *to};
+    spari_ends e = {*from, *to, *to, NULL, 0};
     if (m->root == SPAR_ROOT_DRIVEN && s->own[0].q && !c->still) {
         const spari_pose before = spari_pose_of(from->q, from->v, from->a);
         e.from = s->own[0], e.to = s->own[1], e.root = root;
@@ -46,7 +46,18 @@ void spari_stage_enter(spari_solver *s) {
     s->to = t;
 }
 
-/* ---- members that turn ---- */
+/* ---- reference rigid motion ---- */
+
+double spari_stage_rotation_rate(const spari_solver *s, const spar_member *m) {
+    double w[3] = {0};
+    if (spari_member_rotates_stiffly(m)) {
+        spari_mean_rotation(s->n, s->from.v, w);
+    }
+    return spari_norm(w);
+}
+
+/* rad: a step with a larger rotation, or a larger phase of vibration, does not resolve it. */
+static const double farthest = 1;
 
 static int make_own_states(spari_solver *s) {
     for (int k = 0; k < 2 && !s->own[k].q; k++) {
@@ -59,97 +70,148 @@ static int make_own_states(spari_solver *s) {
     return s->own[1].q ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-static int make_turning_states(spari_solver *s, const spari_turning_frame *f) {
-    if (f->kind == SPARI_TURNS_WITH_FRAME && f->alone && !s->share) {
-        s->share = spari_zalloc(s->n, sizeof *s->share);
-        SPARI_TRY(s->share ? SPAR_OK : SPAR_ERR_MEMORY);
+/* The motion at the beginning of a substep: of the centre of mass, or a pinned root, and the mean angular velocity; as
+   the displacement of the root's reference position. Relative to another point, the centre of mass would move on a
+   circle, and each step would change the momentum by its error on that circle. */
+static spari_pose mean_motion(const spari_solver *s, const spar_member *m) {
+    const spari_state *at = &s->from;
+    spari_pose p = {.q = {0, 0, 0, 1, 0, 0, 0}};
+    double center[6];
+    int pinned = spari_member_constrained(m) == 3,
+        has_center = !pinned && spari_member_rotates_stiffly(m) && spari_body_center(s->body, at->q, at->v, center) > 0;
+    for (int k = 0; k < 3 && has_center; k++) {
+        p.q[k] = center[k] - m->xr[k];
+        p.v[k] = center[3 + k];
     }
-    return make_own_states(s);
-}
-
-/* The difference of the algorithmic acceleration from the true one is what a step hands to the next one. It rotates
-   with the member, apart from the mean of a member that flies alone, and does not depend on the frames of the two
-   steps. difference: [n][6], rotates it by R = q, or back. */
-static void rotate_difference(const spari_solver *s, int follows, const double q[4], int back, double *difference) {
-    double mean[3] = {0};
-    if (follows) {
-        spari_root_mean(s, difference, 6, mean);
-    }
-    for (int i = 0; i < 6 * s->n; i += 3) {
-        const double part = i % 6 == 0 ? 1 : 0;
-        double rest[3];
+    for (int i = 0; i < s->n && !has_center; i++) {
+        double arm[3];
+        spari_member_arm(m, i, arm);
         for (int k = 0; k < 3; k++) {
-            rest[k] = difference[i + k] - part * mean[k];
-        }
-        if (back) {
-            spari_rotate_back(q, rest, rest);
-        } else {
-            spari_rotate(q, rest, rest);
-        }
-        for (int k = 0; k < 3; k++) {
-            difference[i + k] = rest[k] + part * mean[k];
+            p.q[k] += (arm[k] + at->q[7 * i + k]) / s->n;
+            p.v[k] += at->v[6 * i + k] / s->n;
         }
     }
+    spari_mean_rotation(s->n, at->v, p.v + 3);
+    for (int k = 0; k < 3 && pinned; k++) {
+        p.q[k] = at->q[k];
+        p.v[k] = 0;
+    }
+    return p;
 }
 
-static void take_algorithmic(const spari_solver *s, double ratio, const spari_state *from, const spari_ends *e,
-                             const double rotation[4]) {
-    for (int i = 0; i < 6 * s->n; i++) {
-        e->from.b[i] = from->b[i] - from->a[i];
+static spari_pose move_along(const spari_pose *p, double time) {
+    spari_pose out = *p;
+    double psi[3], rotation[4];
+    for (int k = 0; k < 3; k++) {
+        out.q[k] += time * p->v[k];
+        psi[k] = time * p->v[3 + k];
     }
-    if (e->root) {
-        rotate_difference(s, e->follows != NULL, rotation, 1, e->from.b);
-    }
-    for (int i = 0; i < 6 * s->n; i++) {
-        e->from.b[i] = e->from.a[i] + ratio * e->from.b[i];
-    }
+    spari_quat_exp(psi, rotation);
+    spari_quat_mul(rotation, p->q + 3, out.q + 3);
+    return out;
 }
 
-/* The ends of a substep of a member that turns. */
-static spari_ends ends_of_turning(const spari_solver *s, const spar_member *m, const spari_scheme *c,
-                                  const spari_part *part, spari_stage *g) {
-    const spari_turning_frame *f = &g->turning;
-    spari_ends e = {.from = s->own[0], .to = s->own[1], .absolute = s->to};
-    spari_pose before;
-    if (f->kind == SPARI_TURNS_WITH_FRAME || !f->rests) {
-        before = spari_turning_frame_at(f, part->from * part->dt);
-        g->turned = spari_turning_frame_at(f, part->end * part->dt);
-    }
-    if (f->kind == SPARI_TURNS_AS_BODY) {
-        e.centre = f->centre, e.origin = f->rests ? NULL : &g->turned;
-        spari_centre_look(e.centre, f->rests ? NULL : &before, &s->from, &e.from);
-    } else {
-        e.root = &g->turned;
-        e.root_motion = spari_root_motion(&before, &g->turned, s->body->length);
-        if (f->alone) {
-            spari_turning_shares(s, s->share);
-            spari_root_follow(s, m, &s->from, &before);
-            e.follows = &g->turned;
-        }
-        spari_root_look_from(s, m, &before, &s->from, &e.from);
-    }
-    if (c->rule == SPARI_ALPHA) {
-        take_algorithmic(s, part->ratio > 0 ? part->ratio : 1, &s->from, &e, before.q + 3);
-    }
+static spari_ends ends_from_rigid(const spari_solver *s, const spar_member *m, const spari_scheme *c, spari_stage *g) {
+    g->along = move_along(&g->rigid, c->span);
+    spari_ends e = {s->own[0], s->own[1], s->to, &g->along, 0};
+    spari_root_look_from(s, m, &g->rigid, &s->from, &e.from);
+    e.root_motion = c->span * (spari_norm(g->rigid.v) / s->body->length + spari_norm(g->rigid.v + 3));
     return e;
 }
 
-/* After the substep: the inverse of take_algorithmic, in global axes. */
-static void give_algorithmic(const spari_solver *s, const spari_ends *e) {
-    double *b = e->absolute.b;
-    for (int i = 0; i < 6 * s->n; i++) {
-        b[i] = e->to.b[i] - e->to.a[i];
+/* ---- change of the scheme ---- */
+
+/* Position of node i from `pivot`. */
+static void arm_from(const spari_solver *s, const spar_member *m, int i, const double pivot[3], double r[3]) {
+    spari_member_arm(m, i, r);
+    for (int k = 0; k < 3; k++) {
+        r[k] += s->from.q[7 * i + k] - pivot[k];
     }
-    if (e->root) {
-        rotate_difference(s, e->follows != NULL, e->root->q + 3, 0, b);
-    }
-    for (int i = 0; i < 6 * s->n; i++) {
-        b[i] += e->absolute.a[i];
-    }
-    memcpy(e->to.b, b, (size_t)(6 * s->n) * sizeof *b); /* where spari_root_show reads it */
 }
 
-/* ---- the first step ---- */
+/* The angular acceleration of the rigid motion about `pivot` that fits the accelerations of the nodes best,
+   rotations times the length, apart from the part that its angular velocity w explains. a0: the acceleration of the
+   pivot. */
+static void mean_angular_acceleration(const spari_solver *s, const spar_member *m, const double pivot[3],
+                                      const double a0[3], const double w[3], double alpha[3]) {
+    double L2 = s->body->length * s->body->length, A[9] = {0}, right[3] = {0}, c[3][3], det;
+    for (int i = 0; i < s->n; i++) {
+        const double *a = s->from.a + 6 * i;
+        double r[3], t[3], rest[3];
+        arm_from(s, m, i, pivot, r);
+        spari_cross(w, r, t);
+        spari_cross(w, t, rest);
+        for (int k = 0; k < 3; k++) {
+            rest[k] = a[k] - a0[k] - rest[k];
+        }
+        spari_cross(r, rest, t);
+        for (int k = 0; k < 3; k++) {
+            right[k] += t[k] + L2 * a[3 + k];
+            A[4 * k] += spari_dot(r, r) + L2;
+            for (int j = 0; j < 3; j++) {
+                A[3 * k + j] -= r[k] * r[j];
+            }
+        }
+    }
+    spari_cross(A + 3, A + 6, c[0]);
+    spari_cross(A + 6, A, c[1]);
+    spari_cross(A, A + 3, c[2]);
+    det = spari_dot(A, c[0]);
+    for (int k = 0; k < 3; k++) {
+        alpha[k] = (c[0][k] * right[0] + c[1][k] * right[1] + c[2][k] * right[2]) / det;
+    }
+}
+
+/* A point of the rotation without third derivative: a pinned root, the node that a joint holds, or, of free members,
+   the centre of mass, about which the shift changes no momentum. Returns 0 if there are several. */
+static int find_pivot(const spari_solver *s, const spar_member *m, double pivot[3], double a0[3]) {
+    int ends = s->condensed ? s->condensed->ends : 0, pinned = spari_member_constrained(m) == 3;
+    if (ends > 1 || (ends == 1 && pinned && s->condensed->node[0] != 0)) {
+        return 0;
+    }
+    const double zero[3] = {0, 0, 0};
+    const int only = ends == 1 ? s->condensed->node[0] : 0;
+    double center[6];
+    if (ends == 0 && !pinned) { /* linear in the rates, so that it takes accelerations as well */
+        int exists = spari_body_center(s->body, s->from.q, s->from.a, center) > 0;
+        for (int k = 0; k < 3 && exists; k++) {
+            pivot[k] = center[k] - m->xr[k];
+            a0[k] = center[3 + k];
+        }
+        return exists;
+    }
+    arm_from(s, m, only, zero, pivot);
+    memcpy(a0, s->from.a + 6 * (int64_t)only, 3 * sizeof *a0);
+    return 1;
+}
+
+/* Generalised-alpha has velocities of stiff parts that differ from the true ones by -C h^2 times the third
+   derivative of the position, with C of (E1), because h v + h^2 ((1/2 - beta) b^n + beta b^{n+1}) is the whole
+   increment. A step of TR-BDF2 begins with the true velocities, and generalised-alpha continues with its own: v += f
+   times that derivative for all parts that rotate as a rigid body. */
+static void shift_rotating_nodes(const spari_solver *s, const spar_member *m, double f) {
+    double w[3], pivot[3], a0[3], alpha[3];
+    if (!find_pivot(s, m, pivot, a0)) {
+        return;
+    }
+    spari_mean_rotation(s->n, s->from.v, w);
+    mean_angular_acceleration(s, m, pivot, a0, w, alpha);
+    for (int i = 0; i < s->n; i++) {
+        double r[3], rotation[3], grow[3], a[3], b[3];
+        arm_from(s, m, i, pivot, r);
+        spari_cross(w, r, rotation);
+        spari_cross(alpha, r, grow);
+        spari_cross(w, rotation, a);
+        for (int k = 0; k < 3; k++) {
+            a[k] += grow[k]; /* the acceleration */
+        }
+        spari_cross(w, a, b);
+        spari_cross(alpha, rotation, a);
+        for (int k = 0; k < 3; k++) {
+            s->from.v[6 * i + k] += f * (b[k] + 2 * a[k]);
+        }
+    }
+}
 
 void spari_steady_rate(const spar_member *m, const double w[3], const double a[3], double rate[3]) {
     double pushed[3];
@@ -159,27 +221,37 @@ void spari_steady_rate(const spar_member *m, const double w[3], const double a[3
     spari_cross(w, pushed, rate);
 }
 
-/* b^0 = a^0 + (alpha_m - alpha_f) h times the rate of the acceleration in the variables of the scheme. In a turning
-   frame a steady rotation has none. For a rigid body also v^0 -= C h^2 times this rate: generalised-alpha has
-   velocities that differ from the true ones by this, with C of (E1), because h v + h^2 ((1/2 - beta) b^n +
-   beta b^{n+1}) is the whole increment. */
+/* b^0 = a^0 + (alpha_m - alpha_f) h times the rate of the acceleration. For a rigid body also v^0 -= C h^2 times
+   this rate, as shift_rotating_nodes does for members that deform. */
 void spari_stage_remember(spari_solver *s, const spar_member *m, const spari_scheme *c) {
-    double h = (c->alpha_m - c->alpha_f) * c->h, C = spari_scheme_error(c), centre[3], rate[3], block[25];
-    spari_state *begin = &s->begin, at = spari_state_in(block, 1);
-    memcpy(begin->b, begin->a, (size_t)(6 * s->n) * sizeof *begin->b);
+    double h = (c->alpha_m - c->alpha_f) * c->h, C = spari_scheme_error(c), rate[3];
+    memcpy(s->begin.b, s->begin.a, (size_t)(6 * s->n) * sizeof *s->begin.b);
     if (m->root == SPAR_ROOT_DRIVEN && s->own[0].q) {
-        const spari_pose root = spari_pose_of(begin->q, begin->v, begin->a);
-        spari_root_look_from(s, m, &root, begin, &s->own[0]);
-        memcpy(begin->b, s->own[0].a, (size_t)(6 * s->n) * sizeof *begin->b);
+        const spari_pose root = spari_pose_of(s->begin.q, s->begin.v, s->begin.a);
+        spari_root_look_from(s, m, &root, &s->begin, &s->own[0]);
+        memcpy(s->begin.b, s->own[0].a, (size_t)(6 * s->n) * sizeof *s->begin.b);
         return;
     }
-    if (m->session->clock.step == 0 && spari_turning_centre(s, m, centre)) {
-        spari_centre_look(centre, NULL, begin, &at);
-        spari_steady_rate(m, at.v + 3, at.a, rate);
+    for (int i = 0; i < s->n && !spari_member_root_is_prescribed(m) && m->session->clock.step == 0; i++) {
+        double *v = s->begin.v + 6 * i, *b = s->begin.b + 6 * i;
+        spari_steady_rate(m, v + 3, s->begin.a + 6 * i, rate);
         for (int k = 0; k < 3; k++) {
-            begin->b[k] += h * rate[k];
-            begin->v[k] -= C * c->h * c->h * rate[k];
+            b[k] += h * rate[k];
+            v[k] -= s->n == 1 ? C * c->h * c->h * rate[k] : 0;
         }
+    }
+}
+
+/* Begins a substep after one of the other scheme. */
+static void change_scheme(const spari_solver *s, const spar_member *m, const spari_scheme *c, const spari_part *part) {
+    double C = spari_scheme_error(c);
+    if (!spari_member_rotates_stiffly(m) || c->still) {
+        return;
+    }
+    if (c->rule == SPARI_TRAPEZOIDAL && part->alpha > 0) {
+        shift_rotating_nodes(s, m, C * part->alpha * part->alpha);
+    } else if (c->rule == SPARI_ALPHA && part->alpha == 0 && part->ratio > 0) {
+        shift_rotating_nodes(s, m, -C * c->h * c->h);
     }
 }
 
@@ -199,23 +271,24 @@ int spari_stage_begin(spari_solver *s, const spar_member *m, const spari_scheme 
         spari_offset_loads_at(s->offset_loads, part->end);
         memcpy(s->offset_loads->gravity, m->body->gravity, sizeof m->body->gravity);
     }
-    if (c->rule != SPARI_BACKWARD && !c->still) {
-        spari_turning_frame_find(s, m, c->rule, part->dt, &g->carrier, &g->turning);
+    change_scheme(s, m, c, part);
+    if (c->rule == SPARI_TRAPEZOIDAL) {
+        g->rigid = mean_motion(s, m);
     }
-    const int turns = !c->still && g->turning.kind != SPARI_TURNS_NOT;
+    int rigid = c->rule != SPARI_ALPHA && !c->still && spari_member_rotates_stiffly(m) &&
+                spari_norm(g->rigid.v + 3) * c->h <= farthest;
     spari_stage_drive(m, c, part, g);
     g->rotation[0] = 1;
     memset(g->rotation + 1, 0, 3 * sizeof *g->rotation);
     if (m->root == SPAR_ROOT_DRIVEN) {
         spari_quat_between(g->before.q + 3, g->root.q + 3, g->rotation);
     }
-    if (turns) {
-        SPARI_REQUIRE(m->session, make_turning_states(s, &g->turning) == SPAR_OK, SPAR_ERR_MEMORY,
-                      "member '%s': no memory for its rotation", m->name);
-        g->ends = ends_of_turning(s, m, c, part, g);
-    } else {
-        g->ends = ends_of_root(s, m, c, &g->root, c->rule == SPARI_ALPHA ? part->ratio : 1, &s->from, &s->to);
+    if (rigid && c->rule == SPARI_TRAPEZOIDAL) {
+        SPARI_REQUIRE(m->session, make_own_states(s) == SPAR_OK, SPAR_ERR_MEMORY,
+                      "member '%s': no memory for the new step size", m->name);
     }
+    g->ends = rigid ? ends_from_rigid(s, m, c, g)
+                    : ends_of_root(s, m, c, &g->root, c->rule == SPARI_ALPHA ? part->ratio : 1, &s->from, &s->to);
     if (c->rule == SPARI_BACKWARD) {
         size_t size = (size_t)(6 * s->n) * sizeof(double);
         memcpy(s->stage_v, g->ends.to.v, size);
@@ -287,14 +360,13 @@ int spari_stage_is_near(const spari_solver *s, const spar_member *m, double h) {
    axes. */
 void spari_stage_end(const spari_solver *s, spar_member *m, const spari_scheme *c, spari_stage *g) {
     const spari_ends *e = &g->ends;
-    const int driven = m->root == SPAR_ROOT_DRIVEN && e->root, turns = e->centre || (e->root && !driven);
+    int driven = m->root == SPAR_ROOT_DRIVEN && e->root;
     if (c->rule == SPARI_BACKWARD) {
-        spari_scheme_restart(c, 6 * s->n, e->from.a, e->to.a, e->to.b);
+        spari_scheme_restart(c, 6 * s->n, driven ? e->from.a : s->from.a, driven ? e->to.a : e->absolute.a,
+                             e->absolute.b);
     }
-    if (turns) {
-        give_algorithmic(s, e);
-    } else if (c->rule == SPARI_BACKWARD && e->root) {
-        memcpy(e->absolute.b, e->to.b, (size_t)(6 * s->n) * sizeof *e->to.b);
+    if (c->rule == SPARI_BACKWARD && e->root) { /* the function that shows the motion reads it there */
+        memcpy(e->to.b, e->absolute.b, (size_t)(6 * s->n) * sizeof *e->to.b);
     }
     g->before = g->root;
     spari_scheme_dissipate(m, c, &g->power, s->power);

@@ -240,30 +240,6 @@ static void advance_span(void *context, int64_t from, int64_t to) {
     t->s->most_by[from / SPARI_SPAN] = size_of_span(t, by);
 }
 
-void spari_alpha_correction_at_centre(const spari_ends *e, double *dx) {
-    double arm[3], way[3];
-    if (!e->centre) {
-        return;
-    }
-    spari_rotate(e->absolute.q + 3, e->centre, arm);
-    spari_cross(dx + 3, arm, way);
-    for (int k = 0; k < 3; k++) {
-        dx[k] += way[k];
-    }
-}
-
-/* The mean moves in axes at rest: x' of a node takes R^T (dx - mean) + mean of a correction. */
-static void add_mean_correction(const spari_solver *s, const double R[9], double *dx) {
-    double mean[3], rotated[3];
-    spari_root_mean(s, dx, 6, mean);
-    spari_matrix_times(R, mean, rotated);
-    for (int64_t i = 0; i < s->n; i++) {
-        for (int k = 0; k < 3; k++) {
-            dx[6 * i + k] += rotated[k] - mean[k];
-        }
-    }
-}
-
 spari_corrected spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c,
                                     spari_ends *e, double *rotation, double longest, double *x, double *dx) {
     double R[9], largest;
@@ -271,14 +247,6 @@ spari_corrected spari_alpha_correct(const spari_solver *s, const spar_member *me
     t.work.dx = dx, t.work.rotation = rotation, t.work.R = e->root ? R : NULL;
     if (e->root) {
         spari_quat_matrix(e->root->q + 3, R);
-    }
-    if (rotation && (e->centre || e->follows)) {
-        spari_nodes_rotate_forth(&t.work, 0, s->n);
-        t.work.rotation = NULL;
-    }
-    spari_alpha_correction_at_centre(e, dx);
-    if (e->follows) {
-        add_mean_correction(s, R, dx);
     }
     if (longest == INFINITY && !c->still) {
         spari_solver_spread(s, advance_span, &t);

@@ -24,8 +24,6 @@ typedef struct spari_corrected {
    rotation: first rotates the correction to the present axes; NULL: does not. */
 spari_corrected spari_alpha_correct(const spari_solver *s, const spar_member *member, const spari_scheme *c,
                                     spari_ends *e, double *rotation, double longest, double *x, double *dx);
-/* dx := the correction of the mass centre of a body that is integrated there. */
-void spari_alpha_correction_at_centre(const spari_ends *e, double *dx);
 /* Subtracts the corrections, times v, a and b, from velocities, accelerations and algorithmic accelerations at the
    end. Positions stay. */
 void spari_alpha_shift_rates(const spari_solver *s, const spari_scheme *c, const spari_ends *e, double v, double a,

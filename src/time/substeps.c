@@ -2,6 +2,7 @@
 #include "substeps.h"
 
 #include "../base/session.h"
+#include "../math/rotation.h"
 
 #include <math.h>
 
@@ -10,6 +11,27 @@ static spari_pattern pattern_after(const spari_pattern *last, double h) {
         return (spari_pattern){h, 0};
     }
     return (spari_pattern){h, last->h > 0 && last->even < SPARI_EVEN ? last->even + 1 : last->even};
+}
+
+/* In free rotation at W, generalised-alpha amplifies unresolved parts from 1 - rho_inf = 1.5 W h on
+   (docs/evidence/beam.md, "Stiff members that turn"); with rho_inf = 1 those of omega h > 4 / (W h). TR-BDF2 does
+   not. */
+static int exceeds_limit(double rotation_rate, const spari_scheme *c, const spar_session *session) {
+    static const double least = 0.05;
+    return 1.5 * rotation_rate * c->h > fmax(1 - session->integrator.rho_inf, least);
+}
+
+int spari_substeps_rotate_fast(const spar_session *s, double dt) {
+    const spari_scheme c = {.h = dt / s->integrator.substeps};
+    int rotates = 0;
+    for (const spar_member *m = s->members; m && !rotates; m = m->next) {
+        if (spari_member_rotates_stiffly(m)) {
+            double w[3];
+            spari_mean_rotation(m->nodes, m->now.v, w);
+            rotates = exceeds_limit(1.1 * spari_norm(w), &c, s);
+        }
+    }
+    return rotates;
 }
 
 /* Solves a substep. Its initial state stays for another try. Returns the status; *c: the rule of the last stage. */
@@ -73,7 +95,7 @@ static int run_substep(const spari_stepper *how, void *self, const spari_scheme 
         if (!tries_anew) {
             how->enter(self, &part);
         }
-        if (tries_anew) {
+        if (tries_anew || (how->rotation_rate && exceeds_limit(how->rotation_rate(self), &alpha, session))) {
             next.even = 0;
         }
         part.last = next.even == SPARI_EVEN - 1;

@@ -8,6 +8,8 @@
 typedef struct spari_stepper {
     /* The end of the last substep becomes the beginning of the next one. */
     void (*enter)(void *self, const spari_part *part);
+    /* The largest mean angular velocity of stiff members that rotate freely; NULL: there are none. */
+    double (*rotation_rate)(const void *self);
     /* Solves a stage. Returns a status, with a message. */
     int (*solve)(void *self, const spari_scheme *c, const spari_part *part);
     /* Ends the substep. Returns a status, with a message. */
@@ -30,5 +32,7 @@ typedef struct spari_stepper {
    of the steps to t^{n+1}. Returns a status of the stepper, with a message. */
 int spari_substeps_run(const spari_stepper *how, void *self, const spari_scheme *alpha, spari_cuts *cuts,
                        spari_pattern *pattern, const spar_session *session, double dt);
+/* Whether a member rotates so fast in steps dt that TR-BDF2, or nearly so, integrates it. The same on all ranks. */
+int spari_substeps_rotate_fast(const spar_session *session, double dt);
 
 #endif

@@ -175,16 +175,13 @@ static double change_of_momentum(const section *of_beam, const double omega[3], 
 
 static const section plain = {1, {0, 0, 0}, {0.002, 0.001, 0.001}}, thick = {1, {0, 0.1, 0.05}, {0.03, 0.02, 0.01}};
 
-/* The couples give no angular momentum: its change is the error of dt, 4e-4 of 20 kg m^2/s, and 1e-3 with thick
-   sections whose centre of mass is 0.11 m off the line; the beam rotates and is deflected by 0.1 m. Without couples it
-   tumbles: in its turning frame 3e-7, in fixed axes 9e-6. */
+/* The couples give no angular momentum: its change is the error of dt, 4e-4 of 20 kg m^2/s. Plain sections, and thick
+   ones whose centre of mass is 0.11 m off the line; the beam rotates and is deflected by 0.1 m. */
 static void test_momentum_stays(void **state) {
     (void)state;
     const double omega[3] = {0.3, 0.5, 3};
     NEAR(change_of_momentum(&plain, omega, 40), 0, 4e-4);
-    NEAR(change_of_momentum(&thick, omega, 40), 0, 1e-3);
-    NEAR(change_of_momentum(&plain, omega, 0), 0, 1e-6);
-    NEAR(change_of_momentum(&thick, omega, 0), 0, 1e-6);
+    NEAR(change_of_momentum(&thick, omega, 40), 0, 4e-4);
 }
 
 int main(void) {

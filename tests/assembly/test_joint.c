@@ -73,8 +73,8 @@ static swing pendulum(int at_centre, double rho, double dt, double T) {
     return w;
 }
 
-/* Order 2 in motion and energy; the load is that of the motion, because the body is integrated at the hinge. The
-   reference is the same pendulum in steps of 1e-4 s of Runge and Kutta's method of order 4. */
+/* Order 2 in motion and energy; the load is that of the motion to what its acceleration is off, dt^2 too. The reference
+   is the same pendulum in steps of 1e-4 s of Runge and Kutta's method of order 4. */
 static void test_pendulum(void **state) {
     (void)state;
     const double T = 3, k = 9.81 * 2 * 1.5 / (0.3 + 2 * 1.5 * 1.5), h = 1e-4;
@@ -91,7 +91,7 @@ static void test_pendulum(void **state) {
                   b = pendulum(at_centre, damped ? 0.8 : 1, 0.005, T);
             NEAR(order_of(a.angle - theta, b.angle - theta), 2, 0.05);
             NEAR(order_of(a.energy, b.energy), 2, 0.1);
-            assert_true(b.load < 1e-7);
+            assert_true(at_centre ? fabs(order_of(a.load, b.load) - 2) < 0.1 : b.load < 1e-7);
             assert_true(fabs(b.angle - theta) < 1e-3);
             assert_true(b.gap < 1e-12);
         }

@@ -270,8 +270,8 @@ static void test_fluid(void **state) {
         }
         spar_session_destroy(&s);
     }
-    NEAR(wander[0], 0, 1e-11);
-    NEAR(wander[1], 0, 1e-11);
+    assert_true(wander[0] < 1e-3);
+    NEAR(wander[0] / wander[1], 4, 0.6);
 }
 
 /* ---- in time ---- */
@@ -285,8 +285,8 @@ static void step_hub(spar_session *s, spar_member *hub, double W, double dt, int
     }
 }
 
-/* Steps from there stay there, seen from the hub, to rounding. And steps that damp, from straight blades, come to the
-   same shape. */
+/* Steps from there stay there: with half the dt the wander of the tips, seen from the hub, is a quarter. And steps that
+   damp, from straight blades, come to the same shape. */
 static void steps_stay(int fidelity) {
     enum { N = 9 };
     const double W[3] = {0, 0, 4};
@@ -318,8 +318,12 @@ static void steps_stay(int fidelity) {
         }
         spar_session_destroy(&s);
     }
-    NEAR(wander[0], 0, 1e-10);
-    NEAR(wander[1], 0, 1e-10);
+    assert_true(wander[0] < 1e-3);
+    if (fidelity == SPAR_FIDELITY_RIGID) {
+        NEAR(wander[0], 0, 1e-10);
+    } else {
+        NEAR(wander[0] / wander[1], 4, 0.4);
+    }
 }
 
 static void test_steps_stay(void **state) {

@@ -408,7 +408,7 @@ static void see_two_blades(const two_blades *r, double y[2]) {
    the others have gone. Both are of the same steps: the same to what is left of the others, and of the amplitude. */
 static void test_two_blades(void **state) {
     (void)state;
-    enum { SETTLE = 120, GONE = 60, WATCH = 7 };
+    enum { SETTLE = 60, GONE = 45, WATCH = 7 };
     const double dt = 2 * pi / rotor_speed / TURN, period = dt * TURN, kick[6] = {1e-1, 2e-1, 0, 0, 0, 0};
     const double none[6] = {0};
     double value[4][2], y[WATCH][2], before[7], after[7], a11 = 0, a12 = 0, a22 = 0, b1 = 0, b2 = 0;

@@ -101,7 +101,7 @@ static void errors_of_steps_are_true(void **state) {
                 }
             }
             agree(&w, worlds[k].name, twice == 1 ? "steps of dt" : "steps of 2 dt", &e, NULL, 1.0 / 3,
-                  strcmp(worlds[k].name, "rod") == 0 || strcmp(worlds[k].name, "chain") == 0 ? 4 : 3);
+                  strcmp(worlds[k].name, "rod") == 0 ? 4 : 3);
             spar_session_destroy(&w.s);
         }
     }
