@@ -100,15 +100,31 @@ static void get_column(const spari_accelerator *a, int slot, int fixed, double *
     }
 }
 
+/* Whether secant j of an earlier step is as long as those that the fit has: a shorter one is rounding, or scatter. */
+static int is_kept(const spari_accelerator *a, int j, double longest) {
+    const double *p = a->p + a->column[j].slot * a->n, part = a->set.filter * a->set.filter;
+    return products(a, p, p) > part * part * longest * longest;
+}
+
+/* Length of the longest motion of earlier steps. */
+static double longest_before(const spari_accelerator *a) {
+    double most = 0;
+    for (int j = 1; j < a->count; j++) {
+        const double *p = a->p + a->column[j].slot * a->n;
+        most = a->column[j].step < a->step && spari_column_serves(a, j) ? fmax(most, products(a, p, p)) : most;
+    }
+    return sqrt(most);
+}
+
 /* The part of the newest secant's loads that those of earlier steps do not predict, squared, relative to these loads;
    -1: its motion is new to them. Newest first, each by its independent part: a mean would hide what rotates. */
-static double misprediction(spari_accelerator *a, int fixed) {
+static double misprediction(spari_accelerator *a, int fixed, double longest) {
     static const double INDEPENDENT = 1e-2, NEW = 0.1;
     int64_t n = a->n;
     int rank = 0, j = 1;
     double *r = a->matrix, whole;
     for (; j < a->count && rank < a->set.columns - 1; j++) {
-        if (a->column[j].step < a->step && spari_column_serves(a, j)) {
+        if (a->column[j].step < a->step && spari_column_serves(a, j) && is_kept(a, j, longest)) {
             double *y = a->loads + rank * n;
             get_column(a, a->column[j].slot, fixed, a->basis + rank * n, y);
             if (spari_orthonormalise(n, rank, INDEPENDENT, a->basis, r)) {
@@ -139,7 +155,8 @@ static double misprediction(spari_accelerator *a, int fixed) {
 static void compare_axes(spari_accelerator *a) {
     double *sum = a->memory.surprise;
     int first = a->count > 1 && a->column[1].step < a->step && a->set.columns > 1;
-    double sections = first ? misprediction(a, 0) : -1, fixed = sections >= 0 ? misprediction(a, 1) : -1;
+    double longest = first ? longest_before(a) : 0, sections = first ? misprediction(a, 0, longest) : -1,
+           fixed = sections >= 0 ? misprediction(a, 1, longest) : -1;
     if (sections >= 0 && fixed >= 0) {
         sum[0] = FADE_SECANTS * sum[0] + sections;
         sum[1] = FADE_SECANTS * sum[1] + fixed;
