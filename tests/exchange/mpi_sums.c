@@ -30,6 +30,8 @@ typedef struct scene {
     double pushed_until; /* [s] the second fluid on the beam falls silent: its last loads stay */
 } scene;
 
+static int learns; /* the added mass is learned, at one station */
+
 static void place_of(int i, double x[3]) {
     double angle = 0.7 * i;
     x[0] = 10.0 * i / (NODES - 1), x[1] = 0.3 * cos(angle), x[2] = 0.3 * sin(angle);
@@ -71,9 +73,11 @@ static void create(scene *c, const MPI_Comm *comm, int deal, int scheme) {
     c->beam = scene_beam(s, "beam", 2, POINTS / 2, 10, K, M);
     OK(s, spar_member_set_root(c->beam, SPAR_ROOT_FIXED));
     OK(s, spar_member_set_effects(c->beam, SPAR_EFFECT_FLUID_HISTORY, 0));
+    OK(s, spar_member_learn_added_mass(c->beam, learns, (double[]){0}));
     OK(s, spar_member_commit(c->beam));
     scene_mass(mass, 3, centre, J);
     OK(s, spar_rigid_create(s, "piston", where, q, mass, &c->piston));
+    OK(s, spar_member_learn_added_mass(c->piston, learns, NULL));
     OK(s, spar_member_commit(c->piston));
     for (int k = 0; k < NODES; k++) {
         int i = deal == AT_RANDOM ? k * 17 % NODES : k; /* 61 is prime: in another order */
@@ -356,11 +360,49 @@ static void switched_between_steps(void **state) {
     spar_session_destroy(&all.session);
 }
 
+/* What the coupling and the members have learned of the fluid has the same bits too, and so has what follows from it.
+ */
+static void learned_alike(void **state) {
+    (void)state;
+    const MPI_Comm world = MPI_COMM_WORLD;
+    int turns[2][3 * STEPS];
+    scene alone, all;
+    learns = 1;
+    create(&alone, NULL, IN_TURN, SPAR_COUPLING_IQN_ILS);
+    advance(&alone, 3 * STEPS, turns[0]);
+    for (int deal = 0; deal < DEALS; deal++) {
+        create(&all, &world, deal, SPAR_COUPLING_IQN_ILS);
+        advance(&all, 3 * STEPS, turns[1]);
+        assert_memory_equal(turns[0], turns[1], sizeof turns[0]);
+        same_bits(&all, &alone);
+        for (int k = 0; k < 2; k++) {
+            const spar_member *m[2] = {k ? alone.piston : alone.beam, k ? all.piston : all.beam};
+            double spread[2], mass[2][36], report[2][SPAR_REPORT_COUNT];
+            for (int i = 0; i < 2; i++) {
+                OK(alone.session, spar_member_get_learned_added_mass(m[i], NULL, spread + i, NULL, 1, NULL, mass[i]));
+                OK(alone.session,
+                   spar_session_get_report(i ? all.session : alone.session, SPAR_REPORT_COUNT, report[i]));
+            }
+            assert_true(mass[0][0] != 0);
+            assert_memory_equal(spread, spread + 1, sizeof *spread);
+            assert_memory_equal(mass[0], mass[1], sizeof mass[0]);
+            assert_memory_equal(report[0], report[1], sizeof report[0]);
+        }
+        spar_session_destroy(&all.session);
+    }
+    spar_session_destroy(&alone.session);
+    learns = 0;
+}
+
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_as_alone),          cmocka_unit_test(resumed_on_other_ranks),
-        cmocka_unit_test(parts_of_a_step),        cmocka_unit_test(other_nodes),
-        cmocka_unit_test(other_nodes_and_fluids), cmocka_unit_test(switched_between_steps),
+        cmocka_unit_test(learned_alike),
+        cmocka_unit_test(same_as_alone),
+        cmocka_unit_test(resumed_on_other_ranks),
+        cmocka_unit_test(parts_of_a_step),
+        cmocka_unit_test(other_nodes),
+        cmocka_unit_test(other_nodes_and_fluids),
+        cmocka_unit_test(switched_between_steps),
     };
     return RANKS_RUN(argc, argv, tests);
 }
