@@ -390,6 +390,7 @@ static void act_step(void) {
     CALL(spar_member_commit, b);
     h.fluid[0] = begin_fluid(b, "air", 10, &h.n[0], h.x[0]);
     CALL(spar_fluid_map, h.fluid[0]);
+    CALL(spar_fluid_map_current, h.fluid[0]);
     CALL(spar_member_set_load, b, 5, SPAR_LOAD_DEAD, load);
     CALL(spar_member_set_load, b, 4, SPAR_LOAD_FOLLOWER, load);
     CALL(spar_beam_set_line_load, b, SPAR_LOAD_DEAD, 2, eta, along[0]);
