@@ -379,7 +379,17 @@ static inline int64_t scene_iterations(const motion_world *w) {
     return most;
 }
 
-/* A run of this many iterations a step on average is stopped, so that a scene that hardly converges fails in time. */
+/* Whether the library has told that elements have too few nodes for their stiffness: no answer is promised then. */
+static inline int scene_is_told_to_lock(const motion_world *w) {
+    for (int k = 0; spar_session_get_warning(w->s, k)[0] != '\0'; k++) {
+        if (strstr(spar_session_get_warning(w->s, k), " locks")) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* A run of this many iterations a step on average is stopped, so that a scene that hardly converges ends in time. */
 enum { SCENE_ITERATIONS = 40 };
 
 static inline int scene_is_slow(const motion_world *w, int steps) {
