@@ -1002,10 +1002,12 @@ int spari_system_is_loose(spari_assembly *a, double unbalanced) {
     for (int i = 0; i < a->components && !loose; i++) {
         const spari_component *p = a->component + i;
         double work = 0;
+        int moves = 0; /* a fixed member does not, and its joints are those of the others too */
         for (int k = p->at; k < p->at + 6 * p->condensed->ends; k++) {
             work += fabs(a->y[k] * a->x[k]);
+            moves = moves || a->x[k] != 0;
         }
-        loose = !(work >= rounding * stiffness_of_motion(a, p, unbalanced));
+        loose = moves && !(work >= rounding * stiffness_of_motion(a, p, unbalanced));
     }
     return loose;
 }
