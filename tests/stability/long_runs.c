@@ -2,7 +2,8 @@
    stays has the energy that it had, less what the scheme and damping take. Over all steps E - E(0) - work rises above 0
    by no more than in the first periods with the strictest tolerances, half of that again, and a tenth of the scheme's
    own error there (the difference from half the steps). If it does, the strictest tolerances show over the whole run
-   whether Newton or the scheme makes the energy. The first scenes are cantilevers that grew: released under their
+   whether Newton or the scheme makes the energy: the scheme may make three times its error, as in random_motions. The
+   first scenes are cantilevers that grew: released under their
    weight, 0.9.
 
    long_runs [seed, default 1 [scenes, default 8 [steps, default 20000]]]: the long form is 100 scenes of 1000000.
@@ -135,6 +136,9 @@ static int check(const motion_scene *c, int k) {
         return 0;
     }
     const history whole = run(c, 1, 1, steps, NULL);
+    if (usual.status == SPAR_OK && usual.gain <= whole.gain + rise && usual.rise <= rise && whole.gain <= 3 * error) {
+        return 0;
+    }
     print_message(
         "  FAILED. Strictest over the whole run: status %d, gain %.1e at step %d, rise %.1e, at the end %.1e: "
         "%s\n",
