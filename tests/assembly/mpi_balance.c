@@ -140,7 +140,8 @@ static void spread_by_cost(void **state) {
             most = fmax(most, expected[r]);
             total += counted[r];
         }
-        assert_true(total == one[0] && total > 0); /* whole numbers; the same work, wherever it is done */
+        assert_true(total > 0);
+        NEAR(total, one[0], 1e-14 * total); /* whole numbers of iterations; the same work, wherever it is done */
         if (given < 0) {
             assert_true(most <= (2 - 1.0 / size) * fmax(sum / size, dearest)); /* any list schedule */
         }
