@@ -1392,6 +1392,49 @@ static void test_joints_apart_change_nothing(void **state) {
     spar_session_destroy(&s);
 }
 
+/* A clamped beam whose tip a spring of 2 N/m and 9 m connects to a fixed body, static: the tip is where the force of
+   the spring, from the distance found, moves the beam alone (1e-9 m). A fixed member has no motion that its joints
+   could leave free. */
+static void test_spring_to_a_fixed_body(void **state) {
+    (void)state;
+    enum { P = 6 };
+    static const double q[4] = {1, 0, 0, 0}, body_at[3] = {0, 5, 0}, tip[3] = {10, 0, 0}, centre[3] = {0, 0, 0},
+                        J[3] = {1, 2, 3};
+    double K[36], M[36], mass[36], force[6] = {0}, x[2][7 * P], d[3];
+    for (int alone = 0; alone < 2; alone++) {
+        spar_session *s = scene_session();
+        spar_joint *link;
+        spar_member *body;
+        scene_diagonal(K, 1e4, 1e4, 1e4, 1e3, 1e3, 1e3);
+        scene_diagonal(M, 1, 1, 1, 0.1, 0.1, 0.1);
+        spar_member *beam = scene_beam(s, "beam", 1, P, 10, K, M);
+        scene_mass(mass, 3, centre, J);
+        OK(s, spar_rigid_create(s, "body", body_at, q, mass, &body));
+        OK(s, spar_member_set_root(body, SPAR_ROOT_FIXED));
+        OK(s, spar_member_commit(beam));
+        OK(s, spar_member_commit(body));
+        if (alone) {
+            OK(s, spar_member_set_load(beam, P - 1, SPAR_LOAD_DEAD, force));
+        } else {
+            OK(s, spar_link_create(s, "link", beam, P - 1, tip, body, 0, body_at, &link));
+            OK(s, spar_link_set_spring(link, 2, 0.1, 9, 0));
+        }
+        OK(s, spar_member_solve_static(beam, 1));
+        OK(s, spar_member_get_motion(beam, x[alone], NULL, NULL));
+        for (int k = 0; k < 3 && !alone; k++) {
+            d[k] = body_at[k] - tip[k] - x[0][7 * (P - 1) + k];
+        }
+        for (int k = 0; k < 3 && !alone; k++) {
+            force[k] = 2 * (spari_norm(d) - 9) * d[k] / spari_norm(d);
+        }
+        spar_session_destroy(&s);
+    }
+    assert_true(fabs(force[1]) > 0.1);
+    for (int k = 0; k < 7 * P; k++) {
+        NEAR(x[0][k], x[1][k], 1e-9);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pendulum),
@@ -1412,6 +1455,7 @@ int main(void) {
         cmocka_unit_test(test_sprung_at_rest),
         cmocka_unit_test(test_load_has_axes_of_b),
         cmocka_unit_test(test_weld_at_rest),
+        cmocka_unit_test(test_spring_to_a_fixed_body),
         cmocka_unit_test(test_nothing_holds),
         cmocka_unit_test(test_driven_root),
         cmocka_unit_test(test_drives_that_jump),
