@@ -278,9 +278,9 @@ SPAR_API int spar_rigid_create(spar_session *session, const char *name, const do
    Nodes are the Gauss-Lobatto-Legendre points, numbered from 0, element by element. At an element boundary two nodes
    stand at one position; they move alike, and their loads add.
    Elements of few nodes lock if their axial or shear stiffness is large beside bending stiffness / length^2: they bend
-   too little. Equilibria are right with 5 nodes, motions with 7, for any stiffness. With fewer nodes, the commit warns of
-   stiffnesses for which equilibria are wrong, and a step warns of an element of 5 or 6 nodes that is bent so far that
-   its motion may be wrong. More nodes or more elements cure both. */
+   too little. Equilibria are right with 5 nodes, motions with 7, for any stiffness. With fewer nodes, the commit warns
+   of stiffnesses for which equilibria are wrong, and a step warns of an element of 5 or 6 nodes that is bent so far
+   that its motion may be wrong. More nodes or more elements cure both. */
 SPAR_API int spar_beam_create(spar_session *session, const char *name, int elements, int nodes_per_element,
                               spar_member **member);
 /* Reference line by points, in the beam's own frame. The nodes are fitted by least squares, exactly at both ends.
@@ -442,13 +442,13 @@ SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, int which, double theta, d
 /* Writes the state of the session to a file, or reads it. A run that continues from the file has the same bits.
    Collective, load between steps.
      path: in, that of rank 0; other ranks may give any text
-   save is legal within a step too: a run that loads the file goes on within it, so the flow must have its state of then.
-   save writes path.new and renames it, so path is always a whole file. Rank 0 writes and reads for all; other ranks
-   need not see the file. What is not a regular file is SPAR_ERR_IO.
-   load needs the same members and joints, committed, and the same mapped fluids by name, on any number of ranks. Nodes
-   are matched by their reference position, to 1e-9 of the member's length. Settings are not in the file; the host makes
-   them as before. After a failure the session is as it was. SPAR_ERR_IO: the file cannot be read, or is damaged;
-   SPAR_ERR_ARGUMENT: it does not match the session. */
+   save is legal within a step too: a run that loads the file goes on within it, so the flow must have its state of
+   then. save writes path.new and renames it, so path is always a whole file. Rank 0 writes and reads for all; other
+   ranks need not see the file. What is not a regular file is SPAR_ERR_IO. load needs the same members and joints,
+   committed, and the same mapped fluids by name, on any number of ranks. Nodes are matched by their reference position,
+   to 1e-9 of the member's length. Settings are not in the file; the host makes them as before. After a failure the
+   session is as it was. SPAR_ERR_IO: the file cannot be read, or is damaged; SPAR_ERR_ARGUMENT: it does not match the
+   session. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
 /* Reads a saved state into the session. Collective.
      path: in */

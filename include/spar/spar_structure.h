@@ -294,9 +294,9 @@ SPAR_API const char *spar_member_get_name(const spar_member *member);
    They act at quadrature points of their own, by virtual work. After the commit. */
 SPAR_API int spar_beam_set_line_load(spar_member *beam, int kind, int64_t n, const double *eta, const double *load);
 /* What the support gives to the root: the rate of the member's momentum, with the accelerations of
-   spar_member_get_motion, less its weight and loads. Fluid loads are those of the last solution; where they move nothing
-   (on fixed and driven bodies), an accepted step has those pushed last.
-     load[6]: out, N, N m, moment about the root; 0 if the root is free */
+   spar_member_get_motion, less its weight and loads. Fluid loads are those of the last solution; where they move
+   nothing (on fixed and driven bodies), an accepted step has those pushed last. load[6]: out, N, N m, moment about the
+   root; 0 if the root is free */
 SPAR_API int spar_member_get_reaction(const spar_member *member, double load[6]);
 /* Evaluates a beam at given positions along it.
      n: in
