@@ -414,6 +414,9 @@ static void end_session(world *w, int session) {
     if (status == SPAR_ERR_STATE && strstr(spar_session_message(s), "not committed")) {
         return;
     }
+    if (status == SPAR_ERR_ARGUMENT && strstr(spar_session_message(s), "do not resolve it")) {
+        return; /* after a step of 1e9 s and more */
+    }
     int tied = is_tied(w, session);
     if (tied && status != SPAR_OK && strstr(spar_session_message(s), "joint")) { /* of what cannot be tied */
         return;
