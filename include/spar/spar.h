@@ -283,8 +283,11 @@ SPAR_API int spar_rigid_create(spar_session *session, const char *name, const do
    that its motion may be wrong. More nodes or more elements cure both. */
 SPAR_API int spar_beam_create(spar_session *session, const char *name, int elements, int nodes_per_element,
                               spar_member **member);
-/* Reference line by points, in the beam's own frame. The nodes are fitted by least squares, exactly at both ends.
-   Replaces an earlier line.
+/* Reference line by points, in the beam's own frame. Replaces an earlier line.
+   Between its corners the line is smooth: the polynomial through the points if they are at most nodes_per_element,
+   otherwise fitted by least squares, exactly at both ends. A corner is an axis point on an element boundary (eta a
+   multiple of 1 / elements) where the line turns by more than 40 degrees, or by 1 degree or more and more than three
+   times what the curvature at its neighbours explains; a turn of more than 40 degrees inside an element is refused.
      n: in, points, >= 2
      eta[n]: in, strictly increasing from 0 to 1
      xyz[n][3]: in, m

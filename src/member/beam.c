@@ -5,7 +5,6 @@
 #include "../base/session.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
-#include "../math/spline.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,99 +18,8 @@ void spari_beam_free(spari_beam *beam) {
                beam->pretension.eta, beam->pretension.value, beam);
 }
 
-/* ---- nodes from axis points ---- */
-
 static int no_memory_for(const spar_member *member, const char *what) {
     return spari_fail(member->session, SPAR_ERR_MEMORY, "member '%s': no memory for %s", member->name, what);
-}
-
-/* With few points: the polynomial through all of them (Lagrange, barycentric), exact on every element. */
-static void interpolate_axis(const spari_beam *beam, double eta, double x[3]) {
-    int n = (int)beam->axis_count;
-    double sum = 0, total[3] = {0};
-    for (int i = 0; i < n; i++) {
-        double w = 1;
-        for (int j = 0; j < n; j++) {
-            w *= j == i ? 1 : (eta - beam->eta[j]) / (beam->eta[i] - beam->eta[j]);
-        }
-        sum += w;
-        for (int c = 0; c < 3; c++) {
-            total[c] += w * beam->xyz[3 * i + c];
-        }
-    }
-    for (int c = 0; c < 3; c++) {
-        x[c] = total[c] / sum;
-    }
-}
-
-/* Least squares on one element: unknown inner nodes, ends given. Axis points count fully; a spline through all the
-   points counts so little (1e-7) that it decides only what the points leave open. */
-static int fit_element(const spari_beam *beam, int elements, int e, int P, const double *gll, const double *bary,
-                       const double *spline, double *x) {
-    double e0 = (double)e / elements, e1 = (double)(e + 1) / elements;
-    int64_t first = 0, last = beam->axis_count - 1;
-    while (first < last && beam->eta[first] < e0) {
-        first++;
-    }
-    while (last > first && beam->eta[last] > e1) {
-        last--;
-    }
-    int inner = P - 2, points = beam->eta[first] <= e1 && beam->eta[last] >= e0 ? (int)(last - first + 1) : 0;
-    int rows = points + inner;
-    double *A = spari_zalloc((int64_t)rows * (inner + 3), sizeof *A), *b = A + (int64_t)rows * inner;
-    for (int i = 0; i < rows && A; i++) {
-        double phi[SPARI_MAX_NODES],
-            xi = i < points ? 2 * (beam->eta[first + i] - e0) / (e1 - e0) - 1 : gll[1 + i - points];
-        const double *data = i < points ? beam->xyz + 3 * (first + i) : spline + 3 * (1 + i - points);
-        double weight = i < points ? 1 : 1e-7;
-        spari_lagrange(P, gll, bary, xi, phi, NULL);
-        for (int j = 0; j < inner; j++) {
-            A[(int64_t)inner * i + j] = weight * phi[1 + j];
-        }
-        for (int d = 0; d < 3; d++) {
-            double ends = phi[0] * x[d] + phi[P - 1] * x[3 * (P - 1) + d];
-            b[(int64_t)rows * d + i] = weight * (data[d] - ends);
-        }
-    }
-    int bad = !A || spari_least_squares(rows, inner, A, 3, b) != SPAR_OK;
-    for (int i = 0; i < 3 * inner && !bad; i++) {
-        x[3 + i] = b[(int64_t)rows * (i % 3) + i / 3];
-    }
-    free(A);
-    return bad;
-}
-
-/* x [elements * P][3] from the axis points; the ends are exact, element boundaries lie on the spline (or on an axis
-   point there). */
-static int fit_axis(const spar_member *member, const double *gll, const double *bary, double *x) {
-    const spari_beam *beam = member->beam;
-    int E = member->mesh.elements, P = member->mesh.per_element;
-    size_t n = (size_t)beam->axis_count;
-    double *column = spari_zalloc(beam->axis_count, sizeof *column),
-           *spline_x = spari_zalloc(3 * member->nodes, sizeof *spline_x);
-    int bad = !column || !spline_x;
-    for (int d = 0; d < 3 && !bad; d++) {
-        for (size_t i = 0; i < n; i++) {
-            column[i] = beam->xyz[3 * i + (size_t)d];
-        }
-        spari_spline spline;
-        int64_t interval = 0;
-        bad = spari_spline_create(&spline, SPARI_SPLINE_CUBIC, beam->axis_count, beam->eta, column);
-        for (int64_t i = 0; i < member->nodes && !bad; i++) {
-            double eta = 0.5 * (1 + spari_member_xi(member, (int)(i / P), gll[i % P]));
-            eta = fmin(fmax(eta, beam->eta[0]), beam->eta[n - 1]);
-            spline_x[3 * i + d] = spari_spline_at(&spline, eta, &interval, NULL);
-        }
-        spari_spline_free(&spline);
-    }
-    for (int e = 0; e < E && !bad; e++) {
-        double *xe = x + 3 * (int64_t)e * P, *se = spline_x + 3 * (int64_t)e * P;
-        memcpy(xe, e == 0 ? beam->xyz : se, 3 * sizeof *xe);
-        memcpy(xe + 3 * (P - 1), e == E - 1 ? beam->xyz + 3 * (n - 1) : se + 3 * (P - 1), 3 * sizeof *xe);
-        bad = P > 2 && fit_element(beam, E, e, P, gll, bary, se, xe);
-    }
-    SPARI_FREE(column, spline_x);
-    return bad ? no_memory_for(member, "the fit of its axis") : SPAR_OK;
 }
 
 /* ---- frames ---- */
@@ -157,8 +65,16 @@ static double level_y(const double t[3], double y[3]) {
     return n;
 }
 
+/* Rotates y, perpendicular to the unit vector `from`, by the smallest rotation that takes `from` to `to`. */
+static void turn(const double from[3], const double to[3], double y[3]) {
+    const double f = spari_dot(y, to) / (1 + spari_dot(from, to));
+    for (int i = 0; i < 3; i++) {
+        y[i] -= f * (from[i] + to[i]);
+    }
+}
+
 /* Transports y from one point of the line to the next with the smallest rotation: double reflection, Wang, Juttler,
-   Zheng & Liu, ACM Trans. Graph. 27 (2008). */
+   Zheng & Liu, ACM Trans. Graph. 27 (2008). At one place, a corner, the line turns. */
 static void transport(const line_point *from, const line_point *to, double y[3]) {
     double v[3], t[3], w[3];
     for (int i = 0; i < 3; i++) {
@@ -176,6 +92,8 @@ static void transport(const line_point *from, const line_point *to, double y[3])
         for (int i = 0; i < 3; i++) {
             y[i] -= fw * w[i];
         }
+    } else {
+        turn(from->t, to->t, y);
     }
     double along = spari_dot(y, to->t);
     for (int i = 0; i < 3; i++) {
@@ -211,60 +129,43 @@ typedef struct framing {
    limit at which a root has no level section. */
 static const double steep = 0.17364817766693033, vertical = 1e-3;
 
-/* Tangent at axis point i: of the parabola through it and its neighbours; with two points, of their chord. */
-static void described_tangent(const spari_beam *b, int64_t i, double t[3]) {
-    const int64_t n = b->axis_count < 3 ? b->axis_count : 3, last = b->axis_count - n,
-                  from = i < 1          ? 0
-                         : i - 1 < last ? i - 1
-                                        : last;
-    const double *eta = b->eta + from, *x = b->xyz + 3 * from;
-    memset(t, 0, 3 * sizeof *t);
-    for (int64_t j = 0; j < n; j++) {
-        double slope = 0, below = 1;
-        for (int64_t k = 0; k < n; k++) { /* of Lagrange polynomial j */
-            double others = 1;
-            for (int64_t l = 0; l < n; l++) {
-                others *= l == j || l == k ? 1 : b->eta[i] - eta[l];
-            }
-            slope += k == j ? 0 : others;
-            below *= k == j ? 1 : eta[j] - eta[k];
-        }
-        for (int c = 0; c < 3; c++) {
-            t[c] += slope / below * x[3 * j + c];
-        }
-    }
-    const double size = spari_norm(t);
-    for (int c = 0; c < 3 && size > 0; c++) {
-        t[c] /= size;
-    }
-}
-
-/* Smallest sine of the angle between tangents and z, at the axis points or the given nodes; and at the root. */
-static double steepest(const spar_member *member, const double *gll, const double *bary, const double *x,
-                       double *root) {
-    const int P = member->mesh.per_element, by_nodes = member->beam->node_x != NULL;
-    const int64_t n = by_nodes ? member->nodes : member->beam->axis_count;
-    double least = 1, y[3];
-    for (int64_t i = 0; i < n; i++) {
-        line_point p;
-        if (by_nodes) {
+/* Smallest sine of the angle between tangents and z, at the given nodes or at the axis points; and at the root. */
+static int steepest(const spar_member *member, const double *gll, const double *bary, const double *x, double *least,
+                    double *root) {
+    const int P = member->mesh.per_element;
+    double y[3], t[3];
+    *least = *root = 1;
+    if (member->beam->node_x) {
+        for (int64_t i = 0; i < member->nodes; i++) {
+            line_point p;
             line_at(P, gll, bary, x + 3 * (i / P) * P, gll[i % P], &p);
-        } else {
-            described_tangent(member->beam, i, p.t);
+            const double sine = level_y(p.t, y);
+            *root = i == 0 ? sine : *root;
+            *least = fmin(*least, sine);
         }
-        const double sine = level_y(p.t, y);
-        *root = i == 0 ? sine : *root;
-        least = fmin(least, sine);
+        return SPAR_OK;
     }
-    return least;
+    spari_pieces pieces;
+    SPARI_TRY(spari_axis_pieces(member, &pieces));
+    for (int64_t k = 0; k < pieces.count; k++) {
+        for (int64_t i = pieces.first[k]; i <= pieces.first[k + 1]; i++) {
+            spari_axis_tangent(member->beam, &pieces, k, i, t);
+            const double sine = level_y(t, y);
+            *root = i == 0 ? sine : *root;
+            *least = fmin(*least, sine);
+        }
+    }
+    free(pieces.first);
+    return SPAR_OK;
 }
 
 static int make_framing(const spar_member *member, const double *gll, const double *bary, const double *x, framing *f) {
     int P = member->mesh.per_element;
     line_point p, q;
     memset(f, 0, sizeof *f);
-    double y[3], root = 1;
-    f->carried = steepest(member, gll, bary, x, &root) < steep;
+    double y[3], least, root;
+    SPARI_TRY(steepest(member, gll, bary, x, &least, &root));
+    f->carried = least < steep;
     if (!f->carried) {
         return SPAR_OK;
     }
@@ -281,6 +182,9 @@ static int make_framing(const spar_member *member, const double *gll, const doub
     }
     for (int64_t i = 0; i < member->nodes; i++) {
         line_at(P, gll, bary, x + 3 * (i / P) * P, gll[i % P], &q);
+        if (i % P == 0) {
+            memcpy(q.x, p.x, sizeof q.x); /* the node that elements share */
+        }
         transport(&p, &q, y);
         memcpy(f->y + 3 * i, y, 3 * sizeof *y);
         p = q;
@@ -316,14 +220,12 @@ static int own_nodes(const spar_member *member, const double *gll, const double 
     int P = member->mesh.per_element;
     if (beam->node_x) {
         memcpy(x, beam->node_x, (size_t)member->nodes * 3 * sizeof *x);
-    } else if (beam->axis_count <= P) {
-        for (int64_t i = 0; i < member->nodes; i++) {
-            interpolate_axis(beam, 0.5 * (1 + spari_member_xi(member, (int)(i / P), gll[i % P])), x + 3 * i);
-        }
-        memcpy(x, beam->xyz, 3 * sizeof *x);
-        memcpy(x + 3 * (member->nodes - 1), beam->xyz + 3 * (beam->axis_count - 1), 3 * sizeof *x);
     } else {
-        SPARI_TRY(fit_axis(member, gll, bary, x));
+        spari_pieces pieces;
+        SPARI_TRY(spari_axis_pieces(member, &pieces));
+        const int status = spari_axis_fit(member, &pieces, gll, bary, x);
+        free(pieces.first);
+        SPARI_TRY(status);
     }
     if (beam->node_q) {
         memcpy(q, beam->node_q, (size_t)member->nodes * 4 * sizeof *q);

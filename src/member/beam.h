@@ -23,6 +23,20 @@ struct spari_beam {
     double normal[3];
 };
 
+/* The line through the axis points, smooth between its corners (axis.c). */
+/* Smooth pieces of the line: piece k runs from axis point first[k] to axis point first[k + 1]. */
+typedef struct spari_pieces {
+    int64_t count, *first; /* [count + 1], the caller frees it */
+} spari_pieces;
+
+/* Finds the corners, which are axis points on element boundaries. Refuses a corner inside an element. */
+int spari_axis_pieces(const spar_member *member, spari_pieces *pieces);
+/* x [nodes][3]: nodes on the line, before placement. gll, bary: of an element's nodes (spari_gll). */
+int spari_axis_fit(const spar_member *member, const spari_pieces *pieces, const double *gll, const double *bary,
+                   double *x);
+/* Unit tangent at axis point i of piece k. */
+void spari_axis_tangent(const spari_beam *beam, const spari_pieces *pieces, int64_t k, int64_t i, double t[3]);
+
 /* Computes member->xr, qr (placed) from the axis or the given nodes. */
 int spari_beam_place_nodes(spar_member *member);
 /* Logs a warning if elements have too few nodes for the stiffness of their sections. */

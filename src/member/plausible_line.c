@@ -1,6 +1,6 @@
 /* Warns of a line that swings between its axis points: the curve leaves their polygon by more than the points bend.
    Points that nearly coincide, rounded, have a direction of their own that the curve follows far into its neighbours.
- */
+   Warns of a curve through so few points that its nodes lie far off their polygon. */
 #include "../base/session.h"
 #include "../math/basis.h"
 #include "../math/rotation.h"
@@ -123,6 +123,50 @@ static double excess(const spar_member *m, const double *gll, const double *bary
     return (*off / (to - from) - rise * change) / spari_norm(v);
 }
 
+/* Nodes further off the polygon than this part of its length are told. A quarter of a circle by 5 points has 1.2 %. */
+static const double off_polygon = 0.02;
+
+/* Distance of x from the straight line between axis points i and i + 1. */
+static double from_chord(const spari_beam *b, int64_t i, const double x[3]) {
+    const double *a = b->xyz + 3 * i, chord[3] = {a[3] - a[0], a[4] - a[1], a[5] - a[2]},
+                 arm[3] = {x[0] - a[0], x[1] - a[1], x[2] - a[2]};
+    const double part = fmax(0, fmin(1, spari_dot(arm, chord) / spari_dot(chord, chord)));
+    double foot[3];
+    for (int c = 0; c < 3; c++) {
+        foot[c] = a[c] + part * chord[c];
+    }
+    return separation(foot, x);
+}
+
+static void tell_few_points(const spar_member *m, const double *gll, const double *bary) {
+    const spari_beam *b = m->beam;
+    const int P = m->mesh.per_element;
+    double length = 0, most = 0;
+    int64_t at = 0, between = 0;
+    for (int64_t i = 0; i + 1 < b->axis_count; i++) {
+        length += separation(b->xyz + 3 * i, b->xyz + 3 * i + 3);
+    }
+    for (int64_t i = 0; i < m->nodes; i++) {
+        const double eta = 0.5 * (1 + spari_member_xi(m, (int)(i / P), gll[i % P]));
+        double x[3];
+        curve_at(m, gll, bary, eta, x);
+        while (between + 2 < b->axis_count && b->eta[between + 1] < eta) {
+            between++;
+        }
+        const double off = from_chord(b, between, x);
+        if (off > most) {
+            most = off, at = between;
+        }
+    }
+    if (most > off_polygon * length) {
+        spari_warn(m->session,
+                   "member '%s': a curve is fitted through its %lld axis points, whose nodes lie up to %.3g m off the "
+                   "straight lines between the points (between %lld and %lld); give more points of the curve; where "
+                   "the line has a corner, let an element end there",
+                   m->name, (long long)b->axis_count, most, (long long)at, (long long)at + 1);
+    }
+}
+
 void spari_beam_tell_line(const spar_member *m) {
     const spari_beam *b = m->beam;
     double gll[SPARI_MAX_NODES], bary[SPARI_MAX_NODES], most = of_chord, off, told = 0;
@@ -141,6 +185,8 @@ void spari_beam_tell_line(const spar_member *m) {
     if (told > 0) {
         warn_of_line(m, kept[worst], kept[worst + 1], told,
                      separation(b->xyz + 3 * kept[worst], b->xyz + 3 * kept[worst + 1]));
+    } else {
+        tell_few_points(m, gll, bary);
     }
     free(kept);
 }
