@@ -170,6 +170,14 @@ module spar_calls
       integer(c_int) :: status
     end function spar_session_set_log
 
+    subroutine spar_log_stderr(session, level, text, context) bind(c)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: session
+      integer(c_int), value :: level
+      character(kind=c_char), intent(in), optional :: text(*)
+      type(c_ptr), value :: context
+    end subroutine spar_log_stderr
+
     pure function spar_session_get_warning(session, i) bind(c) result(text)
       import :: c_int64_t, c_ptr
       type(c_ptr), value :: session

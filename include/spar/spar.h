@@ -95,8 +95,9 @@ enum {
 };
 
 /* Describes the last failure of the session: what is wrong, where, and what to do.
-     session: in, NULL: the last failure in this thread that had no session (a create, a NULL handle)
-   The text belongs to the session and stands until the next failure. It is "" before the first one. Local. */
+     session: in, NULL: the last failure in this thread that had no session (a create, a section, a NULL handle)
+   A failure that was not read here, and had no log, stays in the messages of those after it: "...; an earlier failure:
+   ...". The text belongs to the session and stands until the next failure. It is "" before the first one. Local. */
 SPAR_API const char *spar_session_message(const spar_session *session);
 /* Name and meaning of a status; static text, never NULL.
      status: in, any int */
@@ -240,6 +241,13 @@ typedef void (*spar_log)(const spar_session *session, int level, const char *tex
      log: in, NULL: none (default)
      context: in, handed to log; must live as long as the session uses it */
 SPAR_API int spar_session_set_log(spar_session *session, spar_log log, void *context);
+/* A log for spar_session_set_log: writes errors and warnings to stderr, a line each. The library writes nothing by
+   itself.
+     session: in, not used
+     level: in, SPAR_LOG_*
+     text: in
+     context: in, not used */
+SPAR_API void spar_log_stderr(const spar_session *session, int level, const char *text, void *context);
 /* Warnings of this session on this rank, with or without a log: descriptions and runs that are legal and probably
    wrong. Warnings about members are given on rank 0, about fluids on their rank. The text belongs to the session;
    "" for i beyond the last. The first 32 are kept. Local, at any time.

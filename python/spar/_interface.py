@@ -217,6 +217,7 @@ call spar_session_set_coupling int session|session|value|| scheme|int|value|| at
 call spar_session_get_coupling int session|session|value|| scheme|int|out||null atol|double|out||null rtol|double|out||null max_iterations|int|out||null
 call spar_session_get_time int session|session|value|| t|double|out||null step|int64_t|out||null iteration|int|out||null
 call spar_session_set_log int session|session|value|| log|log|callback|| context|context|value||
+call spar_log_stderr none session|session|value|| level|int|value|| text|char|in|[]| context|context|value||
 call spar_session_get_warning text session|session|value|| i|int64_t|value||
 call spar_point_create int session|session|value|| name|char|in|[]| x|double|in|[3]|null q|double|in|[4]|null member|member|out||
 call spar_rigid_create int session|session|value|| name|char|in|[]| x|double|in|[3]|null q|double|in|[4]|null mass|double|in|[36]| member|member|out||
@@ -431,7 +432,7 @@ call spar_aero_report_effects int aero|aero|value|| trial|trial|value||
 call spar_aero_get_effect int aero|aero|value|| row|int|value|| in_force|int|out||null fails|int|out||null size|double|out||null motion|double|out||null reaction|double|out||null share|double|out||null
 """
 DOCS = {
-    "spar_session_message": "Describes the last failure of the session: what is wrong, where, and what to do.\n  session: in, NULL: the last failure in this thread that had no session (a create, a NULL handle)\nThe text belongs to the session and stands until the next failure. It is \"\" before the first one. Local.",
+    "spar_session_message": "Describes the last failure of the session: what is wrong, where, and what to do.\n  session: in, NULL: the last failure in this thread that had no session (a create, a section, a NULL handle)\nA failure that was not read here, and had no log, stays in the messages of those after it: \"...; an earlier failure:\n...\". The text belongs to the session and stands until the next failure. It is \"\" before the first one. Local.",
     "spar_status_text": "Name and meaning of a status; static text, never NULL.\n  status: in, any int",
     "spar_version": "The release, \"major.minor.patch\"; static text.",
     "spar_has": "Answers 1 if this build has a feature, else 0.\n  feature: in, \"mpi\", \"fortran\", \"openblas\", \"lapack\" or \"gsl\"",
@@ -453,6 +454,7 @@ DOCS = {
     "spar_session_get_coupling": "scheme: out, NULL: not wanted\natol: out, NULL: not wanted\nrtol: out, NULL: not wanted\nmax_iterations: out, NULL: not wanted",
     "spar_session_get_time": "The clock. Local.\n  t: out, s, time of the last accepted step, NULL: not wanted\n  step: out, number of accepted steps, NULL: not wanted\n  iteration: out, coupling iterations of the current step, or of the last step or static solution, NULL: not\n        wanted",
     "spar_session_set_log": "Sets the log. Warnings are also kept for spar_session_get_warning. Local, at any time.\n  log: in, NULL: none (default)\n  context: in, handed to log; must live as long as the session uses it",
+    "spar_log_stderr": "A log for spar_session_set_log: writes errors and warnings to stderr, a line each. The library writes nothing by\nitself.\n  session: in, not used\n  level: in, SPAR_LOG_*\n  text: in\n  context: in, not used",
     "spar_session_get_warning": "Warnings of this session on this rank, with or without a log: descriptions and runs that are legal and probably\nwrong. Warnings about members are given on rank 0, about fluids on their rank. The text belongs to the session;\n\"\" for i beyond the last. The first 32 are kept. Local, at any time.\n  i: in, from 0",
     "spar_point_create": "Creates a massless node with 6 degrees of freedom. It follows spar_member_set_motion or spar_member_drive.\n  name: in\n  x[3]: in, reference position, m, NULL: the origin\n  q[4]: in, reference orientation, NULL: none\n  member: out",
     "spar_rigid_create": "Creates a rigid body of one node. Default root condition: free.\n  name: in\n  x[3]: in, reference position of the node, m, NULL: the origin\n  q[4]: in, reference orientation, NULL: none\n  mass[36]: in, about the node, in its own frame, [m I, -m c~; m c~, J] with the centre of mass at c; kg, kg m,\n        kg m^2\n  member: out\nSPAR_ERR_ARGUMENT: no body has such moments of inertia: the largest exceeds the sum of the others.",

@@ -10,6 +10,8 @@
 
 /* Message of a failed create, which has no session. */
 static _Thread_local char thread_message[SPARI_MESSAGE_SIZE];
+/* The first of its failures since the host has read it; "": none. */
+static _Thread_local char thread_unread[SPARI_CAUSE_SIZE];
 /* Redirects messages of this thread; NULL: no redirection. */
 static _Thread_local char *redirected;
 
@@ -75,6 +77,28 @@ static char *message_of(const spar_session *session) {
     return session ? teller(session)->message : thread_message;
 }
 
+/* A host that ignores a status sees what follows from it: a failure that it has not read stays in the next message. One
+   that has a log has seen it. text: [size], the new message. */
+static void add_cause(const spar_session *session, char *text, size_t size) {
+    enum { SAME = 60 }; /* a message may quote its cause, cut */
+    char first[SPARI_CAUSE_SIZE], head[SAME], *unread = session ? teller(session)->unread : thread_unread;
+    if (session && session->callbacks.log) {
+        return;
+    }
+    (void)snprintf(first, sizeof first, "%s", unread[0] ? unread : thread_unread);
+    (void)snprintf(head, sizeof head, "%.*s", SAME - 1, first);
+    if (!first[0]) {
+        (void)snprintf(unread, SPARI_CAUSE_SIZE, "%.*s", SPARI_CAUSE_SIZE - 1, text);
+        return;
+    }
+    thread_unread[0] = '\0';
+    (void)memcpy(unread, first, sizeof first);
+    const size_t n = strlen(text);
+    if (!strstr(text, head)) {
+        (void)snprintf(text + n, size - n, "; an earlier failure: %s", first);
+    }
+}
+
 int(spari_fail)(const spar_session *session, int status, const char *format, ...) {
     /* The text is formatted before it is copied: an argument may point into the old message. */
     static _Thread_local char text[7 * SPARI_MESSAGE_SIZE]; /* large for a small stack */
@@ -84,6 +108,9 @@ int(spari_fail)(const spar_session *session, int status, const char *format, ...
         snprintf(text, sizeof text, "%s", spar_status_text(status));
     }
     va_end(arguments);
+    if (!redirected) {
+        add_cause(session, text, sizeof text);
+    }
     shorten(text);
     memcpy(message_of(session), text, strlen(text) + 1);
     if (session && !redirected) {
@@ -115,6 +142,9 @@ int spar_session_fail(spar_session *session, int status, const char *message) {
 }
 
 void spari_put_message_back(const spar_session *session, const char *text) {
+    if (session && !redirected) {
+        teller(session)->unread[0] = '\0';
+    }
     memcpy(message_of(session), text, SPARI_MESSAGE_SIZE);
 }
 
@@ -133,5 +163,14 @@ int spari_named(const spar_session *session, const char *call, int status) {
 }
 
 const char *spar_session_message(const spar_session *session) {
+    (session ? teller(session)->unread : thread_unread)[0] = '\0';
     return session ? session->message : thread_message;
+}
+
+void spar_log_stderr(const spar_session *session, int level, const char *text, void *context) {
+    (void)session;
+    (void)context;
+    if (text && level <= SPAR_LOG_WARNING) {
+        (void)fprintf(stderr, "spar: %s: %s\n", level == SPAR_LOG_ERROR ? "error" : "warning", text);
+    }
 }

@@ -104,6 +104,7 @@ enum { SPARI_MOST_WARNINGS = 32 }; /* kept; later ones go to the log alone */
 
 struct spar_session {
     char message[SPARI_MESSAGE_SIZE];
+    char unread[SPARI_CAUSE_SIZE];       /* first failure since the host has read the message; "": none */
     int64_t failures;                    /* messages written so far: shows whether a callback has left one */
     char *warnings[SPARI_MOST_WARNINGS]; /* texts of the first warnings */
     int warning_count;

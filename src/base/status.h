@@ -11,7 +11,7 @@
 #define SPARI_PRINTF(fmt, args)
 #endif
 
-enum { SPARI_MESSAGE_SIZE = 1024 };
+enum { SPARI_MESSAGE_SIZE = 1024, SPARI_CAUSE_SIZE = 400 };
 
 /* Prevents inlining: inlined, the arrays of both functions would share one stack frame, which is too large for small
    stacks. */

@@ -140,6 +140,13 @@ int spari_session_pushes(spar_session *s, const char *call) {
     return SPAR_OK;
 }
 
+int spari_session_mapped(spar_session *s, const char *call) {
+    for (const spar_fluid *f = s->fluids; f; f = spari_fluid_next(f)) {
+        SPARI_TRY(spari_fluid_need_mapped(f, call));
+    }
+    return SPAR_OK;
+}
+
 /* Reproducible sum of the fluids' loads, in any distribution of fluids and nodes. */
 static int sum_bins(spar_session *s, int64_t count, double pushes) {
     spari_bins *bins = s->own->bins;

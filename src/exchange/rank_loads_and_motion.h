@@ -7,6 +7,8 @@
 /* Whether this rank's fluids have usable loads: the status of a refused push, with the call in front of its message.
    Local. */
 int spari_session_pushes(spar_session *session, const char *call);
+/* Whether the nodes of this rank's fluids are mapped. Local. */
+int spari_session_mapped(spar_session *session, const char *call);
 /* exchange: sums the fluids' pushed loads over all ranks; collective. pushed: whether any fluid ever pushed loads;
    may be NULL. The second call returns the part of one member, load [nodes][6]. */
 int spari_session_exchange_loads(spar_session *session, int *pushed);

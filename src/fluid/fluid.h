@@ -72,6 +72,8 @@ void spari_fluid_put_moved(spar_fluid *fluid, const spar_member *before, const d
 void spari_fluid_adopt(spar_fluid *fluid, spar_fluid *old);
 /* Whether there are nodes that are not mapped yet. */
 int spari_fluid_is_pending(const spar_fluid *fluid);
+/* Refuses nodes that are not mapped yet. */
+int spari_fluid_need_mapped(const spar_fluid *fluid, const char *caller);
 /* After restoring: frees the fluids that the host destroyed during the trial. */
 void spari_fluid_release_gone(spar_session *session);
 

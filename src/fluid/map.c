@@ -340,6 +340,14 @@ int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, c
     return SPAR_OK;
 }
 
+int spari_fluid_need_mapped(const spar_fluid *fluid, const char *caller) {
+    const spari_nodes *nodes;
+    for (int which = 0; which < 2 && spari_fluid_is_pending(fluid); which++) {
+        SPARI_TRY(spari_fluid_mapped(fluid, which, caller, &nodes));
+    }
+    return SPAR_OK;
+}
+
 int spar_fluid_get_count(const spar_fluid *fluid, int which, int64_t *n) {
     SPARI_FLUID_HANDLE(fluid);
     SPARI_TRY(spari_fluid_check_which(fluid, which, __func__));

@@ -244,14 +244,18 @@ static int push_loads(spar_fluid *fluid, spari_source force, spari_source moment
     SPARI_FLUID_REQUIRE_OF(fluid, caller, session->state.phase != SPARI_IDLE || !session->clock.started, SPAR_ERR_STATE,
                            "no step is in progress; loads are pushed between spar_step_begin and spar_step_accept, or "
                            "before the first step");
-    SPARI_TRY(spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s));
+    int status = spari_fluid_mapped(fluid, SPAR_NODES_FORCE, caller, &s);
+    if (status != SPAR_OK) {
+        note_refusal(fluid, status, session->message);
+        return status;
+    }
     if (!s) {
         if (force.d || force.f) {
             spari_fluid_warn_no_force_nodes(fluid);
         }
         return SPAR_OK;
     }
-    int status = push(fluid, s, force, moment, caller);
+    status = push(fluid, s, force, moment, caller);
     if (status != SPAR_OK) {
         note_refusal(fluid, status, session->message);
         return status;

@@ -21,6 +21,7 @@ static int check_start(spar_session *s, const char *call, double dt) {
                   s->clock.time);
     SPARI_TRY(spari_need_dt(s, call, dt));
     SPARI_TRY(spari_need_all_committed(s, call));
+    SPARI_TRY(spari_session_mapped(s, call));
     return spari_session_pushes(s, call);
 }
 

@@ -62,6 +62,7 @@ static int check_begin(spar_session *s, const char *call, double dt, int uneven)
                   "%s: the clock is at %g s and cannot advance by %g s; give a smaller dt", call, s->clock.time, dt);
     SPARI_TRY(check_least(s, call, dt));
     SPARI_TRY(spari_need_all_committed(s, call));
+    SPARI_TRY(spari_session_mapped(s, call));
     const int mean = s->integrator.substeps > 1 || uneven;
     for (spar_member *m = s->members; m && mean; m = m->next) {
         SPARI_TRY(spari_named(s, call, spari_means_make(m)));

@@ -38,6 +38,8 @@ program test_bindings
   call refused(spar_session_get_coupling(none), 'spar_session_get_coupling')
   call refused(spar_session_get_time(none), 'spar_session_get_time')
   call refused(spar_session_set_log(none, c_null_funptr, none), 'spar_session_set_log')
+  made = c_null_ptr
+  call spar_log_stderr(none, 0_c_int, context=none)
   call check(c_associated(spar_session_get_warning(none, 0_c_int64_t)), 'spar_session_get_warning')
   call refused(spar_point_create(none, member=made), 'spar_point_create')
   call refused(spar_rigid_create(none, member=made), 'spar_rigid_create')

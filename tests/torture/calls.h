@@ -15,6 +15,7 @@
     CALL(spar_session_get_coupling) \
     CALL(spar_session_get_time) \
     CALL(spar_session_set_log) \
+    CALL(spar_log_stderr) \
     CALL(spar_session_get_warning) \
     CALL(spar_point_create) \
     CALL(spar_rigid_create) \
