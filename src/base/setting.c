@@ -15,6 +15,17 @@ const spari_setting *spari_setting_find(const spari_setting *table, int count, i
     return NULL;
 }
 
+const char *spari_setting_keys(const spari_setting *table, int count, int by, char *text, size_t size) {
+    size_t n = 0;
+    text[0] = '\0';
+    for (int i = 0; i < count; i++) {
+        if (table[i].key && table[i].by == by && n < size) {
+            n += (size_t)snprintf(text + n, size - n, "%s%s", n ? ", " : "", table[i].key);
+        }
+    }
+    return text;
+}
+
 double spari_setting_value(const void *object, const spari_setting *of) {
     const void *field = (const char *)object + of->field;
     return of->kind == SPARI_IS_REAL ? *(const double *)field : *(const int *)field;

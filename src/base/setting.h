@@ -25,6 +25,8 @@ enum {
 
 /* The row of a table with this key, of those set by this call (0 in tables of options alone); NULL: there is none. */
 const spari_setting *spari_setting_find(const spari_setting *table, int count, int by, const char *key);
+/* The keys of such rows, "a, b, c", written into text[size]; returns text. */
+const char *spari_setting_keys(const spari_setting *table, int count, int by, char *text, size_t size);
 /* Present value of a setting of an object, a session or a fluid; and stores one. */
 double spari_setting_value(const void *object, const spari_setting *of);
 void spari_setting_store(void *object, const spari_setting *of, double x);

@@ -315,12 +315,20 @@ int spar_session_get_tolerance(const spar_session *session, double *drift, doubl
 
 /* ---- options ---- */
 
+static int find_option(const spar_session *session, const char *call, const char *key, const spari_setting **of) {
+    char keys[SPARI_MESSAGE_SIZE / 2];
+    *of = spari_setting_find(settings, SETTINGS, OPTION, key);
+    SPARI_REQUIRE(session, *of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; give one of %s", call, key,
+                  spari_setting_keys(settings, SETTINGS, OPTION, keys, sizeof keys));
+    return SPAR_OK;
+}
+
 int spar_session_set_option(spar_session *session, const char *key, const char *value) {
     SPARI_GUARD_ENVIRONMENT;
     SPARI_TRY(settable(session, __func__));
     SPARI_REQUIRE(session, key && value, SPAR_ERR_ARGUMENT, "%s: key or value is NULL", __func__);
-    const spari_setting *of = spari_setting_find(settings, SETTINGS, OPTION, key);
-    SPARI_REQUIRE(session, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
+    const spari_setting *of;
+    SPARI_TRY(find_option(session, __func__, key, &of));
     double x;
     SPARI_REQUIRE(session, spari_setting_read(of, value, &x), SPAR_ERR_ARGUMENT,
                   "%s: option '%s' does not accept '%s'; give %s", __func__, key, value, of->range);
@@ -332,7 +340,7 @@ int spar_session_get_option(const spar_session *session, const char *key, int64_
     SPARI_GUARD_ENVIRONMENT;
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_REQUIRE(session, key && text, SPAR_ERR_ARGUMENT, "%s: key or text is NULL", __func__);
-    const spari_setting *of = spari_setting_find(settings, SETTINGS, OPTION, key);
-    SPARI_REQUIRE(session, of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; spar.h lists them", __func__, key);
+    const spari_setting *of;
+    SPARI_TRY(find_option(session, __func__, key, &of));
     return spari_setting_write(session, __func__, of, spari_setting_value(session, of), capacity, text);
 }

@@ -85,7 +85,8 @@ static void test_session_settings(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "scheme", spar_session_set_coupling(s, 9, 0, 0, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "atol is nan", spar_session_set_coupling(s, 1, NAN, 0, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "omega", spar_session_set_relaxation(s, 0));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_session_set_option(s, "colour", "red"));
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no option 'colour'; give one of coupling.",
+            spar_session_set_option(s, "colour", "red"));
     REFUSED(s, SPAR_ERR_ARGUMENT, "does not accept", spar_session_set_option(s, "coupling.norm", "red"));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_session_set_option(s, NULL, "red"));
     still_works(s, "after");
@@ -374,7 +375,7 @@ static void test_read_members(void **state) {
         assert_string_equal(word, option[i][2]);
     }
     REFUSED(s, SPAR_ERR_ARGUMENT, "needs 7 characters; the buffer has 6", spar_fluid_get_option(f, "far", 6, word));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "no option 'fluid.far'; give theta, far, audit, velocity, ramp or ramp.start",
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no option 'fluid.far'; give one of theta, far, audit, velocity, ramp, ramp.start",
             spar_fluid_get_option(f, "fluid.far", 32, word));
     REFUSED(s, SPAR_ERR_ARGUMENT, "no option", spar_fluid_set_option(f, "fluid.far", "take"));
     REFUSED(s, SPAR_ERR_ARGUMENT,
