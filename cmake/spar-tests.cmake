@@ -44,8 +44,15 @@ mark_as_advanced(SPAR_TEST_LAUNCHER)
 set(SPAR_TEST_TIME_FACTOR 1 CACHE STRING "What the tests' time limits are multiplied with")
 mark_as_advanced(SPAR_TEST_TIME_FACTOR)
 
+# What a test may take is processor time (tests/limit): at least four times what it takes alone. By the clock it may take
+# eight times as long, so that a busy machine fails no test and one that waits for nothing still ends.
+function(spar_limit_of variable seconds)
+  math(EXPR seconds "${seconds} * ${SPAR_TEST_TIME_FACTOR}")
+  set(${variable} sh "${PROJECT_SOURCE_DIR}/tests/limit" ${seconds} PARENT_SCOPE)
+endfunction()
+
 function(spar_set_test name label timeout)
-  math(EXPR timeout "${timeout} * ${SPAR_TEST_TIME_FACTOR}")
+  math(EXPR timeout "8 * ${timeout} * ${SPAR_TEST_TIME_FACTOR}")
   set_tests_properties(${name} PROPERTIES LABELS "${label}" TIMEOUT ${timeout} ENVIRONMENT "${spar_test_environment};${ARGN}")
 endfunction()
 
@@ -55,7 +62,8 @@ function(spar_add_test file label timeout)
   add_executable(${name} "${file}")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   target_link_libraries(${name} PRIVATE ${spar_test_libraries})
-  add_test(NAME ${name} COMMAND ${SPAR_TEST_LAUNCHER} $<TARGET_FILE:${name}> WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  spar_limit_of(limit ${timeout})
+  add_test(NAME ${name} COMMAND ${limit} ${SPAR_TEST_LAUNCHER} $<TARGET_FILE:${name}> WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   spar_set_test(${name} ${label} ${timeout})
 endfunction()
 
@@ -66,9 +74,10 @@ function(spar_add_ranks target label timeout)
   if(target MATCHES "_(sums|save)$")
     set(counts 1 2 3 4 7)
   endif()
+  spar_limit_of(limit ${timeout})
   foreach(ranks IN LISTS counts)
     add_test(NAME ${target}_np${ranks}
-      COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks}
+      COMMAND ${limit} ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks}
               $<TARGET_FILE:${target}> ${ARGN}
       WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
     # Open MPI unloads its parts before it ends: the leak checker cannot tell any more what they left.
@@ -136,7 +145,8 @@ if(TARGET spar_fortran)
       target_link_libraries(${target} PRIVATE MPI::MPI_Fortran)
       spar_add_ranks(${target} fortran 60)
     else()
-      add_test(NAME ${target} COMMAND ${target} WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+      spar_limit_of(limit 120)
+      add_test(NAME ${target} COMMAND ${limit} $<TARGET_FILE:${target}> WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
       spar_set_test(${target} fortran 120)
     endif()
   endforeach()

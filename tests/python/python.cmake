@@ -16,15 +16,16 @@ if(NOT python)
   message(STATUS "no Python with numpy: the Python package is not tried")
   return()
 endif()
-add_test(NAME python COMMAND "${python}" -B -W error "${CMAKE_CURRENT_LIST_DIR}/test_python.py" "${PROJECT_BINARY_DIR}/tests")
-add_test(NAME python_sizes COMMAND "${python}" -B -W error "${CMAKE_CURRENT_LIST_DIR}/test_sizes.py")
-add_test(NAME python_fuzz COMMAND "${python}" -B -W error "${CMAKE_CURRENT_LIST_DIR}/fuzz.py" 6000 1 3) # more calls and other seeds by hand
-add_test(NAME python_blade COMMAND "${python}" -B -W error "${PROJECT_SOURCE_DIR}/examples/python/blade.py")
+spar_limit_of(limit 60)
+add_test(NAME python COMMAND ${limit} "${python}" -B -W error "${CMAKE_CURRENT_LIST_DIR}/test_python.py" "${PROJECT_BINARY_DIR}/tests")
+add_test(NAME python_sizes COMMAND ${limit} "${python}" -B -W error "${CMAKE_CURRENT_LIST_DIR}/test_sizes.py")
+add_test(NAME python_fuzz COMMAND ${limit} "${python}" -B -W error "${CMAKE_CURRENT_LIST_DIR}/fuzz.py" 6000 1 3) # more calls and other seeds by hand
+add_test(NAME python_blade COMMAND ${limit} "${python}" -B -W error "${PROJECT_SOURCE_DIR}/examples/python/blade.py")
 set_tests_properties(python_blade PROPERTIES PASS_REGULAR_EXPRESSION "12.1   0.737[0-9]   1.09.*the tip goes 0.7[0-9]+ m")
 add_test(NAME python_wheel COMMAND "${CMAKE_CURRENT_LIST_DIR}/wheel" "${python}" "${PROJECT_BINARY_DIR}/tests/wheel")
 spar_set_test(python_wheel package 900)
 set_tests_properties(python_wheel PROPERTIES SKIP_RETURN_CODE 77)
-add_test(NAME python_turbine COMMAND "${python}" -B -W error "${CMAKE_CURRENT_LIST_DIR}/test_turbine.py" "${PROJECT_BINARY_DIR}/tests"
+add_test(NAME python_turbine COMMAND ${limit} "${python}" -B -W error "${CMAKE_CURRENT_LIST_DIR}/test_turbine.py" "${PROJECT_BINARY_DIR}/tests"
   "${PROJECT_BINARY_DIR}/examples/spar-run")
 foreach(test IN ITEMS python python_sizes python_fuzz python_blade python_turbine)
   spar_set_test(${test} unit 60)

@@ -99,6 +99,32 @@ static double now(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* Processor time of a child that has not been waited for, s. */
+static double time_used_by(pid_t child) {
+    struct timespec t = {0};
+    clockid_t clock;
+    if (clock_getcpuclockid(child, &clock) == 0) {
+        (void)clock_gettime(clock, &t);
+    }
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Patience counts processor time, so that a busy machine does not matter; and so many times more by the clock, for a
+   child that waits for nothing. */
+enum { WAITS = 30 };
+
+typedef struct stopwatch {
+    double used, since;
+} stopwatch;
+
+static stopwatch start_watch(pid_t child) {
+    return (stopwatch){time_used_by(child), now()};
+}
+
+static int is_over(const stopwatch *w, pid_t child, double patience) {
+    return time_used_by(child) - w->used > patience || now() - w->since > WAITS * patience;
+}
+
 /* ---- a child ---- */
 
 static void remove_files(int number) {
@@ -220,16 +246,16 @@ static outcome judge(const window *w, int status, int hung) {
     return o;
 }
 
-/* Waits for one child; kills it when it makes no call for so many seconds. */
+/* Waits for one child; kills it when it makes no call for so many seconds of processor time. */
 static outcome await(pid_t child, window *w, double patience) {
     int status = 0, hung = 0;
     long long calls = -1;
-    double since = now();
+    stopwatch watch = start_watch(child);
     while (waitpid(child, &status, WNOHANG) == 0) {
         if (w->calls != calls) {
             calls = w->calls;
-            since = now();
-        } else if (!hung && now() - since > patience) {
+            watch = start_watch(child);
+        } else if (!hung && is_over(&watch, child, patience)) {
             hung = 1;
             (void)kill(child, SIGKILL);
         }
@@ -301,7 +327,7 @@ static int show(uint64_t seed, int fault) {
 typedef struct job {
     pid_t child;
     long long first, calls;
-    double since;
+    stopwatch watch;
     int hung;
 } job;
 
@@ -315,7 +341,7 @@ static long long total_calls(int jobs) {
 
 static void start(job *j, int number, long long first, const options *o) {
     window *w = windows + number;
-    *j = (job){.first = first, .calls = w->calls, .since = now()};
+    *j = (job){.first = first, .calls = w->calls};
     w->found = 0;
     (void)fflush(NULL);
     j->child = fork();
@@ -330,6 +356,7 @@ static void start(job *j, int number, long long first, const options *o) {
         check_leaks();
         _exit(0);
     }
+    j->watch = start_watch(j->child);
 }
 
 /* A batch has lost memory: which of its sequences? */
@@ -440,8 +467,8 @@ static int look(job *jobs, const options *o, long long *next, int *running) {
             }
         } else if (windows[j].calls != jobs[j].calls) {
             jobs[j].calls = windows[j].calls;
-            jobs[j].since = now();
-        } else if (!jobs[j].hung && now() - jobs[j].since > PATIENCE) {
+            jobs[j].watch = start_watch(jobs[j].child);
+        } else if (!jobs[j].hung && is_over(&jobs[j].watch, jobs[j].child, PATIENCE)) {
             jobs[j].hung = 1;
             (void)kill(jobs[j].child, SIGKILL);
         }
