@@ -217,27 +217,13 @@ static int tangent_serves(const spari_assembly *a) {
    is used again. Its contraction rate is about this number. */
 static const double near_factored = 0.01;
 
-/* A solution of so many iterations keeps its tangents. New ones cost about PRICE iterations. */
+/* Of the tangents of an assembly (spari_tangent_serves_on). They are not formed twice in a step. */
 enum { PATIENCE = 3, PRICE = 13 };
 
 /* Whether the step under way has formed its tangents. Rates are projected onto the constraints in the metric of the
    tangents, so a coupling may not converge if every other iteration has new ones. */
 static int formed_in_step(const spari_assembly *a) {
     return a->session->integrator.substeps == 1 && (!a->factored_begun || a->formed);
-}
-
-/* Whether the tangents are reused after a solution of so many iterations. fresh: they were formed in it. As for a
-   member without joints (time/component_body.c), new tangents are formed once a solution costs more than the mean of
-   those that the tangents have served, with the cost of the tangents, but not twice in a step. */
-static int serve_on(spari_assembly *a, int iterations, int fresh) {
-    if (fresh) { /* the first iterations may have used other tangents */
-        a->reuse.served = 1;
-        a->reuse.spent = PRICE + (iterations < PATIENCE ? iterations : PATIENCE);
-        return 1;
-    }
-    a->reuse.served++;
-    a->reuse.spent += iterations;
-    return iterations <= PATIENCE || iterations * a->reuse.served <= a->reuse.spent || formed_in_step(a);
 }
 
 static int begin_attempt(void *self, int reused) {
@@ -315,7 +301,8 @@ static void end_solution(void *self, int iterations, int fresh) {
     if (t->a->constraints == 0) {
         p->row->end_solution(p, iterations, fresh);
     } else {
-        t->a->factored = serve_on(t->a, iterations, fresh) && !t->a->session->state.renew;
+        int serves = spari_tangent_serves_on(&t->a->reuse, PATIENCE, PRICE, iterations, fresh) || formed_in_step(t->a);
+        t->a->factored = serves && !t->a->session->state.renew;
     }
 }
 

@@ -26,11 +26,6 @@ typedef struct spari_interface {
     double E[9];    /* of a node in the cluster of another: its small rotation by the rotation of the constraint */
 } spari_interface;
 
-/* Solutions with the present tangents, and their cost with that of the tangents, in iterations. */
-typedef struct spari_tangent_reuse {
-    int64_t served, spent;
-} spari_tangent_reuse;
-
 struct spari_assembly {
     spar_session *session;
     spari_assembly *next;

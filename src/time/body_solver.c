@@ -119,7 +119,7 @@ void spari_solver_poison(spari_solver *s) {
 }
 
 void spari_solver_begin(spari_solver *s) {
-    s->begun = (spari_reuse){s->factored, s->tangent_cm, s->tangent_cv, s->served, s->spent, s->left};
+    s->begun = (spari_reuse){s->factored, s->tangent_cm, s->tangent_cv, s->reuse, s->left};
     spari_snapshot_open(&s->before, 1);
     s->start.known = 0;
 }
@@ -149,7 +149,7 @@ void spari_solver_reject(spari_solver *s) {
     }
     s->factored = b->factored && s->before.saved >= 0;
     s->tangent_cm = b->cm, s->tangent_cv = b->cv;
-    s->served = b->served, s->spent = b->spent;
+    s->reuse = b->tangent;
     s->left = b->left;
     if (s->before.saved > 0) {
         const double *from = s->before.data, *factors = from + 4 * (int64_t)s->n;
@@ -281,8 +281,8 @@ void spari_solver_save(const spari_solver *s, double *state) {
                                      s->power,
                                      s->power_begin,
                                      s->steps.begin.even,
-                                     (double)s->served,
-                                     (double)s->spent,
+                                     (double)s->reuse.served,
+                                     (double)s->reuse.spent,
                                      s->left,
                                      s->steps.solved.even};
     size_t n = (size_t)s->n;
@@ -296,7 +296,8 @@ void spari_solver_save(const spari_solver *s, double *state) {
         memcpy(state + 4 * n, s->tinv, STATE_OPERATOR * n * sizeof *state);
     }
     const spari_reuse *b = &s->begun;
-    const double begun[STATE_BEGUN] = {b->factored, b->cm, b->cv, (double)b->served, (double)b->spent, b->left};
+    const double begun[STATE_BEGUN] = {b->factored, b->cm, b->cv, (double)b->tangent.served, (double)b->tangent.spent,
+                                       b->left};
     state += 4 * n + (size_t)tangent_size(s, s->factored);
     memcpy(state, begun, sizeof begun);
     spari_snapshot_save(&s->before, state + STATE_BEGUN);
@@ -326,7 +327,7 @@ void spari_solver_load(spari_solver *s, const double *state) {
     s->steps.started = state[6] != 0;
     s->newton = (int64_t)state[7], s->factors = (int64_t)state[8];
     s->power = state[9], s->power_begin = state[10];
-    s->served = (int64_t)state[12], s->spent = (int64_t)state[13];
+    s->reuse = (spari_tangent_reuse){(int64_t)state[12], (int64_t)state[13]};
     s->left = state[14];
     s->start.known = 0;
     memcpy(s->begin.q, state += STATE_HEAD, 25 * n * sizeof *state);
@@ -338,6 +339,6 @@ void spari_solver_load(spari_solver *s, const double *state) {
         memcpy(s->tinv, state + 4 * n, STATE_OPERATOR * n * sizeof *state);
     }
     state += 4 * n + (size_t)tangent_size(s, s->factored);
-    s->begun = (spari_reuse){state[0] != 0, state[1], state[2], (int64_t)state[3], (int64_t)state[4], state[5]};
+    s->begun = (spari_reuse){state[0] != 0, state[1], state[2], {(int64_t)state[3], (int64_t)state[4]}, state[5]};
     spari_snapshot_load(&s->before, state + STATE_BEGUN, s->factored);
 }

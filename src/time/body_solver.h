@@ -23,9 +23,9 @@ typedef struct spari_state {
 /* How a tangent is reused. */
 typedef struct spari_reuse {
     int factored;
-    double cm, cv;         /* the tangent's coefficients */
-    int64_t served, spent; /* solutions with it, and what they and the tangent itself took, in iterations */
-    double left;           /* estimated remaining correction of the last solution, relative to the length, rad */
+    double cm, cv; /* the tangent's coefficients */
+    spari_tangent_reuse tangent;
+    double left; /* estimated remaining correction of the last solution, relative to the length, rad */
 } spari_reuse;
 
 /* Forces at the starting values of Newton. These values follow from the motion at t^n, so each iteration of a coupling
@@ -64,7 +64,7 @@ struct spari_solver {
     /* the factored tangent, reused while it contracts */
     int factored;
     double tangent_cm, tangent_cv; /* its coefficients */
-    int64_t served, spent;         /* solutions with it, and what they and the tangent itself took, in iterations */
+    spari_tangent_reuse reuse;
     spari_start_forces start;
     double left;           /* estimated remaining correction of the last solution, relative to the length, rad */
     spari_reuse begun;     /* the same at the beginning of the step, */

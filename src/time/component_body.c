@@ -378,23 +378,8 @@ static double advance_nodes(spari_component *p, double longest, double *motion) 
     return size.by;
 }
 
-/* A tangent is reused as long as a solution takes no more iterations than this. Beyond, a new tangent is formed for
-   the next solution if it pays. A tangent costs about as much as PRICE iterations. The mean cost of a solution, with
-   the cost of the tangent shared by the solutions it served, has its minimum where a solution first costs more than
-   the mean. If new tangents contract no better than old ones, the mean never falls so far. */
+/* Of the tangent of one member (spari_tangent_serves_on). */
 enum { PATIENCE = 5, PRICE = 10 };
-
-/* Whether the tangent is reused after a solution of so many iterations. fresh: it was formed in this solution. */
-static int serves_on(spari_solver *s, int iterations, int fresh) {
-    if (fresh) { /* the first iterations may have used another tangent */
-        s->served = 1;
-        s->spent = PRICE + (iterations < PATIENCE ? iterations : PATIENCE);
-        return 1;
-    }
-    s->served++;
-    s->spent += iterations;
-    return iterations <= PATIENCE || iterations * s->served <= s->spent;
-}
 
 static void end_solution_of_nodes(spari_component *p, int iterations, int fresh) {
     spari_solver *s = p->solver;
@@ -403,7 +388,8 @@ static void end_solution_of_nodes(spari_component *p, int iterations, int fresh)
         return;
     }
     spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, s->increment);
-    s->factored = serves_on(s, iterations, fresh) && !p->member->session->state.renew;
+    s->factored =
+        spari_tangent_serves_on(&s->reuse, PATIENCE, PRICE, iterations, fresh) && !p->member->session->state.renew;
     if (!s->factored) { /* for a response */
         spari_alpha_operators(s, &p->scheme, &p->stage.ends, s->increment);
     }
