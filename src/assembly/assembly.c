@@ -43,7 +43,6 @@ static int predict(void *self, spari_guess stays) {
     const newton_step *t = self;
     spari_assembly *a = t->a;
     int any = 0;
-    a->wandered = a->wandered || stays != SPARI_KEEP_ACCELERATION;
     for (int i = 0; i < a->components; i++) {
         spari_component *p = a->component + i;
         int has = p->row->predict(p, stays);
@@ -226,9 +225,16 @@ static int formed_in_step(const spari_assembly *a) {
     return a->session->integrator.substeps == 1 && (!a->factored_begun || a->formed);
 }
 
-static int begin_attempt(void *self, int reused) {
+static int begin_attempt(void *self, spari_tangents tangents) {
     newton_step *t = self;
-    t->a->factored = reused && tangent_serves(t->a);
+    t->a->factored = tangents == SPARI_TANGENT_REUSED && tangent_serves(t->a);
+    t->a->wandered = t->a->wandered || tangents == SPARI_TANGENT_EACH;
+    for (int i = 0; i < t->a->components; i++) {
+        const spari_component *p = t->a->component + i;
+        if (p->solver && p->body->C) {
+            spari_solver_mix(p->solver, tangents == SPARI_TANGENT_EACH);
+        }
+    }
     t->a->system_serves = 0; /* the beginning of a solution must not depend on earlier solutions */
     return t->a->factored;
 }
@@ -295,13 +301,14 @@ static void renew_tangents(void *self) {
     t->a->factored = 0;
 }
 
-static void end_solution(void *self, int iterations, int fresh) {
+static void end_solution(void *self, int iterations, spari_tangents tangents) {
     const newton_step *t = self;
     spari_component *p = t->a->component;
     if (t->a->constraints == 0) {
-        p->row->end_solution(p, iterations, fresh);
+        p->row->end_solution(p, iterations, tangents);
     } else {
-        int serves = spari_tangent_serves_on(&t->a->reuse, PATIENCE, PRICE, iterations, fresh) || formed_in_step(t->a);
+        int serves =
+            spari_tangent_serves_on(&t->a->reuse, PATIENCE, PRICE, iterations, tangents) || formed_in_step(t->a);
         t->a->factored = serves && !t->a->session->state.renew;
     }
 }
@@ -342,14 +349,18 @@ static const char *attempts_of(spari_assembly *a, double s, double dt, int *iter
                                       iterate_newton, renew_tangents, end_solution},
                               alone = {INFINITY, predict, begin_attempt, iterate_newton, renew_tangents, end_solution};
     newton_step step = {a, s, dt};
-    const int serves = tangent_serves(a), most = a->session->newton.max;
-    if (a->constraints > 0) {
-        return spari_newton_solve(&tied, &step, serves, most, &a->left, iterations);
+    const spari_component *p = a->component;
+    const int joined = a->constraints > 0, most = a->session->newton.max;
+    const spari_tangent_reuse *reuse = joined ? &a->reuse : p->solver ? &p->solver->reuse : NULL;
+    const spari_tangents first = reuse && spari_tangent_is_new_in_each(reuse) ? SPARI_TANGENT_EACH
+                                 : tangent_serves(a)                          ? SPARI_TANGENT_REUSED
+                                                                              : SPARI_TANGENT_NEW;
+    if (joined) {
+        return spari_newton_solve(&tied, &step, first, most, &a->left, iterations);
     }
-    spari_component *p = a->component;
-    const char *wrong = spari_newton_solve(&alone, &step, serves, most, p->left, iterations);
+    const char *wrong = spari_newton_solve(&alone, &step, first, most, p->left, iterations);
     if (wrong) {
-        p->row->end_solution(p, 0, 0);
+        p->row->end_solution(a->component, 0, SPARI_TANGENT_REUSED);
     }
     return wrong;
 }
@@ -375,7 +386,7 @@ static const char *walk_drives_in(spari_assembly *a, double s, double dt, int pa
                 l->drive.z[k] = l->begin.z[k] + (l->to.z[k] - l->begin.z[k]) * part / parts;
             }
         }
-        wrong = spari_newton_solve(&how, &step, 0, a->session->newton.max, &a->left, iterations);
+        wrong = spari_newton_solve(&how, &step, SPARI_TANGENT_NEW, a->session->newton.max, &a->left, iterations);
     }
     return wrong;
 }
@@ -878,7 +889,7 @@ int spari_assembly_advance(spari_assembly *a, double dt, int responses) {
     a->solved = 1;
     if (responses && !a->factored && form_after(a) == 0) {
         a->factored = 1;
-        a->reuse = (spari_tangent_reuse){0, PRICE};
+        a->reuse.served = 0, a->reuse.spent = PRICE;
     }
     return SPAR_OK;
 }

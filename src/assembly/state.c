@@ -67,7 +67,7 @@ void spari_assembly_reject(spari_assembly *a) {
 
 /* ---- save and load ---- */
 
-enum { HEAD = 11 };
+enum { HEAD = 13 };
 
 /* Of a factored system: the condensed members. */
 static int64_t factors_size(const spari_assembly *a) {
@@ -95,6 +95,8 @@ void spari_assembly_save(const spari_assembly *a, double *state) {
     state[8] = (double)a->reuse.spent;
     state[9] = (double)a->reuse_begun.served;
     state[10] = (double)a->reuse_begun.spent;
+    state[11] = (double)a->reuse.each;
+    state[12] = (double)a->reuse_begun.each;
     state += HEAD;
     for (int i = 0; i < a->components && a->factored; i++) {
         spari_condensed_save(a->component[i].condensed, state);
@@ -126,8 +128,11 @@ void spari_assembly_load(spari_assembly *a, const double *state) {
     a->formed = state && state[6] != 0;
     a->factored_begun = state && (a->factored || a->formed) ? (int)state[3] : 0; /* with the condensed members */
     a->left_begun = state ? state[4] : 0;
-    a->reuse = (spari_tangent_reuse){state ? (int64_t)state[7] : 0, state ? (int64_t)state[8] : 0};
-    a->reuse_begun = (spari_tangent_reuse){state ? (int64_t)state[9] : 0, state ? (int64_t)state[10] : 0};
+    a->reuse = a->reuse_begun = (spari_tangent_reuse){0};
+    if (state) {
+        a->reuse = (spari_tangent_reuse){(int64_t)state[7], (int64_t)state[8], (int64_t)state[11]};
+        a->reuse_begun = (spari_tangent_reuse){(int64_t)state[9], (int64_t)state[10], (int64_t)state[12]};
+    }
     a->solved = 0;
     state = state ? state + HEAD : NULL;
     for (int i = 0; i < a->components && a->factored; i++) {

@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 /* A file is the heading, the words, and their check sum, which is of all before it. */
-enum { VERSION = 32, HEAD_WORDS = 3, HEAD_BYTES = 8 * HEAD_WORDS, CHECK_BYTES = 8 };
+enum { VERSION = 33, HEAD_WORDS = 3, HEAD_BYTES = 8 * HEAD_WORDS, CHECK_BYTES = 8 };
 
 static const char magic[8] = {'s', 'p', 'a', 'r', '-', 'r', 'u', 'n'};
 

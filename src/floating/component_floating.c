@@ -172,8 +172,8 @@ static double advance_frame(spari_component *p, double longest, double *motion) 
 }
 
 /* The tangent is valid until the equations change. */
-static void end_solution_of_frame(spari_component *p, int iterations, int fresh) {
-    (void)p, (void)iterations, (void)fresh;
+static void end_solution_of_frame(spari_component *p, int iterations, spari_tangents tangents) {
+    (void)p, (void)iterations, (void)tangents;
 }
 
 /* ---- response to loads ---- */

@@ -44,9 +44,11 @@ typedef struct spari_body {
                               velocities */
     double *seen;          /* [unique][6] workspace, likewise */
     int gyroscopic;
-    double length;     /* size of the member for tolerances: arc length, or radius of gyration of a rigid body */
-    double stiffest;   /* force due to rounding of positions: largest stiffness, of moments over this size squared */
-    double *lines;     /* memory of the blocks, without `pre` */
+    double length;   /* size of the member for tolerances: arc length, or radius of gyration of a rigid body */
+    double stiffest; /* force due to rounding of positions: largest stiffness, of moments over this size squared */
+    double *lines;   /* memory of the blocks, without `pre` */
+    /* [blocks][6][lanes] strains that the section forces of the tangent follow; NULL: those of its state */
+    const double *mixed_strain;
     double *tally;     /* [tiles][2] workspace of sums over elements */
     int64_t workspace; /* doubles of an element, at least 6 for each node of the body; its tangent stands behind */
     spari_workspace *shared;               /* workspace of the calling thread, */
@@ -129,6 +131,13 @@ double spari_body_residual(const spari_body *body, const double *q, const double
    tinv [unique][9]; NULL: identity. v, a NULL: at rest. */
 void spari_body_tangent(const spari_body *body, int e, const double *q, const double *v, const double *a, double factor,
                         double cm, double cv, const double *tinv, double *S);
+
+/* Mixed integration points (Magisano, Leonetti and Garcea, CMAME 313 (2017)): Newton's method converges independently
+   of the stiffness if the section forces at the points are unknowns of their own, which follow from the linearised
+   strains. Eliminated, they change the tangent alone: its geometric part has the forces of the strains at the last
+   iterate q, linear in the correction -part dq [unique][6] that led from there to the present one. Puts these strains
+   in the layout of `mixed_strain`. */
+void spari_body_mixed_strains(const spari_body *body, const double *q, const double *dq, double part, double *strain);
 
 /* Velocity and acceleration parts of the tangent, dr = C dv + M da, row-major [6P][6P]; S is the tangent with cm =
    cv = 0. C, M may be NULL. */

@@ -1,4 +1,5 @@
-/* Forces and energy of a body: sums over quadrature points. docs/explanation/theory.md, "The beam". */
+/* Forces and energy of a body: sums over quadrature points; and its linear strains. docs/explanation/theory.md, "The
+ * beam". */
 #include "../base/thread_pool.h"
 #include "../math/basis.h"
 #include "quadrature_point.h"
@@ -165,6 +166,40 @@ void spari_body_energy(const spari_body *body, const double *q, const double *v,
             }
         }
     }
+}
+
+/* ---- mixed integration points ---- */
+
+/* The correction of an iterate, and its linear strains. */
+typedef struct strain_state {
+    const double *q, *dq;
+    double part, *strain;
+} strain_state;
+
+static void put_mixed_strains(const spari_body *body, int tile, int from, int to, void *context) {
+    static const double none[36 * SPARI_LANES] = {0}; /* without section forces */
+    const strain_state *state = context;
+    double *z = spari_body_scratch(body), *f = z + ROW * SPARI_MAX_NODES;
+    (void)tile;
+    for (int e = from; e < to; e++) {
+        spari_point_gather(body, e, state->q, state->dq, NULL, z);
+        spari_lanes_interpolate(body, e, SPARI_RATES | SPARI_SLOPES | SPARI_RATE_SLOPES, z, f);
+        for (int k = 0; k < body->first[e + 1] - body->first[e]; k++) {
+            int64_t slot = body->slot[e] + k;
+            double *strain = SPARI_BLOCK(state->strain, 6, slot);
+            point_one s;
+            fields_one(1, SPARI_BLOCK(f, POINT_ROWS, k), &s);
+            strain_one(SPARI_BLOCK(body->tangent, 3, slot), none, &s);
+            strain_rate_one(none, &s);
+            for (int i = 0; i < 6; i++) {
+                strain[SPARI_LANES * i] = s.e[i] - state->part * s.ed[i];
+            }
+        }
+    }
+}
+
+void spari_body_mixed_strains(const spari_body *body, const double *q, const double *dq, double part, double *strain) {
+    spari_body_sweep(body, put_mixed_strains, &(strain_state){q, dq, part, strain});
 }
 
 /* ---- centre of mass ---- */

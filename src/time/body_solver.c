@@ -3,6 +3,7 @@
 
 #include "../base/poison.h"
 #include "../base/session.h"
+#include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/applied_loads.h"
 #include "../member/plane.h"
@@ -85,6 +86,7 @@ void spari_solver_free(spari_solver *s) {
     free(s->tangent_q);
     free(s->rotation);
     free(s->best);
+    free(s->mixed.q);
     free(s->start.state);
     free(s->most);
     spari_anderson_free(s->anderson);
@@ -102,6 +104,36 @@ void spari_solver_restart(spari_solver *s) {
     s->power = s->power_begin = 0;
 }
 
+/* ---- mixed integration points ---- */
+
+static int64_t mixed_size(const spari_solver *s) {
+    return 13 * (int64_t)s->n + 6 * (int64_t)s->body->slot[s->body->elements];
+}
+
+void spari_solver_mix(spari_solver *s, int on) {
+    spari_mixed_points *m = &s->mixed;
+    if (on && !m->q && (m->q = spari_zalloc(mixed_size(s), sizeof *m->q))) {
+        m->dx = m->q + 7 * (int64_t)s->n;
+        m->strain = m->dx + 6 * (int64_t)s->n;
+    }
+    m->on = on && m->q;
+    m->part = 0;
+    if (m->on) {
+        memcpy(m->q, s->from.q, (size_t)(7 * s->n) * sizeof *m->q);
+        memset(m->dx, 0, (size_t)(6 * s->n) * sizeof *m->dx);
+    }
+}
+
+void spari_solver_remember_correction(spari_solver *s, const double *q, const double *rotation) {
+    spari_mixed_points *m = &s->mixed;
+    memcpy(m->q, q, (size_t)(7 * s->n) * sizeof *m->q);
+    memcpy(m->dx, s->dx, (size_t)(6 * s->n) * sizeof *m->dx);
+    m->part = 1;
+    for (int i = 0; i < 6 * s->n && rotation; i += 3) {
+        spari_rotate(rotation + 4 * (i / 6), m->dx + i, m->dx + i);
+    }
+}
+
 void spari_solver_poison(spari_solver *s) {
     double *const sixes[] = {s->increment, s->steps.load, s->r, s->dx, s->stage_v};
     int64_t n = s->n, spans = (n + SPARI_SPAN - 1) / SPARI_SPAN, block = 6 * (int64_t)s->body->per_element;
@@ -115,6 +147,7 @@ void spari_solver_poison(spari_solver *s) {
     spari_poison(s->to.q, 25 * n);
     spari_poison(s->own[0].q, 25 * n);
     spari_poison(s->own[1].q, 25 * n);
+    spari_poison(s->mixed.q, s->mixed.q ? mixed_size(s) : 0);
     spari_poison(spari_body_matrix(s->body), block * block);
 }
 
@@ -256,7 +289,7 @@ void spari_solver_effort(const spari_solver *s, spari_effort *e) {
 
 /* Per node: 25 doubles at either end of the step, and 4 for the rotation at the reused tangent; 9 with which a
    tangent is formed. */
-enum { STATE_HEAD = 16, STATE_NODE = 54, STATE_OPERATOR = 9, STATE_BEGUN = 6 };
+enum { STATE_HEAD = 17, STATE_NODE = 54, STATE_OPERATOR = 9, STATE_BEGUN = 7 };
 
 /* The factors, or, if there are none, the data from which those for a response are formed. */
 static int64_t tangent_size(const spari_solver *s, int factored) {
@@ -284,7 +317,8 @@ void spari_solver_save(const spari_solver *s, double *state) {
                                      (double)s->reuse.served,
                                      (double)s->reuse.spent,
                                      s->left,
-                                     s->steps.solved.even};
+                                     s->steps.solved.even,
+                                     (double)s->reuse.each};
     size_t n = (size_t)s->n;
     memcpy(state, head, sizeof head);
     memcpy(state += STATE_HEAD, s->begin.q, 25 * n * sizeof *state);
@@ -296,8 +330,13 @@ void spari_solver_save(const spari_solver *s, double *state) {
         memcpy(state + 4 * n, s->tinv, STATE_OPERATOR * n * sizeof *state);
     }
     const spari_reuse *b = &s->begun;
-    const double begun[STATE_BEGUN] = {b->factored, b->cm, b->cv, (double)b->tangent.served, (double)b->tangent.spent,
-                                       b->left};
+    const double begun[STATE_BEGUN] = {b->factored,
+                                       b->cm,
+                                       b->cv,
+                                       (double)b->tangent.served,
+                                       (double)b->tangent.spent,
+                                       b->left,
+                                       (double)b->tangent.each};
     state += 4 * n + (size_t)tangent_size(s, s->factored);
     memcpy(state, begun, sizeof begun);
     spari_snapshot_save(&s->before, state + STATE_BEGUN);
@@ -312,8 +351,8 @@ int spari_solver_is_state(const spari_solver *s, const double *state, int64_t co
     }
     const int64_t begun = own + tangent_size(s, state[1] != 0);
     const double *b = state + begun, *before = b + STATE_BEGUN;
-    return count >= begun + STATE_BEGUN && spari_is_count(b[3]) && spari_is_count(b[4]) && spari_is_remaining(b[5]) &&
-           spari_snapshot_is(before, count - begun - STATE_BEGUN, before_size(s)) &&
+    return count >= begun + STATE_BEGUN && spari_is_count(b[3]) && spari_is_count(b[4]) && spari_is_count(b[6]) &&
+           spari_is_remaining(b[5]) && spari_snapshot_is(before, count - begun - STATE_BEGUN, before_size(s)) &&
            (before[1] <= 0 || spari_linear_is_state(s->linear, before + SPARI_SNAPSHOT_HEAD + 4 * (int64_t)s->n)) &&
            (state[1] == 0 || spari_linear_is_state(s->linear, state + own));
 }
@@ -327,7 +366,7 @@ void spari_solver_load(spari_solver *s, const double *state) {
     s->steps.started = state[6] != 0;
     s->newton = (int64_t)state[7], s->factors = (int64_t)state[8];
     s->power = state[9], s->power_begin = state[10];
-    s->reuse = (spari_tangent_reuse){(int64_t)state[12], (int64_t)state[13]};
+    s->reuse = (spari_tangent_reuse){(int64_t)state[12], (int64_t)state[13], (int64_t)state[16]};
     s->left = state[14];
     s->start.known = 0;
     memcpy(s->begin.q, state += STATE_HEAD, 25 * n * sizeof *state);
@@ -339,6 +378,7 @@ void spari_solver_load(spari_solver *s, const double *state) {
         memcpy(s->tinv, state + 4 * n, STATE_OPERATOR * n * sizeof *state);
     }
     state += 4 * n + (size_t)tangent_size(s, s->factored);
-    s->begun = (spari_reuse){state[0] != 0, state[1], state[2], {(int64_t)state[3], (int64_t)state[4]}, state[5]};
+    s->begun = (spari_reuse){
+        state[0] != 0, state[1], state[2], {(int64_t)state[3], (int64_t)state[4], (int64_t)state[6]}, state[5]};
     spari_snapshot_load(&s->before, state + STATE_BEGUN, s->factored);
 }

@@ -12,6 +12,7 @@
 #include "effort.h"
 #include "offset_loads.h"
 #include "scheme.h"
+#include "tangent_reuse.h"
 #include "tangent_snapshot.h"
 
 /* State at one time, [unique][...]: q 7, v 6, true acceleration a 6, algorithmic acceleration b 6. One block of 25
@@ -37,6 +38,15 @@ typedef struct spari_start_forces {
     double gravity[3], scale, power;
 } spari_start_forces;
 
+/* The last correction, for tangents with mixed integration points (member/body.h). The memory is allocated when a
+   solution first needs a tangent in each iteration. */
+typedef struct spari_mixed_points {
+    int on;
+    double part;    /* of dx that has been subtracted */
+    double *q, *dx; /* [n][7] positions before, [n][6] correction, global axes */
+    double *strain; /* of the points */
+} spari_mixed_points;
+
 typedef struct spari_solver spari_solver;
 /* The data of an iteration come first, so that a large assembly reads few cache lines. */
 struct spari_solver {
@@ -57,10 +67,11 @@ struct spari_solver {
     spari_linear *linear;
     spari_anderson *anderson; /* of the corrections of one solution */
     double *tinv;             /* [n][9] inverse tangent operator of the rotation vector */
-    double *best;             /* static: state to go back to */
-    spari_state begin;        /* at t^n */
-    spari_state own[2];       /* ends of a substep relative to a driven root or a rigid motion; NULL: none so far */
-    double *block[3];         /* the memory of the three states */
+    spari_mixed_points mixed;
+    double *best;       /* static: state to go back to */
+    spari_state begin;  /* at t^n */
+    spari_state own[2]; /* ends of a substep relative to a driven root or a rigid motion; NULL: none so far */
+    double *block[3];   /* the memory of the three states */
     /* the factored tangent, reused while it contracts */
     int factored;
     double tangent_cm, tangent_cv; /* its coefficients */
@@ -83,6 +94,12 @@ void spari_solver_restart(spari_solver *solver);
 void spari_solver_begin(spari_solver *solver);
 void spari_solver_accept(spari_solver *solver);
 void spari_solver_reject(spari_solver *solver);
+/* The tangents of an attempt have mixed integration points, if `on` and if there is memory. It begins with the strains
+   at the beginning of the substep. */
+void spari_solver_mix(spari_solver *solver, int on);
+/* Remembers a correction, with the positions q that it begins from. rotation: from the axes of dx to global ones; NULL:
+   these are global. */
+void spari_solver_remember_correction(spari_solver *solver, const double *q, const double *rotation);
 /* The effort so far. */
 void spari_solver_effort(const spari_solver *solver, spari_effort *effort);
 

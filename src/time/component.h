@@ -42,11 +42,11 @@ typedef struct spari_component_row {
     /* Of a component without ends. solve: the corrections from the latest residual; returns 0 or 1. correct_newton: the
        same in an iteration of Newton, after `residual_size`. advance: subtracts them, shortened to `longest`; returns
        their size before, and the size of the motion in the step; 0: the solution is exact. end_solution: Newton has
-       converged in so many iterations, with a tangent formed in this attempt if `fresh`; 0: it has failed. */
+       converged in so many iterations, with these tangents; 0: it has failed. */
     int (*solve)(struct spari_component *p);
     int (*correct_newton)(struct spari_component *p);
     double (*advance)(struct spari_component *p, double longest, double *motion);
-    void (*end_solution)(struct spari_component *p, int iterations, int fresh);
+    void (*end_solution)(struct spari_component *p, int iterations, spari_tangents tangents);
 
     /* After the step. tangent_after: forms the tangent at its end if none is there; returns 0 or 1. apply_load: the
        residual becomes a small additional load [nodes][6] on the nodes. get_response: the corrections as a motion

@@ -271,8 +271,18 @@ static int form_tangent(const spari_component *p, const spari_state *at) {
 
 static int tangent_of_nodes(spari_component *p) {
     spari_solver *s = p->solver;
+    const spari_mixed_points *m = &s->mixed;
+    const spari_body *body = s->body;
+    spari_body mixed = *body;
     spari_alpha_operators(s, &p->scheme, &p->stage.ends, s->increment);
-    if (form_tangent(p, &p->stage.ends.absolute)) {
+    if (m->on) {
+        spari_body_mixed_strains(body, m->q, m->dx, m->part, m->strain);
+        mixed.mixed_strain = m->strain;
+        s->body = &mixed;
+    }
+    int singular = form_tangent(p, &p->stage.ends.absolute);
+    s->body = body;
+    if (singular) {
         return 1;
     }
     (void)size_of_residual(p); /* the axes of the tangent are new */
@@ -347,6 +357,9 @@ double spari_component_correct(spari_component *p, double cut) {
         s->dx[k] *= cut;
     }
     s->newton++;
+    if (s->mixed.on) {
+        spari_solver_remember_correction(s, p->stage.ends.absolute.q, NULL);
+    }
     return p->stage.ends.root_motion +
            spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, NULL, INFINITY, s->increment, s->dx).motion;
 }
@@ -371,8 +384,12 @@ static int correct_nodes(spari_component *p) {
 
 static double advance_nodes(spari_component *p, double longest, double *motion) {
     spari_solver *s = p->solver;
+    if (s->mixed.on) {
+        spari_solver_remember_correction(s, p->stage.ends.absolute.q, s->rotation);
+    }
     const spari_corrected size =
         spari_alpha_correct(s, p->member, &p->scheme, &p->stage.ends, s->rotation, longest, s->increment, s->dx);
+    s->mixed.part = size.by > longest ? longest / size.by : 1;
     s->newton++;
     *motion = size.motion + p->stage.ends.root_motion;
     return size.by;
@@ -381,7 +398,7 @@ static double advance_nodes(spari_component *p, double longest, double *motion) 
 /* Of the tangent of one member (spari_tangent_serves_on). */
 enum { PATIENCE = 5, PRICE = 10 };
 
-static void end_solution_of_nodes(spari_component *p, int iterations, int fresh) {
+static void end_solution_of_nodes(spari_component *p, int iterations, spari_tangents tangents) {
     spari_solver *s = p->solver;
     if (iterations == 0) {
         s->factored = 0;
@@ -389,7 +406,7 @@ static void end_solution_of_nodes(spari_component *p, int iterations, int fresh)
     }
     spari_alpha_impose_root(p->member, &p->stage.root, &p->stage.ends, s->increment);
     s->factored =
-        spari_tangent_serves_on(&s->reuse, PATIENCE, PRICE, iterations, fresh) && !p->member->session->state.renew;
+        spari_tangent_serves_on(&s->reuse, PATIENCE, PRICE, iterations, tangents) && !p->member->session->state.renew;
     if (!s->factored) { /* for a response */
         spari_alpha_operators(s, &p->scheme, &p->stage.ends, s->increment);
     }

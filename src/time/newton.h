@@ -5,6 +5,7 @@
 #define SPARI_NEWTON_H
 
 #include "scheme.h"
+#include "tangent_reuse.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -22,20 +23,19 @@ typedef struct spari_newton {
     double farthest; /* a larger correction counts as divergence */
     /* Computes starting values. Returns 0 if this kind does not exist here. */
     int (*predict)(void *self, spari_guess stays);
-    /* Begins an attempt, with the earlier tangent if `reused` and if it may serve. Returns whether there is a tangent.
-     */
-    int (*begin)(void *self, int reused);
+    /* Begins an attempt with these tangents. Returns whether an earlier one serves. */
+    int (*begin)(void *self, spari_tangents tangents);
     /* Corrects once, by `longest` at most. Returns NULL, or the reason of a failure. */
     const char *(*iterate)(void *self, double longest, spari_iterate *it);
     /* The next iteration forms a tangent. */
     void (*renew)(void *self);
-    /* Newton has converged after so many iterations. fresh: a tangent was formed in this attempt. */
-    void (*end)(void *self, int iterations, int fresh);
+    /* Newton has converged after so many iterations, with these tangents. */
+    void (*end)(void *self, int iterations, spari_tangents tangents);
 } spari_newton;
 
-/* An attempt: with the reused tangent; with a new one; with a new one in every iteration and short corrections. */
+/* An attempt: its tangents, with short corrections if each iteration has a new one, and its starting values. */
 typedef struct spari_attempt {
-    int reused, full;
+    spari_tangents tangents;
     spari_guess stays;
 } spari_attempt;
 
@@ -66,9 +66,12 @@ static inline double spari_newton_remaining(double before, double last) {
    large forces. *left: the remaining correction. Returns NULL, or the reason of a failure. */
 static inline const char *spari_newton_attempt(const spari_newton *how, void *self, spari_attempt try, int most,
                                                double *left, int *iterations) {
-    double last = 0, force = 0, least = INFINITY, longest = try.full ? SPARI_LONGEST : INFINITY;
+    const int each = try.tangents == SPARI_TANGENT_EACH;
+    double last = 0, force = 0, least = INFINITY, longest = each ? SPARI_LONGEST : INFINITY;
     int same = 0, stalled = 0; /* the last correction had the same tangent; so many did not halve the least one */
-    int fresh = !how->begin(self, try.reused);
+    if (!how->begin(self, try.tangents) && !each) {
+        try.tangents = SPARI_TANGENT_NEW;
+    }
     for (int it = 1; it <= most; it++, ++*iterations) {
         spari_iterate n;
         const char *wrong = how->iterate(self, longest, &n);
@@ -82,16 +85,16 @@ static inline const char *spari_newton_attempt(const spari_newton *how, void *se
         least = n.correction < least ? n.correction : least;
         if ((*left <= n.tolerance && balanced) || n.rounded || (theta > 0.5 && n.small) ||
             (stalled >= SPARI_STALLED && n.stiff)) {
-            how->end(self, it, fresh);
+            how->end(self, it, try.tangents);
             return NULL;
         }
-        if ((theta > 2 || n.correction > how->farthest) && !try.full) {
+        if ((theta > 2 || n.correction > how->farthest) && !each) {
             return "diverges";
         }
-        same = !try.full && theta <= SPARI_SLOW;
+        same = !each && theta <= SPARI_SLOW;
         if (!same) {
             how->renew(self);
-            fresh = 1;
+            try.tangents = each ? SPARI_TANGENT_EACH : SPARI_TANGENT_NEW;
         }
         last = n.correction;
         force = n.force;
@@ -99,17 +102,20 @@ static inline const char *spari_newton_attempt(const spari_newton *how, void *se
     return "does not converge";
 }
 
-/* reused: there is a tangent that may serve. *left: as above. Returns NULL, or the reason why the last attempt failed.
+/* first: the tangents of the first attempt. *left: as above. Returns NULL, or the reason why the last attempt failed.
  */
-static inline const char *spari_newton_solve(const spari_newton *how, void *self, int reused, int most, double *left,
-                                             int *iterations) {
-    static const spari_attempt attempts[] = {{1, 0, SPARI_KEEP_ACCELERATION},
-                                             {0, 0, SPARI_KEEP_ACCELERATION},
-                                             {0, 1, SPARI_KEEP_SHAPE},
-                                             {0, 1, SPARI_KEEP_VELOCITY},
-                                             {0, 1, SPARI_KEEP_POSITION}};
+static inline const char *spari_newton_solve(const spari_newton *how, void *self, spari_tangents first, int most,
+                                             double *left, int *iterations) {
+    enum { EACH, REUSED, NEW, MORE };
+    static const spari_attempt attempts[] = {[EACH] = {SPARI_TANGENT_EACH, SPARI_KEEP_ACCELERATION},
+                                             [REUSED] = {SPARI_TANGENT_REUSED, SPARI_KEEP_ACCELERATION},
+                                             [NEW] = {SPARI_TANGENT_NEW, SPARI_KEEP_ACCELERATION},
+                                             [MORE] = {SPARI_TANGENT_EACH, SPARI_KEEP_SHAPE},
+                                             [MORE + 1] = {SPARI_TANGENT_EACH, SPARI_KEEP_VELOCITY},
+                                             [MORE + 2] = {SPARI_TANGENT_EACH, SPARI_KEEP_POSITION}};
     const char *wrong = NULL;
-    for (size_t k = reused ? 0 : 1; k < sizeof attempts / sizeof *attempts; k++) {
+    size_t k = first == SPARI_TANGENT_EACH ? EACH : first == SPARI_TANGENT_REUSED ? REUSED : NEW;
+    for (; k < sizeof attempts / sizeof *attempts; k = k == EACH ? MORE : k + 1) {
         if (!how->predict(self, attempts[k].stays)) {
             continue;
         }

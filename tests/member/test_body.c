@@ -568,6 +568,47 @@ static void test_left_over_slots(void **unused) {
     lanes = 0;
 }
 
+/* Tangents with the linear strains of a correction (member/body.h, "Mixed integration points"): without a correction
+   those of the state; with one of size h their difference is of second order, a quarter for h / 2. */
+static void test_mixed_strains(void **unused) {
+    (void)unused;
+    for (int damped = 0; damped < 2; damped++) {
+        spari_body *b = random_body(2, 4, 5, damped, 0);
+        const int n = b->unique, m = 24;
+        state s, dx;
+        double apart[3] = {0}, *strain = calloc((size_t)(6 * b->slot[2]), sizeof *strain);
+        double S[24 * 24], mixed[24 * 24], big = 0;
+        spari_body with = *b;
+        with.mixed_strain = strain;
+        random_state(n, 0.3, &s);
+        random_state(n, 1, &dx);
+        for (int k = 0; k < 3; k++) {
+            const double h = k == 0 ? 0 : k == 1 ? 2e-3 : 1e-3;
+            state after = s;
+            for (int i = 0; i < n; i++) { /* the correction -h dx.v */
+                double psi[3], p[4];
+                for (int j = 0; j < 3; j++) {
+                    after.q[7 * i + j] -= h * dx.v[6 * i + j];
+                    psi[j] = -h * dx.v[6 * i + 3 + j];
+                }
+                spari_quat_exp(psi, p);
+                spari_quat_mul(p, s.q + 7 * i + 3, after.q + 7 * i + 3);
+            }
+            spari_body_mixed_strains(b, s.q, dx.v, h, strain);
+            spari_body_tangent(b, 1, after.q, after.v, NULL, 1, 0, 3, NULL, S);
+            spari_body_tangent(&with, 1, after.q, after.v, NULL, 1, 0, 3, NULL, mixed);
+            for (int i = 0; i < m * m; i++) {
+                big = fmax(big, fabs(S[i]));
+                apart[k] = fmax(apart[k], fabs(mixed[i] - S[i]));
+            }
+        }
+        assert_true(apart[0] <= 1e-14 * big && apart[1] > 1e-9 * big);
+        assert_true(fabs(apart[1] / apart[2] - 4) < 0.1);
+        free(strain);
+        spari_body_free(b);
+    }
+}
+
 /* All the rest at every width. */
 static void test_other_widths(void **unused) {
     for (lanes = 2; lanes < SPARI_LANES; lanes *= 2) {
@@ -575,6 +616,7 @@ static void test_other_widths(void **unused) {
         test_forces_are_the_gradient_of_the_energy(unused);
         test_frame_indifference(unused);
         test_power_balance(unused);
+        test_mixed_strains(unused);
     }
     lanes = 0;
 }
@@ -589,6 +631,7 @@ int main(void) {
         cmocka_unit_test(test_lanes),
         cmocka_unit_test(test_tangent_lanes),
         cmocka_unit_test(test_left_over_slots),
+        cmocka_unit_test(test_mixed_strains),
         cmocka_unit_test(test_other_widths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
