@@ -1,6 +1,6 @@
 /* Acceleration of the coupling iteration: constant relaxation, Aitken relaxation, and quasi-Newton
    (fluid_secants.c, iqn_ils.c). */
-#include "accelerator.h"
+#include "accelerator_data.h"
 
 #include "../base/poison.h"
 #include "../base/status.h"

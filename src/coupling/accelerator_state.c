@@ -1,5 +1,5 @@
 /* State of an accelerator as doubles, for save and load. The same code counts, writes and reads. */
-#include "accelerator.h"
+#include "accelerator_data.h"
 
 #include "../base/status.h"
 

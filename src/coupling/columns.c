@@ -1,5 +1,5 @@
 /* Difference columns of the quasi-Newton schemes: newest first, those of accepted steps and of the present one. */
-#include "accelerator.h"
+#include "accelerator_data.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
    the structure made between two evaluations, and the change y of the loads that came back, both as they were measured,
    in the axes of the sections. A structure that bends or turns therefore leaves secants right that a difference of
    loads, which has S in it, would not. */
-#include "accelerator.h"
+#include "accelerator_data.h"
 
 #include "../base/status.h"
 #include "../math/rotation.h"

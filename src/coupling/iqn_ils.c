@@ -1,7 +1,7 @@
 /* IQN-ILS in the load norm (Degroote, Bathe & Vierendeels 2009), with columns of earlier steps and the QR2 filter of
    Haelterman et al. (2016): newest columns first, each kept only if enough of it is linearly independent of those
    before. For structures whose flexibility the library does not know. */
-#include "accelerator.h"
+#include "accelerator_data.h"
 
 #include <string.h>
 

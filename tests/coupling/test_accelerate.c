@@ -5,7 +5,7 @@
 
 #include <spar/spar.h>
 
-#include "coupling/accelerator.h"
+#include "coupling/accelerator_data.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Data of an accelerator, shared by accelerator.c (create, step, Aitken), columns.c (difference columns),
    fluid_secants.c (quasi-Newton in the motion norm), iqn_ils.c (in the load norm) and accelerator_state.c (save and
    load). */
-#ifndef SPARI_ACCELERATOR_H
-#define SPARI_ACCELERATOR_H
+#ifndef SPARI_ACCELERATOR_DATA_H
+#define SPARI_ACCELERATOR_DATA_H
 
 #include "schemes.h"
 
