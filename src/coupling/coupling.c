@@ -7,6 +7,7 @@
 #include "../member/added_mass.h"
 #include "../member/body.h"
 #include "../member/structure.h"
+#include "../time/fidelity.h"
 #include "motion_norm.h"
 
 #include <float.h>
@@ -747,6 +748,35 @@ static void accept_explicit(spar_session *s) {
     }
 }
 
+/* Loads that move nothing have no weight in the stop test, and are those of an iteration before. Section forces that
+   follow from loads, not from strains, need those pushed last. */
+static int needs_idle_loads(const spar_member *m) {
+    return m->row->effective_load && !m->assembly &&
+           (m->fidelity == SPAR_FIDELITY_MODAL || m->fidelity == SPAR_FIDELITY_RIGID);
+}
+
+static int update_idle_loads(spar_session *s) {
+    spari_coupling *c = s->own->coupling;
+    const double *x = c->x, *unit = c->unit;
+    int needed = 0;
+    for (const spar_member *m = s->members; m; m = m->next) {
+        needed = needed || needs_idle_loads(m);
+    }
+    if (!needed) {
+        return SPAR_OK;
+    }
+    stack(s);
+    const spari_norm_loads w = weighed(c);
+    SPARI_TRY(spari_motion_norm_effective_load(s, &w, c->image, c->x));
+    for (spar_member *m = s->members; m; x += 6 * m->nodes, m = m->next, unit++) {
+        const double *shift = spari_added_shift(m);
+        for (int64_t i = 0; i < 6 * m->nodes && needs_idle_loads(m); i++) {
+            m->load.solved[1][i] = m->load.dead[i] + x[i] / (i % 6 < 3 ? 1 : *unit) - (shift ? shift[i] : 0);
+        }
+    }
+    return SPAR_OK;
+}
+
 int spari_coupling_check(spar_session *s, const char *call, int *done) {
     spari_coupling *c = s->own->coupling;
     int agreed;
@@ -756,7 +786,7 @@ int spari_coupling_check(spar_session *s, const char *call, int *done) {
         SPARI_TRY(check_explicit(s, call));
     }
     if (agreed || !c->accelerator) {
-        return SPAR_OK;
+        return agreed && c->accelerator && c->weighs ? update_idle_loads(s) : SPAR_OK;
     }
     if (s->state.iteration >= s->coupling.max) {
         if (!s->coupling.accept_unconverged) {

@@ -252,8 +252,40 @@ static void test_loads_on_a_root(void **state) {
     }
 }
 
+/* A modal beam with bending modes alone under a pull along it, which moves nothing and is another one in each push:
+   once the step has ended, the reaction balances the last one, by equilibrium along the beam. By IQN-ILS and Aitken. */
+static void test_reaction_beside_modes(void **state) {
+    (void)state;
+    for (int scheme = SPAR_COUPLING_AITKEN; scheme <= SPAR_COUPLING_IQN_ILS; scheme++) {
+        bar b;
+        double reaction[6], pull = 0;
+        int done = 0;
+        create(&b, SPAR_FIDELITY_MODAL, 0.01, 1e-6);
+        OK(b.session, spar_session_set_coupling(b.session, scheme, 1e-9, 1e-6, 50));
+        OK(b.session, spar_step_begin(b.session, 0.02));
+        for (int i = 0; !done; i++) {
+            OK(b.session, spar_step_solve(b.session));
+            push(&b, 1, 1, 0);
+            pull = 0;
+            for (int k = 0; k < NODES; k++) {
+                b.force[3 * k] = 1 + 0.1 * i;
+                pull += b.force[3 * k];
+            }
+            OK(b.session, spar_fluid_push_forces(b.fluid, b.force, NULL));
+            OK(b.session, spar_step_check(b.session, &done));
+        }
+        OK(b.session, spar_step_accept(b.session));
+        OK(b.session, spar_member_get_reaction(b.beam, reaction));
+        print_message("scheme %d: reaction %.6f for %.6f N in %d pushes\n", scheme, reaction[0], pull, b.calls);
+        assert_true(b.calls > 1);
+        NEAR(fabs(reaction[0]), pull, 1e-6 * pull);
+        spar_session_destroy(&b.session);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_run_off), cmocka_unit_test(test_heavy_half_way),
-                                       cmocka_unit_test(test_reaction), cmocka_unit_test(test_loads_on_a_root)};
+                                       cmocka_unit_test(test_reaction), cmocka_unit_test(test_loads_on_a_root),
+                                       cmocka_unit_test(test_reaction_beside_modes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
