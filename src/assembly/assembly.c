@@ -912,7 +912,28 @@ int spari_lone_advance(spar_member *m, double dt) {
 
 /* ---- response to loads ---- */
 
-int spari_lone_response(spar_member *m, const double *load, double *motion) {
+/* Whether the step was one of TR-BDF2, whose two stages respond one after the other. Of a step in several parts only
+   the last one responds. */
+static int has_two_stages(const spari_component *p) {
+    return p->scheme.rule == SPARI_BACKWARD && spari_steps_are_equal(p->scheme.h, p->member->session->clock.dt);
+}
+
+static void get_response(spari_component *p, spari_response_of of, double *motion) {
+    p->row->get_response(p, motion);
+    if (of == SPARI_OF_VELOCITY && !has_two_stages(p)) {
+        double rate = SPARI_DIAGONAL * p->member->session->clock.dt * p->scheme.rate;
+        for (int64_t i = 0; i < 6 * p->member->nodes; i++) {
+            motion[i] *= rate;
+        }
+    }
+}
+
+/* The part of the load that acts in the second stage. */
+static double part_of_load(spari_response_of of) {
+    return of == SPARI_OF_VELOCITY ? SPARI_DIAGONAL : 1;
+}
+
+int spari_lone_response(spar_member *m, spari_response_of of, const double *load, double *motion) {
     spari_component p = spari_component_of(m);
     p.row->restore_end(&p);
     if (p.row->tangent_after(&p)) {
@@ -922,7 +943,14 @@ int spari_lone_response(spar_member *m, const double *load, double *motion) {
     if (p.row->solve(&p)) {
         return 1;
     }
-    p.row->get_response(&p, motion);
+    if (has_two_stages(&p)) {
+        p.row->apply_load(&p, load);
+        p.row->carry_over(&p, part_of_load(of));
+        if (p.row->solve(&p)) {
+            return 1;
+        }
+    }
+    get_response(&p, of, motion);
     return 0;
 }
 
@@ -947,23 +975,33 @@ static int has_loads(const spari_assembly *a, double *stacked) {
     return 0;
 }
 
-/* One response of these tangents, stacked. */
-static int respond_once(spari_assembly *a, double *stacked) {
+static int respond_in_stage(spari_assembly *a, spari_response_of of, int stage, double *stacked) {
     for (int i = 0; i < a->components; i++) {
-        a->component[i].row->apply_load(a->component + i, stacked_of(a->component[i].member, stacked));
+        spari_component *p = a->component + i;
+        p->row->apply_load(p, stacked_of(p->member, stacked));
+        if (stage > 0) {
+            p->row->carry_over(p, part_of_load(of));
+        }
     }
     for (int i = 0; i < a->constraints; i++) {
         memset(a->constraint[i].gap, 0, sizeof a->constraint[i].gap);
     }
-    if (spari_system_solve(a, a->component[0].scheme.cv)) {
-        return 1;
+    return spari_system_solve(a, a->component[0].scheme.cv);
+}
+
+/* One response of these tangents, stacked. */
+static int respond_once(spari_assembly *a, spari_response_of of, double *stacked) {
+    const int stages = has_two_stages(a->component) ? 2 : 1;
+    for (int stage = 0; stage < stages; stage++) {
+        if (respond_in_stage(a, of, stage, stacked)) {
+            return 1;
+        }
     }
     for (int i = 0; i < a->components; i++) {
-        a->component[i].row->get_response(a->component + i, stacked_of(a->component[i].member, stacked));
+        get_response(a->component + i, of, stacked_of(a->component[i].member, stacked));
     }
     return 0;
 }
-
 /* Restores the components and constraints at the end of the step that was read from a file. The motions of joints
    stay: their rates are the published ones. */
 static void restore_end(spari_assembly *a) {
@@ -979,7 +1017,7 @@ static void restore_end(spari_assembly *a) {
     a->solved = 1;
 }
 
-int spari_assembly_response(spari_assembly *a, int64_t count, int64_t stride, double *stacked) {
+int spari_assembly_response(spari_assembly *a, spari_response_of of, int64_t count, int64_t stride, double *stacked) {
     if (!a->here || a->components == 0) {
         return 0;
     }
@@ -992,7 +1030,7 @@ int spari_assembly_response(spari_assembly *a, int64_t count, int64_t stride, do
     int singular = 0;
     a->system_serves = 0; /* the system was formed at slightly different positions */
     for (int64_t k = 0; k < count && !singular; k++) {
-        singular = has_loads(a, stacked + k * stride) && respond_once(a, stacked + k * stride);
+        singular = has_loads(a, stacked + k * stride) && respond_once(a, of, stacked + k * stride);
     }
     a->system_serves = 0;
     return singular;

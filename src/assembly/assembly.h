@@ -49,14 +49,18 @@ int spari_assembly_advance(spari_assembly *assembly, double dt, int responses);
 /* Finds the accelerations of the members and the loads of the joints at t^0 under load.history[0], for steps dt. The
    motion at t^{n+1} becomes that of t^0 with them. If this was done before, the present joint loads stay. */
 int spari_assembly_balance(spari_assembly *assembly, double dt);
-/* The motion that a small additional load causes, to first order and over the last substep. After a step, on the
-   owner; elsewhere it does nothing.
+typedef enum spari_response_of { SPARI_OF_DISPLACEMENT, SPARI_OF_VELOCITY } spari_response_of;
+/* The motion that a small additional load at t^{n+1} causes, to first order: over the step, or over the last one of its
+   parts if it was solved in several. After a step, on the owner; elsewhere it does nothing.
+   SPARI_OF_VELOCITY: the change of velocity instead, times (1 - 1/sqrt 2) dt. In even steps of generalised-alpha
+     velocities and accelerations change by multiples of the displacement. In those of TR-BDF2 they do not.
 
    stacked: `count` vectors, `stride` numbers from each other, with six numbers for each node of all members of the
    session. On entry they are the loads on the members of this assembly, on return the motions. Zero vectors cost
    nothing. The following steps are not affected, to the last bit. Returns 0, or 1: there is no response, as after
    reading a step without tangents from a file. */
-int spari_assembly_response(spari_assembly *assembly, int64_t count, int64_t stride, double *stacked);
+int spari_assembly_response(spari_assembly *assembly, spari_response_of of, int64_t count, int64_t stride,
+                            double *stacked);
 /* The motion per unit force of the assembly's mass without any constraint, m/N; 0 without inertia. */
 double spari_assembly_mass_response(const spari_assembly *assembly);
 /* The estimated remaining correction of the last Newton solution. */
@@ -74,7 +78,7 @@ void spari_assembly_reject(spari_assembly *assembly);
    load [nodes][6], equilibrium under dead loads and `fluid`. */
 int spari_lone_advance(spar_member *member, double dt);
 int spari_lone_balance(spar_member *member, double dt);
-int spari_lone_response(spar_member *member, const double *load, double *motion);
+int spari_lone_response(spar_member *member, spari_response_of of, const double *load, double *motion);
 int spari_lone_static(spar_member *member, const double *(*fluid)(const spar_member *), int load_steps, int onward);
 /* The added mass of a member has changed. */
 void spari_assembly_forget(spari_assembly *assembly);

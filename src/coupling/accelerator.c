@@ -151,6 +151,7 @@ const spari_coupling_scheme *spari_coupling_scheme_of(int scheme) {
 
 void spari_accelerator_begin(spari_accelerator *a, double dt) {
     a->dt = dt;
+    spari_accelerator_set_rates(a, 1 / dt, 1 / dt);
     a->iteration = 0;
     a->used = a->stalled = a->filtered = 0;
     a->cut = 0;
@@ -164,6 +165,12 @@ void spari_accelerator_begin(spari_accelerator *a, double dt) {
     if (a->scheme->begin) {
         a->scheme->begin(a);
     }
+}
+
+void spari_accelerator_set_rates(spari_accelerator *a, double rate, double acceleration) {
+    a->per[SPARI_ACCELERATION] = rate * acceleration;
+    a->per[SPARI_CHANGE_OF_VELOCITY] = rate / a->dt;
+    a->per[SPARI_VELOCITY] = rate;
 }
 
 /* Sum of a and b with weights multiplied by p and q. */

@@ -16,14 +16,25 @@
      or the motion drowns in the rounding of positions. S is then no more than a norm, as in IQN-ILS. */
 typedef enum spari_column_kind { SPARI_OF_LOADS, SPARI_OF_MOTION, SPARI_OF_RESPONSE } spari_column_kind;
 
+/* What a fluid may answer in a motion: its acceleration as fluids see it, its change of velocity over dt, its velocity.
+   In steps of one length it makes no difference. SPARI_OWN_STEPS: none of them, so secants serve in steps like their
+   own only. */
+typedef enum spari_quantity {
+    SPARI_ACCELERATION,
+    SPARI_CHANGE_OF_VELOCITY,
+    SPARI_VELOCITY,
+    SPARI_QUANTITIES,
+    SPARI_OWN_STEPS = SPARI_QUANTITIES
+} spari_quantity;
+
 /* Differences of two successive iterations: p by its kind, y of the loads that came back, and b the change of these
    before y. Motions and their loads are in the axes of the sections. */
 typedef struct spari_column {
-    int64_t step; /* in which it was made, by the accelerator's own count */
-    double dt;
-    int kind; /* SPARI_OF_* */
-    int led;  /* b is known */
-    int slot; /* of its vectors */
+    int64_t step;                     /* in which it was made, by the accelerator's own count */
+    double dt, per[SPARI_QUANTITIES]; /* those of its step */
+    int kind;                         /* SPARI_OF_* */
+    int led;                          /* b is known */
+    int slot;                         /* of its vectors */
 } spari_column;
 
 /* Weighted ratios of differences: their mean and their spread. */
@@ -37,8 +48,9 @@ typedef struct spari_recollection {
     double reach; /* largest rotation of a section by one correction, rad; 0: the first */
     double off;   /* error of the tangent's prediction of a motion, relative to it; decaying */
     double pairs, ww, wb, bb;
-    double
-        surprise[2]; /* decaying sums of what older secants do not predict, in axes of the sections and in fixed ones */
+    /* decaying sums of what older secants do not predict: in axes of the sections and in fixed ones; as functions of
+       each quantity */
+    double surprise[2], surprise_of[SPARI_QUANTITIES + 1];
 } spari_recollection;
 
 struct spari_accelerator {
@@ -51,9 +63,9 @@ struct spari_accelerator {
     int iteration;
     int used, stalled, filtered; /* columns of the last least-squares problem; differences without a motion in this
                                     step; columns filtered out of the last problem */
-    double dt, ratio;
-    spari_ratios ratios;        /* of this step, weighted by the roots of the differences' lengths */
-    spari_ratios ratios_before; /* of accepted steps, each relative to its largest weight, decaying */
+    double dt, per[SPARI_QUANTITIES], ratio; /* per: each quantity of a motion of 1 */
+    spari_ratios ratios;                     /* of this step, weighted by the roots of the differences' lengths */
+    spari_ratios ratios_before;              /* of accepted steps, each relative to its largest weight, decaying */
     double most_weight;
     double omega, omega_accepted; /* Aitken factor: in use, and at the end of the last accepted step (0: none) */
     int imaged;                   /* the iteration before used the motion norm */
@@ -75,6 +87,7 @@ struct spari_accelerator {
     double *b;            /* imaged: the same */
     double *axes;         /* imaged: [2 set.columns][n / 6][4] of the sections, by slot */
     int fixed;            /* imaged: the columns are kept in fixed axes */
+    int quantity;         /* imaged: loads are functions of it (spari_quantity) */
     double *stretch;      /* imaged: [n] weights of motions in sums of squares */
     double *lead, *last;  /* [n] imaged: the change of g before the next one; g at the end of the step before */
     int led, ended;       /* whether they are known */
@@ -123,8 +136,10 @@ int spari_back_substitute(int k, const double *R, int stride, double *alpha);
 /* Adds the newest column, of the present kind, and returns its slot. If all columns of the step are in use, the oldest
    of these goes. */
 int spari_column_add(spari_accelerator *a);
-/* Whether column j serves in this iteration: of the present kind and dt. */
+/* Whether column j serves in this iteration: of the present kind and, in the load norm, of this dt to a tenth. */
 int spari_column_serves(const spari_accelerator *a, int j);
+/* The factor of the motion of column j for which the quantity that the fluid answers is that of its own step. */
+double spari_column_scale(const spari_accelerator *a, int j);
 /* The step is accepted: columns of too many steps before go, and the oldest beyond the number allowed. */
 void spari_columns_accept(spari_accelerator *a);
 /* The step is rejected: its columns go. */
@@ -142,7 +157,7 @@ int spari_iqn_ils_next(spari_accelerator *a, const double *x, const double *g, d
 int spari_fluid_secants_learn(spari_accelerator *a, const double *dx, const spari_images *images);
 /* Adds the last secant of a converged step. */
 void spari_fluid_secants_end(spari_accelerator *a, const spari_images *images);
-/* The step is accepted: keeps the columns in the axes in which they hold better. */
+/* The step is accepted: keeps the columns in the axes, and as functions of the quantity, in which they hold better. */
 void spari_fluid_secants_accept(spari_accelerator *a);
 /* Next loads. Returns the status of images->of. */
 int spari_fluid_secants_next(spari_accelerator *a, const double *x, const double *g, const spari_images *images,

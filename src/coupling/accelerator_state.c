@@ -66,8 +66,12 @@ static void pass_memory(state_passage *t, const spari_accelerator *a, spari_reco
     pass_finite(t, &m->ww);
     pass_finite(t, &m->wb);
     pass_finite(t, &m->bb);
-    pass_finite(t, &m->surprise[0]);
-    pass_finite(t, &m->surprise[1]);
+    for (int i = 0; i < 2; i++) {
+        pass_finite(t, m->surprise + i);
+    }
+    for (int i = 0; i <= SPARI_QUANTITIES; i++) {
+        pass_finite(t, m->surprise_of + i);
+    }
     t->bad |= t->job == LOAD && !(m->rho >= 0 && m->rho < 1 && m->pairs >= 0 && (a->set.imaged || m->rho == 0));
 }
 
@@ -82,6 +86,7 @@ static void pass_head(state_passage *t, spari_accelerator *a) {
     pass_whole(t, &a->filtered, INT_MAX);
     pass_whole(t, &a->used, (a->scheme->columns ? a->set.columns : 0) + 1.0);
     pass_reals(t, &a->dt, 1);
+    pass_reals(t, a->per, SPARI_QUANTITIES);
     pass_reals(t, &a->ratio, 1);
     pass_reals(t, &a->omega, 1);
     pass_reals(t, &a->omega_accepted, 1);
@@ -90,6 +95,7 @@ static void pass_head(state_passage *t, spari_accelerator *a) {
     pass_whole(t, &a->imaged, with_images);
     pass_whole(t, &a->drifts, with_images);
     pass_whole(t, &a->fixed, with_images);
+    pass_whole(t, &a->quantity, SPARI_QUANTITIES + 1.0);
     pass_whole(t, &a->led, with_images);
     pass_whole(t, &a->ended, with_images);
     pass_ratios(t, &a->ratios);
@@ -110,6 +116,7 @@ static void pass_column(state_passage *t, spari_accelerator *a, int j) {
     spari_column *c = a->column + j, own = *c;
     pass_large(t, &own.step);
     pass_reals(t, &own.dt, 1);
+    pass_reals(t, own.per, SPARI_QUANTITIES);
     pass_whole(t, &own.kind, a->set.imaged ? SPARI_OF_RESPONSE + 1.0 : 1);
     pass_whole(t, &own.led, a->set.imaged ? 2 : 1);
     if (t->job == LOAD) {

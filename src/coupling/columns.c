@@ -37,7 +37,8 @@ int spari_column_add(spari_accelerator *a) {
     if (of_step == a->set.columns) {
         remove_column(a, of_step - 1);
     }
-    const spari_column c = {a->step, a->dt, kind_of(a), a->imaged && a->led, first_free_slot(a)};
+    spari_column c = {a->step, a->dt, {0}, (int)kind_of(a), a->imaged && a->led, first_free_slot(a)};
+    memcpy(c.per, a->per, sizeof c.per);
     memmove(a->column + 1, a->column, (size_t)a->count * sizeof *a->column);
     a->column[0] = c;
     a->count++;
@@ -46,7 +47,12 @@ int spari_column_add(spari_accelerator *a) {
 
 int spari_column_serves(const spari_accelerator *a, int j) {
     const spari_column *c = a->column + j;
-    return c->kind == (int)kind_of(a) && fabs(c->dt - a->dt) <= 0.1 * a->dt;
+    const int own = !a->imaged || a->quantity == SPARI_OWN_STEPS;
+    return c->kind == (int)kind_of(a) && (!own || fabs(c->dt - a->dt) <= 0.1 * a->dt);
+}
+
+double spari_column_scale(const spari_accelerator *a, int j) {
+    return a->quantity == SPARI_OWN_STEPS ? 1 : a->column[j].per[a->quantity] / a->per[a->quantity];
 }
 
 void spari_columns_accept(spari_accelerator *a) {

@@ -6,8 +6,10 @@
 #include "../math/rotation.h"
 #include "../member/added_mass.h"
 #include "../member/body.h"
+#include "../member/mean_acceleration.h"
 #include "../member/structure.h"
 #include "../time/fidelity.h"
+#include "../time/scheme.h"
 #include "motion_norm.h"
 
 #include <float.h>
@@ -24,7 +26,7 @@ void spari_coupling_free(spari_coupling **coupling) {
         return;
     }
     SPARI_FREE(c->length, c->unit, c->x, c->g, c->predicted, c->motion, c->residual, c->size, c->image, c->workspace,
-               c->missed, c->missing, c->shift, c->settled, c->q_before, c->path, c->axes);
+               c->missed, c->missing, c->shift, c->settled, c->before, c->path, c->axes);
     spari_accelerator_free(&c->accelerator);
     free(c);
     *coupling = NULL;
@@ -56,7 +58,7 @@ static int make_vectors(const spar_session *s, int scheme, spari_coupling *c) {
            (c->image = spari_zalloc(images + c->members + 1, sizeof(double))) &&
            (shifted == 0 || (c->shift = spari_zalloc(shifted, sizeof(double)))) &&
            (nodes == 0 || (c->settled = spari_zalloc(2 * n + 1, sizeof(double)))) &&
-           (c->q_before = spari_zalloc(7 * nodes, sizeof(double))) &&
+           (c->before = spari_zalloc(7 * nodes, sizeof(double))) &&
            (c->path = spari_zalloc(6 * nodes, sizeof(double))) && (c->axes = spari_zalloc(4 * nodes, sizeof(double))) &&
            (c->workspace = spari_zalloc(images > 0 ? 6 * largest : 0, sizeof(double))) &&
            (!iterated || (c->accelerator = spari_accelerator_create(n, 6, 3, &set)));
@@ -208,6 +210,28 @@ static void report_added_mass(spari_coupling *c) {
                                        c->report + SPAR_REPORT_ADDED_MASS_SPREAD);
 }
 
+/* What the motion of a secant is in this step. In a step of TR-BDF2 velocities are no multiples of displacements, and
+   it is velocities and accelerations that a fluid answers. */
+static spari_response_of motion_of(const spar_session *s) {
+    return spari_steps_even(&s->clock, s->clock.dt) || s->integrator.substeps > 1 ? SPARI_OF_DISPLACEMENT
+                                                                                  : SPARI_OF_VELOCITY;
+}
+
+/* How large velocities and accelerations are, as fluids see them, with a motion of 1. */
+static void set_rates(const spar_session *s) {
+    const double dt = s->clock.dt;
+    const spar_member *m = s->members;
+    while (m && !(m->effects & SPAR_EFFECT_INERTIA)) {
+        m = m->next;
+    }
+    if (m) {
+        const spari_scheme alpha = spari_scheme_of(m, 0, dt / s->integrator.substeps);
+        double rate = motion_of(s) == SPARI_OF_VELOCITY ? 1 / (SPARI_DIAGONAL * dt) : alpha.rate,
+               mean = spari_means_rate(s);
+        spari_accelerator_set_rates(s->own->coupling->accelerator, rate, mean > 0 ? mean : alpha.cm / alpha.rate);
+    }
+}
+
 void spari_coupling_begin(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     c->iterations = 0;
@@ -223,6 +247,7 @@ void spari_coupling_begin(spar_session *s) {
             }
         }
         spari_accelerator_begin(c->accelerator, s->clock.dt);
+        set_rates(s);
         report_added_mass(c);
     }
 }
@@ -440,8 +465,9 @@ static int not_converged(spar_session *s, const char *call) {
                       call, s->state.iteration, c->residual[last], c->size[last], motion, mass, cures_of(s, 0));
 }
 
-static spari_norm_loads weighed(const spari_coupling *c) {
-    return (spari_norm_loads){c->n, c->unit, c->x, c->g, c->shift, c->image, c->workspace};
+static spari_norm_loads weighed(const spar_session *s) {
+    const spari_coupling *c = s->own->coupling;
+    return (spari_norm_loads){c->n, c->unit, c->x, c->g, c->shift, c->image, c->workspace, motion_of(s)};
 }
 
 int spari_coupling_weighs(const spar_session *s) {
@@ -458,7 +484,7 @@ static int unsettled(spar_session *s, double *motion) {
     if (!spari_accelerator_settled(c->accelerator, c->x, c->g, r)) {
         return SPAR_OK;
     }
-    const spari_norm_loads w = weighed(c);
+    const spari_norm_loads w = weighed(s);
     SPARI_TRY(spari_motion_norm_images(s, &w, 1, r, image));
     spari_motion_norm_add_carried(s, &w, r, image);
     for (int64_t i = 0; i < c->n; i++) {
@@ -482,7 +508,7 @@ static int measure_residual(spar_session *s, double size, double *residual) {
     /* a step that has changed to the load norm keeps it */
     if (c->weighs && (s->state.iteration == 1 || spari_accelerator_imaged(c->accelerator))) {
         stack(s);
-        const spari_norm_loads w = weighed(c);
+        const spari_norm_loads w = weighed(s);
         SPARI_TRY(spari_motion_norm(s, &w, &motion, &whole, &c->weighed));
         motion = same ? 0 : motion;
         if (c->weighed && c->settled) {
@@ -576,7 +602,7 @@ int spari_coupling_compare(spar_session *s, int *agreed) {
 
 static int image_loads(void *session, int64_t count, const double *loads, double *image) {
     spar_session *s = session;
-    const spari_norm_loads w = weighed(s->own->coupling);
+    const spari_norm_loads w = weighed(s);
     SPARI_TRY(spari_motion_norm_images(s, &w, count, loads, image));
     for (int64_t j = 0; j < count && !s->own->coupling->settled; j++) { /* Aitken's products are those of the norm */
         spari_motion_norm_add_carried(s, &w, loads + j * w.n, image + j * w.n);
@@ -601,15 +627,22 @@ static double largest_rotation(void *session, const double *motion) {
 /* The motion since the iteration before as the structure made it, and the axes of the sections. */
 static void measure_motion(const spar_session *s) {
     spari_coupling *c = s->own->coupling;
-    double *before = c->q_before, *moved = c->path, *axes = c->axes, *unit = c->unit;
+    double *before = c->before, *moved = c->path, *axes = c->axes, *unit = c->unit;
     for (const spar_member *m = s->members; m; m = m->next, unit++) {
         for (int64_t i = 0; i < m->nodes; i++, before += 7, moved += 6, axes += 4) {
-            const double *q = m->after.q + 7 * i;
-            travel(before, q, moved);
+            const double *q = m->after.q + 7 * i, *v = m->after.v + 6 * i;
+            if (motion_of(s) == SPARI_OF_VELOCITY) {
+                for (int k = 0; k < 6; k++) {
+                    moved[k] = SPARI_DIAGONAL * s->clock.dt * (v[k] - before[k]);
+                }
+                memcpy(before, v, 6 * sizeof *v);
+            } else {
+                travel(before, q, moved);
+                memcpy(before, q, 7 * sizeof *q);
+            }
             for (int k = 3; k < 6; k++) {
                 moved[k] /= *unit;
             }
-            memcpy(before, q, 7 * sizeof *q);
             memcpy(axes, q + 3, 4 * sizeof *q);
         }
     }
@@ -618,7 +651,7 @@ static void measure_motion(const spar_session *s) {
 int spari_coupling_next(spar_session *s) {
     spari_coupling *c = s->own->coupling;
     const spari_images images = {c->image, image_loads, s, c->path, c->axes, largest_rotation};
-    const spari_norm_loads w = weighed(c);
+    const spari_norm_loads w = weighed(s);
     int secants = c->weighed && spari_coupling_scheme_of(s->coupling.scheme)->columns;
     stack(s);
     if (secants) {
@@ -766,7 +799,7 @@ static int update_idle_loads(spar_session *s) {
         return SPAR_OK;
     }
     stack(s);
-    const spari_norm_loads w = weighed(c);
+    const spari_norm_loads w = weighed(s);
     SPARI_TRY(spari_motion_norm_effective_load(s, &w, c->image, c->x));
     for (spar_member *m = s->members; m; x += 6 * m->nodes, m = m->next, unit++) {
         const double *shift = spari_added_shift(m);

@@ -25,9 +25,10 @@ typedef struct spari_coupling {
     double *settled;   /* motion norm, with columns: [2 n + 1] residual relative to the settled fluid, and its image */
     double *predicted; /* iterated: predicted loads of the step, unscaled */
     double *motion;    /* motion test: positions and quaternions [7] of the iteration before */
-    double *q_before;  /* motion norm, with columns: the same of the iteration before that was not converged */
-    double *path;      /* [n] motion since then, stacked as image */
-    double *axes;      /* [n / 6][4] of the sections */
+    double *before; /* motion norm, with columns: [n / 6][7] positions and quaternions, or velocities, of the iteration
+                       before that was not converged */
+    double *path;   /* [n] motion since then, stacked as image */
+    double *axes;   /* [n / 6][4] of the sections */
     spari_accelerator *accelerator; /* iterated */
 
     int iterations, most;    /* of the current or the last step; capacity of the next two */

@@ -45,6 +45,12 @@ static double products(const spari_accelerator *a, const double *p, const double
     return sum[0] + sum[1];
 }
 
+/* The length of the motion of secant j as this step has it. */
+static double length(const spari_accelerator *a, int j) {
+    const double *p = a->p + a->column[j].slot * a->n;
+    return spari_column_scale(a, j) * sqrt(products(a, p, p));
+}
+
 /* ---- secants ---- */
 
 /* Estimates rho (T32). J of an added mass is symmetric, so p_j . y_i - p_i . y_j is rho times the same of the changes
@@ -54,15 +60,15 @@ static void estimate_rho(spari_accelerator *a) {
     spari_recollection *m = &a->memory;
     const double *p = a->p + a->column[0].slot * a->n, *y = a->y + a->column[0].slot * a->n,
                  *b = a->b + a->column[0].slot * a->n;
-    double size = products(a, p, p);
+    double size = length(a, 0);
     m->pairs *= FADE_SECANTS, m->ww *= FADE_SECANTS, m->wb *= FADE_SECANTS, m->bb *= FADE_SECANTS;
     for (int j = 1; j < a->count; j++) {
         int64_t at = a->column[j].slot * a->n;
-        double sizes =
-            a->column[j].led && spari_column_serves(a, j) ? sqrt(size * products(a, a->p + at, a->p + at)) : 0;
+        double sizes = a->column[j].led && spari_column_serves(a, j) ? size * length(a, j) : 0;
         if (sizes > 0) {
-            double w = spari_sum_products(a->p + at, y, a->n) - spari_sum_products(p, a->y + at, a->n);
-            double c = spari_sum_products(a->p + at, b, a->n) - spari_sum_products(p, a->b + at, a->n);
+            double scale = spari_column_scale(a, j);
+            double w = scale * spari_sum_products(a->p + at, y, a->n) - spari_sum_products(p, a->y + at, a->n);
+            double c = scale * spari_sum_products(a->p + at, b, a->n) - spari_sum_products(p, a->b + at, a->n);
             w /= sizes, c /= sizes;
             m->pairs++, m->ww += w * w, m->wb += w * c, m->bb += c * c;
         }
@@ -84,9 +90,11 @@ static double error_of_tangent(const spari_accelerator *a, const double *respons
 
 /* ---- axes ---- */
 
-/* p and y of a column, both weighed, in fixed axes or in those of the sections. */
-static void get_column(const spari_accelerator *a, int slot, int fixed, double *p, double *y) {
+/* p and y of column j, both weighed, in fixed axes or in those of the sections. */
+static void get_column(const spari_accelerator *a, int j, int fixed, double *p, double *y) {
     size_t bytes = (size_t)a->n * sizeof *p;
+    const int slot = a->column[j].slot;
+    const double scale = spari_column_scale(a, j);
     memcpy(p, a->p + slot * a->n, bytes);
     memcpy(y, a->y + slot * a->n, bytes);
     if (fixed != a->fixed) {
@@ -95,25 +103,23 @@ static void get_column(const spari_accelerator *a, int slot, int fixed, double *
         rotate(axes, a->fixed, a->n, y);
     }
     for (int64_t i = 0; i < a->n; i++) {
-        p[i] *= a->stretch[i];
+        p[i] *= scale * a->stretch[i];
         y[i] /= a->stretch[i];
     }
 }
 
 /* Whether secant j of an earlier step is as long as those that the fit has: a shorter one is rounding, or scatter. */
 static int is_kept(const spari_accelerator *a, int j, double longest) {
-    const double *p = a->p + a->column[j].slot * a->n, part = a->set.filter * a->set.filter;
-    return products(a, p, p) > part * part * longest * longest;
+    return length(a, j) > a->set.filter * a->set.filter * longest;
 }
 
 /* Length of the longest motion of earlier steps. */
 static double longest_before(const spari_accelerator *a) {
     double most = 0;
     for (int j = 1; j < a->count; j++) {
-        const double *p = a->p + a->column[j].slot * a->n;
-        most = a->column[j].step < a->step && spari_column_serves(a, j) ? fmax(most, products(a, p, p)) : most;
+        most = a->column[j].step < a->step && spari_column_serves(a, j) ? fmax(most, length(a, j)) : most;
     }
-    return sqrt(most);
+    return most;
 }
 
 /* The part of the newest secant's loads that those of earlier steps do not predict, squared, relative to these loads;
@@ -126,7 +132,7 @@ static double misprediction(spari_accelerator *a, int fixed, double longest) {
     for (; j < a->count && rank < a->set.columns - 1; j++) {
         if (a->column[j].step < a->step && spari_column_serves(a, j) && is_kept(a, j, longest)) {
             double *y = a->loads + rank * n;
-            get_column(a, a->column[j].slot, fixed, a->basis + rank * n, y);
+            get_column(a, j, fixed, a->basis + rank * n, y);
             if (spari_orthonormalise(n, rank, INDEPENDENT, a->basis, r)) {
                 for (int i = 0; i < rank; i++) {
                     spari_axpy(-r[i], a->loads + i * n, y, n);
@@ -139,7 +145,7 @@ static double misprediction(spari_accelerator *a, int fixed, double longest) {
         }
     }
     double *p = a->basis + rank * n, *y = a->loads + rank * n;
-    get_column(a, a->column[0].slot, fixed, p, y);
+    get_column(a, 0, fixed, p, y);
     whole = spari_sum_products(y, y, n);
     if (!spari_orthonormalise(n, rank, 0, a->basis, r)) {
         r[rank] = 0;
@@ -151,19 +157,57 @@ static double misprediction(spari_accelerator *a, int fixed, double longest) {
     return left <= NEW * NEW * (known + left) && whole > 0 ? spari_sum_products(y, y, n) / whole : -1;
 }
 
-/* The first secant of a step tells in which axes those of the steps before hold. */
-static void compare_axes(spari_accelerator *a) {
-    double *sum = a->memory.surprise;
-    int first = a->count > 1 && a->column[1].step < a->step && a->set.columns > 1;
-    double longest = first ? longest_before(a) : 0, sections = first ? misprediction(a, 0, longest) : -1,
-           fixed = sections >= 0 ? misprediction(a, 1, longest) : -1;
-    if (sections >= 0 && fixed >= 0) {
-        sum[0] = FADE_SECANTS * sum[0] + sections;
-        sum[1] = FADE_SECANTS * sum[1] + fixed;
+/* Adds to decaying sums, unless one of the hypotheses knows nothing of the motion. */
+static void add_surprises(int count, const double *surprise, double *sum) {
+    int known = 1;
+    for (int i = 0; i < count; i++) {
+        known = known && surprise[i] >= 0;
+    }
+    for (int i = 0; i < count && known; i++) {
+        sum[i] = FADE_SECANTS * sum[i] + surprise[i];
+    }
+}
+
+/* Whether secants serve whose steps had another length. */
+static int has_other_steps(const spari_accelerator *a) {
+    int other = 0;
+    for (int j = 0; j < a->count; j++) {
+        other = other || memcmp(a->column[j].per, a->per, sizeof a->per) != 0;
+    }
+    return other;
+}
+
+/* The first secant of a step tells in which axes those of the steps before hold, and as functions of which quantity.
+   Without those of other steps, nothing is predicted: the whole of the loads is new. */
+static void compare_hypotheses(spari_accelerator *a) {
+    if (a->count < 2 || a->column[1].step == a->step || a->set.columns < 2) {
+        return;
+    }
+    const int quantity = a->quantity;
+    double longest = longest_before(a), axes[2] = {misprediction(a, 0, longest), -1}, of[SPARI_OWN_STEPS + 1];
+    axes[1] = axes[0] >= 0 ? misprediction(a, 1, longest) : -1;
+    add_surprises(2, axes, a->memory.surprise);
+    for (int i = 0; i < SPARI_QUANTITIES && has_other_steps(a); i++) {
+        a->quantity = i;
+        of[i] = misprediction(a, a->fixed, longest_before(a));
+    }
+    if (has_other_steps(a)) {
+        of[SPARI_OWN_STEPS] = 1;
+        add_surprises(SPARI_OWN_STEPS + 1, of, a->memory.surprise_of);
+    }
+    a->quantity = quantity;
+}
+
+/* The quantity that has predicted best. */
+static void choose_quantity(spari_accelerator *a) {
+    const double *surprise = a->memory.surprise_of;
+    for (int i = 0; i <= SPARI_OWN_STEPS; i++) {
+        a->quantity = surprise[i] < surprise[a->quantity] ? i : a->quantity;
     }
 }
 
 void spari_fluid_secants_accept(spari_accelerator *a) {
+    choose_quantity(a);
     int fixed = a->memory.surprise[1] < a->memory.surprise[0];
     for (int j = 0; j < a->count && fixed != a->fixed; j++) {
         int slot = a->column[j].slot;
@@ -194,7 +238,7 @@ static void add(spari_accelerator *a, const double *p, const double *axes) {
         }
         if (axes) {
             memcpy(a->axes + slot * (a->n / 6 * 4), axes, bytes / 6 * 4);
-            compare_axes(a);
+            compare_hypotheses(a);
         }
     } else {
         a->stalled++;
@@ -241,11 +285,12 @@ static int gather_secants(spari_accelerator *a) {
    long ones have less scatter, short ones are nearer to the solution. */
 static void multiply(const spari_accelerator *a, int k, double *weight, double *A) {
     for (int i = 0; i < k; i++) {
-        const double *p = a->p + a->column[a->slots[i]].slot * a->n;
-        weight[i] = 1 / sqrt(sqrt(products(a, p, p)));
+        const double *p = a->p + a->column[a->slots[i]].slot * a->n, scale = spari_column_scale(a, a->slots[i]);
+        weight[i] = 1 / sqrt(length(a, a->slots[i]));
         for (int j = 0; j <= i; j++) {
             const double *q = a->p + a->column[a->slots[j]].slot * a->n;
-            A[i * k + j] = A[j * k + i] = weight[i] * weight[j] * products(a, p, q);
+            double scales = scale * spari_column_scale(a, a->slots[j]);
+            A[i * k + j] = A[j * k + i] = weight[i] * weight[j] * scales * products(a, p, q);
         }
     }
 }
@@ -300,7 +345,7 @@ static int span(spari_accelerator *a, const double *axes) {
         for (int i = 0; i < k; i++) {
             const spari_column *c = a->column + a->slots[i];
             double f = weight[i] * a->combinations[r * k + i];
-            spari_axpy(f, a->p + c->slot * a->n, p, a->n);
+            spari_axpy(f * spari_column_scale(a, a->slots[i]), a->p + c->slot * a->n, p, a->n);
             spari_axpy(f, a->y + c->slot * a->n, y, a->n);
             if (rho > 0 && c->led) {
                 spari_axpy(-rho * f, a->b + c->slot * a->n, y, a->n);

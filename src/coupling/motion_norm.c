@@ -37,7 +37,7 @@ static int respond_stacked(const spari_norm_loads *c, spar_member *m, double uni
     if (m->assembly) {
         return 0;
     }
-    if (spari_lone_response(m, load, out + at)) {
+    if (spari_lone_response(m, c->of, load, out + at)) {
         return 1;
     }
     for (int64_t i = 0; i < n; i++) {
@@ -58,7 +58,7 @@ static int respond_assembled(spar_session *s, const spari_norm_loads *c, int64_t
     int rank = spari_comm_rank(s->ranks.comm), singular = 0, k = 0;
     int64_t at = 0;
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
-        singular = spari_assembly_response(a, count, c->n, image) || singular;
+        singular = spari_assembly_response(a, c->of, count, c->n, image) || singular;
     }
     for (const spar_member *m = s->members; m && s->assemblies; at += 6 * m->nodes, m = m->next, k++) {
         for (int64_t j = 0; j < count && m->assembly && m->owner == rank; j++) {
@@ -221,10 +221,10 @@ static int respond_to_miss(spar_session *s, double *image, double *workspace) {
         for (int64_t i = 0; i < 6 * m->nodes; i++) {
             miss[i] = m->load.pushed[i] - m->load.used[i];
         }
-        singular = (!m->assembly && spari_lone_response(m, workspace, at)) || singular;
+        singular = (!m->assembly && spari_lone_response(m, SPARI_OF_DISPLACEMENT, workspace, at)) || singular;
     }
     for (spari_assembly *a = s->assemblies; a; a = spari_assembly_next(a)) {
-        singular = spari_assembly_response(a, 1, 0, image) || singular;
+        singular = spari_assembly_response(a, SPARI_OF_DISPLACEMENT, 1, 0, image) || singular;
     }
     return singular;
 }

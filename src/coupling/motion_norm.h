@@ -2,6 +2,7 @@
 #ifndef SPARI_MOTION_NORM_H
 #define SPARI_MOTION_NORM_H
 
+#include "../assembly/assembly.h"
 #include "../exchange/session_private.h"
 
 #include <stdint.h>
@@ -14,6 +15,7 @@ typedef struct spari_norm_loads {
     const double *shift; /* [n] contribution of an added mass to g; NULL: none */
     double *image;     /* [2 n + members + 1] out: motion due to g - x, and to g - shift; room for the ranks' status */
     double *workspace; /* 6 per node of the largest member */
+    spari_response_of of; /* what the loads move */
 } spari_norm_loads;
 
 /* Whether the motion norm is possible (the library knows the flexibility of all members with fluids) and wanted

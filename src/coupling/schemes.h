@@ -58,9 +58,11 @@ void spari_accelerator_free(spari_accelerator **accelerator);
    are set. */
 double *spari_accelerator_weights(spari_accelerator *a);
 
-/* Begins a step. Columns of steps with another dt (by more than a tenth) are not used in it, because the map depends
-   on dt. */
+/* Begins a step. */
 void spari_accelerator_begin(spari_accelerator *a, double dt);
+/* After it: the velocity that comes with a motion of 1, and the acceleration, as fluids see it, that comes with this
+   velocity. Without this call those of u = v dt = a dt^2. */
+void spari_accelerator_set_rates(spari_accelerator *a, double rate, double acceleration);
 typedef struct spari_images {
     const double *now; /* [2 n] of g - x and of g */
     /* Images of other vectors with the same S: x [count][n] in, image [count][n] out, with room for one more. Zero

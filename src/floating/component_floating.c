@@ -196,6 +196,20 @@ static void apply_load_to_frame(spari_component *p, const double *load) {
     memset(f->r, 0, (size_t)f->constrained * sizeof *f->r);
 }
 
+static void carry_over_frame(spari_component *p, double part) {
+    spari_frame *f = p->frame;
+    const double carried = spari_scheme_carried(&p->scheme);
+    memset(f->dx, 0, (size_t)f->constrained * sizeof *f->dx);
+    for (int i = 0; i < f->n; i++) {
+        f->r[i] *= part;
+    }
+    spari_frame_add_times(f, f->M, f->dx, carried, f->r);
+    if (f->A) {
+        spari_frame_add_times(f, f->A, f->dx, carried, f->r);
+    }
+    memset(f->r, 0, (size_t)f->constrained * sizeof *f->r);
+}
+
 static void response_of_frame(spari_component *p, double *motion) {
     spari_frame *f = p->frame;
     memset(f->dx, 0, (size_t)f->constrained * sizeof *f->dx);
@@ -325,6 +339,7 @@ const spari_component_row spari_component_floating = {
     .correction_size = correction_of_frame,
     .tangent_after = tangent_of_frame_after,
     .apply_load = apply_load_to_frame,
+    .carry_over = carry_over_frame,
     .get_response = response_of_frame,
     .restore_end = restore_frame,
     .start = start_of_frame,

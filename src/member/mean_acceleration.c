@@ -42,16 +42,32 @@ const double *spari_means_seen(const spar_member *m, int after) {
     return k && k->has[after] && !m->session->state.static_solution ? k->seen[after] : after ? m->after.a : m->now.a;
 }
 
+/* How far the mean is extrapolated by its change from what there was at t^n, or half a step before it. */
+static double weight_of_change(const spar_session *s, const spari_means *k) {
+    return k->has[0] ? s->clock.dt / (s->clock.dt + k->dt) : 1;
+}
+
 void spari_means_find(spar_member *m) {
     const spar_session *s = m->session;
     spari_means *k = m->means;
     k->has[1] = (s->integrator.substeps > 1 || s->clock.uneven[1]) && !(m->added && m->added->stands);
-    double on = k->has[0] ? s->clock.dt / (s->clock.dt + k->dt) : s->clock.step > 0 || m->initial.acceleration ? 1 : 0;
+    double on = k->has[0] || s->clock.step > 0 || m->initial.acceleration ? weight_of_change(s, k) : 0;
     const double *before = k->has[0] ? k->mean : m->now.a; /* at t^n, half as far back */
     for (int64_t i = 0; i < 6 * m->nodes && k->has[1]; i++) {
         double mean = (m->after.v[i] - m->now.v[i]) / s->clock.dt;
         k->seen[1][i] = mean + on * (mean - before[i]);
     }
+}
+
+double spari_means_rate(const spar_session *s) {
+    const spar_member *m = s->members;
+    while (m && !m->means) {
+        m = m->next;
+    }
+    if (!m || !(s->integrator.substeps > 1 || s->clock.uneven[1])) {
+        return 0;
+    }
+    return (1 + weight_of_change(s, m->means)) / s->clock.dt;
 }
 
 void spari_means_accept(spar_member *m) {

@@ -23,6 +23,9 @@ int spari_means_keep(spar_member *member);
 void spari_means_free(spari_means *means);
 /* Accelerations for fluids at t^n (0) and of the motion `after` (1): [nodes][6]. */
 const double *spari_means_seen(const spar_member *member, int after);
+/* The acceleration that comes with a change of velocity of 1 for fluids that see means; 0: they see those of the
+   motion. Local, the same on every rank. */
+double spari_means_rate(const spar_session *session);
 /* Events: the motion `after` is computed; the step is accepted, or rejected; the motion `now` was set. */
 void spari_means_find(spar_member *member);
 void spari_means_accept(spar_member *member);

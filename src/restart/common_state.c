@@ -299,7 +299,7 @@ static void pass_accelerator(passage *t, const spar_session *s, spari_coupling *
     }
     pass(t, c->predicted, c->n);
     pass(t, c->motion, spari_coupling_wants_motion(s) ? 7 * (c->n / 6) : 0);
-    pass(t, c->q_before, c->settled ? 7 * (c->n / 6) : 0);
+    pass(t, c->before, c->settled ? 7 * (c->n / 6) : 0);
 }
 
 /* c: created with the settings of the image; never only checked */

@@ -49,10 +49,13 @@ typedef struct spari_component_row {
     void (*end_solution)(struct spari_component *p, int iterations, spari_tangents tangents);
 
     /* After the step. tangent_after: forms the tangent at its end if none is there; returns 0 or 1. apply_load: the
-       residual becomes a small additional load [nodes][6] on the nodes. get_response: the corrections as a motion
-       [nodes][6] of the nodes, displacements and small rotations, global axes. */
+       residual becomes a small additional load [nodes][6] on the nodes. carry_over: takes `part` of this residual, and
+       adds what the corrections of the trapezoidal stage of TR-BDF2 carry over to the backward-difference one (T35).
+       get_response: the corrections as a motion [nodes][6] of the nodes, displacements and small rotations, global
+       axes. */
     int (*tangent_after)(struct spari_component *p);
     void (*apply_load)(struct spari_component *p, const double *load);
+    void (*carry_over)(struct spari_component *p, double part);
     void (*get_response)(struct spari_component *p, double *motion);
     /* Restores the end of a step that was read from a file. */
     void (*restore_end)(struct spari_component *p);

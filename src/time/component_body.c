@@ -434,6 +434,25 @@ static void apply_load_to_nodes(spari_component *p, const double *load) {
     spari_member_constrain(p->member, p->solver->n, p->solver->r);
 }
 
+/* The mass alone takes part: damping is small beside it, and what S lacks then the coupling measures. */
+static void carry_over_nodes(spari_component *p, double part) {
+    spari_solver *s = p->solver;
+    spari_body inert = *s->body;
+    double *rest = s->best, *force = s->steps.load;
+    const double carried = spari_scheme_carried(&p->scheme);
+    inert.C = inert.D = inert.pre = NULL;
+    inert.gyroscopic = 0;
+    memset(rest, 0, (size_t)(6 * s->n) * sizeof *rest);
+    (void)spari_body_residual(&inert, s->to.q, rest, s->dx, 0, force, NULL);
+    for (int i = 0; i < 6 * s->n; i++) {
+        s->r[i] = part * s->r[i] + carried * force[i];
+    }
+    if (p->member->added) {
+        (void)spari_added_times(p->member, SPARI_UNKNOWNS, SPARI_UNKNOWNS, s->dx, carried, s->r);
+    }
+    spari_member_constrain(p->member, s->n, s->r);
+}
+
 static void response_of_nodes(spari_component *p, double *motion) {
     p->member->row->get_response(p->member, p->solver->dx, motion);
 }
@@ -611,6 +630,7 @@ const spari_component_row spari_component_body = {
     .end_solution = end_solution_of_nodes,
     .tangent_after = tangent_after_step,
     .apply_load = apply_load_to_nodes,
+    .carry_over = carry_over_nodes,
     .get_response = response_of_nodes,
     .restore_end = restore_nodes,
     .start = start_nodes,

@@ -98,13 +98,12 @@ void spari_scheme_dissipate(spar_member *m, const spari_scheme *c, double *befor
 
 /* ---- substeps and stages ---- */
 
-/* TR-BDF2: w and d; c is SPARI_STAGE. */
+/* TR-BDF2: w; c is SPARI_STAGE, d is SPARI_DIAGONAL. */
 #define WEIGHT (0.25 * M_SQRT2)
-#define DIAGONAL (1 - 0.5 * M_SQRT2)
 
 spari_scheme spari_scheme_stage(const spari_scheme *alpha, spari_rule rule) {
     spari_scheme c = *alpha;
-    double g = DIAGONAL * c.h;
+    double g = SPARI_DIAGONAL * c.h;
     c.rule = rule;
     c.span = rule == SPARI_TRAPEZOIDAL ? SPARI_STAGE * c.h : c.h;
     if (c.still) {

@@ -75,6 +75,12 @@ static inline double spari_scheme_error(const spari_scheme *c) {
 }
 /* The same coefficients for a stage of TR-BDF2. */
 spari_scheme spari_scheme_stage(const spari_scheme *alpha, spari_rule rule);
+/* After a step of TR-BDF2, (T35): part of M dx that a correction dx of its first stage adds to the loads of the second;
+   and the part of the load itself that changes the velocity. */
+static inline double spari_scheme_carried(const spari_scheme *backward) {
+    return M_SQRT2 * backward->cm;
+}
+#define SPARI_DIAGONAL (1 - 0.5 * M_SQRT2)
 /* The coefficients that the last substep of a pattern has ended with. */
 spari_scheme spari_scheme_last(const spar_member *member, int damped, const spari_pattern *pattern);
 /* The same coefficients for another length. */
