@@ -456,10 +456,11 @@ SPAR_API int spar_fluid_pull_poses(spar_fluid *fluid, int which, double theta, d
    save is legal within a step too: a run that loads the file goes on within it, so the flow must have its state of
    then. save writes path.new and renames it, so path is always a whole file. Rank 0 writes and reads for all; other
    ranks need not see the file. What is not a regular file is SPAR_ERR_IO. load needs the same members and joints,
-   committed, and the same mapped fluids by name, on any number of ranks. Nodes are matched by their reference position,
-   to 1e-9 of the member's length. Settings are not in the file; the host makes them as before. After a failure the
-   session is as it was. SPAR_ERR_IO: the file cannot be read, or is damaged; SPAR_ERR_ARGUMENT: it does not match the
-   session. */
+   committed, and the same mapped fluids by name, on any number of ranks. Numbers of a description agree to rounding:
+   positions to 1e-9 of the member's length, stiffness and mass to 1e-8, damping, springs and forces to 1e-6. Initial
+   velocities need not agree. Nodes are matched by their reference position, to 1e-9 of the member's length. Settings
+   are not in the file; the host makes them as before. After a failure the session is as it was. SPAR_ERR_IO: the file
+   cannot be read, or is damaged; SPAR_ERR_ARGUMENT: it does not match the session. */
 SPAR_API int spar_session_save(const spar_session *session, const char *path);
 /* Reads a saved state into the session. Collective.
      path: in */

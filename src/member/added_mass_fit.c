@@ -125,9 +125,10 @@ int spar_member_get_learned_added_mass(const spar_member *member, int *used, dou
     return SPAR_OK;
 }
 
-uint64_t spari_learned_hash(const spar_member *m, uint64_t hash) {
+void spari_learned_part(const spar_member *m, spari_described *part) {
     const spari_learned *l = m->learned;
-    return l ? spari_hash_bytes(hash, l->eta, (size_t)l->n * sizeof *l->eta) : hash;
+    spari_described_exact(part, l ? l->n : 0);
+    spari_described_add(part, SPARI_NUMBERS_PLAIN, l ? l->n : 0, 1, l ? l->eta : NULL);
 }
 
 /* ---- metric of the differences ---- */

@@ -29,7 +29,7 @@ void spari_learned_put(spar_member *m);
 /* State as `count` doubles, to be read and written in place; and the data of the current step. */
 double *spari_learned_state(const spar_member *m, int64_t *count);
 double *spari_learned_last(const spar_member *m, int64_t *count);
-/* Adds the description to a hash. */
-uint64_t spari_learned_hash(const spar_member *m, uint64_t hash);
+/* Adds the description to a part. */
+void spari_learned_part(const spar_member *m, spari_described *part);
 
 #endif

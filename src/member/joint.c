@@ -390,28 +390,40 @@ int spari_member_unique(const spar_member *m, int64_t node) {
     return (int)(m->mesh.elements == 1 ? node : node - node / m->mesh.per_element);
 }
 
-uint64_t spari_joint_hash(const spar_joint *j) {
-    const int64_t numbers[] = {j->member[0]->number,
-                               j->member[1] ? j->member[1]->number : -1,
-                               j->node[0],
-                               j->node[1],
-                               j->kinematics.free,
-                               j->kinematics.line,
-                               j->driven,
-                               j->frame_given,
-                               j->kinematics.line && j->sprung,
-                               j->slack};
-    const double unit[4] = {1};
-    uint64_t h = spari_hash_bytes(SPARI_HASH_BEGIN, j->name, strlen(j->name));
-    h = spari_hash_bytes(h, numbers, sizeof numbers);
-    h = spari_hash_bytes(h, j->position, sizeof j->position);
-    h = spari_hash_bytes(h, j->frame_given < 2 ? unit : j->axes, sizeof j->axes);
-    h = spari_hash_bytes(h, j->point, sizeof j->point);
-    if (j->kinematics.line) { /* springs of a joint may be replaced at any time */
-        const double spring[3] = {j->stiffness[0], j->damping[0], j->length};
-        h = spari_hash_bytes(h, spring, sizeof spring);
+static spari_described description_of(const spar_joint *j) {
+    static const double unit[4] = {1};
+    const int spring = j->kinematics.line ? 1 : 0; /* springs of a joint may be replaced at any time */
+    const int64_t exact[] = {j->member[0]->number,
+                             j->member[1] ? j->member[1]->number : -1,
+                             j->node[0],
+                             j->node[1],
+                             j->kinematics.free,
+                             j->kinematics.line,
+                             j->driven,
+                             j->frame_given,
+                             j->kinematics.line && j->sprung,
+                             j->slack};
+    spari_described p = {.length = spari_member_length(j->member[0])};
+    for (size_t i = 0; i < sizeof exact / sizeof *exact; i++) {
+        spari_described_exact(&p, exact[i]);
     }
-    return h;
+    spari_described_add(&p, SPARI_NUMBERS_POSITION, 1, 3, j->position);
+    spari_described_add(&p, SPARI_NUMBERS_PLAIN, 1, 4, j->frame_given < 2 ? unit : j->axes);
+    spari_described_add(&p, SPARI_NUMBERS_POSITION, 2, 3, j->point[0]);
+    spari_described_add(&p, SPARI_NUMBERS_ROW, spring, 1, j->stiffness);
+    spari_described_add(&p, SPARI_NUMBERS_ROW, spring, 1, j->damping);
+    spari_described_add(&p, SPARI_NUMBERS_ROW, spring, 1, &j->length);
+    return p;
+}
+
+uint64_t spari_joint_hash(const spar_joint *j) {
+    const spari_described p = description_of(j);
+    return spari_described_hash(spari_hash_bytes(SPARI_HASH_BEGIN, j->name, strlen(j->name)), &p);
+}
+
+void spari_joint_digest(const spar_joint *j, spari_digest *digest) {
+    const spari_described p = description_of(j);
+    spari_described_digest(&p, digest);
 }
 
 uint64_t spari_joint_setting(const spar_joint *j) {

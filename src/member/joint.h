@@ -54,8 +54,9 @@ struct spar_joint {
 
 /* Unique node of a node in the host's numbering. */
 int spari_member_unique(const spar_member *member, int64_t node);
-/* The description as one number: all that is said of it before the first step. */
+/* The description as one number, and for a saved file: all that is said of it before the first step. */
 uint64_t spari_joint_hash(const spar_joint *joint);
+void spari_joint_digest(const spar_joint *joint, spari_digest *digest);
 /* Hash of what may change at any time: springs, load, drive. And that of all joints, which the ranks compare before
    a solution; 0 on one rank, and while joints are described. */
 uint64_t spari_joint_setting(const spar_joint *joint);

@@ -6,6 +6,7 @@
 #include "../base/session.h"
 #include "../base/thread_pool.h"
 #include "../math/resample.h"
+#include "digest.h"
 
 #include <string.h>
 
@@ -196,10 +197,11 @@ static inline spari_pose spari_pose_of(const double *q, const double *v, const d
 static inline int spari_gravity_changes(const spar_session *session) {
     return session->clock.step > 0 && memcmp(session->gravity, session->gravity_before, sizeof session->gravity) != 0;
 }
-/* Hash of the description without the owner. */
+/* Hash of the description without the owner: everything the ranks must agree on. */
 uint64_t spari_member_hash(const spar_member *member);
-/* The parts of a description, whose hashes are apart in a saved file so that a message can name the one that differs.
-   Those from SPARI_PART_POSITION on may differ between identical members. */
+/* The parts of a description, which are apart in a saved file so that a message can name the one that differs. Those
+   from SPARI_PART_POSITION on may differ between identical members. The initial velocity is not in the file: the motion
+   in the file replaces it. */
 enum {
     SPARI_PART_KIND,
     SPARI_PART_FIDELITY,
@@ -217,10 +219,11 @@ enum {
     SPARI_PART_POINT_MASSES,
     SPARI_PART_POSITION,
     SPARI_PART_VELOCITY,
-    SPARI_MEMBER_PARTS
+    SPARI_MEMBER_PARTS,
+    SPARI_SAVED_PARTS = SPARI_PART_VELOCITY
 };
 extern const char *const spari_member_part_name[SPARI_MEMBER_PARTS];
-uint64_t spari_member_part_hash(const spar_member *member, int part);
+void spari_member_part_digest(const spar_member *member, int part, spari_digest *digest);
 /* Hash without name, placement and initial velocity: equal for identical members. */
 uint64_t spari_member_copy_hash(const spar_member *member);
 /* Converts arrays of `width` doubles per node from host nodes (element boundaries twice) to unique nodes (once), and

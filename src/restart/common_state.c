@@ -367,19 +367,27 @@ static int pass_name(passage *t, const spar_session *s, const char *what, const 
     return SPAR_OK;
 }
 
-/* A hash that must be the same in the file. Returns whether it is. */
-static int pass_hash(passage *t, uint64_t hash) {
+/* A description, which must be that of the file: its numbers to rounding (member/digest.h). Returns whether it is. */
+static int pass_digest(passage *t, const spari_digest *digest) {
     if (t->mode == WRITE) {
-        spari_image_put(t->image, &hash, 1);
+        spari_image_put(t->image, &digest->exact, 1);
+        spari_image_put(t->image, digest->sum, digest->count);
         return 1;
     }
-    return (uint64_t)spari_image_get_int(t->image) == hash;
+    int same = (uint64_t)spari_image_get_int(t->image) == digest->exact;
+    const double *in_file = (const double *)(const void *)spari_image_get(t->image, same ? digest->count : 0);
+    for (int i = 0; i < digest->count && same && in_file; i++) {
+        same = fabs(in_file[i] - digest->sum[i]) <= digest->tolerance[i];
+    }
+    return same;
 }
 
 static int pass_description(passage *t, const spar_session *s, const spar_member *m) {
+    spari_digest digest;
     SPARI_TRY(pass_name(t, s, "member", m->name));
-    for (int part = 0; part < SPARI_MEMBER_PARTS; part++) {
-        SPARI_REQUIRE(s, pass_hash(t, spari_member_part_hash(m, part)), SPAR_ERR_ARGUMENT,
+    for (int part = 0; part < SPARI_SAVED_PARTS; part++) {
+        spari_member_part_digest(m, part, &digest);
+        SPARI_REQUIRE(s, pass_digest(t, &digest), SPAR_ERR_ARGUMENT,
                       "the file does not match this session: it has a different description of member '%s': its %s",
                       m->name, spari_member_part_name[part]);
     }
@@ -387,8 +395,10 @@ static int pass_description(passage *t, const spar_session *s, const spar_member
 }
 
 static int pass_joint_description(passage *t, const spar_session *s, const spar_joint *j) {
+    spari_digest digest;
     SPARI_TRY(pass_name(t, s, "joint", j->name));
-    SPARI_REQUIRE(s, pass_hash(t, spari_joint_hash(j)), SPAR_ERR_ARGUMENT,
+    spari_joint_digest(j, &digest);
+    SPARI_REQUIRE(s, pass_digest(t, &digest), SPAR_ERR_ARGUMENT,
                   "the file does not match this session: it has a different description of joint '%s'", j->name);
     return SPAR_OK;
 }
