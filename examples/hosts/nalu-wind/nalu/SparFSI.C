@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <mpi.h>
 #include <sstream>
@@ -382,11 +384,10 @@ SparFSI::initialize(double curTime)
   else
     load();
   stepDt_ = dt_;
+  beginTime_ = clock();
   move_mesh(false);
-  if (restartFile_.empty()) {
+  if (restartFile_.empty())
     set_old_displacements();
-    begin_output();
-  }
 }
 
 double
@@ -492,8 +493,8 @@ SparFSI::move_mesh(bool updateCurCoor)
   }
 }
 
-// The mesh goes where the structure goes under extrapolated loads: once a step.
-// The step is what is left to Nalu-Wind's clock, so that it may change; one
+// The mesh goes where the structure goes under extrapolated loads; asked again
+// within the step, where the last loads have put it. The step is what is left to Nalu-Wind's clock, so that it may change; one
 // that differs by rounding alone stays as it was.
 void
 SparFSI::predict_struct_states(double curTime)
@@ -574,6 +575,8 @@ SparFSI::advance_struct_timestep(double curTime, double dT)
   const Timer timer(structureTime_);
   for (auto& t : turbines_) {
     check(t, fsi_turbine_accept(t.fsi), "the end of the step");
+    if (accepted_ == 0)
+      begin_output(t);
     write_output(t);
   }
   inStep_ = false;
@@ -595,15 +598,48 @@ SparFSI::write_restart(int stepCount)
 
 // ---- output: a table for each turbine, which a restart continues ----
 
-void
-SparFSI::begin_output() const
+// Of the table of the run that this one continues: the heading, and the lines
+// up to where this run begins.
+std::vector<std::string>
+SparFSI::old_lines(const std::string& path) const
 {
-  if (bulk_->parallel_rank() == 0)
-    for (const auto& t : turbines_)
-      std::ofstream("spar_fsi." + t.name + ".csv")
-        << "time_s,rotor_speed_rpm,pitch_deg,force_x_N,force_y_N,force_z_N,"
-           "moment_x_Nm,moment_y_Nm,moment_z_Nm,tip1_x_m,tip1_y_m,tip1_z_m,"
-           "tip1_from_mesh_m\n";
+  std::vector<std::string> lines;
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);)
+    if (
+      lines.empty() ||
+      std::strtod(line.c_str(), nullptr) <= beginTime_ + 1e-6 * dt_)
+      lines.push_back(line);
+  return lines;
+}
+
+// At the end of the first step: a run that is refused before leaves the table
+// of another as it is. A new run keeps an older table aside.
+void
+SparFSI::begin_output(const Turbine& t) const
+{
+  if (bulk_->parallel_rank() != 0)
+    return;
+  const std::string path = "spar_fsi." + t.name + ".csv";
+  std::vector<std::string> lines;
+  if (!restartFile_.empty())
+    lines = old_lines(path);
+  else
+    for (int n = 1; std::ifstream(path).good(); ++n) {
+      const std::string aside = path + "." + std::to_string(n);
+      if (
+        !std::ifstream(aside).good() &&
+        std::rename(path.c_str(), aside.c_str()) != 0)
+        throw std::runtime_error("spar_fsi: " + path + " cannot be renamed");
+    }
+  if (lines.empty())
+    lines.emplace_back(
+      "time_s,rotor_speed_rpm,pitch_deg,force_x_N,force_y_N,force_z_N,"
+      "moment_x_Nm,moment_y_Nm,moment_z_Nm,tip1_x_m,tip1_y_m,tip1_z_m,"
+      "tip1_from_mesh_m");
+  std::ofstream out(path);
+  for (const auto& line : lines)
+    out << line << '\n';
 }
 
 // Loads of the flow, moments about the foot of the tower; how far the structure

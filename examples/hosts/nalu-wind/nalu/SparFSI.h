@@ -29,7 +29,8 @@ class SparFSI {
     void initialize(double curTime);
     //! Moves the mesh to where the structure is; outside a step only when a restart has been read
     void map_displacements(double curTime, bool updateCurCoor);
-    //! The structure goes to curTime under predicted loads
+    //! The structure goes to curTime under predicted loads, once a step: the driver of several codes asks in each of its
+    //! nonlinear iterations
     void predict_struct_states(double curTime);
     void predict_struct_timestep(double curTime);
     void advance_struct_timestep(double curTime, double dT);
@@ -89,7 +90,8 @@ class SparFSI {
     void move_mesh(bool updateCurCoor);
     void set_old_displacements();
     void push_loads(Turbine &turbine, int part);
-    void begin_output() const;
+    std::vector<std::string> old_lines(const std::string &path) const;
+    void begin_output(const Turbine &turbine) const;
     void write_output(const Turbine &turbine) const;
 
     std::shared_ptr<stk::mesh::BulkData> bulk_;
@@ -101,7 +103,8 @@ class SparFSI {
     double dt_{-1.0};     // of Nalu-Wind's input
     double stepDt_{-1.0}; // of the last step
     bool inStep_{false}, restarted_{false};
-    int accepted_{0}; // steps of this run
+    int accepted_{0};       // steps of this run
+    double beginTime_{0.0}; // of the structure in this run
     double structureTime_{0.0}, meshTime_{0.0};
 };
 

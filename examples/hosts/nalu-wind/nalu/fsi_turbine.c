@@ -24,11 +24,12 @@ struct fsi_turbine {
     fsi_options options;
     turbine turbine;
     turbine_control control;
-    double speed;                       /* rad/s, where it is given */
-    double hub_begin[3], axis_begin[3]; /* at t = 0: about which all turns then */
+    double speed; /* rad/s, where it is given */
     spar_session *session;
     spar_member *hub;
     mesh mesh[FSI_PARTS];
+    int stepping; /* between fsi_turbine_begin and fsi_turbine_accept, */
+    double end;   /* of the step that ends at this time, s */
     double share; /* of the flow in the loads at the end of the step */
     int alone;    /* the loads are the flow's alone, and blade elements push nothing */
     double *tip;  /* motion of a blade */
@@ -118,8 +119,6 @@ int fsi_turbine_create(const fsi_options *options, fsi_turbine **out) {
         TRY(spar_point_create(f->session, "hub", f->turbine.rotor.hub, NULL, &f->hub));
         TRY(spar_member_commit(f->hub));
     }
-    memcpy(f->hub_begin, f->turbine.rotor.hub, sizeof f->hub_begin);
-    memcpy(f->axis_begin, f->turbine.rotor.axis, sizeof f->axis_begin);
     f->tip = calloc((size_t)(7 * f->turbine.blade_nodes), sizeof *f->tip);
     return f->tip ? create_fluids(f) : say(f, SPAR_ERR_MEMORY, "no memory");
 }
@@ -229,30 +228,31 @@ static void uniform(const double x[3], double t, void *context, double wind[3]) 
     wind[1] = wind[2] = 0;
 }
 
-/* All that turns does so about the shaft where it is at t = 0. A saved session knows these velocities and compares
- * them. */
-static int spin(fsi_turbine *f) {
+/* All that turns does so about the shaft, at x along the axis. */
+static int spin(fsi_turbine *f, const double x[3], const double axis[3]) {
     const turbine *t = &f->turbine;
     spar_member *const turning[] = {f->hub, t->blade[0], t->blade[1], t->blade[2], t->generator};
     double omega[3];
     for (int i = 0; i < 3; i++) {
-        omega[i] = f->speed * f->axis_begin[i];
+        omega[i] = f->speed * axis[i];
     }
     for (size_t i = 0; i < sizeof turning / sizeof turning[0]; i++) {
-        TRY(turning[i] ? spar_member_set_initial_velocity(turning[i], f->hub_begin, NULL, omega) : SPAR_OK);
+        TRY(turning[i] ? spar_member_set_initial_velocity(turning[i], x, NULL, omega) : SPAR_OK);
     }
     return SPAR_OK;
 }
 
 int fsi_turbine_start(fsi_turbine *f) {
     const int rounds = 4; /* of loads and shape, until they agree */
+    const nrel5mw_rotor *r = &f->turbine.rotor;
     if (f->options.whole) {
+        double hub[3], axis[3];
         TRY(turbine_start(&f->turbine, f->speed, uniform, f, rounds));
         turbine_control_begin(&f->control, turbine_gear * f->speed, f->options.pitch);
-        TRY(turbine_get_hub(&f->turbine, f->hub_begin, f->axis_begin, NULL));
-        return spin(f);
+        TRY(turbine_get_hub(&f->turbine, hub, axis, NULL));
+        return spin(f, hub, axis);
     }
-    TRY(spin(f));
+    TRY(spin(f, r->hub, r->axis));
     if (!(f->options.wind > 0)) {
         return SPAR_OK;
     }
@@ -261,7 +261,7 @@ int fsi_turbine_start(fsi_turbine *f) {
         for (int b = 0; b < FSI_BLADES; b++) {
             TRY(spar_member_solve_static(f->turbine.blade[b], 4));
         }
-        TRY(spin(f));
+        TRY(spin(f, r->hub, r->axis));
     }
     return turbine_blow(&f->turbine, uniform, f, 0);
 }
@@ -293,6 +293,9 @@ static int steer(fsi_turbine *f, double dt) {
 int fsi_turbine_begin(fsi_turbine *f, double t) {
     double now;
     TRY(spar_session_get_time(f->session, &now, NULL, NULL));
+    if (f->stepping && fabs(t - f->end) <= 1e-9 * fabs(t - now)) { /* controller and pitch have made this step */
+        return SPAR_OK;
+    }
     if (!(t > now)) {
         return say(f, SPAR_ERR_ARGUMENT, "a step to %g s, but the structure is at %g s", t, now);
     }
@@ -300,6 +303,8 @@ int fsi_turbine_begin(fsi_turbine *f, double t) {
     f->share = way * way * (3 - 2 * way);
     TRY(f->options.whole ? steer(f, t - now) : drive(f, t));
     TRY(spar_step_begin(f->session, t - now));
+    f->stepping = 1;
+    f->end = t;
     return spar_step_solve(f->session);
 }
 
@@ -325,7 +330,9 @@ int fsi_turbine_iterate(fsi_turbine *f) {
 }
 
 int fsi_turbine_accept(fsi_turbine *f) {
-    return spar_step_accept(f->session);
+    TRY(spar_step_accept(f->session));
+    f->stepping = 0;
+    return SPAR_OK;
 }
 
 int fsi_turbine_push(fsi_turbine *f, int part, const double *force) {
@@ -394,34 +401,30 @@ static int open_control(fsi_turbine *f, const char *path, const char *how, FILE 
 
 int fsi_turbine_save(fsi_turbine *f, const char *path) {
     const turbine_control *c = &f->control;
-    const double *x = f->hub_begin, *n = f->axis_begin;
     FILE *file;
     TRY(spar_session_save(f->session, path));
     if (!f->options.whole || f->options.rank > 0) {
         return SPAR_OK;
     }
     TRY(open_control(f, path, "w", &file));
-    int good = fprintf(file, "%a %a %a %a %a %a %a %a %a %a %a\n", c->speed, c->integral, c->pitch, c->torque, c->rate,
-                       x[0], x[1], x[2], n[0], n[1], n[2]) > 0;
+    int good = fprintf(file, "%a %a %a %a %a\n", c->speed, c->integral, c->pitch, c->torque, c->rate) > 0;
     good = fclose(file) == 0 && good;
     return good ? SPAR_OK : say(f, SPAR_ERR_IO, "%s.control cannot be written", path);
 }
 
 static int load_control(fsi_turbine *f, const char *path) {
     turbine_control *c = &f->control;
-    double *x = f->hub_begin, *n = f->axis_begin;
     FILE *file;
     TRY(open_control(f, path, "r", &file));
-    const int found = fscanf(file, "%la %la %la %la %la %la %la %la %la %la %la", &c->speed, &c->integral, /* NOLINT */
-                             &c->pitch, &c->torque, &c->rate, x, x + 1, x + 2, n, n + 1, n + 2);
+    const int found = fscanf(file, "%la %la %la %la %la", &c->speed, &c->integral, /* NOLINT */
+                             &c->pitch, &c->torque, &c->rate);
     fclose(file);
-    return found == 11 ? SPAR_OK : say(f, SPAR_ERR_IO, "%s.control is not the state of a controller", path);
+    return found == 5 ? SPAR_OK : say(f, SPAR_ERR_IO, "%s.control is not the state of a controller", path);
 }
 
 /* The file may be missing on one rank alone: all of them go through the collective call. */
 int fsi_turbine_load(fsi_turbine *f, const char *path) {
-    int status = f->options.whole ? load_control(f, path) : SPAR_OK;
-    status = status ? status : spin(f);
+    const int status = f->options.whole ? load_control(f, path) : SPAR_OK;
     const int loaded = spar_session_load(f->session, path);
     return status ? status : loaded;
 }

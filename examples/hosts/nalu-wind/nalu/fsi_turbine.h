@@ -48,7 +48,8 @@ int fsi_turbine_has(const fsi_turbine *turbine, int part);
 int fsi_turbine_set_mesh(fsi_turbine *turbine, int part, int64_t n, const double *x, int64_t m, const double *y);
 /* The initial state: bent by the wind and the weight, in rotation. Not for a run that goes on by fsi_turbine_load. */
 int fsi_turbine_start(fsi_turbine *turbine);
-/* Predicts the loads at time t and solves the structure with them: the mesh may move there. t: in, s */
+/* Predicts the loads at time t and solves the structure with them: the mesh may move there. Called again for the same t
+   within the step, it leaves the structure where the last loads have put it. t: in, s */
 int fsi_turbine_begin(fsi_turbine *turbine, double t);
 /* Solves the structure with the loads that were pushed. */
 int fsi_turbine_iterate(fsi_turbine *turbine);
@@ -67,8 +68,7 @@ int fsi_turbine_get_load(fsi_turbine *turbine, double force[3], double moment[3]
 int fsi_turbine_get_rotor(const fsi_turbine *turbine, double *speed, double *pitch);
 /* x: out, m, tip of a blade in the latest solution. */
 int fsi_turbine_get_tip(const fsi_turbine *turbine, int blade, double x[3]);
-/* Between steps. The file PATH.control has the state of the controller and of
-   the start, which rank 0 writes and all ranks read. */
+/* Between steps. The file PATH.control has the state of the controller, which rank 0 writes and all ranks read. */
 int fsi_turbine_save(fsi_turbine *turbine, const char *path);
 int fsi_turbine_load(fsi_turbine *turbine, const char *path);
 const char *fsi_turbine_message(const fsi_turbine *turbine);

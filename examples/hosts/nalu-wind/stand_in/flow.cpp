@@ -466,6 +466,12 @@ void test_restart(bool whole)
     expect(table("t1").size() == 20, "the table goes on", 0);
     MPI_Barrier(MPI_COMM_WORLD);
     again.steps(10);
+    const auto rows = table("t1");
+    bool in_turn = world != 0 || rows.size() == 20;
+    for (size_t i = 1; i < rows.size(); ++i) {
+      in_turn = in_turn && std::fabs(rows[i][TIME] - rows[i - 1][TIME] - dt0) < 1e-9;
+    }
+    expect(in_turn, "whose lines after the restart's time are those of the new run", static_cast<double>(rows.size()));
     const double error = difference(run.position(), again.position());
     expect(error <= 0, "a restart half-way ends with the same bits: difference, m", error);
     expect(!bytes("spar_fsi.15.t1").empty() && bytes("spar_fsi.10.t1") == ten, "its files have Nalu-Wind's numbers; the one it came from stands", 0);
@@ -492,13 +498,51 @@ void test_restart(bool whole)
     Run again(q, db);
     again.steps(steps);
   };
+  const std::string lines = bytes("spar_fsi.t1.csv");
   expect_refusal("a restart that forgot restart_file is refused", "wants restart_file", [&]() { go("", 10 * dt0, file, 10); });
-  expect(bytes("spar_fsi.10.t1") == ten, "and has overwritten nothing", 0);
+  expect(bytes("spar_fsi.10.t1") == ten && bytes("spar_fsi.t1.csv") == lines, "and has overwritten nothing", 0);
   expect_refusal("restart_file without a restart is refused", "does not restart", [&]() { go("spar_fsi.10", -1, file, 1); });
   expect_refusal("restart_file of another time is refused", "give restart_time", [&]() { go("spar_fsi.20", 10 * dt0, file, 1); });
   expect_refusal("restart_file that is missing is refused", "spar_fsi.11.t1", [&]() { go("spar_fsi.11", 10 * dt0, file, 1); });
   expect_refusal("a restart from another time than asked for is refused in its first step", "made a step of",
     [&]() { go("spar_fsi.10", 10 * dt0, {file[2]}, 1); });
+  expect(bytes("spar_fsi.t1.csv") == lines, "none of them has changed the table", 0);
+  int free = 1;
+  while (!bytes("spar_fsi.t1.csv." + std::to_string(free)).empty()) {
+    ++free;
+  }
+  go("", -1, {}, 1);
+  expect(
+    bytes("spar_fsi.t1.csv." + std::to_string(free)) == lines && table("t1").size() == 1, "a new run keeps the old table aside: number", free);
+}
+
+// The driver of several codes asks for the mesh in each nonlinear iteration. The structure predicts once: the controller
+// makes one step, and the mesh follows the structure, which ends the step the nearer to it. The rest of the run is the same, to
+// what the mesh's motion within a step does to the loads.
+void test_driver()
+{
+  std::vector<Saved> none;
+  Setup s;
+  s.whole = true;
+  s.more = ", start_wind: 8";
+  Vector tip[2];
+  double gap[2], speed[2];
+  for (int k = 0; k < 2; ++k) {
+    Run run(s, none);
+    run.realm.driven = k == 1;
+    run.steps(20);
+    const auto rows = table("t1");
+    for (size_t i = 0; i < 3 && !rows.empty(); ++i) {
+      tip[k][i] = rows.back()[TIP_X + i];
+    }
+    gap[k] = rows.empty() ? 1.0 - k : rows.back()[GAP];
+    speed[k] = rows.empty() ? 0 : rows.back()[SPEED];
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+  expect(gap[1] < 0.2 * gap[0], "asked in each iteration: structure to mesh at the end of a step, over that of once a step", gap[1] / gap[0]);
+  const double apart = world == 0 ? distance(tip[0], tip[1]) : 0;
+  expect(apart < 1e-3, "the tip of blade 1 after 20 steps: m apart", apart);
+  expect(std::fabs(speed[1] - speed[0]) < 1e-4, "the rotor's speed, rev/min apart", std::fabs(speed[1] - speed[0]));
 }
 
 // The times of the table and the angle of the hub follow Nalu-Wind's clock, whatever its steps.
@@ -646,6 +690,11 @@ int main(int argc, char** argv)
 {
   MPI_Init(&argc, &argv);
   MPI_Comm_rank(MPI_COMM_WORLD, &world);
+  for (int n = 0; n < 100 && world == 0; ++n) { // of an earlier run of the tests
+    std::remove(("spar_fsi.t1.csv" + (n > 0 ? "." + std::to_string(n) : "")).c_str());
+    std::remove(("spar_fsi.t2.csv" + (n > 0 ? "." + std::to_string(n) : "")).c_str());
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
   try {
     test_container();
     test_rotor();
@@ -656,6 +705,7 @@ int main(int argc, char** argv)
     test_farm();
     test_start();
     test_whole();
+    test_driver();
     test_restart(true);
   } catch (const std::exception& e) {
     std::printf("rank %d: %s\n", world, e.what());

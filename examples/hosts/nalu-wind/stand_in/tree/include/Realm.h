@@ -40,12 +40,15 @@ public:
   int timeStepCount_{0};
   //! What drives the walls once the flow has its initial condition
   std::function<void(stk::mesh::BulkData&, const stk::mesh::PartVector&)> flow;
+  //! Steps as the driver of several codes makes them: the mesh is asked for in each nonlinear iteration
+  bool driven{false};
   //! What happens between two nonlinear iterations
   std::function<void(int)> between;
 
 private:
   void populate_field_data();
   void init_current_coordinates();
+  void update_geometry_due_to_mesh_motion();
   void populate_restart();
   void provide_restart_output();
 

@@ -113,6 +113,15 @@ Realm::populate_restart()
 }
 
 void
+Realm::update_geometry_due_to_mesh_motion()
+{
+  if (aeroModels_->is_active())
+    aeroModels_->update_displacements(currentTime_);
+  if (aeroModels_->has_fsi())
+    aeroModels_->compute_div_mesh_velocity();
+}
+
+void
 Realm::step(double dt, int iterations)
 {
   auto& fields = bulkData_->mesh_meta_data().fields;
@@ -120,11 +129,9 @@ Realm::step(double dt, int iterations)
   timeStepCount_ += 1;
   fields["mesh_displacement_nm1"].values = fields["mesh_displacement_n"].values;
   fields["mesh_displacement_n"].values = fields["mesh_displacement"].values;
-  if (aeroModels_->is_active())
-    aeroModels_->update_displacements(currentTime_);
-  if (aeroModels_->has_fsi())
-    aeroModels_->compute_div_mesh_velocity();
   for (int k = 0; k < iterations; ++k) {
+    if (k == 0 || driven)
+      update_geometry_due_to_mesh_motion();
     if (between)
       between(k);
     if (aeroModels_->is_active())
