@@ -163,6 +163,7 @@ template <>
 void ExtTurbIface<SparTurbine, SparSolverData>::ext_init_turbine(
     SparTurbine& fi)
 {
+    fi.check_beginning();
     make_machine(fi);
     fi.check(fi.populate_buffers());
 }

@@ -7,7 +7,8 @@
 
 #include <cmath>
 #include <cstdio>
-#include <set>
+#include <exception>
+#include <fstream>
 #include <string_view>
 
 namespace ext_turb {
@@ -15,7 +16,7 @@ namespace {
 
 using Parser = amr_wind::actuator::utils::ActParser;
 
-// Keys that are read here; others of AMR-Wind's own may stand beside them.
+// Keys that are read here.
 constexpr std::array own_keys = {
     "spar_data",       "spar_output",         "spar_whole",
     "spar_nodes_blade", "spar_scheme",        "spar_rtol",
@@ -43,23 +44,22 @@ std::size_t distance(std::string_view a, std::string_view b)
     return row[b.size()];
 }
 
-void refuse_unknown(const std::string& prefix)
+// name: of an entry that nobody has read, with its prefix and, behind a blank, its value
+void refuse(const std::string& entry, const std::string& prefix)
 {
-    for (const auto& entry : amrex::ParmParse::getEntries(prefix)) {
-        const std::string key = entry.substr(prefix.size() + 1);
-        const auto* nearest = *std::min_element(
-            own_keys.begin(), own_keys.end(),
-            [&](const char* a, const char* b) {
-                return distance(key, a) < distance(key, b);
-            });
-        const auto far = distance(key, nearest);
-        if (far > 0 && (far <= 2 || key.rfind("spar", 0) == 0)) {
-            amrex::Abort(
-                "SparIface: nobody reads " + entry + "; the nearest key is " +
-                nearest);
-        }
-    }
+    const std::string name = entry.substr(0, entry.find(' '));
+    const std::string key = name.substr(prefix.size() + 1);
+    const auto* nearest = *std::min_element(
+        own_keys.begin(), own_keys.end(), [&](const char* a, const char* b) {
+            return distance(key, a) < distance(key, b);
+        });
+    amrex::Abort(
+        "SparIface: nobody reads " + name +
+        "; of the turbine's keys the nearest is " + nearest);
 }
+
+// Whether there is such a file.
+bool is_file(const std::string& path) { return std::ifstream(path).good(); }
 
 // AMR-Wind wants both; the tables know them. What the input has besides is compared.
 void settle_size(const Parser& pp, const std::string& prefix, const char* key, double value, const std::string& folder)
@@ -97,12 +97,10 @@ void SparTurbine::check(int status) const
 }
 
 void SparTurbine::read_inputs(
-    const Parser& pp, const std::string& label, const std::string& type)
+    const Parser& pp, const std::string& label, const std::string& model)
 {
     const std::string prefix = "Actuator." + label;
-    refuse_unknown(prefix);
-    refuse_unknown("Actuator." + type);
-
+    type = model;
     pp.get("spar_data", data_folder);
     pp.query("spar_output", output_folder);
     pp.query("spar_whole", whole);
@@ -121,6 +119,19 @@ void SparTurbine::read_inputs(
     pp.query("rot_speed_rpm", rotor_speed_rpm);
     pp.query("pitch_deg", pitch_deg);
     pp.query("wind_speed_init", wind_speed);
+    pp.query("fllc", fllc);
+    if (fllc && type == "TurbineSparDisk") {
+        amrex::Abort(
+            "SparIface: " + prefix +
+            ".fllc corrects the velocities at lines, not on a disk: leave the line out, or take TurbineSparLine");
+    }
+    amrex::Vector<std::string> sources;
+    amrex::ParmParse("ICNS").queryarr("source_terms", sources);
+    if (std::find(sources.begin(), sources.end(), "ActuatorForcing") ==
+        sources.end()) {
+        amrex::Abort(
+            "SparIface: the flow does not take the turbine's forces: add ActuatorForcing to ICNS.source_terms");
+    }
     if (mode != "auto" && mode != "init" && mode != "restart") {
         amrex::Abort(
             "SparIface: " + prefix + ".spar_sim_mode is auto, init or restart, not " + mode);
@@ -142,6 +153,23 @@ void SparTurbine::read_inputs(
     std::string flow_file;
     amrex::ParmParse("io").query("restart_file", flow_file);
     flow_restarts = !flow_file.empty();
+}
+
+// Of the turbine, of its type, and of all actuators together. Keys of a correction that is off are read by nobody.
+void SparTurbine::refuse_unread() const
+{
+    for (const auto& prefix :
+         {"Actuator." + tlabel, "Actuator." + type, std::string("Actuator")}) {
+        for (const auto& entry : amrex::ParmParse::getUnusedInputs(prefix)) {
+            const std::string key = entry.substr(prefix.size() + 1);
+            const bool of_others =
+                key.find('.') < key.find(' ') ||
+                (!fllc && key.rfind("fllc_", 0) == 0);
+            if (!of_others) {
+                refuse(entry, prefix);
+            }
+        }
+    }
 }
 
 // A flow that goes on has a turbine that goes on, unless the input says that it begins, after a flow without turbines.
@@ -170,6 +198,25 @@ void SparTurbine::choose_mode(int step, amrex::Real flow_time)
     }
 }
 
+void SparTurbine::check_beginning() const
+{
+    const std::string state = file_of_step(*this, time_index);
+    if (flow_restarts && is_file(state)) {
+        amrex::Abort(
+            "SparIface: turbine " + tlabel +
+            ": spar_sim_mode = init would begin it anew, and " + state +
+            " is its state of this step: take the line out to go on from there, or move the file away");
+    }
+}
+
+// A run that ends by an error is not over.
+SparTurbine::~SparTurbine()
+{
+    if (is_state_due && std::uncaught_exceptions() == 0) {
+        save();
+    }
+}
+
 void SparTurbine::begin_figures()
 {
     if (!amrex::UtilCreateDirectory(output_folder, 0755)) {
@@ -179,13 +226,13 @@ void SparTurbine::begin_figures()
         return;
     }
     const std::string path = output_folder + "/" + tlabel + ".csv";
-    check(actuator_open_figures(machine.get(), path.c_str(), is_loaded ? 1 : 0, static_cast<double>(time)));
-    if (!is_loaded) {
-        check(actuator_write_figures(machine.get(), time_index, static_cast<double>(time)));
-    }
+    check(actuator_begin_figures(
+        machine.get(), path.c_str(), is_loaded ? 1 : 0, time_index,
+        static_cast<double>(time)));
 }
 
-void SparTurbine::end_step(int step, amrex::Real flow_time, bool checkpoint)
+void SparTurbine::end_step(
+    int step, amrex::Real flow_time, bool checkpoint, bool last)
 {
     const amrex::Real passed = flow_time - time;
     if (std::abs(passed - dt_cfd) > 1.0e-6_rt * dt_cfd + 1.0e-12_rt * std::abs(time)) {
@@ -201,6 +248,7 @@ void SparTurbine::end_step(int step, amrex::Real flow_time, bool checkpoint)
     if (checkpoint) {
         save();
     }
+    is_state_due = last && !checkpoint;
 }
 
 void SparTurbine::save()

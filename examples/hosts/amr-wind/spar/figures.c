@@ -180,22 +180,64 @@ static int keep_lines(actuator_machine *a, const char *path, FILE *file, double 
     return SPAR_OK;
 }
 
-/* The new file takes the old one's name when it is complete. */
-int actuator_open_figures(actuator_machine *a, const char *path, int keep, double time) {
-    char name[1024];
+static void format_line(const double row[FIGURES], int step, double time, char *line, size_t size) {
+    int at = snprintf(line, size, "%d,%.9g", step, time);
+    for (int i = 0; i < FIGURES && at > 0 && (size_t)at < size; i++) {
+        at += snprintf(line + at, size - (size_t)at, ",%.8g", row[i]);
+    }
+}
+
+int actuator_begin_figures(actuator_machine *a, const char *path, int keep, int step, double time) {
+    double row[FIGURES];
     a->message[0] = '\0';
+    const int length = snprintf(a->figures_path, sizeof a->figures_path, "%s", path);
+    if (length < 1 || (size_t)length + 16 > sizeof a->figures_path) {
+        return actuator_say(a, SPAR_ERR_ARGUMENT, "the path of the figures has %d letters", length);
+    }
+    a->figures_keep = keep;
+    a->figures_time = time;
+    TRY(get_figures(a, row));
+    format_line(row, step, time, a->first_line, sizeof a->first_line);
+    return SPAR_OK;
+}
+
+static int is_there(const char *path) {
+    FILE *file = fopen(path, "r");
+    return file && fclose(file) == 0;
+}
+
+/* Renames an older file to the first free name. */
+static int keep_aside(actuator_machine *a) {
+    char name[1100];
+    int n = 0;
+    do {
+        snprintf(name, sizeof name, "%s.%d", a->figures_path, ++n);
+    } while (is_there(name));
+    return !is_there(a->figures_path) || rename(a->figures_path, name) == 0
+               ? SPAR_OK
+               : actuator_say(a, SPAR_ERR_IO, "%s cannot be renamed: %s", a->figures_path, strerror(errno));
+}
+
+/* The new file takes the old one's name when it is complete. */
+static int open_figures(actuator_machine *a) {
+    char name[1100];
+    const char *path = a->figures_path;
     snprintf(name, sizeof name, "%s.new", path);
-    FILE *old = keep ? fopen(path, "r") : NULL;
+    FILE *old = a->figures_keep ? fopen(path, "r") : NULL;
     FILE *file = fopen(name, "w");
     int status = file ? SPAR_OK : actuator_say(a, SPAR_ERR_IO, "%s cannot be written: %s", name, strerror(errno));
     if (status == SPAR_OK && old) {
-        status = keep_lines(a, path, old, time, file);
+        status = keep_lines(a, path, old, a->figures_time, file);
     } else if (status == SPAR_OK) {
         write_names(file);
+        if (!a->figures_keep) {
+            fprintf(file, "%s\n", a->first_line);
+        }
     }
     if (old) {
         fclose(old);
     }
+    status = status || a->figures_keep ? status : keep_aside(a);
     if (status == SPAR_OK && (fflush(file) != 0 || rename(name, path) != 0)) {
         status = actuator_say(a, SPAR_ERR_IO, "%s cannot be written: %s", path, strerror(errno));
     }
@@ -212,12 +254,11 @@ int actuator_open_figures(actuator_machine *a, const char *path, int keep, doubl
 
 int actuator_write_figures(actuator_machine *a, int step, double time) {
     double row[FIGURES];
+    char line[1024];
     a->message[0] = '\0';
+    TRY(a->figures ? SPAR_OK : open_figures(a));
     TRY(get_figures(a, row));
-    fprintf(a->figures, "%d,%.9g", step, time);
-    for (int i = 0; i < FIGURES; i++) {
-        fprintf(a->figures, ",%.8g", row[i]);
-    }
-    fputc('\n', a->figures);
+    format_line(row, step, time, line, sizeof line);
+    fprintf(a->figures, "%s\n", line);
     return fflush(a->figures) == 0 ? SPAR_OK : actuator_say(a, SPAR_ERR_IO, "the figures: %s", strerror(errno));
 }

@@ -149,6 +149,7 @@ void check_checkpoints()
         }
         Flow flow(uniform(6, 270), 0.1, rule.dt_0, 10);
         flow.run();
+        flow.end();
         expect(flow.checkpoints.size() == rule.number, rule.what, static_cast<double>(flow.checkpoints.size()));
         expect(unmatched(flow) == 0, "  files of the turbine without one of the flow's, or the other way round", unmatched(flow));
         if (rule.number == 0) {
@@ -158,9 +159,32 @@ void check_checkpoints()
         Flow again(uniform(6, 270), 0.1, rule.dt_0, 6);
         forget_files(); // those of the first run
         again.run();
+        again.end();
         expect(again.checkpoints.size() == rule.number_after && unmatched(again) == 0, "  the same after a restart",
                static_cast<double>(again.checkpoints.size()));
     }
+    forget_files();
+}
+
+// A run that a limit of wall time ends, which the ranks find together: its last checkpoint has a state too, and goes on.
+void check_wall()
+{
+    forget_files();
+    input(false, 4);
+    set_turbine("spar_nodes_blade", "4");
+    set("time.checkpoint_interval", "4");
+    set("time.max_wall_time", std::to_string(5.5 / 3600));
+    Flow flow(uniform(6, 270), 0.1, 100);
+    flow.run();
+    flow.end();
+    expect(flow.checkpoints == std::vector<std::string>{"00000", "00004", "00006"}, "checkpoints 0 4, and 6 where the time is over",
+           static_cast<double>(flow.checkpoints.size()));
+    expect(unmatched(flow) == 0, "  files of the turbine without one of the flow's, or the other way round", unmatched(flow));
+    set("io.restart_file", "spar_amr_wind/chk00006");
+    Flow again(uniform(6, 270), 0.1, 2);
+    again.run();
+    expect(again.sim.time().index == 8, "  from which a restart goes on: step", again.sim.time().index);
+    again.end();
     forget_files();
 }
 
@@ -190,9 +214,12 @@ void fresh()
 void check_refusals()
 {
     const char* inputs[][3] = {
-        {"spar_node_blade", "8", "nobody reads Actuator.T1.spar_node_blade; the nearest key is spar_nodes_blade"},
-        {"spar_winddirection", "225", "the nearest key is spar_wind_direction"},
-        {"rot_speed_rmp", "9", "the nearest key is rot_speed_rpm"},
+        {"spar_node_blade", "8", "nobody reads Actuator.T1.spar_node_blade; of the turbine's keys the nearest is spar_nodes_blade"},
+        {"spar_winddirection", "225", "the nearest is spar_wind_direction"},
+        {"rot_speed_rmp", "9", "the nearest is rot_speed_rpm"},
+        {"pitch", "5", "nobody reads Actuator.T1.pitch; of the turbine's keys the nearest is pitch_deg"},
+        {"wind_speed", "8", "the nearest is wind_speed_init"},
+        {"openfast_input_file", "x.fst", "nobody reads Actuator.T1.openfast_input_file"},
         {"rotor_diameter", "120", "rotor_diameter is 120.0"},
         {"hub_height", "87.6", "leave the line out"},
         {"spar_data", "/nowhere", "cannot be opened"},
@@ -209,7 +236,70 @@ void check_refusals()
     }
     fresh();
     set("Actuator.TurbineSparLine.spar_rtoll", "1e-6");
-    refused("nobody reads Actuator.TurbineSparLine.spar_rtoll; the nearest key is spar_rtol");
+    refused("nobody reads Actuator.TurbineSparLine.spar_rtoll; of the turbine's keys the nearest is spar_rtol");
+    fresh();
+    set("Actuator.spar_wind_direction", "225");
+    refused("nobody reads Actuator.spar_wind_direction; of the turbine's keys the nearest is spar_wind_direction");
+    fresh();
+    set("Actuator.T2.pitch", "5"); // another turbine's
+    set_turbine("fllc_type", "variable_chord"); // of a correction that is off
+    refused("accepted");
+    fresh();
+    set("ICNS.source_terms", "GravityForcing");
+    refused("add ActuatorForcing to ICNS.source_terms");
+    amrex::ParmParse::table().erase("ICNS.source_terms");
+    refused("add ActuatorForcing to ICNS.source_terms");
+    fresh();
+    set("Actuator.type", "TurbineSparDisk");
+    refused("accepted");
+    set_turbine("fllc", "1");
+    refused("Actuator.T1.fllc corrects the velocities at lines, not on a disk");
+}
+
+// The input that is shipped, but for the folder of the tables.
+void check_input()
+{
+    input(false, 4);
+    amrex::ParmParse::table().clear();
+    std::ifstream file(SPAR_HOST_DIR "/turbine.inp");
+    for (std::string line; std::getline(file, line);) {
+        std::istringstream words(line.substr(0, line.find('#')));
+        std::string key, equals, word, value;
+        words >> key >> equals;
+        while (words >> word) {
+            value += (value.empty() ? "" : " ") + word;
+        }
+        if (!key.empty()) {
+            set(key, value);
+        }
+    }
+    set_turbine("spar_data", SPAR_DATA_DIR "/nrel5mw");
+    set_turbine("spar_output", "spar_amr_wind");
+    double dt = 0;
+    amrex::ParmParse("time").query("fixed_dt", dt);
+    Flow flow(uniform(8, 270), dt, 5);
+    flow.run();
+    const double thrust = force_on_turbine(flow)[0];
+    // without induction: rotor disk theory has 4/9 of the dynamic pressure's 8/9 at 2/3 of the wind, and here the wind is whole
+    expect(thrust > 400e3 && thrust < 900e3 && said().empty(), "the input that is shipped runs: thrust without induction, N", thrust);
+    flow.end();
+    forget_files();
+}
+
+// What a run leaves of the table of an earlier one.
+std::string bytes(const std::string& path)
+{
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string first_free()
+{
+    int n = 1;
+    while (is_there("spar_amr_wind/T1.csv." + std::to_string(n))) {
+        ++n;
+    }
+    return "spar_amr_wind/T1.csv." + std::to_string(n);
 }
 
 // Of the wrong step, of another turbine, or not there.
@@ -220,7 +310,12 @@ void check_restarts()
     set("time.checkpoint_interval", "2");
     Flow flow(uniform(6, 270), 0.1, 4);
     flow.run();
+    const std::string lines = bytes("spar_amr_wind/T1.csv");
+    expect(!lines.empty(), "a run leaves a table: letters", static_cast<double>(lines.size()));
     set("io.restart_file", "spar_amr_wind/chk00002");
+    set_turbine("spar_sim_mode", "init"); // left there after a flow without turbines
+    refused("spar_sim_mode = init would begin it anew, and spar_amr_wind/T1.00002 is its state of this step");
+    set_turbine("spar_sim_mode", "auto");
     set_turbine("spar_restart_file", "spar_amr_wind/T1.00004");
     refused("is of step 4, t = 0.4 s, and the flow restarts at step 2, t = 0.2 s");
     amrex::ParmParse::table().erase("Actuator.T1.spar_restart_file");
@@ -234,9 +329,13 @@ void check_restarts()
     refused("T1.00002.host is not there");
     std::remove("spar_amr_wind/T1.00002");
     refused("there is no spar_amr_wind/T1.00002: step 2 of the flow has no state of the turbine");
+    expect(bytes("spar_amr_wind/T1.csv") == lines, "none of them has changed the table: letters", static_cast<double>(lines.size()));
     set_turbine("spar_sim_mode", "init"); // a turbine that begins in a flow that had none
+    const std::string aside = first_free();
     Flow begun(uniform(6, 270), 0.1, 2);
+    expect(bytes("spar_amr_wind/T1.csv") == lines, "nor has a run before its first step", 0);
     begun.run();
+    expect(bytes(aside) == lines, "a new run keeps an older table aside", 0);
     const double begins = read_figures().at("time_s").at(0);
     expect(std::fabs(begins - 0.2) < 1e-12, "spar_sim_mode = init begins a turbine in the flow as it is: first time, s",
            begins);
@@ -252,6 +351,36 @@ void check_restarts()
     }
     expect(text.find("the flow's step changed after the turbine had made its own") != std::string::npos,
            "a step of the flow that is not the turbine's", static_cast<double>(text.size()));
+    forget_files();
+}
+
+// A restart on another kind of processor: the two are run with different OPENBLAS_CORETYPE, whose kernels round the turbine's
+// static start differently. The figures go on, to what rounding becomes in 5 steps.
+void check_one_processor()
+{
+    forget_files();
+    input(true, 12);
+    set("time.checkpoint_interval", "5");
+    Flow flow(uniform(8, 270), 0.2, 10);
+    flow.run();
+    flow.end();
+}
+
+void check_another_processor()
+{
+    const auto before = read_figures();
+    input(true, 12);
+    set("io.restart_file", "spar_amr_wind/chk00005");
+    Flow flow(uniform(8, 270), 0.2, 5);
+    flow.run();
+    const auto after = read_figures();
+    double worst = after.at("step").size() == 11 && before.at("step").size() == 11 ? 0 : 1;
+    for (std::size_t i = 6; i < 11 && worst < 1; ++i) {
+        worst = std::max(worst, std::fabs(after.at("thrust_N")[i] / before.at("thrust_N")[i] - 1));
+        worst = std::max(worst, std::fabs(after.at("rotor_speed_rpm")[i] / before.at("rotor_speed_rpm")[i] - 1));
+    }
+    expect(worst < 1e-6, "a restart on another kind of processor: change of thrust and speed, relative", worst);
+    flow.end();
     forget_files();
 }
 
@@ -410,10 +539,11 @@ int main(int argc, char** argv)
     const std::map<std::string, void (*)()> checks{
         {"order", check_order},       {"checkpoints", check_checkpoints}, {"refusals", check_refusals},
         {"restarts", check_restarts}, {"coarse", check_coarse},           {"direction", check_direction},
-        {"figures", check_figures}};
+        {"figures", check_figures},   {"input", check_input},             {"wall", check_wall},
+        {"one_processor", check_one_processor},                           {"another_processor", check_another_processor}};
     const auto it = argc == 2 ? checks.find(argv[1]) : checks.end();
     if (it == checks.end()) {
-        std::printf("usage: amr_wind_checks order|checkpoints|refusals|restarts|coarse|direction|figures\n");
+        std::printf("usage: amr_wind_checks order|checkpoints|refusals|restarts|coarse|direction|figures|input|wall|one_processor|another_processor\n");
         return 2;
     }
     try {
