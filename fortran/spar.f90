@@ -236,6 +236,8 @@ module spar
     procedure :: read_beamdyn => member_read_beamdyn
     procedure :: set_fidelity => member_set_fidelity
     procedure :: get_added_mass => member_get_added_mass
+    procedure :: get_axis => member_get_axis
+    procedure :: get_sections => member_get_sections
     procedure :: get_masses => member_get_masses
     procedure :: get_foundation => member_get_foundation
     procedure :: get_pretension => member_get_pretension
@@ -1310,6 +1312,64 @@ contains
         status = spar_member_get_added_mass(self%handle, n, size(mass, 3, kind=c_int64_t), mass=mass)
     call finish(status, self%session, stat, errmsg)
   end subroutine member_get_added_mass
+
+  ! n: axis points; eta, xyz and twist are filled as far as they reach
+  recursive subroutine member_get_axis(self, n, eta, xyz, twist, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_double), contiguous, intent(inout), optional :: eta(:)
+    real(c_double), contiguous, intent(inout), optional :: xyz(:,:)
+    real(c_double), contiguous, intent(inout), optional :: twist(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    if (present(xyz)) call need(fault, 'xyz', shape(xyz, kind=c_int64_t), &
+        [3_c_int64_t, size(xyz, 2, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%get_axis', fault, stat, errmsg, self%name)
+      return
+    end if
+    status = spar_beam_get_axis(self%handle, n, 0_c_int64_t)
+    if (status == SPAR_OK .and. present(eta)) &
+        status = spar_beam_get_axis(self%handle, n, size(eta, kind=c_int64_t), eta)
+    if (status == SPAR_OK .and. present(xyz)) &
+        status = spar_beam_get_axis(self%handle, n, size(xyz, 2, kind=c_int64_t), xyz=xyz)
+    if (status == SPAR_OK .and. present(twist)) &
+        status = spar_beam_get_axis(self%handle, n, size(twist, kind=c_int64_t), twist=twist)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_axis
+
+  ! n: sections; eta, stiffness and mass are filled as far as they reach
+  recursive subroutine member_get_sections(self, n, eta, stiffness, mass, stat, errmsg)
+    class(spar_member), intent(in) :: self
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_double), contiguous, intent(inout), optional :: eta(:)
+    real(c_double), contiguous, intent(inout), optional :: stiffness(:,:,:)
+    real(c_double), contiguous, intent(inout), optional :: mass(:,:,:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    character(:), allocatable :: fault
+    integer(c_int) :: status
+
+    if (present(stiffness)) call need(fault, 'stiffness', shape(stiffness, kind=c_int64_t), &
+        [6_c_int64_t, 6_c_int64_t, size(stiffness, 3, kind=c_int64_t)])
+    if (present(mass)) call need(fault, 'mass', shape(mass, kind=c_int64_t), &
+        [6_c_int64_t, 6_c_int64_t, size(mass, 3, kind=c_int64_t)])
+    if (allocated(fault)) then
+      call refuse('member%get_sections', fault, stat, errmsg, self%name)
+      return
+    end if
+    status = spar_beam_get_sections(self%handle, n, 0_c_int64_t)
+    if (status == SPAR_OK .and. present(eta)) &
+        status = spar_beam_get_sections(self%handle, n, size(eta, kind=c_int64_t), eta)
+    if (status == SPAR_OK .and. present(stiffness)) &
+        status = spar_beam_get_sections(self%handle, n, size(stiffness, 3, kind=c_int64_t), stiffness=stiffness)
+    if (status == SPAR_OK .and. present(mass)) &
+        status = spar_beam_get_sections(self%handle, n, size(mass, 3, kind=c_int64_t), mass=mass)
+    call finish(status, self%session, stat, errmsg)
+  end subroutine member_get_sections
 
   ! n: bodies; eta and mass are filled as far as they reach
   recursive subroutine member_get_masses(self, n, eta, mass, stat, errmsg)

@@ -75,6 +75,8 @@ module spar_aero
     procedure :: c_handle => aero_handle
     procedure, private :: aero_set_section_64, aero_set_section_32
     generic :: set_section => aero_set_section_64, aero_set_section_32
+    procedure, private :: aero_get_polar_64, aero_get_polar_32
+    generic :: get_polar => aero_get_polar_64, aero_get_polar_32
     procedure :: read_aerodyn => aero_read_aerodyn
     procedure :: get_flags => aero_get_flags
     procedure :: report_effects => aero_report_effects
@@ -258,6 +260,43 @@ contains
 
     call self%set_section(int(i, c_int64_t), chord, twist, polar, stat, errmsg)
   end subroutine aero_set_section_32
+
+  ! n: rows; the arrays are filled as far as they reach
+  recursive subroutine aero_get_polar_64(self, i, n, alpha_rad, cl, cd, cm, kind, stat, errmsg)
+    class(spar_aero_object), intent(in) :: self
+    integer(c_int64_t), intent(in) :: i
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_double), contiguous, intent(inout), optional :: alpha_rad(:), cl(:), cd(:), cm(:)
+    integer, intent(inout), optional :: kind
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, c_kind
+
+    c_kind = 0
+    status = spar_aero_get_polar(self%handle, i - 1, n, 0_c_int64_t, kind=c_kind)
+    if (status == SPAR_OK .and. present(alpha_rad)) &
+        status = spar_aero_get_polar(self%handle, i - 1, n, size(alpha_rad, kind=c_int64_t), alpha_rad)
+    if (status == SPAR_OK .and. present(cl)) &
+        status = spar_aero_get_polar(self%handle, i - 1, n, size(cl, kind=c_int64_t), cl=cl)
+    if (status == SPAR_OK .and. present(cd)) &
+        status = spar_aero_get_polar(self%handle, i - 1, n, size(cd, kind=c_int64_t), cd=cd)
+    if (status == SPAR_OK .and. present(cm)) &
+        status = spar_aero_get_polar(self%handle, i - 1, n, size(cm, kind=c_int64_t), cm=cm)
+    if (status == SPAR_OK .and. present(kind)) kind = c_kind
+    call finish(status, self%session, stat, errmsg)
+  end subroutine aero_get_polar_64
+
+  recursive subroutine aero_get_polar_32(self, i, n, alpha_rad, cl, cd, cm, kind, stat, errmsg)
+    class(spar_aero_object), intent(in) :: self
+    integer(c_int), intent(in) :: i
+    integer(c_int64_t), intent(inout), optional :: n
+    real(c_double), contiguous, intent(inout), optional :: alpha_rad(:), cl(:), cd(:), cm(:)
+    integer, intent(inout), optional :: kind
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+
+    call self%get_polar(int(i, c_int64_t), n, alpha_rad, cl, cd, cm, kind, stat, errmsg)
+  end subroutine aero_get_polar_32
 
   recursive subroutine aero_read_aerodyn(self, primary_path, blade_path, q, span, stat, errmsg)
     class(spar_aero_object), intent(inout) :: self

@@ -72,6 +72,17 @@ module spar_aero_calls
       integer(c_int) :: status
     end function spar_aero_get_chord
 
+    function spar_aero_get_polar(aero, i, n, capacity, alpha_rad, cl, cd, cm, kind) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: aero
+      integer(c_int64_t), value :: i
+      integer(c_int64_t), intent(inout), optional :: n
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: alpha_rad(*), cl(*), cd(*), cm(*)
+      integer(c_int), intent(inout), optional :: kind
+      integer(c_int) :: status
+    end function spar_aero_get_polar
+
     function spar_fluid_read_aerodyn(fluid, primary_path, blade_path, q, n, span) bind(c) result(status)
       import :: c_char, c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: fluid

@@ -432,6 +432,24 @@ module spar_calls
       integer(c_int) :: status
     end function spar_beam_get_elements
 
+    function spar_beam_get_axis(beam, n, capacity, eta, xyz, twist) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int64_t), intent(inout), optional :: n
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: eta(*), xyz(*), twist(*)
+      integer(c_int) :: status
+    end function spar_beam_get_axis
+
+    function spar_beam_get_sections(beam, n, capacity, eta, stiffness, mass) bind(c) result(status)
+      import :: c_double, c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: beam
+      integer(c_int64_t), intent(inout), optional :: n
+      integer(c_int64_t), value :: capacity
+      real(c_double), intent(inout), optional :: eta(*), stiffness(*), mass(*)
+      integer(c_int) :: status
+    end function spar_beam_get_sections
+
     function spar_beam_set_nodes(beam, n, x, q) bind(c) result(status)
       import :: c_double, c_int, c_int64_t, c_ptr
       type(c_ptr), value :: beam

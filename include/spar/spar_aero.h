@@ -98,11 +98,24 @@ SPAR_API int spar_aero_set_section(spar_aero *aero, int64_t i, double chord, dou
      twist[sections]: out, rad, in [-pi, pi], as of spar_aero_set_section, NULL: not wanted
    SPAR_ERR_STATE: a section is not described. */
 SPAR_API int spar_aero_get_chord(const spar_aero *aero, double *chord, double *twist);
+/* The polar of a section, as set or read. On a rank without blades nothing is written.
+     i: in, 0 to sections - 1
+     n: out, rows, NULL: not wanted
+     capacity: in, of the arrays; n is enough
+     alpha_rad[capacity]: out, NULL: not wanted
+     cl[capacity]: out, NULL: not wanted
+     cd[capacity]: out, NULL: not wanted
+     cm[capacity]: out, NULL: not wanted
+     kind: out, SPAR_POLAR_*, NULL: not wanted
+   SPAR_ERR_STATE: a section is not described. */
+SPAR_API int spar_aero_get_polar(const spar_aero *aero, int64_t i, int64_t *n, int64_t capacity, double *alpha_rad,
+                                 double *cl, double *cd, double *cm, int *kind);
 /* Reads a blade from AeroDyn's files (AeroDyn 15 and later): the airfoils of the primary file, the stations of the
    blade file, the tables of the airfoil files. Lengths, curve, sweep, twist and chord are linear between stations,
    and so are the coefficients between different airfoils. Every rank reads the files. After a failure all is as it was.
    SPAR_ERR_IO: a file or a field cannot be read; the message names file, line and field. SPAR_ERR_ARGUMENT: a polar or
-   a span is not allowed. SPAR_ERR_UNSUPPORTED: AFTabMod 2 or 3 (with 1 the first table is used).
+   a span is not allowed. Of several tables AFTabMod 1 takes the first, and AFTabMod 3 that of UserProp 0, linear
+   between its neighbours, else the nearest. SPAR_ERR_UNSUPPORTED: several tables with AFTabMod 2 (Reynolds numbers).
 
    This call sets the stations of a fluid at the aerodynamic centres (BlSpn, BlCrvAC, BlSwpAC), each attached to the
    nearest point of the line. The member must be committed. Map afterwards. BlCrvAng is not used: sections are

@@ -115,6 +115,22 @@ SPAR_API int spar_section_transform(const double matrix[36], double y, double z,
      elements: out, NULL: not wanted
      nodes_per_element: out, NULL: not wanted */
 SPAR_API int spar_beam_get_elements(const spar_member *beam, int *elements, int *nodes_per_element);
+/* The axis as spar_beam_set_axis or spar_beam_read_beamdyn has set it.
+     n: out, 0: none, or nodes were given instead; NULL: not wanted
+     capacity: in, of the arrays; n is enough
+     eta[capacity]: out, NULL: not wanted
+     xyz[capacity][3]: out, m, NULL: not wanted
+     twist[capacity]: out, rad, NULL: not wanted */
+SPAR_API int spar_beam_get_axis(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *xyz,
+                                double *twist);
+/* The sections as spar_beam_set_sections or spar_beam_read_beamdyn has set them.
+     n: out, 0: none; NULL: not wanted
+     capacity: in, of the arrays; n is enough
+     eta[capacity]: out, NULL: not wanted
+     stiffness[capacity][36]: out, NULL: not wanted
+     mass[capacity][36]: out, 0 without mass, NULL: not wanted */
+SPAR_API int spar_beam_get_sections(const spar_member *beam, int64_t *n, int64_t capacity, double *eta,
+                                    double *stiffness, double *mass);
 /* Gives the nodes themselves instead of an axis, in the beam's own frame. They must be the Gauss-Lobatto-Legendre
    points of their elements; the commit refuses nodes that coincide or go back.
      n: in, elements * nodes_per_element
@@ -136,8 +152,10 @@ SPAR_API int spar_beam_get_quadrature(const spar_member *beam, int *rule, int *p
    its x and y axes become y and z. Elements, nodes and quadrature stay those of the beam. Every rank reads the files.
      primary_path: in
      blade_path: in, NULL: the file named by the primary one, in its folder
-   After a failure the beam is as it was. SPAR_ERR_IO: a file or a field cannot be read; SPAR_ERR_ARGUMENT: a matrix is
-   not allowed; SPAR_ERR_UNSUPPORTED: damp_type above 1. */
+   Stations run from 0 to 1, and counts must agree with the rows. Modal damping (damp_type 2) is not put in force: a
+   warning has the ratios, for spar_beam_fit_damping after the commit. After a failure the beam is as it was.
+   SPAR_ERR_IO: a file or a field cannot be read; SPAR_ERR_ARGUMENT: a matrix is not allowed; SPAR_ERR_UNSUPPORTED:
+   damp_type above 2. */
 SPAR_API int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const char *blade_path);
 
 /* ---- beams: masses, foundation, pretension, damping -------------------------------------------------------------- */

@@ -494,7 +494,8 @@ class _Running:
             return self.owner.size(word, self.given)
         count = _NUMBERS[self.call.by_name[word].type][0]()
         status = self.call.function(*[self.owner.handle if p is self.call.parameters[0] else ctypes.byref(count) if p.name == word
-                                      else 0 if p.name == 'capacity' else None for p in self.call.parameters])
+                                      else 0 if p.name == 'capacity' else self.given[p.name] if p.how == 'value' else None
+                                      for p in self.call.parameters])
         if status != 0:
             raise _failed(status, self.message())
         return count.value

@@ -768,6 +768,26 @@ int spar_aero_get_chord(const spar_aero *aero, double *chord, double *twist) {
     return SPAR_OK;
 }
 
+int spar_aero_get_polar(const spar_aero *aero, int64_t i, int64_t *n, int64_t capacity, double *alpha_rad, double *cl,
+                        double *cd, double *cm, int *kind) {
+    SPARI_GUARD_ENVIRONMENT;
+    REQUIRE_HANDLE(aero);
+    SPARI_AERO_REQUIRE(aero->session, i >= 0 && (aero->blades == 0 || i < aero->n), SPAR_ERR_ARGUMENT,
+                       "%s: there is no section %lld; the blade has %lld, counted from 0", __func__, (long long)i,
+                       (long long)aero->n);
+    SPARI_AERO_REQUIRE(aero->session, capacity >= 0 && capacity <= SPARI_MOST, SPAR_ERR_ARGUMENT,
+                       "%s: capacity is %lld; give the length of the arrays, 0 to 2^40", __func__, (long long)capacity);
+    SPARI_TRY(check_described(aero, __func__));
+    if (aero->blades > 0) {
+        double *const value[] = {cl, cd, cm};
+        int64_t rows = spari_table_rows(aero->section[i].table, capacity, alpha_rad, value, kind);
+        if (n) {
+            *n = rows;
+        }
+    }
+    return SPAR_OK;
+}
+
 int spar_aero_get_flags(const spar_aero *aero, int *flags, int64_t *no_root) {
     REQUIRE_HANDLE(aero);
     SPARI_TRY(check_solved(aero, __func__));

@@ -17,7 +17,7 @@ enum { SPARI_CL, SPARI_CD, SPARI_CM, SPARI_COEFFICIENTS };
 
 struct spari_table {
     atomic_int users;
-    int full, has_moment; /* covers the full circle; any cm not zero */
+    int kind, full, has_moment; /* interpolation; covers the full circle; any cm not zero */
     int64_t n;
     double *alpha;
     double *value[SPARI_COEFFICIENTS];
@@ -72,6 +72,7 @@ static spari_table *table_create(int64_t n, const double *alpha, const double *c
     size_t bytes = (size_t)n * sizeof *block;
     atomic_init(&table->users, 1);
     table->n = n;
+    table->kind = kind;
     table->alpha = memcpy(block, alpha, bytes);
     table->full = alpha[n - 1] - alpha[0] > SPARI_TURN * (1.0 - SPARI_TURN_SLACK);
     for (int c = 0; c < SPARI_COEFFICIENTS; c++) {
@@ -182,6 +183,20 @@ int spar_polar_set_interpolation(spar_polar *polar, int kind) {
     spari_table_release(polar->table);
     polar->table = table;
     return SPAR_OK;
+}
+
+int64_t spari_table_rows(const spari_table *table, int64_t capacity, double *alpha, double *const value[3], int *kind) {
+    double *const out[] = {alpha, value[0], value[1], value[2]};
+    const double *const in[] = {table->alpha, table->value[0], table->value[1], table->value[2]};
+    for (int c = 0; c < SPARI_COEFFICIENTS + 1; c++) {
+        for (int64_t i = 0; out[c] && i < capacity; i++) {
+            out[c][i] = i < table->n ? in[c][i] : 0;
+        }
+    }
+    if (kind) {
+        *kind = table->kind;
+    }
+    return table->n;
 }
 
 int spari_table_has_moment(const spari_table *table) {

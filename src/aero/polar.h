@@ -11,6 +11,8 @@ typedef struct spari_table spari_table;
 spari_table *spari_polar_share(const spar_polar *polar);
 void spari_table_release(spari_table *table);
 
+/* Rows, and the first `capacity` of each array that is not NULL, 0 beyond the last. */
+int64_t spari_table_rows(const spari_table *table, int64_t capacity, double *alpha, double *const value[3], int *kind);
 /* Whether any moment coefficient differs from zero. */
 int spari_table_has_moment(const spari_table *table);
 

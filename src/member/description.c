@@ -362,6 +362,29 @@ int spar_beam_get_quadrature(const spar_member *beam, int *rule, int *points) {
     return SPAR_OK;
 }
 
+int spar_beam_get_axis(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *xyz, double *twist) {
+    SPARI_TRY(spari_need_any_beam(beam, __func__));
+    SPARI_TRY(spari_need_capacity(beam->session, __func__, capacity));
+    const spari_beam *b = beam->beam;
+    SPARI_GIVE(n, b->axis_count);
+    spari_fill(capacity, eta, b->axis_count, b->eta);
+    spari_fill(3 * capacity, xyz, 3 * b->axis_count, b->xyz);
+    spari_fill(capacity, twist, b->twist ? b->axis_count : 0, b->twist);
+    return SPAR_OK;
+}
+
+int spar_beam_get_sections(const spar_member *beam, int64_t *n, int64_t capacity, double *eta, double *stiffness,
+                           double *mass) {
+    SPARI_TRY(spari_need_any_beam(beam, __func__));
+    SPARI_TRY(spari_need_capacity(beam->session, __func__, capacity));
+    const spari_beam *b = beam->beam;
+    SPARI_GIVE(n, b->section_count);
+    spari_fill(capacity, eta, b->section_count, b->section_eta);
+    spari_fill(36 * capacity, stiffness, 36 * b->section_count, b->stiffness);
+    spari_fill(36 * capacity, mass, b->mass ? 36 * b->section_count : 0, b->mass);
+    return SPAR_OK;
+}
+
 int spar_beam_get_damping(const spar_member *beam, double mu[6]) {
     SPARI_TRY(spari_need_any_beam(beam, __func__));
     spari_give(mu, beam->beam->mu, 6);

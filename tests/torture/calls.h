@@ -46,6 +46,8 @@
     CALL(spar_section_report) \
     CALL(spar_section_transform) \
     CALL(spar_beam_get_elements) \
+    CALL(spar_beam_get_axis) \
+    CALL(spar_beam_get_sections) \
     CALL(spar_beam_set_nodes) \
     CALL(spar_beam_set_quadrature) \
     CALL(spar_beam_get_quadrature) \
@@ -192,6 +194,7 @@
     CALL(spar_aero_destroy) \
     CALL(spar_aero_set_section) \
     CALL(spar_aero_get_chord) \
+    CALL(spar_aero_get_polar) \
     CALL(spar_fluid_read_aerodyn) \
     CALL(spar_aero_read_aerodyn) \
     CALL(spar_aero_set_rotor) \

@@ -69,6 +69,26 @@ void do_spar_section_transform(call *c) {
     RUN(c, spar_section_transform(matrix, y, z, angle, out));
 }
 
+void do_spar_beam_get_axis(call *c) {
+    live_member *beam = arg_member(c, KIND_BEAM);
+    int64_t *n = arg_out(c, (int64_t)sizeof *n, 1);
+    int64_t capacity = arg_count(c, 0, 4);
+    double *eta = arg_out(c, length(capacity) * (int64_t)sizeof *eta, 1);
+    double *xyz = arg_out(c, length(capacity) * 3 * (int64_t)sizeof *xyz, 1);
+    double *twist = arg_out(c, length(capacity) * (int64_t)sizeof *twist, 1);
+    RUN(c, spar_beam_get_axis(beam->m, n, capacity, eta, xyz, twist));
+}
+
+void do_spar_beam_get_sections(call *c) {
+    live_member *beam = arg_member(c, KIND_BEAM);
+    int64_t *n = arg_out(c, (int64_t)sizeof *n, 1);
+    int64_t capacity = arg_count(c, 0, 4);
+    double *eta = arg_out(c, length(capacity) * (int64_t)sizeof *eta, 1);
+    double *stiffness = arg_out(c, length(capacity) * 36 * (int64_t)sizeof *stiffness, 1);
+    double *mass = arg_out(c, length(capacity) * 36 * (int64_t)sizeof *mass, 1);
+    RUN(c, spar_beam_get_sections(beam->m, n, capacity, eta, stiffness, mass));
+}
+
 void do_spar_session_get_integrator(call *c) {
     live_session *session = arg_session(c);
     double *rho_inf = arg_out(c, (int64_t)sizeof *rho_inf, 1);
@@ -125,4 +145,17 @@ void do_spar_session_get_threads(call *c) {
 void do_spar_fluid_map_current(call *c) {
     live_fluid *fluid = arg_fluid(c);
     RUN(c, spar_fluid_map_current(fluid->f));
+}
+
+void do_spar_aero_get_polar(call *c) {
+    live_aero *aero = arg_aero(c);
+    int64_t i = arg_count(c, 0, 4);
+    int64_t *n = arg_out(c, (int64_t)sizeof *n, 1);
+    int64_t capacity = arg_count(c, 0, 4);
+    double *alpha_rad = arg_out(c, length(capacity) * (int64_t)sizeof *alpha_rad, 1);
+    double *cl = arg_out(c, length(capacity) * (int64_t)sizeof *cl, 1);
+    double *cd = arg_out(c, length(capacity) * (int64_t)sizeof *cd, 1);
+    double *cm = arg_out(c, length(capacity) * (int64_t)sizeof *cm, 1);
+    int *kind = arg_out(c, (int64_t)sizeof *kind, 1);
+    RUN(c, spar_aero_get_polar(aero->a, i, n, capacity, alpha_rad, cl, cd, cm, kind));
 }

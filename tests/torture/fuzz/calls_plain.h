@@ -9,6 +9,8 @@
     CALL(spar_section_build, 30, FUZZ_CHANGES) \
     CALL(spar_section_describe, 30, FUZZ_CHANGES) \
     CALL(spar_section_transform, 30, FUZZ_CHANGES) \
+    CALL(spar_beam_get_axis, 30, FUZZ_PURE) \
+    CALL(spar_beam_get_sections, 30, FUZZ_PURE) \
     CALL(spar_session_get_integrator, 30, FUZZ_PURE) \
     CALL(spar_session_get_newton, 30, FUZZ_PURE) \
     CALL(spar_session_get_predictor, 30, FUZZ_PURE) \
@@ -17,4 +19,5 @@
     CALL(spar_session_get_tolerance, 30, FUZZ_PURE) \
     CALL(spar_session_get_reproducible, 30, FUZZ_PURE) \
     CALL(spar_session_get_threads, 30, FUZZ_PURE) \
-    CALL(spar_fluid_map_current, 30, FUZZ_CHANGES)
+    CALL(spar_fluid_map_current, 30, FUZZ_CHANGES) \
+    CALL(spar_aero_get_polar, 30, FUZZ_PURE)

@@ -387,6 +387,8 @@ static void act_step(void) {
     CALL(spar_beam_get_foundation, b, &node, 2, NULL, ground);
     CALL(spar_beam_set_pretension, b, 2, eta, tension);
     CALL(spar_beam_get_pretension, b, &node, 2, NULL, tension);
+    CALL(spar_beam_get_axis, b, &node, 0, NULL, NULL, NULL);
+    CALL(spar_beam_get_sections, b, &node, 0, NULL, NULL, NULL);
     CALL(spar_member_commit, b);
     h.fluid[0] = begin_fluid(b, "air", 10, &h.n[0], h.x[0]);
     CALL(spar_fluid_map, h.fluid[0]);
@@ -932,7 +934,7 @@ static void act_aero(void) {
                         up[3] = {0, 0, 1};
     double alpha[7], cl[7], cd[7], cm[7], eta[N], a[N], b[N], c[N], force[3 * N], thrust, torque, power;
     int flags[N];
-    int64_t none;
+    int64_t none, rows;
     int here = run.rank == 0;
     wind w = {0};
     spar_polar *polar = NULL;
@@ -973,6 +975,7 @@ static void act_aero(void) {
         NOTE(a);
         CALL(spar_aero_get_flags, w.aero, flags, &none);
         CALL(spar_aero_get_chord, w.aero, a, b);
+        CALL(spar_aero_get_polar, w.aero, 0, &rows, 1, a, b, NULL, NULL, NULL);
         CALL(spar_aero_get_loads, w.aero, NULL, force, NULL);
         NOTE(force);
         PLAIN(spar_aero_effect_name, 0);
