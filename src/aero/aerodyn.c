@@ -12,12 +12,10 @@
 #include <string.h>
 
 /* Tolerances: span at the ends of the blade, relative to its length; unit length; twist differences between blades,
-   rad; equal angles of two tables, rad. */
+   rad. */
 #define SPARI_SPAN_SLACK 1e-6
 #define SPARI_UNIT_SLACK 1e-6
 #define SPARI_TWIST_SLACK 1e-6
-#define SPARI_ROW_SLACK 1e-9
-#define SPARI_TURN (2.0 * 3.14159265358979323846)
 
 /* ---- interpolation along the blade ---- */
 
@@ -156,60 +154,14 @@ int spar_fluid_read_aerodyn(spar_fluid *fluid, const char *primary_path, const c
 
 /* ---- polars ---- */
 
-static int make_polar(const spari_airfoil *a, spar_polar **polar) {
-    SPARI_TRY(spar_polar_create(a->n, a->alpha, a->cl, a->cd, a->cm, polar));
-    int status = spar_polar_set_interpolation(*polar, a->kind);
-    if (status != SPAR_OK) {
-        spar_polar_destroy(polar);
-    }
-    return status;
-}
-
-/* All angles of both tables, each once, over one full circle at most. */
-static int64_t merge_rows(const spari_airfoil *a, const spari_airfoil *b, double *alpha) {
-    int64_t n = 0;
-    for (int64_t i = 0, j = 0; i < a->n || j < b->n;) {
-        double next = j == b->n || (i < a->n && a->alpha[i] <= b->alpha[j]) ? a->alpha[i++] : b->alpha[j++];
-        if (n == 0 || next > alpha[n - 1] + SPARI_ROW_SLACK) {
-            alpha[n++] = next;
-        }
-    }
-    if (alpha[n - 1] - alpha[0] > SPARI_TURN - SPARI_ROW_SLACK) { /* a full circle ends where it began */
-        while (alpha[n - 1] - alpha[0] > SPARI_TURN - SPARI_ROW_SLACK) {
-            n--;
-        }
-        alpha[n++] = alpha[0] + SPARI_TURN;
-    }
-    return n;
-}
-
 /* Polar between two airfoils: weighted mean of their coefficients at every angle of either. */
 static int blend_polars(const spari_airfoil *a, const spari_airfoil *b, double t, spar_polar **polar) {
-    spar_polar *part[2] = {NULL, NULL};
-    int64_t most = a->n + b->n;
-    double *x = spari_zalloc(4 * most, sizeof *x);
-    int status = x ? SPAR_OK : SPAR_ERR_MEMORY;
-    status = status == SPAR_OK ? make_polar(a, &part[0]) : status;
-    status = status == SPAR_OK ? make_polar(b, &part[1]) : status;
-    if (status == SPAR_OK) {
-        spari_airfoil both = {.kind = a->kind == b->kind ? a->kind : SPAR_POLAR_LINEAR, .alpha = x};
-        double *column[] = {x + most, x + 2 * most, x + 3 * most};
-        both.n = merge_rows(a, b, x);
-        both.cl = column[0], both.cd = column[1], both.cm = column[2];
-        for (int64_t i = 0; i < both.n; i++) {
-            double c[2][3] = {{0}};
-            for (int k = 0; k < 2; k++) {
-                (void)spar_polar_evaluate(part[k], x[i], &c[k][0], &c[k][1], &c[k][2]);
-            }
-            for (int k = 0; k < 3; k++) {
-                column[k][i] = c[0][k] + t * (c[1][k] - c[0][k]);
-            }
-        }
-        status = make_polar(&both, polar);
+    spari_airfoil both;
+    if (spari_airfoil_blend(a, b, t, &both)) {
+        return SPAR_ERR_MEMORY;
     }
-    spar_polar_destroy(&part[0]);
-    spar_polar_destroy(&part[1]);
-    free(x);
+    int status = spari_airfoil_polar(&both, polar);
+    free(both.alpha);
     return status;
 }
 
@@ -218,9 +170,9 @@ static int polar_at(const spari_blade *blade, int i, double t, spar_polar **pola
     const spari_airfoil *a = blade->airfoil + (int)station(blade, i, SPARI_BLADE_AIRFOIL) - 1,
                         *b = blade->airfoil + (int)station(blade, i + 1, SPARI_BLADE_AIRFOIL) - 1;
     if (a == b || t == 0) {
-        return make_polar(a, polar);
+        return spari_airfoil_polar(a, polar);
     }
-    return t == 1 ? make_polar(b, polar) : blend_polars(a, b, t, polar);
+    return t == 1 ? spari_airfoil_polar(b, polar) : blend_polars(a, b, t, polar);
 }
 
 /* ---- sections ---- */

@@ -28,6 +28,9 @@ typedef struct spari_blade {
     spari_airfoil *airfoil; /* [airfoils]; unused ones are empty */
 } spari_blade;
 
+int spari_airfoil_polar(const spari_airfoil *a, spar_polar **polar);
+/* c: a + t (b - a) at every angle of either, as a new table. Returns 1 if there is no memory. */
+int spari_airfoil_blend(const spari_airfoil *a, const spari_airfoil *b, double t, spari_airfoil *c);
 /* Reads the files.
    blade: to be freed in any case
    session, call, subject: of the messages, which begin with call and subject; session NULL: the thread's message

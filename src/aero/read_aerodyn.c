@@ -4,6 +4,7 @@
 #include "aerodyn.h"
 #include "message.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -11,11 +12,16 @@
 enum { COLUMN_ALPHA, COLUMN_CL, COLUMN_CD, COLUMN_CM, COLUMNS };
 enum { MOST_COLUMN = 16 };
 
+/* Equal angles of two tables, rad. */
+#define SPARI_ROW_SLACK 1e-9
+#define SPARI_TURN (2.0 * 3.14159265358979323846)
+
 static const double degree = 3.14159265358979323846 / 180;
 
 /* Contents of the primary file. */
 typedef struct deck {
     int column[COLUMNS]; /* in the airfoil tables, from 1; 0: absent */
+    int last;            /* of these */
     int tables, airfoils, use_moment;
     char **airfoil; /* [airfoils] paths */
     char *blade;
@@ -71,6 +77,7 @@ static int read_columns(spari_reader *r, deck *d) {
             return SPARI_READ_FAIL(r, SPAR_ERR_IO, "%s is %d; at most %d columns are supported", key[i], d->column[i],
                                    MOST_COLUMN);
         }
+        d->last = d->column[i] > d->last ? d->column[i] : d->last;
     }
     return SPAR_OK;
 }
@@ -90,6 +97,9 @@ static int find_blade(spari_reader *r) {
 static int read_deck(spari_reader *r, deck *d, int find_the_blade) {
     SPARI_TRY(spari_read_key(r, "AFTabMod"));
     SPARI_TRY(spari_read_whole(r, "AFTabMod", 1, 0, &d->tables));
+    if (d->tables > 3) {
+        return SPARI_READ_FAIL(r, SPAR_ERR_IO, "AFTabMod is %d; give 1, 2 or 3", d->tables);
+    }
     SPARI_TRY(read_columns(r, d));
     SPARI_TRY(spari_read_key(r, "NumAFfiles"));
     SPARI_TRY(spari_read_whole(r, "NumAFfiles", 1, 0, &d->airfoils));
@@ -123,6 +133,10 @@ static int read_station(spari_reader *r, const deck *d, spari_blade *b, int i) {
         return SPARI_READ_FAIL(r, SPAR_ERR_IO, "BlAFID is %d; the primary file names %d airfoils", airfoil,
                                d->airfoils);
     }
+    if (i == 0 && row[SPARI_BLADE_SPAN] != 0) {
+        return SPARI_READ_FAIL(r, SPAR_ERR_IO, "BlSpn of the first station is %g; it must be 0, the blade's root",
+                               row[SPARI_BLADE_SPAN]);
+    }
     if (i > 0 && !(row[SPARI_BLADE_SPAN] > row[SPARI_BLADE_SPAN - SPARI_BLADE_COLUMNS])) {
         return SPARI_READ_FAIL(r, SPAR_ERR_IO, "BlSpn is %g and is not above the previous one (%g)",
                                row[SPARI_BLADE_SPAN], row[SPARI_BLADE_SPAN - SPARI_BLADE_COLUMNS]);
@@ -147,7 +161,7 @@ static int read_stations(spari_reader *r, const deck *d, spari_blade *b) {
     for (int i = 0; i < b->stations; i++) {
         SPARI_TRY(read_station(r, d, b, i));
     }
-    return SPAR_OK;
+    return spari_read_last(r, "NumBlNds", b->stations, SPARI_BLADE_COLUMNS);
 }
 
 /* ---- an airfoil file ---- */
@@ -183,13 +197,9 @@ static int find_data(spari_reader *r, const char *key, int *interpolation) {
 
 static int read_rows(spari_reader *r, const deck *d, spari_airfoil *a) {
     double x[MOST_COLUMN];
-    int last = 0;
-    for (int i = 0; i < COLUMNS; i++) {
-        last = d->column[i] > last ? d->column[i] : last;
-    }
     for (int64_t i = 0; i < a->n; i++) {
         SPARI_TRY(read_data(r, "a row of the table"));
-        SPARI_TRY(spari_read_numbers(r, "a row of the table", last, x));
+        SPARI_TRY(spari_read_numbers(r, "a row of the table", d->last, x));
         a->alpha[i] = x[d->column[COLUMN_ALPHA] - 1] * degree;
         a->cl[i] = x[d->column[COLUMN_CL] - 1];
         a->cd[i] = x[d->column[COLUMN_CD] - 1];
@@ -202,11 +212,68 @@ static int read_rows(spari_reader *r, const deck *d, spari_airfoil *a) {
     return SPAR_OK;
 }
 
+/* ---- polars ---- */
+
+int spari_airfoil_polar(const spari_airfoil *a, spar_polar **polar) {
+    SPARI_TRY(spar_polar_create(a->n, a->alpha, a->cl, a->cd, a->cm, polar));
+    int status = spar_polar_set_interpolation(*polar, a->kind);
+    if (status != SPAR_OK) {
+        spar_polar_destroy(polar);
+    }
+    return status;
+}
+
+/* All angles of both tables, each once, over one full circle at most. */
+static int64_t merge_rows(const spari_airfoil *a, const spari_airfoil *b, double *alpha) {
+    int64_t n = 0;
+    for (int64_t i = 0, j = 0; i < a->n || j < b->n;) {
+        double next = j == b->n || (i < a->n && a->alpha[i] <= b->alpha[j]) ? a->alpha[i++] : b->alpha[j++];
+        if (n == 0 || next > alpha[n - 1] + SPARI_ROW_SLACK) {
+            alpha[n++] = next;
+        }
+    }
+    if (alpha[n - 1] - alpha[0] > SPARI_TURN - SPARI_ROW_SLACK) { /* a full circle ends where it began */
+        while (alpha[n - 1] - alpha[0] > SPARI_TURN - SPARI_ROW_SLACK) {
+            n--;
+        }
+        alpha[n++] = alpha[0] + SPARI_TURN;
+    }
+    return n;
+}
+
+int spari_airfoil_blend(const spari_airfoil *a, const spari_airfoil *b, double t, spari_airfoil *c) {
+    spar_polar *part[2] = {NULL, NULL};
+    int64_t most = a->n + b->n;
+    double *x = spari_zalloc(4 * most, sizeof *x);
+    int status = x ? SPAR_OK : SPAR_ERR_MEMORY;
+    status = status == SPAR_OK ? spari_airfoil_polar(a, &part[0]) : status;
+    status = status == SPAR_OK ? spari_airfoil_polar(b, &part[1]) : status;
+    if (status == SPAR_OK) {
+        *c = (spari_airfoil){.kind = a->kind == b->kind ? a->kind : SPAR_POLAR_LINEAR, .alpha = x};
+        double *column[] = {x + most, x + 2 * most, x + 3 * most};
+        c->n = merge_rows(a, b, x);
+        c->cl = column[0], c->cd = column[1], c->cm = column[2];
+        for (int64_t i = 0; i < c->n; i++) {
+            double of[2][3] = {{0}};
+            for (int k = 0; k < 2; k++) {
+                (void)spar_polar_evaluate(part[k], x[i], &of[k][0], &of[k][1], &of[k][2]);
+            }
+            for (int k = 0; k < 3; k++) {
+                column[k][i] = of[0][k] + t * (of[1][k] - of[0][k]);
+            }
+        }
+    } else {
+        free(x);
+    }
+    spar_polar_destroy(&part[0]);
+    spar_polar_destroy(&part[1]);
+    return status != SPAR_OK;
+}
+
 /* Checks a polar as the library does, with file and line in the message. */
 static int check_polar(const spari_reader *r, const spari_airfoil *a) {
     spar_polar *polar = NULL;
-    int status = spar_polar_create(a->n, a->alpha, a->cl, a->cd, a->cm, &polar);
-    status = status == SPAR_OK ? spar_polar_set_interpolation(polar, a->kind) : status;
+    int status = spari_airfoil_polar(a, &polar);
     if (status != SPAR_OK) {
         char why[SPARI_MESSAGE_SIZE / 2];
         (void)snprintf(why, sizeof why, "%s", spar_session_message(NULL));
@@ -216,17 +283,8 @@ static int check_polar(const spari_reader *r, const spari_airfoil *a) {
     return status;
 }
 
-/* The first table; further ones are for other Reynolds numbers or controls, which AFTabMod 1 ignores. */
-static int read_airfoil(spari_reader *r, const deck *d, spari_airfoil *a) {
-    int tables = 0, rows = 0;
-    SPARI_TRY(find_data(r, "NumTabs", &a->kind));
-    SPARI_TRY(spari_read_whole(r, "NumTabs", 1, 0, &tables));
-    if (tables > 1 && d->tables > 1) {
-        return SPARI_READ_FAIL(r, SPAR_ERR_UNSUPPORTED,
-                               "%d tables with interpolation (AFTabMod %d) are not supported; use one table, or "
-                               "AFTabMod 1 to read the first",
-                               tables, d->tables);
-    }
+static int read_table(spari_reader *r, const deck *d, int last, spari_airfoil *a) {
+    int rows = 0;
     SPARI_TRY(find_data(r, "NumAlf", &a->kind));
     SPARI_TRY(spari_read_whole(r, "NumAlf", 2, 0, &rows));
     a->n = rows;
@@ -236,7 +294,60 @@ static int read_airfoil(spari_reader *r, const deck *d, spari_airfoil *a) {
     }
     a->cl = a->alpha + a->n, a->cd = a->cl + a->n, a->cm = a->cd + a->n;
     SPARI_TRY(read_rows(r, d, a));
-    return check_polar(r, a);
+    SPARI_TRY(check_polar(r, a));
+    return last ? spari_read_last(r, "NumAlf", rows, d->last) : SPAR_OK;
+}
+
+/* The table of control setting 0, which AeroDyn uses if no controller moves the flaps: linear between two neighbours,
+   beyond the last ones the nearest. */
+static int read_of_control(spari_reader *r, const deck *d, int tables, spari_airfoil *a) {
+    spari_airfoil side[2] = {{0}, {0}}; /* the nearest tables below 0, and at or above it */
+    double setting[2] = {-HUGE_VAL, HUGE_VAL}, last = -HUGE_VAL;
+    int status = SPAR_OK;
+    for (int i = 0; i < tables && status == SPAR_OK; i++) {
+        spari_airfoil now = {.kind = a->kind};
+        double x = 0;
+        status = find_data(r, "UserProp", &now.kind);
+        status = status == SPAR_OK ? spari_read_numbers(r, "UserProp", 1, &x) : status;
+        if (status == SPAR_OK && !(x > last)) {
+            status = SPARI_READ_FAIL(r, SPAR_ERR_IO, "UserProp is %g and is not above that of the previous table (%g)",
+                                     x, last);
+        }
+        status = status == SPAR_OK ? read_table(r, d, i == tables - 1, &now) : status;
+        int k = x >= 0;
+        if (status == SPAR_OK && fabs(x) < fabs(setting[k])) {
+            free(side[k].alpha);
+            side[k] = now, setting[k] = x;
+        } else {
+            free(now.alpha);
+        }
+        last = x;
+    }
+    if (status == SPAR_OK && side[0].n && side[1].n && setting[1] > 0) {
+        status = spari_airfoil_blend(&side[0], &side[1], setting[0] / (setting[0] - setting[1]), a)
+                     ? spari_read_no_memory(r)
+                     : SPAR_OK;
+    } else if (status == SPAR_OK) {
+        int k = side[1].n > 0;
+        *a = side[k];
+        side[k].alpha = NULL;
+    }
+    free(side[0].alpha);
+    free(side[1].alpha);
+    return status;
+}
+
+static int read_airfoil(spari_reader *r, const deck *d, spari_airfoil *a) {
+    int tables = 0;
+    SPARI_TRY(find_data(r, "NumTabs", &a->kind));
+    SPARI_TRY(spari_read_whole(r, "NumTabs", 1, 0, &tables));
+    if (tables > 1 && d->tables == 2) {
+        return SPARI_READ_FAIL(r, SPAR_ERR_UNSUPPORTED,
+                               "%d tables for Reynolds numbers (AFTabMod %d) are not supported; use one table, or "
+                               "AFTabMod 1 to read the first",
+                               tables, d->tables);
+    }
+    return tables > 1 && d->tables == 3 ? read_of_control(r, d, tables, a) : read_table(r, d, tables == 1, a);
 }
 
 /* ---- all of them ---- */

@@ -14,7 +14,7 @@ int spari_read_no_memory(const spari_reader *r) {
 
 int spari_read_open(spari_reader *r, const char *path) {
     r->path = path;
-    r->number = 0;
+    r->number = r->again = 0;
     r->file = fopen(path, "r");
     if (!r->file) {
         int reason = errno;
@@ -24,21 +24,62 @@ int spari_read_open(spari_reader *r, const char *path) {
     return SPAR_OK;
 }
 
+/* Reads a line without its end, which is LF, CR LF or CR. *end: nothing was left to read. */
+static int next_line(spari_reader *r, int *end) {
+    size_t n = 0;
+    *end = 0;
+    if (r->again) {
+        r->again = 0;
+        return SPAR_OK;
+    }
+    int c = getc(r->file);
+    *end = c == EOF;
+    r->number += !*end;
+    while (c != EOF && c != '\n' && c != '\r' && c != '\0' && n < sizeof r->line - 1) {
+        r->line[n++] = (char)c;
+        c = getc(r->file);
+    }
+    r->line[n] = '\0';
+    if (ferror(r->file)) {
+        return r->fail(r->session, SPAR_ERR_IO, "%s: '%s': reading %s failed after line %d: %s", r->call, r->subject,
+                       r->path, r->number, strerror(errno));
+    }
+    if (c == '\0' ||
+        (r->number == 1 && (strncmp(r->line, "\xff\xfe", 2) == 0 || strncmp(r->line, "\xfe\xff", 2) == 0))) {
+        return SPARI_READ_FAIL(
+            r, SPAR_ERR_IO, "%s",
+            "the file is UTF-16 or no text (it has a byte 0 or begins with a mark of UTF-16); save it "
+            "as UTF-8");
+    }
+    if (c != EOF && c != '\n' && c != '\r') {
+        return SPARI_READ_FAIL(r, SPAR_ERR_IO, "has more than %d characters", SPARI_READ_LINE - 1);
+    }
+    if (c == '\r' && (c = getc(r->file)) != '\n') {
+        (void)ungetc(c, r->file);
+    }
+    return SPAR_OK;
+}
+
+/* The first line: skips the mark of UTF-8, and knows a file that Git has not fetched. */
+static int check_first_line(spari_reader *r) {
+    static const char mark[] = "\xef\xbb\xbf", pointer[] = "version https://git-lfs.github.com/spec/";
+    if (strncmp(r->line, mark, sizeof mark - 1) == 0) {
+        memmove(r->line, r->line + sizeof mark - 1, strlen(r->line + sizeof mark - 1) + 1);
+    }
+    return strncmp(r->line, pointer, sizeof pointer - 1) == 0
+               ? SPARI_READ_FAIL(r, SPAR_ERR_IO, "%s",
+                                 "this is a Git LFS pointer in place of the file; fetch the file with git lfs pull")
+               : SPAR_OK;
+}
+
 int spari_read_line(spari_reader *r, const char *what) {
-    if (!fgets(r->line, sizeof r->line, r->file)) {
-        if (ferror(r->file)) {
-            return r->fail(r->session, SPAR_ERR_IO, "%s: '%s': reading %s failed after line %d: %s", r->call,
-                           r->subject, r->path, r->number, strerror(errno));
-        }
+    int end;
+    SPARI_TRY(next_line(r, &end));
+    if (end) {
         return r->fail(r->session, SPAR_ERR_IO, "%s: '%s': %s ends at line %d; %s is missing", r->call, r->subject,
                        r->path, r->number, what);
     }
-    r->number++;
-    if (!strchr(r->line, '\n') && !feof(r->file)) {
-        return r->fail(r->session, SPAR_ERR_IO, "%s: '%s': %s, line %d has more than %d characters", r->call,
-                       r->subject, r->path, r->number, SPARI_READ_LINE - 2);
-    }
-    return SPAR_OK;
+    return r->number == 1 ? check_first_line(r) : SPAR_OK;
 }
 
 static int is_gap(char c) {
@@ -68,23 +109,47 @@ int spari_read_word(const char **at, char word[SPARI_READ_LINE]) {
     return any;
 }
 
+/* Whether a word is a finite number; Fortran's d exponents become e. */
+static int is_number(char *word, double *x) {
+    for (char *c = word; *c; c++) {
+        *c = *c == 'd' || *c == 'D' ? 'e' : *c;
+    }
+    char *end;
+    *x = strtod(word, &end);
+    return end != word && !*end && isfinite(*x);
+}
+
 int spari_read_numbers(spari_reader *r, const char *what, int n, double *x) {
     const char *at = r->line;
-    char *word = r->word;
     for (int i = 0; i < n; i++) {
-        if (!spari_read_word(&at, word)) {
+        if (!spari_read_word(&at, r->word)) {
             return SPARI_READ_FAIL(r, SPAR_ERR_IO, "%s: number %d of %d is missing", what, i + 1, n);
         }
-        for (char *c = word; *c; c++) {
-            *c = *c == 'd' || *c == 'D' ? 'e' : *c;
-        }
-        char *end;
-        x[i] = strtod(word, &end);
-        if (end == word || *end || !isfinite(x[i])) {
-            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "%s: '%s' (number %d of %d) is not a number", what, word, i + 1, n);
+        if (!is_number(r->word, x + i)) {
+            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "%s: '%s' (number %d of %d) is not a number", what, r->word, i + 1,
+                                   n);
         }
     }
     return SPAR_OK;
+}
+
+int spari_read_last(spari_reader *r, const char *count, int rows, int n) {
+    const char *at;
+    int end = 0, found = 0;
+    double x;
+    do {
+        SPARI_TRY(next_line(r, &end));
+        at = r->line;
+    } while (!end && !spari_read_word(&at, r->word));
+    r->again = !end;
+    at = r->line;
+    while (found < n && spari_read_word(&at, r->word) && is_number(r->word, &x)) {
+        found++;
+    }
+    return found < n
+               ? SPAR_OK
+               : SPARI_READ_FAIL(r, SPAR_ERR_IO, "a row follows the last one; %s is %d: correct it, or remove the rows",
+                                 count, rows);
 }
 
 int spari_read_whole(spari_reader *r, const char *what, int low, int column, int *out) {

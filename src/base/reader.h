@@ -19,6 +19,7 @@ typedef struct spari_reader {
     const char *path;
     FILE *file;
     int number; /* number of the line read last */
+    int again;  /* it is to be read again */
     char line[SPARI_READ_LINE],
         word[SPARI_READ_LINE]; /* a word of the line; here because it is large for a small stack */
 } spari_reader;
@@ -31,7 +32,7 @@ int spari_read_no_memory(const spari_reader *r);
 
 /* Opens the file. The caller closes it with fclose(r->file). */
 int spari_read_open(spari_reader *r, const char *path);
-/* Reads the next line. If there is none, the message says that `what` is missing. */
+/* Reads the next line; LF, CR LF and CR end one. If there is none, the message says that `what` is missing. */
 int spari_read_line(spari_reader *r, const char *what);
 /* Reads the next line that is not blank. */
 int spari_read_filled(spari_reader *r, const char *what);
@@ -42,6 +43,9 @@ int spari_read_key(spari_reader *r, const char *key);
 int spari_read_word(const char **at, char word[SPARI_READ_LINE]);
 /* Reads the first n numbers of the line; Fortran's d exponents are allowed. `what` names the fields in messages. */
 int spari_read_numbers(spari_reader *r, const char *what, int n, double *x);
+/* Checks that the next line that is not blank is no further row of n numbers: `count`, which says `rows`, is too small
+   if it is. The line is read again; the file may end before it. */
+int spari_read_last(spari_reader *r, const char *count, int rows, int n);
 /* Reads the integer in a column (from 0) of the line; it must lie between low and SPARI_READ_MOST. */
 int spari_read_whole(spari_reader *r, const char *what, int low, int column, int *out);
 

@@ -16,9 +16,12 @@
 #include <string.h>
 #include <strings.h>
 
+/* Of the first and last station, which files print with about 6 digits. */
+#define END_SLACK 1e-5
+
 /* File contents, in BeamDyn's order and units. */
 typedef struct blade {
-    int members, points, stations, damped;
+    int members, points, stations, damped, ratios;
     int *count;        /* [members] key points of each */
     double *key;       /* [points][4] x, y, z, twist in degrees */
     double *eta;       /* [stations] */
@@ -63,6 +66,7 @@ static int read_primary(spari_reader *r, blade *b) {
                                    now[-2]);
         }
     }
+    SPARI_TRY(spari_read_last(r, "kp_total", b->points, 4));
     SPARI_TRY(spari_read_key(r, "BldFile"));
     const char *at = r->line;
     spari_read_word(&at, r->word);
@@ -70,17 +74,39 @@ static int read_primary(spari_reader *r, blade *b) {
     return b->file ? SPAR_OK : spari_read_no_memory(r);
 }
 
+/* Ratios of modes need the modes of the committed beam: they are checked, and told. */
+static int read_ratios(spari_reader *r, blade *b) {
+    SPARI_TRY(spari_read_key(r, "n_modes"));
+    SPARI_TRY(spari_read_whole(r, "n_modes", 1, 0, &b->ratios));
+    double *ratio = spari_zalloc(b->ratios, sizeof *ratio);
+    if (!ratio) {
+        return spari_read_no_memory(r);
+    }
+    int status = spari_read_line(r, "zeta");
+    status = status == SPAR_OK ? spari_read_numbers(r, "zeta", b->ratios, ratio) : status;
+    for (int i = 0; i < b->ratios && status == SPAR_OK; i++) {
+        if (!(ratio[i] >= 0 && ratio[i] < 1)) {
+            status = SPARI_READ_FAIL(r, SPAR_ERR_IO, "zeta of mode %d is %g; give a ratio of critical, 0 to 1", i + 1,
+                                     ratio[i]);
+        }
+    }
+    free(ratio);
+    return status;
+}
+
 static int read_damping(spari_reader *r, blade *b) {
     int type = 0;
     SPARI_TRY(spari_read_key(r, "damp_type"));
     SPARI_TRY(spari_read_whole(r, "damp_type", 0, 0, &type));
-    if (type > 1) {
-        return SPARI_READ_FAIL(r, SPAR_ERR_UNSUPPORTED,
-                               "damp_type is %d; only 0 (none) and 1 (stiffness-proportional) are supported; for modal "
-                               "damping ratios use spar_beam_set_modal_damping",
-                               type);
+    if (type > 2) {
+        return SPARI_READ_FAIL(
+            r, SPAR_ERR_UNSUPPORTED,
+            "damp_type is %d; 0 (none), 1 (stiffness-proportional) and 2 (ratios of modes) are known", type);
     }
     b->damped = type == 1;
+    if (type == 2) {
+        return read_ratios(r, b);
+    }
     for (;;) {
         SPARI_TRY(spari_read_line(r, "mu1"));
         const char *at = r->line;
@@ -107,9 +133,24 @@ static int read_matrix(spari_reader *r, const char *what, double *M) {
     return SPAR_OK;
 }
 
+static int read_matrices_of(spari_reader *r, blade *b, int64_t i) {
+    const double *at = b->eta + i;
+    SPARI_TRY(spari_read_filled(r, "the position of a station"));
+    SPARI_TRY(spari_read_numbers(r, "the position of a station", 1, b->eta + i));
+    b->line[i] = r->number;
+    if ((i == 0 && fabs(*at) > END_SLACK) || (i > 0 && !(*at > at[-1])) ||
+        (i == b->stations - 1 && fabs(*at - 1) > END_SLACK)) {
+        return SPARI_READ_FAIL(
+            r, SPAR_ERR_IO, "station %lld of %d is at %g; the first must be at 0, the last at 1, and all must increase",
+            (long long)i + 1, b->stations, *at);
+    }
+    SPARI_TRY(read_matrix(r, "stiffness matrix", b->stiffness + 36 * i));
+    return read_matrix(r, "mass matrix", b->mass + 36 * i);
+}
+
 static int read_blade(spari_reader *r, blade *b) {
     SPARI_TRY(spari_read_key(r, "station_total"));
-    SPARI_TRY(spari_read_whole(r, "station_total", 1, 0, &b->stations));
+    SPARI_TRY(spari_read_whole(r, "station_total", 2, 0, &b->stations));
     SPARI_TRY(read_damping(r, b));
     do {
         SPARI_TRY(spari_read_line(r, "the heading 'distributed properties'"));
@@ -126,17 +167,9 @@ static int read_blade(spari_reader *r, blade *b) {
         return spari_read_no_memory(r);
     }
     for (int64_t i = 0; i < n; i++) {
-        SPARI_TRY(spari_read_filled(r, "the position of a station"));
-        SPARI_TRY(spari_read_numbers(r, "the position of a station", 1, b->eta + i));
-        b->line[i] = r->number;
-        if (!(b->eta[i] >= 0 && b->eta[i] <= 1) || (i > 0 && !(b->eta[i] > b->eta[i - 1]))) {
-            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "station %lld is at %g; stations must increase from 0 to 1",
-                                   (long long)i + 1, b->eta[i]);
-        }
-        SPARI_TRY(read_matrix(r, "stiffness matrix", b->stiffness + 36 * i));
-        SPARI_TRY(read_matrix(r, "mass matrix", b->mass + 36 * i));
+        SPARI_TRY(read_matrices_of(r, b, i));
     }
-    return SPAR_OK;
+    return spari_read_last(r, "station_total", b->stations, 1);
 }
 
 /* ---- conversion to spar's frame ---- */
@@ -299,6 +332,13 @@ int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const ch
         fclose(r->file);
     }
     status = status == SPAR_OK ? describe_blade(beam, r, &b) : status;
+    if (status == SPAR_OK && b.ratios > 0) {
+        spari_warn(
+            beam->session,
+            "'%s': the damping ratios of %d modes in %s (zeta) are not in force; give them to spar_beam_fit_damping "
+            "after the commit",
+            beam->name, b.ratios, blade_path ? blade_path : b.file);
+    }
     SPARI_FREE(b.count, b.key, b.eta, b.stiffness, b.mass, b.line, b.file, r);
     return spari_named(beam->session, __func__, status);
 }

@@ -318,6 +318,46 @@ static void test_variants(void **state) {
     }
 }
 
+/* Tables of flap angles (AFTabMod 3): that of 0 where there is one, else linear between its neighbours, else the
+   nearest; without a flap AeroDyn takes 0. At 45 degrees the tables have the lift coefficients 1, 2 and 4. */
+static void test_flaps(void **state) {
+    (void)state;
+    static const struct {
+        double setting[3], cl;
+    } flap[] = {{{-10, 0, 10}, 2}, {{-10, 5, 10}, 1 + 10.0 / 15}, {{2, 5, 10}, 1}, {{-9, -5, -2}, 4}};
+    char text[1024];
+    for (size_t k = 0; k < sizeof flap / sizeof flap[0]; k++) {
+        int n = snprintf(text, sizeof text, "3 NumTabs\n");
+        for (int i = 0; i < 3; i++) {
+            n += snprintf(text + n, sizeof text - (size_t)n, "0.5 Re\n%g UserProp\n2 NumAlf\n0 0 0 0\n90 %d 0 0.5\n",
+                          flap[k].setting[i], 2 << i);
+        }
+        const char *primary = deck("primary.dat", " 1 AFTabMod", " 3 AFTabMod");
+        double alpha[2], cl[2], cd[2], cm[2];
+        int64_t rows = 0, row = 0;
+        int kind = -1;
+        wing w = make_wing();
+        put("a.dat", text);
+        read_wing(&w, primary, 0, NULL);
+        NEAR(spari_table_lift(w.aero->section[0].table, pi / 4, &row), flap[k].cl, 1e-15);
+        OK(w.s, spar_aero_get_polar(w.aero, 0, &rows, 2, alpha, cl, cd, cm, &kind));
+        assert_true(rows == 2 && kind == SPAR_POLAR_LINEAR && alpha[0] == 0 && cl[0] == 0 && cm[1] == 0.5);
+        NEAR(cl[1], 2 * flap[k].cl, 1e-15);
+        assert_int_equal(spar_aero_get_polar(w.aero, 3, &rows, 2, alpha, cl, cd, cm, &kind), SPAR_ERR_ARGUMENT);
+        end_wing(&w);
+        w = make_wing();
+        memcpy(strstr(text, "UserProp\n2"), "UserProb", 8);
+        put("a.dat", text);
+        OK(w.s, spar_fluid_read_aerodyn(w.f, primary, NULL, NULL, 0, NULL));
+        OK(w.s, spar_fluid_map(w.f));
+        OK(w.s, spar_aero_create(1, &w.f, &w.aero));
+        assert_int_equal(spar_aero_read_aerodyn(w.aero, primary, NULL, NULL, NULL), SPAR_ERR_IO);
+        assert_non_null(strstr(spar_session_message(w.s), "UserProp is missing"));
+        end_wing(&w);
+        no_deck();
+    }
+}
+
 /* Tables of other angles on the way from one airfoil to the next: where one ends, its end's value goes on; where one
    goes round and the other is shifted by some degrees, the blend goes round. */
 static void test_blends(void **state) {
@@ -365,6 +405,10 @@ static void test_mistakes(void **state) {
         {"primary.dat", "True UseBlCm", "Yes UseBlCm", SPAR_ERR_IO, "primary.dat, line 11: UseBlCm is 'Yes'"},
         {"primary.dat", "ADBlFile(1)", "Blade", SPAR_ERR_IO, "ADBlFile(1) is missing"},
         {"primary.dat", "\"blade.dat\"", "nowhere.dat", SPAR_ERR_IO, "cannot open aerodyn_"},
+        {"primary.dat", " 1 AFTabMod", " 4 AFTabMod", SPAR_ERR_IO, "primary.dat, line 3: AFTabMod is 4"},
+        {"blade.dat", "3 NumBlNds", "2 NumBlNds", SPAR_ERR_IO, "line 8: a row follows the last one; NumBlNds is 2"},
+        {"blade.dat", "\n0, ", "\n0.5, ", SPAR_ERR_IO, "line 6: BlSpn of the first station is 0.5"},
+        {"a.dat", "3 NumAlf", "2 NumAlf", SPAR_ERR_IO, "line 11: a row follows the last one; NumAlf is 2"},
         {"blade.dat", "3 NumBlNds", "1 NumBlNds", SPAR_ERR_IO, "blade.dat, line 3: NumBlNds is 1"},
         {"blade.dat", "3 NumBlNds", "4 NumBlNds", SPAR_ERR_IO, "blade.dat ends at line 8; a station of the blade"},
         {"blade.dat", "1 0.1 0.2 3 20 3 1", "1 0.1 0.2 3 20 3", SPAR_ERR_IO, "line 7: BlSpn, BlCrvAC"},
@@ -468,9 +512,9 @@ static void test_refusals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rotor),    cmocka_unit_test(test_between), cmocka_unit_test(test_frame),
-        cmocka_unit_test(test_variants), cmocka_unit_test(test_blends),  cmocka_unit_test(test_mistakes),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_rotor),    cmocka_unit_test(test_between),  cmocka_unit_test(test_frame),
+        cmocka_unit_test(test_variants), cmocka_unit_test(test_flaps),    cmocka_unit_test(test_blends),
+        cmocka_unit_test(test_mistakes), cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, load, unload);
 }

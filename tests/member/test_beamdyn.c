@@ -40,9 +40,9 @@ static void test_frame(void **state) {
     spar_member *b = NULL;
     OK(s, spar_beam_create(s, "b", 2, 4, &b));
     OK(s, spar_beam_read_beamdyn(b, DATA "blade_primary.inp", DATA "blade_blade.inp"));
-    assert_int_equal(b->beam->section_count, 1);
-    for (int i = 0; i < 36; i++) {
-        assert_true(b->beam->stiffness[i] == K[i]);
+    assert_int_equal(b->beam->section_count, 2);
+    for (int i = 0; i < 72; i++) {
+        assert_true(b->beam->stiffness[i] == K[i % 36]);
     }
     for (int i = 0; i < 6; i++) {
         assert_true(b->beam->mu[i] == mu[i]);
@@ -99,10 +99,27 @@ static void test_errors(void **state) {
         {1, "1   member_total", "1.5   member_total", {"line 9", "member_total"}, SPAR_ERR_IO},
         {1, "   -29.2893d0", NULL, {"ends at line 1", "key point"}, SPAR_ERR_IO},
         {1, "BldFile", "NoFile", {"BldFile", "missing"}, SPAR_ERR_IO},
-        {0, "0   damp_type", "2   damp_type", {"line 5", "damp_type"}, SPAR_ERR_UNSUPPORTED},
+        {0, "0   damp_type", "3   damp_type", {"line 5", "damp_type"}, SPAR_ERR_UNSUPPORTED},
+        {0, "0   damp_type", "2   damp_type", {"ends at line 39", "n_modes"}, SPAR_ERR_IO},
+        {0, "0   damp_type", "2   damp_type\n3 n_modes - n\n0.01 0.02", {"line 7", "number 3 of 3"}, SPAR_ERR_IO},
+        {0, "0   damp_type", "2   damp_type\n2 n_modes - n\n0.01 2.0", {"line 7", "mode 2 is 2"}, SPAR_ERR_IO},
         {0, "1.0E-3", "nan", {"line 9", "mu1"}, SPAR_ERR_IO},
         {0, "1.0E-3", "-1", {"line 9", "mu1"}, SPAR_ERR_IO},
-        {0, "  1.000000\n", "  0.0\n", {"line 26", "station 2"}, SPAR_ERR_IO},
+        {0, "  1.000000\n", "  0.0\n", {"line 26", "station 2 of 2 is at 0;"}, SPAR_ERR_IO},
+        {0, "  0.000000\n", "  0.1\n", {"line 11", "station 1 of 2 is at 0.1;"}, SPAR_ERR_IO},
+        {0, "  1.000000\n", "  0.5\n", {"line 26", "station 2 of 2 is at 0.5;"}, SPAR_ERR_IO},
+        {0, "2   station_total", "1   station_total", {"line 4", "station_total is 1"}, SPAR_ERR_IO},
+        {1,
+         "   -29.2893d0     0.0       70.7107        0.0\n",
+         "   -29.2893d0     0.0       70.7107        0.0\n -30 0 80 0\n",
+         {"line 17", "kp_total is 3"},
+         SPAR_ERR_IO},
+        {0, " ------- BEAM", "\xff\xfe----BEAM", {"line 1", "UTF-16"}, SPAR_ERR_IO},
+        {0,
+         " ------- BEAM",
+         "version https://git-lfs.github.com/spec/v1\noid",
+         {"line 1", "git lfs pull"},
+         SPAR_ERR_IO},
         {0, "0.0833 0 0", "0.0833 0", {"line 22", "mass matrix"}, SPAR_ERR_IO},
         {0, "8.333E5   0 0", "-8.333E5   0 0", {"line 11", "stiffness"}, SPAR_ERR_ARGUMENT},
         {0, "   1 0 0 0 0 0", "   2 0 0 0 0 0", {"line 11", "mass"}, SPAR_ERR_ARGUMENT},
@@ -134,11 +151,75 @@ static void test_errors(void **state) {
     spar_session_destroy(&s);
 }
 
+/* What was read comes back by the getters, in spar's order; n says how much room it needs. Three stations that
+   station_total promises two of are refused: the rest of the blade would be lost without a word. */
+static void test_getters(void **state) {
+    (void)state;
+    double eta[2], K[72], M[72], along[801], x[3 * 801], twist[801];
+    int64_t n, points;
+    spar_session *s = scene_session();
+    spar_member *b = NULL;
+    OK(s, spar_beam_create(s, "b", 2, 4, &b));
+    OK(s, spar_beam_get_axis(b, &n, 0, NULL, NULL, NULL));
+    assert_int_equal(n, 0);
+    OK(s, spar_beam_get_sections(b, &n, 0, NULL, NULL, NULL));
+    assert_int_equal(n, 0);
+    OK(s, spar_beam_read_beamdyn(b, DATA "blade_primary.inp", DATA "blade_blade.inp"));
+    OK(s, spar_beam_get_sections(b, &n, 2, eta, K, M));
+    assert_int_equal(n, 2);
+    assert_true(eta[0] == 0 && eta[1] == 1 && K[0] == 103 && K[36 + 7] == 101 && K[1] == 2 && M[0] == 30 && M[4] == 60);
+    OK(s, spar_beam_get_axis(b, &points, 801, along, x, twist));
+    assert_true(points > 10 && points <= 801 && along[0] == 0 && along[points - 1] == 1);
+    NEAR(x[3 * (points - 1)], 8, 1e-12);
+    NEAR(twist[0], -12 * 3.14159265358979323846 / 180, 1e-15);
+    K[0] = 7;
+    OK(s, spar_beam_get_sections(b, NULL, 0, NULL, K, NULL)); /* no room: nothing is written */
+    assert_true(K[0] == 7);
+    assert_int_equal(spar_beam_get_axis(b, &n, -1, NULL, NULL, NULL), SPAR_ERR_ARGUMENT);
+    spar_session_destroy(&s);
+}
+
+/* Lines that end with CR alone, and a mark of UTF-8 before the first, are the same file; a byte 0 is not read over.
+   Ratios of modes are told, not put in force. */
+static void test_texts(void **state) {
+    (void)state;
+    char name[64], text[8192];
+    double mu[6];
+    snprintf(name, sizeof name, "beamdyn_text_%d.inp", (int)getpid());
+    spoil(DATA "bend_blade.inp", name, " 0   damp_type", " 2   damp_type\n2 n_modes - n\n0.01, 0.02 zeta - r\n - old");
+    for (int kind = 0; kind < 3; kind++) {
+        spar_session *s = scene_session();
+        spar_member *b = NULL;
+        FILE *f = fopen(name, "r");
+        assert_non_null(f);
+        size_t n = fread(text, 1, sizeof text, f);
+        fclose(f);
+        f = fopen(name, "w");
+        fputs(kind == 1 ? "\xef\xbb\xbf" : "", f);
+        for (size_t i = 0; i < n; i++) {
+            fputc(kind == 1 && text[i] == '\n' ? '\r' : kind == 2 && i == 10 ? 0 : text[i], f);
+        }
+        fclose(f);
+        OK(s, spar_beam_create(s, "b", 1, 5, &b));
+        int status = spar_beam_read_beamdyn(b, DATA "bend_primary.inp", name);
+        if (kind == 2) {
+            assert_int_equal(status, SPAR_ERR_IO);
+            assert_non_null(strstr(spar_session_message(s), "line 1: the file is UTF-16 or no text"));
+        } else {
+            OK(s, status);
+            assert_int_equal(b->beam->section_count, 2);
+            OK(s, spar_beam_get_damping(b, mu));
+            assert_true(mu[0] == 0 && strstr(spar_session_get_warning(s, 0), "damping ratios of 2 modes"));
+        }
+        spar_session_destroy(&s);
+    }
+    remove(name);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bend),
-        cmocka_unit_test(test_frame),
-        cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_bend),    cmocka_unit_test(test_frame), cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_getters), cmocka_unit_test(test_texts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
