@@ -68,10 +68,27 @@ static int read_flag(spari_reader *r, const char *what, int *flag) {
     return SPAR_OK;
 }
 
+/* Reads AFTabMod, which older files lack, and the columns of the tables. */
 static int read_columns(spari_reader *r, deck *d) {
     static const char *const key[COLUMNS] = {"InCol_Alfa", "InCol_Cl", "InCol_Cd", "InCol_Cm"};
+    d->tables = 1;
+    for (int found = 0; !found;) {
+        const char *at;
+        SPARI_TRY(spari_read_line(r, key[COLUMN_ALPHA]));
+        at = r->line;
+        if (!spari_read_word(&at, r->word) || !spari_read_word(&at, r->word)) {
+            continue;
+        }
+        found = strcasecmp(r->word, key[COLUMN_ALPHA]) == 0;
+        if (strcasecmp(r->word, "AFTabMod") == 0) {
+            SPARI_TRY(spari_read_whole(r, "AFTabMod", 1, 0, &d->tables));
+        }
+        if (d->tables > 3) {
+            return SPARI_READ_FAIL(r, SPAR_ERR_IO, "AFTabMod is %d; give 1, 2 or 3", d->tables);
+        }
+    }
     for (int i = 0; i < COLUMNS; i++) {
-        SPARI_TRY(spari_read_key(r, key[i]));
+        SPARI_TRY(i > 0 ? spari_read_key(r, key[i]) : SPAR_OK);
         SPARI_TRY(spari_read_whole(r, key[i], i == COLUMN_CM ? 0 : 1, 0, &d->column[i]));
         if (d->column[i] > MOST_COLUMN) {
             return SPARI_READ_FAIL(r, SPAR_ERR_IO, "%s is %d; at most %d columns are supported", key[i], d->column[i],
@@ -95,11 +112,6 @@ static int find_blade(spari_reader *r) {
 }
 
 static int read_deck(spari_reader *r, deck *d, int find_the_blade) {
-    SPARI_TRY(spari_read_key(r, "AFTabMod"));
-    SPARI_TRY(spari_read_whole(r, "AFTabMod", 1, 0, &d->tables));
-    if (d->tables > 3) {
-        return SPARI_READ_FAIL(r, SPAR_ERR_IO, "AFTabMod is %d; give 1, 2 or 3", d->tables);
-    }
     SPARI_TRY(read_columns(r, d));
     SPARI_TRY(spari_read_key(r, "NumAFfiles"));
     SPARI_TRY(spari_read_whole(r, "NumAFfiles", 1, 0, &d->airfoils));

@@ -298,6 +298,7 @@ static void test_variants(void **state) {
         double cl, cm;
     } variant[] = {
         {NULL, NULL, NULL, 0.5, 0.25},
+        {"primary.dat", " 1 AFTabMod", " 1 Skew_Mod", 0.5, 0.25}, /* files of OpenFAST 2 */
         {"primary.dat", "True UseBlCm", "F UseBlCm", 0.5, 0},
         {"primary.dat", "4 InCol_Cm", "0 InCol_Cm", 0.5, 0},
         {"primary.dat", "2 InCol_Cl\n3 InCol_Cd\n4", "4 InCol_Cl\n3 InCol_Cd\n2", 0.25, 0.5},
@@ -396,7 +397,7 @@ static void test_mistakes(void **state) {
         int status;
         const char *what;
     } wrong[] = {
-        {"primary.dat", "AFTabMod", "AFTabMode", SPAR_ERR_IO, "primary.dat ends at line 12; AFTabMod is missing"},
+        {"primary.dat", "InCol_Alfa", "InColAlfa", SPAR_ERR_IO, "primary.dat ends at line 12; InCol_Alfa is missing"},
         {"primary.dat", " 1 AFTabMod", " x AFTabMod", SPAR_ERR_IO, "primary.dat, line 3: AFTabMod: 'x'"},
         {"primary.dat", "2 InCol_Cl", "0 InCol_Cl", SPAR_ERR_IO, "primary.dat, line 5: InCol_Cl is 0"},
         {"primary.dat", "4 InCol_Cm", "40 InCol_Cm", SPAR_ERR_IO, "primary.dat, line 7: InCol_Cm is 40"},
