@@ -94,16 +94,16 @@ static int write_member(FILE *file, const spar_member *member, double *q) {
     RUN_TRY(find_displacement(member, nodes, q, q + 7 * nodes, u));
     RUN_TRY(spar_member_get_reaction(member, load));
     for (int k = 0; k < 3; k++) {
-        (void)fprintf(file, ",%.9g", u[k]);
+        (void)fprintf(file, ",%.15g", u[k]);
     }
     for (int k = 0; k < 6; k++) {
-        (void)fprintf(file, ",%.9g", load[k]);
+        (void)fprintf(file, ",%.15g", load[k]);
     }
     return SPAR_OK;
 }
 
 static int write_row(const run *r, FILE *file, double t, int iterations, double *q) {
-    (void)fprintf(file, "%.9g,%d", t, iterations);
+    (void)fprintf(file, "%.15g,%d", t, iterations);
     for (int64_t i = 0; i < spar_case_member_count(r->scene); i++) {
         RUN_TRY(write_member(file, spar_case_member_at(r->scene, i), q));
     }
@@ -114,7 +114,7 @@ static int write_row(const run *r, FILE *file, double t, int iterations, double 
             continue;
         }
         RUN_TRY(spar_aero_get_rotor(aero, &thrust, &torque, &power));
-        (void)fprintf(file, ",%.9g,%.9g,%.9g", thrust, torque, power);
+        (void)fprintf(file, ",%.15g,%.15g,%.15g", thrust, torque, power);
     }
     (void)fprintf(file, "\n");
     return SPAR_OK;

@@ -44,8 +44,8 @@ static void write_nodes(FILE *file, const char *name, const motion *m) {
         const double *x = m->x + 3 * i, *q = m->q + 7 * i;
         double r[3];
         rotation_vector(q + 3, r);
-        (void)fprintf(file, "%s,%lld,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", name, (long long)i, x[0], x[1],
-                      x[2], q[0], q[1], q[2], r[0], r[1], r[2]);
+        (void)fprintf(file, "%s,%lld,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g\n", name, (long long)i, x[0],
+                      x[1], x[2], q[0], q[1], q[2], r[0], r[1], r[2]);
     }
 }
 
@@ -174,7 +174,7 @@ static int write_shapes(FILE *file, const spar_member *member, const mode_space 
     for (int64_t m = 0; m < n; m++) {
         for (int64_t i = 0; i < nodes; i++) {
             const double *u = s->shape + 6 * (m * nodes + i), *x = s->x + 3 * i;
-            (void)fprintf(file, "%s,%lld,%lld,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n",
+            (void)fprintf(file, "%s,%lld,%lld,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g\n",
                           spar_member_get_name(member), (long long)m, (long long)i, x[0], x[1], x[2], u[0], u[1], u[2],
                           u[3], u[4], u[5]);
         }
@@ -190,7 +190,7 @@ static void tell_modes(const run *r, FILE *file, const char *name, const mode_sp
     }
     for (int64_t i = 0; i < n; i++) {
         const double *pair = s->pair + 2 * i;
-        (void)fprintf(file, "%s,%lld,%.9g,%.9g,%.9g\n", name, (long long)i, s->f[i], damped ? pair[0] : NAN,
+        (void)fprintf(file, "%s,%lld,%.15g,%.15g,%.15g\n", name, (long long)i, s->f[i], damped ? pair[0] : NAN,
                       damped ? pair[1] : NAN);
         if (!r->quiet && damped) {
             (void)printf("  %4lld   %13.6g   %25.6g   %13.4g\n", (long long)i, s->f[i], pair[0], pair[1]);
@@ -265,9 +265,9 @@ static int find_driven(const run *r, spar_member **member) {
 static int campbell_row(run *r, FILE *file, spar_member *member, double speed, double *pair) {
     RUN_TRY(balance(r, speed, NULL));
     RUN_TRY(solve_damped(member, r->modes, pair));
-    (void)fprintf(file, "%.9g", speed);
+    (void)fprintf(file, "%.15g", speed);
     for (int64_t i = 0; i < r->modes; i++) {
-        (void)fprintf(file, ",%.9g,%.9g", pair[2 * i], pair[2 * i + 1]);
+        (void)fprintf(file, ",%.15g,%.15g", pair[2 * i], pair[2 * i + 1]);
     }
     (void)fprintf(file, "\n");
     if (!r->quiet) {
@@ -283,7 +283,7 @@ static int campbell_row(run *r, FILE *file, spar_member *member, double speed, d
 static int plot_campbell(const run *r) {
     char script[1024];
     (void)snprintf(script, sizeof script,
-                   "set xlabel 'speed, rad/s'\nset ylabel 'frequency, Hz'\nset xrange [0:%.9g]\nset yrange [0:*]\n"
+                   "set xlabel 'speed, rad/s'\nset ylabel 'frequency, Hz'\nset xrange [0:%.15g]\nset yrange [0:*]\n"
                    "plot for [k=1:%lld] 'campbell.csv' using 1:(column(2*k)) with linespoints pt 7 ps 0.5 title "
                    "sprintf('mode %%d', k-1), \\\n"
                    "  for [p in '1 3 6'] p*x/(2*pi) with lines dashtype 2 linecolor 'gray' title p.' per turn'\n",
