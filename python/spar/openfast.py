@@ -3,125 +3,135 @@
     machine = spar.openfast.read('IEA-15-240-RWT-Monopile.fst')
     blade = spar.openfast.read_beamdyn('IEA-15-240-RWT_BeamDyn.dat')
 
-Keys are found by their names, so that files of different releases are read. Nothing beside numpy is needed. Not taken: platform and
-moorings, controllers, yaw and teeter, tuned mode shapes.
+BeamDyn's and AeroDyn's files are read by the library (spar.Member.read_beamdyn, spar.Aero.read_aerodyn); what is here reads ElastoDyn's
+and the .fst file. Keys and columns are found by their names, so that files of different releases are read. Nothing beside numpy is
+needed. What a file has and spar does not take is in `left_out`, and a warning names it once: platform and moorings, controllers, yaw,
+teeter, and so on.
 """
 import os
 
 import numpy
+import spar
 
-from .turbine import Beam, ModelError, Sections, Turbine, body_mass, reorder, tube
+from ._text import ModelError, Text, leading_numbers, number_of
+from .turbine import Beam, Sections, Turbine, body_mass, read_by, tell, tube
 
 _STEEL = (210e9, 7850.0)  # Pa, kg/m^3: of towers, whose files have bending stiffness and mass alone
+# What spar does not take, by key: its values, or 0 for all numbers but 0
+_MODULES = {'CompInflow': 'InflowWind', 'CompServo': 'ServoDyn', 'CompSeaSt': 'SeaState', 'CompHydro': 'HydroDyn',
+            'CompSub': {1: 'SubDyn', 2: 'ExtPtfm'}, 'CompMooring': {1: 'MAP++', 2: 'FEAMooring', 3: 'MoorDyn', 4: 'OrcaFlex'},
+            'CompIce': {1: 'IceFloe', 2: 'IceDyn'}, 'CompSoil': 'SoilDyn'}
+_PARTS = {'PtfmMass': 'mass of the platform', 'PtfmRIner': 'inertia of the platform', 'TeetMod': 'teeter', 'UndSling': 'undersling',
+          'Furling': 'furling', 'TipMass(1)': 'tip brakes', 'NacCMyn': None}
 
 
-class File:
-    """An input file: its lines, and values by key."""
+class File(Text):
+    """An input file of OpenFAST: values by key."""
 
     def __init__(self, path):
-        self.path, self.folder = os.fspath(path), os.path.dirname(os.fspath(path))
-        with open(path, encoding='utf-8', errors='replace') as file:
-            self.lines = file.read().splitlines()
+        super().__init__(path)
         self.where = {}
         for i, line in enumerate(self.lines):
             words = line.replace('"', ' " ').split() if line.count('"') < 2 else [line.split('"')[1], *line.split('"')[2].split()]
             if len(words) > 1:
-                self.where.setdefault(words[1].lower(), (i, words[0]))
+                self.where.setdefault(words[1].lower(), []).append((i, words[0]))
 
-    def fail(self, what):
-        """An error of this file."""
-        raise ModelError(f'{self.path}: {what}')
+    def find(self, *names, numbers=False):
+        """Line (from 0) and value of a key by one of its names; None: it is not there. Headings have no values.
+        numbers: values that are none are taken if there are no others"""
+        for name in names:
+            found = [one for one in self.where.get(name.lower(), ()) if not one[1].startswith(('---', '==='))]
+            found = numbers and [one for one in found if number_of(one[1]) is not None] or found
+            if found:
+                other = next((one for one in found if one[1] != found[0][1]), None)
+                if other:
+                    self.fail(f'{name} is {found[0][1]} in line {found[0][0] + 1} and {other[1]} here; leave one of them', other[0])
+                return found[0]
+        return None
 
     def text(self, *names, otherwise=None):
         """The value of a key by one of its names."""
-        for name in names:
-            if name.lower() in self.where:
-                return self.where[name.lower()][1]
-        if otherwise is None:
+        found = self.find(*names)
+        if found is None and otherwise is None:
             self.fail(f'it has no {names[0]}; is it a file of this module?')
-        return otherwise
+        return found[1] if found else otherwise
 
-    def number(self, *names, otherwise=None):
-        """The same, a number."""
-        value = self.text(*names, otherwise=otherwise)
-        try:
-            return float(str(value).lower().replace('d', 'e'))
-        except ValueError:
-            return self.fail(f'{names[0]} is {value}, which is not a number')
+    def number(self, *names, otherwise=None, low=None, high=None, whole=False):
+        """The same, a number in a range."""
+        found = self.find(*names, numbers=True)
+        if found is None:
+            return float(self.text(*names, otherwise=otherwise))
+        value = number_of(found[1])
+        if value is None or (whole and value != int(value)):
+            self.fail(f'{names[0]} is {found[1]}; give a {"whole " if whole else ""}number', found[0])
+        return self.check(value, names[0], found[0], low, high)
 
     def file(self, *names):
         """A file that is named here, relative to this one."""
-        return os.path.join(self.folder, self.text(*names).strip('"').replace('\\', '/'))
+        return self.beside(self.text(*names))
 
-    def table(self, key, columns, rows=None):
-        """Rows of numbers that follow a key and lines of text; rows: how many, None: the number at the key."""
-        if key.lower() not in self.where:
-            self.fail(f'it has no {key}')
-        count, found = rows or int(float(self.where[key.lower()][1])), []
-        for line in self.lines[self.where[key.lower()][0] + 1:]:
-            try:
-                found.append([float(word) for word in line.split()[:columns]])
-            except ValueError:
-                if found:
-                    break
-                continue
-            if len(found[-1]) < columns:
-                found.pop()
-                if found:
-                    break
-            if len(found) == count:
-                break
-        if len(found) != count:
-            self.fail(f'{key} promises {count} rows of {columns} numbers, and {len(found)} follow')
-        return numpy.array(found)
+    def table(self, key, *names):
+        """Columns of the table that follows a key, by their headings: a line of these, one of units, then as many rows as the key says.
+        Answers columns [names][rows] and the line of the first row. The first column goes from 0 to 1."""
+        count = int(self.number(key, low=2, high=1e5, whole=True))
+        at = self.find(key)[0]
+        head = next((i for i in range(at + 1, len(self.lines)) if self.lines[i].split()[:1] and
+                     self.lines[i].split()[0].lower() == names[0].lower()), None)
+        if head is None:
+            self.fail(f'{key} is followed by no line of headings that begins with {names[0]}', at)
+        headings = [word.lower() for word in self.lines[head].split()]
+        missing = [name for name in names if name.lower() not in headings]
+        if missing:
+            self.fail(f'the table has no column {missing[0]}; it needs {", ".join(names)}', head)
+        rows, first = [], head + 2
+        for i in range(first, first + count):
+            rows.append(leading_numbers(self.lines[i] if i < len(self.lines) else '')[:len(headings)])
+            if len(rows[-1]) < len(headings):
+                self.fail(f'{key} promises {count} rows of {len(headings)} numbers, and {i - first} follow', min(i, len(self.lines) - 1))
+        if first + count < len(self.lines) and len(leading_numbers(self.lines[first + count])) >= len(headings):
+            self.fail(f'a row follows the last one; {key} is {count}: correct it, or remove the rows', first + count)
+        columns = numpy.array(rows)[:, [headings.index(name.lower()) for name in names]].T
+        for i, value in enumerate(columns[0]):
+            if (i == 0 and abs(value) > 1e-5) or (i and value <= columns[0][i - 1]) or (i == count - 1 and abs(value - 1) > 1e-5):
+                self.fail(f'{names[0]} is {value:g}; it must increase from 0 to 1', first + i)
+        return columns, first
 
-
-def _spline(x, y, to):
-    """Natural cubic spline through (x, y[n][k]) at points."""
-    h, n = numpy.diff(x), len(x)
-    a, b = numpy.eye(n), numpy.zeros_like(y)
-    for i in range(1, n - 1):
-        a[i, i - 1:i + 2] = h[i - 1], 2 * (h[i - 1] + h[i]), h[i]
-        b[i] = 6 * ((y[i + 1] - y[i]) / h[i] - (y[i] - y[i - 1]) / h[i - 1])
-    m = numpy.linalg.solve(a, b)
-    i = numpy.clip(numpy.searchsorted(x, to) - 1, 0, n - 2)
-    s, d = (to - x[i])[:, None], h[i][:, None]
-    slope = (y[i + 1] - y[i]) / d - d * (2 * m[i] + m[i + 1]) / 6
-    return y[i] + s * slope + s**2 * m[i] / 2 + s**3 * (m[i + 1] - m[i]) / (6 * d)
+    def positive(self, columns, names, first):
+        """Refuses what is not above 0."""
+        for name, column in zip(names, columns):
+            for i in numpy.flatnonzero(~(column > 0)):
+                self.fail(f'{name} is {column[i]:g}; give a number above 0', first + int(i))
 
 
 def read_beamdyn(path, blade_path=None):
-    """A blade of BeamDyn's primary file and blade file. Key points are connected by natural cubic splines, as in BeamDyn.
+    """A blade of BeamDyn's primary file and blade file, by the library's reader.
+    Damping ratios of modes (damp_type 2) become stiffness- and mass-proportional damping that meets them as well as it can.
     blade_path: None: the file that the primary one names"""
     primary = File(path)
-    total = int(primary.number('kp_total'))
-    if primary.number('member_total') != 1:
-        primary.fail('it has several members; blades of one member are read here, others by spar.Member.read_beamdyn')
-    key = primary.table('kp_total', 4, total)
-    z = numpy.unique(numpy.concatenate([key[:, 2], numpy.linspace(key[0, 2], key[-1, 2], 8 * total)]))
-    points = _spline(key[:, 2], key[:, [0, 1, 3]], z)
-    xyz = numpy.column_stack([z, points[:, 0], points[:, 1]])
-    along = numpy.concatenate([[0], numpy.cumsum(numpy.linalg.norm(numpy.diff(xyz, axis=0), axis=1))])
-    blade = File(blade_path or primary.file('BldFile'))
-    count = int(blade.number('station_total'))
-    start = next((i for i, line in enumerate(blade.lines) if 'DISTRIBUTED' in line.upper()), None)
-    if start is None:
-        blade.fail('it has no distributed properties')
-    numbers = []
-    for line in blade.lines[start + 1:]:
-        try:
-            numbers += [float(word) for word in line.split()]
-        except ValueError:
-            break
-    if len(numbers) != 73 * count:
-        blade.fail(f'station_total is {count}, which needs {73 * count} numbers; {len(numbers)} follow')
-    rows = numpy.array(numbers).reshape(count, 73)
-    damping = numpy.zeros(6)
-    if blade.number('damp_type'):
-        damping = blade.table('damp_type', 6, 1)[0][[2, 0, 1, 5, 3, 4]]
-    stiffness = reorder(rows[:, 1:37].reshape(-1, 6, 6))
-    return Beam('blade', along / along[-1], xyz, -numpy.radians(points[:, 2]), rows[:, 0],
-                (stiffness + stiffness.transpose(0, 2, 1)) / 2, reorder(rows[:, 37:].reshape(-1, 6, 6)), damping)
+    with spar.Session() as session:
+        member = session.beam_create('blade', Beam.elements, Beam.nodes)
+        read_by(member.read_beamdyn, path, blade_path)
+        _, eta, xyz, twist = member.get_axis()
+        _, at, stiffness, mass = member.get_sections()
+        blade = Beam('blade', eta, xyz, twist, at, stiffness.reshape(-1, 6, 6), mass.reshape(-1, 6, 6), member.get_damping())
+        properties = File(blade_path or primary.file('BldFile'))
+        if properties.number('damp_type') == 2:
+            read_by(member.commit, path=path)
+            line = properties.find('n_modes')[0] + 1
+            ratio = numpy.array(leading_numbers(properties.lines[line])[:int(properties.number('n_modes'))])
+            modes = numpy.flatnonzero(ratio > 0)
+            if len(modes):
+                read_by(member.fit_damping, modes, ratio[modes], path=path)
+            blade.damping, blade.mass_damping = member.get_damping(), member.get_mass_damping()
+    if primary.text('UsePitchAct', otherwise='F').lower().lstrip('.').startswith('t'):
+        blade.left_out = ['pitch actuator (UsePitchAct)']
+    tell(path, blade.left_out)
+    return blade
+
+
+def _damped(file, beam, ratio):
+    """The beam with a damping ratio, for which it is solved."""
+    return read_by(beam.damped, ratio, path=file.path)
 
 
 def read_elastodyn_blade(path, length):
@@ -129,10 +139,13 @@ def read_elastodyn_blade(path, length):
     no extension, so both are ten times stiffer here than they could count.
     length: m, TipRad less HubRad"""
     file = File(path)
-    table = file.table('NBlInpSt', 6)
-    eta, twist = table[:, 0], -numpy.radians(table[:, 2])
-    density = table[:, 3] * file.number('AdjBlMs', otherwise=1.0)
-    flap, edge = table[:, 4] * file.number('AdjFlSt', otherwise=1.0), table[:, 5] * file.number('AdjEdSt', otherwise=1.0)
+    names = ('BlFract', 'StrcTwst', 'BMassDen', 'FlpStff', 'EdgStff')
+    (eta, twist, density, flap, edge), first = file.table('NBlInpSt', *names)
+    file.positive((density, flap, edge), names[2:], first)
+    for i in numpy.flatnonzero(abs(twist) > 180):
+        file.fail(f'StrcTwst is {twist[i]:g}; give degrees, -180 to 180', first + int(i))
+    density = density * file.number('AdjBlMs', otherwise=1.0, low=1e-6)
+    flap, edge = flap * file.number('AdjFlSt', otherwise=1.0, low=1e-6), edge * file.number('AdjEdSt', otherwise=1.0, low=1e-6)
     stiffness, mass = numpy.zeros((len(eta), 6, 6)), numpy.zeros((len(eta), 6, 6))
     stiff = 10 * (flap + edge)
     for i, values in enumerate((stiff, stiff, stiff, stiff, edge, flap)):  # y is flapwise: bending about it is edgewise
@@ -141,111 +154,139 @@ def read_elastodyn_blade(path, length):
         mass[:, i, i], mass[:, 3 + i, 3 + i] = density, 1e-3 * density
     mass[:, 3, 3] = 2e-3 * density
     points = numpy.column_stack([eta * length, 0 * eta, 0 * eta])
-    ratio = file.number('BldFlDmp(1)', 'BldFlDmp1', otherwise=0.0) / 100
-    return Beam('blade', eta, points, twist, eta, stiffness, mass).damped(ratio)
+    ratio = file.number('BldFlDmp(1)', 'BldFlDmp1', otherwise=0.0, low=0, high=99) / 100
+    return _damped(file, Beam('blade', eta, points, -numpy.radians(twist), eta, stiffness, mass), ratio)
 
 
 def read_elastodyn_tower(path, height):
     """A tower of ElastoDyn's tower file: a thin tube of steel with its mass and bending stiffness.
     height: m, TowerHt less TowerBsHt"""
     file = File(path)
-    table = file.table('NTwInpSt', 4)
-    density = table[:, 1] * file.number('AdjTwMa', otherwise=1.0)
-    bending = table[:, 2] * file.number('AdjFASt', otherwise=1.0), table[:, 3] * file.number('AdjSSSt', otherwise=1.0)
-    mean = (bending[0] + bending[1]) / 2
+    names = ('HtFract', 'TMassDen', 'TwFAStif', 'TwSSStif')
+    (eta, density, fore, side), first = file.table('NTwInpSt', *names)
+    file.positive((density, fore, side), names[1:], first)
+    density = density * file.number('AdjTwMa', otherwise=1.0, low=1e-6)
+    fore, side = fore * file.number('AdjFASt', otherwise=1.0, low=1e-6), side * file.number('AdjSSSt', otherwise=1.0, low=1e-6)
+    mean = (fore + side) / 2
     square = 2 * mean * _STEEL[1] / (_STEEL[0] * density)  # EI = E A r^2 / 2
     stiffness, mass = tube(2 * numpy.sqrt(square), mean, mean / 1.3, density)
-    stiffness[:, 4, 4], stiffness[:, 5, 5] = bending[1], bending[0]  # y is downwind: bending about z is fore-aft
-    points = numpy.column_stack([table[:, 0] * height, 0 * density, 0 * density])
-    beam = Beam('tower', table[:, 0], points, 0 * density, table[:, 0], stiffness, mass, nodes=6)
-    return beam.damped(file.number('TwrFADmp(1)', 'TwrFADmp1', otherwise=0.0) / 100)
+    stiffness[:, 4, 4], stiffness[:, 5, 5] = side, fore  # y is downwind: bending about z is fore-aft
+    points = numpy.column_stack([eta * height, 0 * eta, 0 * eta])
+    beam = Beam('tower', eta, points, 0 * eta, eta, stiffness, mass, nodes=6)
+    return _damped(file, beam, file.number('TwrFADmp(1)', 'TwrFADmp1', otherwise=0.0, low=0, high=99) / 100)
 
 
-def read_elastodyn(path, blade=None):
-    """A turbine of ElastoDyn's primary file.
-    blade: a Beam, None: that of ElastoDyn's blade file"""
-    file = File(path)
-    degrees = numpy.pi / 180
-    hub_radius = file.number('HubRad')
-    if file.number('OverHang') > 0:
-        file.fail('OverHang is positive: only upwind rotors are read')
-    tilt, over = -file.number('ShftTilt') * degrees, -file.number('OverHang')
-    if blade is None:
-        blade = read_elastodyn_blade(file.file('BldFile(1)', 'BldFile1'), file.number('TipRad') - hub_radius)
-    base, gear = file.number('TowerBsHt'), file.number('GBRatio', otherwise=1.0)
+def _nacelle(file):
+    """6x6 mass about the tower's top."""
+    mass, inertia = file.number('NacMass', low=0), file.number('NacYIner', low=0)
     centre = [file.number(f'NacCM{k}n') for k in 'xyz']
-    level = file.number('NacYIner') - file.number('NacMass') * (centre[0] ** 2 + centre[1] ** 2)  # about the centre of mass
+    level = inertia - mass * (centre[0] ** 2 + centre[1] ** 2)  # about the centre of mass
     if level < 0:
-        file.fail(f'NacYIner is {file.number("NacYIner"):g}, less than that of the nacelle\'s mass at its centre')
-    nacelle = body_mass(file.number('NacMass'), centre, numpy.diag([level] * 3))
-    nacelle = nacelle + body_mass(file.number('YawBrMass', otherwise=0.0))
-    iner = file.number('HubIner')
-    hub = body_mass(file.number('HubMass'), [file.number('HubCM'), 0, 0], numpy.diag([iner] * 3))
-    return Turbine(name=os.path.basename(file.path), blade=blade, blades=int(file.number('NumBl', otherwise=3)),
-                   hub_radius=hub_radius, cone=-file.number('PreCone(1)') * degrees, tilt=tilt, overhang=over * numpy.cos(tilt),
-                   shaft_height=file.number('Twr2Shft') + over * numpy.sin(tilt), hub=hub, nacelle=nacelle,
-                   generator_inertia=file.number('GenIner') * gear**2,
-                   drivetrain=(file.number('DTTorSpr'), file.number('DTTorDmp')),
-                   tower=read_elastodyn_tower(file.file('TwrFile'), file.number('TowerHt') - base), tower_base=base)
+        file.fail(f'NacYIner is {inertia:g}, less than that of the nacelle\'s mass at its centre', file.find('NacYIner')[0])
+    return body_mass(mass, centre, numpy.diag([level] * 3)) + body_mass(file.number('YawBrMass', otherwise=0.0, low=0))
 
 
-def read_airfoil(path):
-    """alpha (rad), cl, cd, cm of the first table of an airfoil file; cm is 0 where it has none."""
+def _alike(file, blades):
+    """Names what differs from blade to blade, of which the first is taken."""
+    for stem in ('PreCone', 'BldFile'):
+        first = file.find(f'{stem}(1)', f'{stem}1')
+        for b in range(2, blades + 1):
+            other = file.find(f'{stem}({b})', f'{stem}{b}')
+            if first and other and (other[1] != first[1] if number_of(first[1]) is None else number_of(other[1]) != number_of(first[1])):
+                yield f'{stem}({b}) {other[1]} (all blades are as the first one, {first[1]})'
+
+
+def read_elastodyn(path, blade=None, hanging=False):
+    """A turbine of ElastoDyn's primary file.
+    blade: a Beam, None: that of ElastoDyn's blade file
+    hanging: of a floating marine turbine (MHK 2), whose tower goes down from the platform"""
     file = File(path)
-    count = int(file.number('NumAlf'))
-    try:
-        rows = file.table('NumAlf', 4, count)
-    except ModelError:
-        rows = numpy.column_stack([file.table('NumAlf', 3, count), numpy.zeros(count)])
-    return [numpy.radians(rows[:, 0]), *rows[:, 1:].T]
+    degrees, blades = numpy.pi / 180, int(file.number('NumBl', otherwise=3, low=1, high=3, whole=True))
+    hub_radius = file.number('HubRad', low=0)
+    tip = file.number('TipRad', low=1e-3)
+    if tip <= hub_radius:
+        file.fail(f'TipRad is {tip:g}, and HubRad is {hub_radius:g}; the tip lies beyond the hub', file.find('TipRad')[0])
+    tilt, over = -file.number('ShftTilt', low=-90, high=90) * degrees, -file.number('OverHang')
+    base, top = file.number('TowerBsHt'), file.number('TowerHt')
+    if (top <= base) != hanging or top == base:
+        file.fail(f'TowerHt is {top:g} and TowerBsHt is {base:g}; the tower goes ' + ('down, as MHK is 2' if hanging else
+                  'up (one that goes down is read from an .fst file with MHK 2)'), file.find('TowerHt')[0])
+    if blade is None:
+        blade = read_elastodyn_blade(file.file('BldFile(1)', 'BldFile1'), tip - hub_radius)
+    nacelle, iner = _nacelle(file), file.number('HubIner', low=0)
+    hub = body_mass(file.number('HubMass', low=0), [file.number('HubCM'), 0, 0], numpy.diag([iner] * 3))
+    left_out = [f'{text} ({key})' for key, text in _PARTS.items() if text and file.find(key) and number_of(file.text(key)) != 0 and
+                file.text(key).lower() != 'false']
+    return Turbine(name=os.path.basename(file.path), blade=blade, blades=blades, hub_radius=hub_radius,
+                   cone=-file.number('PreCone(1)', low=-90, high=90) * degrees, tilt=tilt, overhang=over * numpy.cos(tilt),
+                   shaft_height=file.number('Twr2Shft') + over * numpy.sin(tilt), hub=hub, nacelle=nacelle,
+                   generator_inertia=file.number('GenIner', low=0) * file.number('GBRatio', otherwise=1.0) ** 2,
+                   drivetrain=(file.number('DTTorSpr', low=0), file.number('DTTorDmp', low=0)),
+                   tower=read_elastodyn_tower(file.file('TwrFile'), abs(top - base)), tower_base=base, hanging=hanging,
+                   left_out=[*left_out, *_alike(file, blades), *blade.left_out])
 
 
 def read_aerodyn(path, blade, blade_path=None, stations=None):
-    """Blade elements of AeroDyn's primary file, its first blade and its airfoils.
+    """Blade elements of AeroDyn's primary file, its first blade and its airfoils, by the library's reader.
     blade: the Beam; stations: eta[n] in (0, 1), None: 30 in the middle of equal lengths"""
-    file = File(path)
-    first, count = file.where.get('numaffiles', (None,))[0], int(file.number('NumAFfiles'))
-    if first is None:
-        file.fail('it has no NumAFfiles')
-    names = [line.split('"')[1] if '"' in line else line.split()[0] for line in file.lines[first + 1:first + 1 + count]]
-    foils = [read_airfoil(os.path.join(file.folder, name.replace('\\', '/'))) for name in names]
-    rows = File(blade_path or file.file('ADBlFile(1)', 'ADBlFile1')).table('NumBlNds', 7)
     stations = (numpy.arange(30) + 0.5) / 30 if stations is None else numpy.asarray(stations, float)
     span = numpy.interp(stations, blade.eta, blade.points[:, 0])
+    with spar.Session() as session:
+        member = session.beam_create(blade.name, blade.elements, blade.nodes)  # its line is what matters
+        member.set_axis(blade.eta, blade.points, blade.twist)
+        member.set_sections([0], [numpy.eye(6)], [numpy.eye(6)])
+        member.set_fidelity(spar.FIDELITY_PRESCRIBED, 0)
+        read_by(member.commit, path=path)
+        air, ends = member.fluid_create('air'), member.fluid_create('ends')
+        read_by(ends.read_aerodyn, path, blade_path)
+        read_by(ends.map, path=path)
+        out = ends.get_nearest(0)[2][-1]
+        if ends.get_map(0)[0][-1] < 0.98 or numpy.linalg.norm(out) > 0.1 * blade.length():
+            raise ModelError(f'{path}: its last station and the tip of the blade (BlSpn {blade.points[-1, 0]:g} m) are not at one place; '
+                             'is it of another blade, or in another unit?')
+        read_by(air.read_aerodyn, path, blade_path, None, span)
+        read_by(air.map, path=path)
+        aero = read_by(spar.Aero, [air], path=path)
+        read_by(aero.read_aerodyn, path, blade_path, None, span)
+        eta, (_, q, arm), (chord, twist) = air.get_map(0)[0], air.get_nearest(0), aero.get_chord()
+        polars = [aero.get_polar(i)[1:] for i in range(len(span))]
+    w, v = q[:, :1], -q[:, 1:]  # the arm in the section's own axes
+    arm = arm + 2 * numpy.cross(v, numpy.cross(v, arm) + w * arm)
+    turn = twist - numpy.interp(eta, blade.eta, blade.twist) + numpy.pi / 2
+    return Sections(eta, chord, (turn + numpy.pi) % (2 * numpy.pi) - numpy.pi, arm[:, 1:], [list(p[:4]) for p in polars],
+                    [p[4] for p in polars])
 
-    def at(column):
-        return numpy.interp(span, rows[:, 0], rows[:, column])
-    polars = []
-    for s in span:
-        i = int(numpy.clip(numpy.searchsorted(rows[:, 0], s), 1, len(rows) - 1))
-        part = float(numpy.clip((s - rows[i - 1, 0]) / (rows[i, 0] - rows[i - 1, 0]), 0, 1))
-        pair = foils[int(rows[i - 1, 6]) - 1], foils[int(rows[i, 6]) - 1]
-        alpha = numpy.unique(numpy.round(numpy.concatenate([pair[0][0], pair[1][0]]), 9))
-        if alpha[-1] - alpha[0] > 2 * numpy.pi - 1e-6:
-            alpha[0], alpha[-1] = -numpy.pi, numpy.pi
-        values = [(1 - part) * numpy.interp(alpha, pair[0][0], a) + part * numpy.interp(alpha, pair[1][0], b)
-                  for a, b in zip(pair[0][1:], pair[1][1:])]
-        polars.append([alpha, *values])
-    if file.text('UseBlCm', otherwise='True').lower().startswith('f'):
-        for polar in polars:
-            polar[3] = 0 * polar[0]
-    away = numpy.column_stack([at(k + 1) - numpy.interp(stations, blade.eta, blade.points[:, k + 1]) for k in (0, 1)])
-    turn = numpy.interp(stations, blade.eta, blade.twist)
-    centre = numpy.column_stack([numpy.cos(turn) * away[:, 0] + numpy.sin(turn) * away[:, 1],
-                                 numpy.cos(turn) * away[:, 1] - numpy.sin(turn) * away[:, 0]])
-    return Sections(stations, at(5), numpy.radians(at(4)), centre, polars)
+
+def _density(file, aero):
+    """Of the air or the water: AeroDyn's own one, else that of the .fst file."""
+    key = 'WtrDens' if file.number('MHK', otherwise=0) else 'AirDens'
+    for one in (aero, file):
+        if one and one.text('AirDens' if one is aero else key, otherwise='default').lower() != 'default':
+            return one.number('AirDens' if one is aero else key, low=0)
+    return 1025.0 if key == 'WtrDens' else 1.225
 
 
 def read(path, beamdyn=None):
-    """The turbine of an .fst file. Its blades are BeamDyn's where CompElast is 2, else ElastoDyn's.
+    """The turbine of an .fst file. Its blades are BeamDyn's where CompElast is 2, else ElastoDyn's. A marine turbine (MHK 1 or 2) turns
+    in water, without its buoyancy and added mass.
     beamdyn: path of BeamDyn's primary file, which is then taken"""
     file = File(path)
-    if beamdyn is None and file.number('CompElast') == 2:
+    mhk = int(file.number('MHK', otherwise=0, low=0, high=2, whole=True))
+    if file.number('NRotors', otherwise=1, whole=True) != 1:
+        file.fail('NRotors is not 1; turbines of one rotor are read', file.find('NRotors')[0])
+    if beamdyn is None and file.number('CompElast', low=1, high=2, whole=True) == 2:
         beamdyn = file.file('BDBldFile(1)', 'BDBldFile1')
-    machine = read_elastodyn(file.file('EDFile'), read_beamdyn(beamdyn) if beamdyn else None)
-    if file.number('CompAero', otherwise=0):
-        aero = file.file('AeroFile')
-        machine.sections = read_aerodyn(aero, machine.blade)
-    density = file.text('AirDens', otherwise='1.225')
-    machine.air_density = float(density) if density.lower() != 'default' else 1.225
+    machine = read_elastodyn(file.file('EDFile'), read_beamdyn(beamdyn) if beamdyn else None, mhk == 2)
+    aero = None
+    if file.number('CompAero', otherwise=0, whole=True):
+        aero = File(file.file('AeroFile'))
+        machine.sections = read_aerodyn(aero.path, machine.blade)
+    machine.air_density = _density(file, aero)
+    for key, names in _MODULES.items():
+        kind = int(file.number(key, otherwise=0, whole=True))
+        if kind:
+            machine.left_out.append(f'{names.get(kind, names) if isinstance(names, dict) else names} ({key} {kind})')
+    if mhk:
+        machine.left_out.append(f'buoyancy and added mass under water (MHK {mhk})')
+    tell(path, machine.left_out)
     return machine

@@ -22,13 +22,26 @@ import numpy
 
 import spar
 
+from ._text import ModelError
+
 # spar's order (axial, shear y, z, torsion, bending y, z) of OpenFAST's (forces x, y, z, moments about x, y, z)
 FROM_OPENFAST = [2, 0, 1, 5, 3, 4]
 _TUBE_SHEAR = 0.53  # shear factor of a thin tube (Cowper 1966, Poisson's ratio 0.3)
 
 
-class ModelError(ValueError):
-    """A model lacks something, or has something that is not possible. The message names the file or part, and the cure."""
+def tell(path, left_out):
+    """Warns once of what a file has and spar does not take."""
+    if left_out:
+        warnings.warn(f'{path}: not taken: {"; ".join(left_out)}. Describe yourself what matters to you', stacklevel=3)
+
+
+def read_by(call, *arguments, path=None):
+    """Calls the library, which refuses a file as the readers of Python do.
+    path: of the file, for calls that do not name it"""
+    try:
+        return call(*arguments)
+    except spar.Error as error:
+        raise ModelError(f'{path}: {error}' if path else str(error)) from None
 
 
 def reorder(matrix):
@@ -64,6 +77,38 @@ def tube(diameter, stiffness_bending, stiffness_torsion, mass):
     for i, values in enumerate((mass, mass, mass, mass * square, mass * square / 2, mass * square / 2)):
         inertia[:, i, i] = values
     return stiffness, inertia
+
+
+def sections_fault(stiffness, mass):
+    """What the library says against sections, and its index; None: nothing."""
+    with spar.Session() as session:
+        member = session.beam_create('sections', 1, 2)
+        for i, (k, m) in enumerate(zip(stiffness, mass)):
+            try:
+                member.set_sections([0], [k], [m])
+            except spar.Error as error:
+                return str(error).split("'sections': ")[-1].replace('section 0', 'the section'), i
+    return None
+
+
+def fill_shear(stiffness, length, what):
+    """Fills in, with a warning, what stiffness [n][6][6] leaves out, as of a thin tube: shear by torsion and the radius that bending and
+    extension show; torsion and extension, where they are left out too, so stiff that they do not count.
+    length: m, of the beam, which extends then as one whose radius is a seventieth of it
+    what: the file and the part"""
+    shear, axial, torsion = ((stiffness[:, i, i] <= 0).any() for i in (1, 0, 3))
+    shear |= (stiffness[:, 2, 2] <= 0).any()
+    if not (shear or axial or torsion):
+        return
+    bending = stiffness[:, 4, 4] + stiffness[:, 5, 5]
+    for i, missing in ((0, (70 / length) ** 2 * bending), (3, 10 * bending)):
+        stiffness[:, i, i] = numpy.where(stiffness[:, i, i] > 0, stiffness[:, i, i], missing)
+    filled = _TUBE_SHEAR * stiffness[:, 3, 3] * stiffness[:, 0, 0] / numpy.where(bending > 0, bending, 1)
+    for i in (1, 2):
+        stiffness[:, i, i] = numpy.where(stiffness[:, i, i] > 0, stiffness[:, i, i], filled)
+    left = [name for name, is_so in (('shear', shear), ('axial', axial), ('torsional', torsion)) if is_so]
+    warnings.warn(f'{what} leaves out {" and ".join(left)} stiffness, which is filled in as of a thin tube with this bending'
+                  f'{" and torsion" if not torsion else ", so stiff that it does not count"}; give numbers if it matters', stacklevel=4)
 
 
 def quaternion(axes):
@@ -102,6 +147,8 @@ class Beam:
     masses: list = field(default_factory=list)  # (eta, 6x6 mass about the line)
     elements: int = 3
     nodes: int = 8  # of an element
+    mass_damping: float = 0.0  # 1/s
+    left_out: list = field(default_factory=list)  # what its file has and spar does not take
 
     def length(self):
         """m, of the line through the points."""
@@ -122,6 +169,8 @@ class Beam:
         member.set_sections(self.section_eta, self.stiffness, self.mass)
         if numpy.any(self.damping):
             member.set_damping(self.damping)
+        if self.mass_damping:
+            member.set_mass_damping(self.mass_damping)
         if self.masses:
             member.set_masses([eta for eta, _ in self.masses], [matrix for _, matrix in self.masses])
         return member
@@ -147,15 +196,14 @@ class Beam:
                   for e, k, m in zip(self.section_eta, self.stiffness, self.mass)]
         if numpy.any(self.damping):
             lines.append('damping ' + _numbers(*self.damping))
+        if self.mass_damping:
+            lines.append('mass_damping ' + _numbers(self.mass_damping))
         lines += ['body ' + _numbers(e, *numpy.asarray(m)[row, column]) for e, m in self.masses]
         return lines
 
     def write_case(self, path, modes=10):
         """A case file for spar-run: modes of the clamped beam."""
         _write(path, [f'# {self.name}', *self.case_lines(), 'root fixed', '', '[host run]', 'do modes', f'modes {modes}'])
-
-
-_UPRIGHT = quaternion([[0, 1, 0], [0, 0, 1], [1, 0, 0]])  # of a tower: its x upwards, its y downwind
 
 
 @dataclass
@@ -166,11 +214,12 @@ class Sections:
     twist: numpy.ndarray  # [n], rad, positive: the leading edge goes upwind
     centre: numpy.ndarray  # [n][2], m, aerodynamic centre from the line: to the suction side, to the trailing edge
     polars: list  # [n] of (alpha, cl, cd, cm), rad
+    interpolation: list | None = None  # [n] SPAR_POLAR_*; None: linear
 
 
 @dataclass
 class Turbine:
-    """A turbine with an upwind rotor that turns clockwise, seen from upwind."""
+    """A turbine whose rotor turns clockwise, seen from upwind."""
     name: str
     blade: Beam
     sections: Sections | None = None
@@ -178,7 +227,7 @@ class Turbine:
     hub_radius: float = 0.0  # m, from the rotor's apex to the blades' roots
     cone: float = 0.0  # rad, positive: the tips lean upwind
     tilt: float = 0.0  # rad, positive: the rotor looks up
-    overhang: float = 0.0  # m, horizontal, from the tower's axis to the apex
+    overhang: float = 0.0  # m, horizontal, from the tower's axis to the apex; negative: downwind
     shaft_height: float = 0.0  # m, apex above the tower's top
     hub: numpy.ndarray | None = None  # 6x6 mass about the apex; x along the shaft, downwind, y as global
     nacelle: numpy.ndarray | None = None  # 6x6 mass about the tower's top, in global axes
@@ -186,8 +235,9 @@ class Turbine:
     drivetrain: tuple = (0.0, 0.0)  # N m/rad, N m s/rad; 0: rigid
     tower: Beam | None = None
     tower_base: float = 0.0  # m, height of the tower's base
-    left_out: str | None = None  # what its file has below the tower; the base is rigid instead, and build() warns
-    air_density: float = 1.225
+    hanging: bool = False  # the tower goes down from its base: a floating marine turbine
+    left_out: list = field(default_factory=list)  # what its file has and spar does not take
+    air_density: float = 1.225  # kg/m^3; of a marine turbine that of the water
     rated_speed: float = 0.0  # rad/s
     rated_power: float = 0.0  # W
     tip_speed_ratio: float = 0.0
@@ -197,10 +247,18 @@ class Turbine:
         """Direction of the shaft, downwind."""
         return numpy.array([numpy.cos(self.tilt), 0, -numpy.sin(self.tilt)])
 
+    def top(self):
+        """m, height of the tower's top."""
+        length = self.tower.length() if self.tower is not None else 0.0
+        return self.tower_base + (-length if self.hanging else length)
+
+    def tower_axes(self):
+        """Quaternion of the tower: its x along it, its y downwind."""
+        return quaternion([[0, 1, 0], [0, 0, -1], [-1, 0, 0]] if self.hanging else [[0, 1, 0], [0, 0, 1], [1, 0, 0]])
+
     def apex(self):
         """Position of the rotor's apex."""
-        top = self.tower_base + (self.tower.length() if self.tower is not None else 0.0)
-        return numpy.array([-self.overhang, 0, top + self.shaft_height])
+        return numpy.array([-self.overhang, 0, self.top() + self.shaft_height])
 
     def blade_placement(self, number, pitch=0.0):
         """Position and quaternion of a blade's root at azimuth 0 of the rotor; blade 0 is above the hub.
@@ -319,10 +377,10 @@ class Turbine:
     def _carrier_lines(self, torque, spin):
         """Tower, nacelle, generator and hub of a case file, with their joints, as Rotor has them."""
         self.need('tower', 'nacelle', 'hub')
-        top = [0, 0, self.tower_base + self.tower.length()]
+        top = [0, 0, self.top()]
         place = ['place ' + _numbers(*self.apex()), 'orientation ' + _numbers(*quaternion(turned([0, 1, 0], self.tilt)))]
         frame = [place[0], place[1].replace('orientation', 'axes')]
-        lines = [*self.tower.case_lines(), 'place ' + _numbers(0, 0, self.tower_base), 'orientation ' + _numbers(*_UPRIGHT),
+        lines = [*self.tower.case_lines(), 'place ' + _numbers(0, 0, self.tower_base), 'orientation ' + _numbers(*self.tower_axes()),
                  'root fixed', '',
                  '[rigid nacelle]', 'mass ' + _numbers(*self.nacelle.ravel()), 'place ' + _numbers(*top), '',
                  '[joint yaw]', 'a nacelle 0', 'b tower last', '',
@@ -341,14 +399,23 @@ class Turbine:
         s = self.need_sections()
         names = ' '.join(f'blade{b + 1}' for b in range(self.blades))
         lines = ['[aero rotor]', f'blades {names}', 'wind ' + _numbers(wind, 0, 0),
-                 'rotor ' + _numbers(*self.apex(), *self.shaft(), self.hub_radius, self.tip_radius()),
+                 'rotor ' + _numbers(*self.apex(), *self.shaft(), self.hub_radius * numpy.cos(self.cone), self.tip_radius()),
                  'density ' + _numbers(self.air_density), 'effects induction tip_loss hub_loss swirl drag moment']
         own = self.section_twist()
         for i, polar in enumerate(s.polars):
             name = f'{os.path.splitext(path)[0]}_{i}.polar'
-            numpy.savetxt(name, numpy.column_stack(polar), fmt='%.9g', header='alpha (rad) cl cd cm')
+            numpy.savetxt(name, numpy.column_stack(self._rows(i, polar)), fmt='%.17g', header='alpha (rad) cl cd cm')
             lines.append(f'section {_numbers(s.eta[i], s.chord[i], own[i])} {os.path.basename(name)} {_numbers(*s.centre[i])}')
         return [*lines, '']
+
+    def _rows(self, i, polar):
+        """Rows of a polar for a case file, which is linear between them: other curves get a row each tenth of a degree."""
+        if self.sections.interpolation is None or self.sections.interpolation[i] == spar.POLAR_LINEAR:
+            return polar
+        curve = spar.Polar(*polar)
+        curve.set_interpolation(self.sections.interpolation[i])
+        alpha = numpy.union1d(polar[0], numpy.arange(polar[0][0], polar[0][-1], numpy.pi / 1800))
+        return [alpha, *numpy.transpose([curve.evaluate(a) for a in alpha])]
 
     def need(self, *parts):
         """Refuses a turbine that lacks a part."""
@@ -393,11 +460,8 @@ class Rotor:
         """Tower, nacelle, generator and hub, with their joints."""
         m, s = self.machine, self.session
         m.need('tower', 'nacelle', 'hub')
-        if m.left_out:
-            warnings.warn(f'{m.name}: the tower stands on a rigid base; {m.left_out} of its file is not read. Describe it yourself and '
-                          'tie the tower to it, or set Turbine.left_out to None', stacklevel=4)
         self.tower = m.tower.create(s)
-        self.tower.set_placement([0, 0, m.tower_base], _UPRIGHT)
+        self.tower.set_placement([0, 0, m.tower_base], m.tower_axes())
         self.tower.commit()
         top = self.tower.get_reference(q=None)[-1]
         self.nacelle = s.rigid_create('nacelle', top, [1, 0, 0, 0], m.nacelle)
@@ -448,8 +512,11 @@ class Rotor:
             air.map()
             self.air.append(air)
         self.aero = spar.Aero(self.air)
-        for i, (twist, polar) in enumerate(zip(m.section_twist(), sections.polars)):
-            self.aero.set_section(i, sections.chord[i], twist, spar.Polar(*polar))
+        for i, (twist, rows) in enumerate(zip(m.section_twist(), sections.polars)):
+            polar = spar.Polar(*rows)
+            if sections.interpolation is not None:
+                polar.set_interpolation(sections.interpolation[i])
+            self.aero.set_section(i, sections.chord[i], twist, polar)
         self.aero.set_rotor(m.apex(), m.shaft(), m.hub_radius * numpy.cos(m.cone), self.tip_radius)
         self.aero.set_effects(spar.AERO_INDUCTION | spar.AERO_TIP_LOSS | spar.AERO_HUB_LOSS | spar.AERO_SWIRL | spar.AERO_DRAG
                               | spar.AERO_MOMENT)
@@ -536,7 +603,7 @@ class Rotor:
 
 
 def _numbers(*values):
-    return ' '.join(f'{value:.15g}' for value in values)
+    return ' '.join(f'{value:.17g}' for value in values)
 
 
 def _write(path, lines):

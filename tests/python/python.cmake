@@ -27,7 +27,17 @@ spar_set_test(python_wheel package 900)
 set_tests_properties(python_wheel PROPERTIES SKIP_RETURN_CODE 77)
 add_test(NAME python_turbine COMMAND ${limit} "${python}" -B -W error "${CMAKE_CURRENT_LIST_DIR}/test_turbine.py" "${PROJECT_BINARY_DIR}/tests"
   "${PROJECT_BINARY_DIR}/examples/spar-run")
-foreach(test IN ITEMS python python_sizes python_fuzz python_blade python_turbine)
+set(readers)
+execute_process(COMMAND "${python}" -c "import yaml" RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+if(failed)
+  message(STATUS "no PyYAML: the readers of files are not tried")
+else()
+  set(readers python_readers python_fuzz_texts)
+  add_test(NAME python_readers COMMAND "${python}" -B -W error "${CMAKE_CURRENT_LIST_DIR}/test_readers.py" "${PROJECT_BINARY_DIR}/tests"
+    "${PROJECT_BINARY_DIR}/examples/spar-run")
+  add_test(NAME python_fuzz_texts COMMAND "${python}" -B "${CMAKE_CURRENT_LIST_DIR}/fuzz_texts.py" 600 1) # 10^5 by hand
+endif()
+foreach(test IN ITEMS python python_sizes python_fuzz python_blade python_turbine ${readers})
   spar_set_test(${test} unit 60)
   set_tests_properties(${test} PROPERTIES ENVIRONMENT "SPAR_LIBRARY=$<TARGET_FILE:spar>;PYTHONPATH=${PROJECT_SOURCE_DIR}/python")
 endforeach()

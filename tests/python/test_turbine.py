@@ -148,19 +148,19 @@ class Blade(unittest.TestCase):
 
     def test_tower_of_layers(self):
         """A windIO 2 tower of one steel layer: EA, EI and mass of a thin tube (diameter 6 m, wall 0.04 m), 7 % outfitting. A monopile
-        below it is not read, and building the whole says so."""
+        below it is not read, which is told."""
         data = model()
         data['materials'] = [{'name': 'steel', 'E': 200000000000, 'nu': 0.3, 'rho': 7800}]
         data['components']['tower']['structure'] = {'outfitting_factor': 1.07, 'layers': [
             {'name': 'wall', 'material': 'steel', 'thickness': constant(0.04)}]}
         data['components']['monopile'] = {}
-        machine = windio.read(data)
+        with self.assertWarnsRegex(UserWarning, r'not taken: components.monopile \(the tower stands on a rigid base\)'):
+            machine = windio.read(data)
+        self.assertEqual(len(machine.left_out), 1)
         mean, area = 5.96, numpy.pi * 5.96 * 0.04
         for found, want in ((machine.tower.stiffness[0][4, 4], 2e11 * area * mean**2 / 8), (machine.tower.stiffness[0][0, 0], 2e11 * area),
                             (machine.tower.mass[0][0, 0], 1.07 * 7800 * area)):
             self.assertAlmostEqual(found, want, delta=1e-4 * want)  # (wall / diameter)^2
-        with spar.Session() as session, self.assertWarnsRegex(UserWarning, 'monopile of its file is not read'):
-            machine.build(session)
         data['components']['tower']['structure'] = {}
         with self.assertRaisesRegex(turbine.ModelError, 'no matrices and 0 layers'):
             windio.read(data)
@@ -178,7 +178,7 @@ class Blade(unittest.TestCase):
         self.assertIsNone(old.hub)
 
     def test_beamdyn(self):
-        """BeamDyn's files of the same blade: the same beam, and the same frequencies as by the library's own reader."""
+        """BeamDyn's files of the same blade: the same beam, and the same frequencies as by the library's calls."""
         path = beamdyn_files()
         blade = openfast.read_beamdyn(path)
         of_windio = windio.read(model()).blade
@@ -267,11 +267,11 @@ class Blade(unittest.TestCase):
         with self.assertRaisesRegex(turbine.ModelError, 'blade has no structure'):
             windio.read(data)
         data = model()
-        data['assembly']['rotor_orientation'] = 'Downwind'
-        with self.assertRaisesRegex(turbine.ModelError, 'only upwind'):
+        data['assembly']['rotor_orientation'] = 'Sideways'
+        with self.assertRaisesRegex(turbine.ModelError, "rotor_orientation is 'Sideways'"):
             windio.read(data)
-        path = write('short.dat', '--- ---\n5 NBlInpSt - (-)\nBlFract ...\n(-) (-)\n0 0 0 1 1 1\n')
-        with self.assertRaisesRegex(turbine.ModelError, 'promises 5 rows of 6 numbers, and 1 follow'):
+        path = write('short.dat', '--- ---\n5 NBlInpSt - (-)\nBlFract PitchAxis StrcTwst BMassDen FlpStff EdgStff\n(-) (-)\n0 0 0 1 1 1\n')
+        with self.assertRaisesRegex(turbine.ModelError, 'short.dat, line 6: NBlInpSt promises 5 rows of 6 numbers, and 1 follow'):
             openfast.read_elastodyn_blade(path, 10.0)
         with self.assertRaisesRegex(turbine.ModelError, 'no hub'):
             with spar.Session() as session:
@@ -457,24 +457,26 @@ class Rotor(unittest.TestCase):
         for name, foil in (('thin', 1.0), ('thick', 0.5)):
             alpha = numpy.linspace(-180, 180, 37)
             rows = '\n'.join(f'{a:.1f} {foil * numpy.sin(2 * a * DEGREE):.12f} 0.01 0.0' for a in alpha)
-            write(f'{name}.dat', f'! {name}\n37 NumAlf - rows\n! alpha cl cd cm\n{rows}\n')
+            write(f'{name}.dat', f'! {name}\n1 NumTabs - tables\n37 NumAlf - rows\n! alpha cl cd cm\n{rows}\n')
         turn = 10 * DEGREE  # the aerodynamic centre lies 0.2 m ahead, then 0.5 m ahead of the line, in the twisted chord
         ends = [(0.35 * 4 - 1.5), (0.25 * 4 - 1.5)]
         rows = '\n'.join(f'{z} {c * numpy.sin(turn):.9f} {c * numpy.cos(turn):.9f} 0 10 4 {foil}' for z, c, foil in ((0, ends[0], 2), (60, ends[1], 1)))
         write('ad_blade.dat', f'---\nmade by the test\n---\n2 NumBlNds - (-)\nBlSpn BlCrvAC BlSwpAC BlCrvAng BlTwist BlChord BlAFID\n(m) ...\n{rows}\n')
-        path = write('ad.dat', '---\nmade by the test\n2 NumAFfiles - (-)\n"thin.dat" AFNames - names\n"thick.dat"\n"ad_blade.dat" ADBlFile(1) - name\n')
+        columns = '1 AFTabMod - m\n1 InCol_Alfa - c\n2 InCol_Cl - c\n3 InCol_Cd - c\n4 InCol_Cm - c\n'
+        path = write('ad.dat', f'---\nmade by the test\n{columns}2 NumAFfiles - (-)\n"thin.dat" AFNames - names\n"thick.dat"\n'
+                     'True UseBlCm - (flag)\n"ad_blade.dat" ADBlFile(1) - name\n')
         sections = openfast.read_aerodyn(path, machine.blade, stations=[0.25, 0.75])
         for name in ('chord', 'twist', 'centre'):
             numpy.testing.assert_allclose(getattr(sections, name), getattr(machine.sections, name), atol=1e-8)
         for a, b in zip(sections.polars, machine.sections.polars):
             numpy.testing.assert_allclose(a, b, atol=1e-8)
         alpha = machine.sections.polars[0][0]
-        write('thin.dat', f'{len(alpha)} NumAlf - rows\n' + '\n'.join(f'{a / DEGREE:.9f} 0 0 0.1' for a in alpha) + '\n')
+        write('thin.dat', f'1 NumTabs - tables\n{len(alpha)} NumAlf - rows\n' + '\n'.join(f'{a / DEGREE:.9f} 0 0 0.1' for a in alpha) + '\n')
         for use, moment in (('True', 0.1), ('False', 0.0)):  # UseBlCm
-            path = write('ad.dat', f'---\nmade by the test\n{use} UseBlCm - (flag)\n1 NumAFfiles - (-)\n"thin.dat" AFNames - names\n'
+            path = write('ad.dat', f'---\nmade by the test\n{columns}1 NumAFfiles - (-)\n"thin.dat" AFNames - names\n{use} UseBlCm - (flag)\n'
                          '"ad_blade1.dat" ADBlFile(1) - name\n')
-            write('ad_blade1.dat', '2 NumBlNds - (-)\n0 0 0 0 10 4 1\n60 0 0 0 10 4 1\n')
-            polars = openfast.read_aerodyn(path, machine.blade, stations=[0.5]).polars
+            write('ad_blade1.dat', '2 NumBlNds - (-)\nBlSpn\n(m)\n0 0 0 0 10 4 1\n60 0 0 0 10 4 1\n')
+            polars = openfast.read_aerodyn(path, machine.blade, stations=[0.25, 0.75]).polars
             numpy.testing.assert_allclose(polars[0][3], moment, atol=1e-12)
 
     def test_case(self):
