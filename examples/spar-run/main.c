@@ -94,6 +94,10 @@ static int read_scene(run *r, const arguments *a) {
     RUN_TRY(spar_session_create(&r->session));
     RUN_TRY(spar_case_read(a->path, "run", r->session, &r->scene));
     RUN_TRY(run_read_keys(r, a->tasks));
+    if (spar_case_member_count(r->scene) == 0) {
+        return run_fail(SPAR_ERR_ARGUMENT, "%s describes nothing; give [beam NAME], [rigid NAME] or [point NAME]",
+                        a->path);
+    }
     RUN_TRY(spar_case_make_aero(r->scene, 0));
     RUN_TRY(spar_case_restart(r->scene, NULL));
     RUN_TRY(spar_case_check_own(r->scene));
