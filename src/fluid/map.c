@@ -340,6 +340,10 @@ int spari_fluid_mapped(const spar_fluid *fluid, int which, const char *caller, c
     return SPAR_OK;
 }
 
+int spari_fluid_is_pending(const spar_fluid *fluid) {
+    return (fluid->set[0].pending && fluid->set[0].n > 0) || (fluid->set[1].pending && fluid->set[1].n > 0);
+}
+
 int spari_fluid_need_mapped(const spar_fluid *fluid, const char *caller) {
     const spari_nodes *nodes;
     for (int which = 0; which < 2 && spari_fluid_is_pending(fluid); which++) {

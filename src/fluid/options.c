@@ -27,7 +27,7 @@ static const spari_setting options[] = {
 };
 enum { OPTIONS = sizeof options / sizeof *options };
 
-static int find_option(const spar_fluid *fluid, const char *call, const char *key, const spari_setting **of) {
+static int fluid_option(const spar_fluid *fluid, const char *call, const char *key, const spari_setting **of) {
     char keys[SPARI_MESSAGE_SIZE / 2];
     *of = spari_setting_find(options, OPTIONS, 0, key);
     SPARI_FLUID_REQUIRE_OF(fluid, call, *of, SPAR_ERR_ARGUMENT, "there is no option '%s'; give one of %s", key,
@@ -41,7 +41,7 @@ int spar_fluid_set_option(spar_fluid *fluid, const char *key, const char *value)
     SPARI_TRY(spari_fluid_check_idle(fluid, __func__));
     SPARI_FLUID_REQUIRE(fluid, key && value, SPAR_ERR_ARGUMENT, "key or value is NULL");
     const spari_setting *of;
-    SPARI_TRY(find_option(fluid, __func__, key, &of));
+    SPARI_TRY(fluid_option(fluid, __func__, key, &of));
     double x;
     SPARI_FLUID_REQUIRE(fluid, spari_setting_read(of, value, &x), SPAR_ERR_ARGUMENT,
                         "option '%s' does not accept '%s'; give %s", key, value, of->range);
@@ -54,6 +54,6 @@ int spar_fluid_get_option(const spar_fluid *fluid, const char *key, int64_t capa
     SPARI_FLUID_HANDLE(fluid);
     SPARI_FLUID_REQUIRE(fluid, key && text, SPAR_ERR_ARGUMENT, "key or text is NULL");
     const spari_setting *of;
-    SPARI_TRY(find_option(fluid, __func__, key, &of));
+    SPARI_TRY(fluid_option(fluid, __func__, key, &of));
     return spari_setting_write(fluid->member->session, __func__, of, spari_setting_value(fluid, of), capacity, text);
 }

@@ -281,7 +281,3 @@ void spari_fluid_adopt(spar_fluid *f, spar_fluid *old) {
     f->why = old->why;
     free(old);
 }
-
-int spari_fluid_is_pending(const spar_fluid *f) {
-    return (f->set[0].pending && f->set[0].n > 0) || (f->set[1].pending && f->set[1].n > 0);
-}

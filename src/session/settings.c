@@ -315,7 +315,7 @@ int spar_session_get_tolerance(const spar_session *session, double *drift, doubl
 
 /* ---- options ---- */
 
-static int find_option(const spar_session *session, const char *call, const char *key, const spari_setting **of) {
+static int session_option(const spar_session *session, const char *call, const char *key, const spari_setting **of) {
     char keys[SPARI_MESSAGE_SIZE / 2];
     *of = spari_setting_find(settings, SETTINGS, OPTION, key);
     SPARI_REQUIRE(session, *of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; give one of %s", call, key,
@@ -328,7 +328,7 @@ int spar_session_set_option(spar_session *session, const char *key, const char *
     SPARI_TRY(settable(session, __func__));
     SPARI_REQUIRE(session, key && value, SPAR_ERR_ARGUMENT, "%s: key or value is NULL", __func__);
     const spari_setting *of;
-    SPARI_TRY(find_option(session, __func__, key, &of));
+    SPARI_TRY(session_option(session, __func__, key, &of));
     double x;
     SPARI_REQUIRE(session, spari_setting_read(of, value, &x), SPAR_ERR_ARGUMENT,
                   "%s: option '%s' does not accept '%s'; give %s", __func__, key, value, of->range);
@@ -341,6 +341,6 @@ int spar_session_get_option(const spar_session *session, const char *key, int64_
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     SPARI_REQUIRE(session, key && text, SPAR_ERR_ARGUMENT, "%s: key or text is NULL", __func__);
     const spari_setting *of;
-    SPARI_TRY(find_option(session, __func__, key, &of));
+    SPARI_TRY(session_option(session, __func__, key, &of));
     return spari_setting_write(session, __func__, of, spari_setting_value(session, of), capacity, text);
 }

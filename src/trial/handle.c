@@ -184,7 +184,7 @@ static const spari_setting options[] = {KEEP("dt", keep_dt), KEEP("nodes", keep_
                                         LIMIT(4, 1000, "4 to 1000 trials")};
 enum { OPTIONS = sizeof options / sizeof *options };
 
-static int find_option(const spar_trial *trial, const char *call, const char *key, const spari_setting **of) {
+static int trial_option(const spar_trial *trial, const char *call, const char *key, const spari_setting **of) {
     char keys[SPARI_MESSAGE_SIZE / 2];
     *of = spari_setting_find(options, OPTIONS, 0, key);
     SPARI_REQUIRE(trial->session, *of, SPAR_ERR_ARGUMENT, "%s: there is no option '%s'; give one of %s", call, key,
@@ -197,7 +197,7 @@ int spar_trial_set_option(spar_trial *trial, const char *key, const char *value)
     SPARI_TRY(trial_settable(trial, __func__));
     SPARI_REQUIRE(trial->session, key && value, SPAR_ERR_ARGUMENT, "%s: key or value is NULL", __func__);
     const spari_setting *of;
-    SPARI_TRY(find_option(trial, __func__, key, &of));
+    SPARI_TRY(trial_option(trial, __func__, key, &of));
     double x;
     SPARI_REQUIRE(trial->session, spari_setting_read(of, value, &x), SPAR_ERR_ARGUMENT,
                   "%s: option '%s' does not accept '%s'; give %s", __func__, key, value, of->range);
@@ -210,7 +210,7 @@ int spar_trial_get_option(const spar_trial *trial, const char *key, int64_t capa
     SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
     SPARI_REQUIRE(trial->session, key && text, SPAR_ERR_ARGUMENT, "%s: key or text is NULL", __func__);
     const spari_setting *of;
-    SPARI_TRY(find_option(trial, __func__, key, &of));
+    SPARI_TRY(trial_option(trial, __func__, key, &of));
     return spari_setting_write(trial->session, __func__, of, spari_setting_value(trial, of), capacity, text);
 }
 
