@@ -70,41 +70,95 @@ static int make_own_states(spari_solver *s) {
     return s->own[1].q ? SPAR_OK : SPAR_ERR_MEMORY;
 }
 
-/* The motion at the beginning of a substep: of the centre of mass, or a pinned root, and the mean angular velocity; as
-   the displacement of the root's reference position. Relative to another point, the centre of mass would move on a
-   circle, and each step would change the momentum by its error on that circle. */
-static spari_pose mean_motion(const spari_solver *s, const spar_member *m) {
+static int is_tied(const spari_solver *s) {
+    return s->condensed && s->condensed->ends > 0;
+}
+
+/* Whether a stage describes the member relative to a rigid motion. A rigid body that flies alone rotates about its
+   centre of mass and needs none. */
+static int turns(const spari_solver *s, const spar_member *m) {
+    return spari_member_rotates_stiffly(m) || (s->n == 1 && is_tied(s) && !spari_member_root_is_prescribed(m));
+}
+
+/* The mean rotation at the beginning of a substep, and the motion of the centre of mass, or of a pinned root; as the
+   displacement of the root's reference position. Relative to another point, the centre of mass would move on a circle,
+   and each step would change the momentum by its error on that circle. */
+static void find_own_motion(const spari_solver *s, const spar_member *m, spari_pose *p) {
     const spari_state *at = &s->from;
-    spari_pose p = {.q = {0, 0, 0, 1, 0, 0, 0}};
     double center[6];
     int pinned = spari_member_constrained(m) == 3,
-        has_center = !pinned && spari_member_rotates_stiffly(m) && spari_body_center(s->body, at->q, at->v, center) > 0;
+        has_center = !pinned && spari_body_center(s->body, at->q, at->v, center) > 0;
     for (int k = 0; k < 3 && has_center; k++) {
-        p.q[k] = center[k] - m->xr[k];
-        p.v[k] = center[3 + k];
+        p->q[k] = center[k] - m->xr[k];
+        p->v[k] = center[3 + k];
     }
     for (int i = 0; i < s->n && !has_center; i++) {
         double arm[3];
         spari_member_arm(m, i, arm);
         for (int k = 0; k < 3; k++) {
-            p.q[k] += (arm[k] + at->q[7 * i + k]) / s->n;
-            p.v[k] += at->v[6 * i + k] / s->n;
+            p->q[k] += (arm[k] + at->q[7 * i + k]) / s->n;
+            p->v[k] += at->v[6 * i + k] / s->n;
         }
     }
-    spari_mean_rotation(s->n, at->v, p.v + 3);
     for (int k = 0; k < 3 && pinned; k++) {
-        p.q[k] = at->q[k];
-        p.v[k] = 0;
+        p->q[k] = at->q[k];
+        p->v[k] = 0;
+    }
+}
+
+/* What joints hold moves on a circle: about the joint, or about the joint that carries it all. The acceleration of its
+   first interface node shows this circle. The angular velocity is that in the middle of the substep h, because it
+   precesses; an acceleration of more than a radian in the substep is that of a vibration. */
+static void find_carried_motion(const spari_solver *s, const spar_member *m, double h, spari_pose *p) {
+    const spari_state *at = &s->from;
+    const int i = s->condensed->node[0];
+    double arm[3], rate[3];
+    spari_member_arm(m, i, arm);
+    spari_mean_rotation(s->n, at->a, rate);
+    const double part = spari_norm(rate) * h * h <= 1 ? 0.5 * h : 0;
+    for (int k = 0; k < 3; k++) {
+        p->q[k] = arm[k] + at->q[7 * i + k];
+        p->v[k] = at->v[6 * i + k];
+        p->a[k] = at->a[6 * i + k];
+        p->v[3 + k] += part * rate[k];
+    }
+}
+
+static spari_pose mean_motion(const spari_solver *s, const spar_member *m, double h) {
+    spari_pose p = {.q = {0, 0, 0, 1, 0, 0, 0}};
+    spari_mean_rotation(s->n, s->from.v, p.v + 3);
+    if (is_tied(s)) {
+        find_carried_motion(s, m, h, &p);
+    } else {
+        find_own_motion(s, m, &p);
     }
     return p;
 }
 
+/* (S2): the acceleration rotates with the angular velocity, which stays. psi: the rotation, 1 rad at most. */
 static spari_pose move_along(const spari_pose *p, double time) {
     spari_pose out = *p;
-    double psi[3], rotation[4];
+    double psi[3], rotation[4], second[3], first[3],
+        change[3]; /* of exp(psi) a: twice its second integral, the first */
     for (int k = 0; k < 3; k++) {
-        out.q[k] += time * p->v[k];
         psi[k] = time * p->v[3 + k];
+        second[k] = p->a[k];
+    }
+    for (int k = 20; k > 2; k--) {
+        spari_cross(psi, second, second);
+        for (int j = 0; j < 3; j++) {
+            second[j] = p->a[j] + second[j] / k;
+        }
+    }
+    spari_cross(psi, second, first);
+    for (int k = 0; k < 3; k++) {
+        first[k] = p->a[k] + 0.5 * first[k];
+    }
+    spari_cross(psi, first, change);
+    for (int k = 0; k < 3; k++) {
+        out.q[k] += time * (p->v[k] + 0.5 * time * second[k]);
+        out.v[k] += time * first[k];
+        out.a[k] += change[k];
     }
     spari_quat_exp(psi, rotation);
     spari_quat_mul(rotation, p->q + 3, out.q + 3);
@@ -272,11 +326,11 @@ int spari_stage_begin(spari_solver *s, const spar_member *m, const spari_scheme 
         memcpy(s->offset_loads->gravity, m->body->gravity, sizeof m->body->gravity);
     }
     change_scheme(s, m, c, part);
-    if (c->rule == SPARI_TRAPEZOIDAL) {
-        g->rigid = mean_motion(s, m);
+    int rigid = c->rule != SPARI_ALPHA && !c->still && turns(s, m);
+    if (rigid && c->rule == SPARI_TRAPEZOIDAL) {
+        g->rigid = mean_motion(s, m, c->h);
     }
-    int rigid = c->rule != SPARI_ALPHA && !c->still && spari_member_rotates_stiffly(m) &&
-                spari_norm(g->rigid.v + 3) * c->h <= farthest;
+    rigid = rigid && spari_norm(g->rigid.v + 3) * c->h <= farthest;
     spari_stage_drive(m, c, part, g);
     g->rotation[0] = 1;
     memset(g->rotation + 1, 0, 3 * sizeof *g->rotation);

