@@ -30,7 +30,10 @@ static void aero_free(spar_aero *aero) {
 
 void spar_aero_destroy(spar_aero **aero) {
     if (aero && *aero) {
-        aero_free(*aero);
+        (*aero)->gone = (*aero)->reporting;
+        if (!(*aero)->reporting) {
+            aero_free(*aero);
+        }
         *aero = NULL;
     }
 }

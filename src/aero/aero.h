@@ -36,6 +36,7 @@ struct spar_aero {
     double *met;              /* [blades][n][3] wind with shear and tower; NULL: not in force yet */
     int *inside;              /* [blades][n] SPAR_AERO_FLAG_TOWER or 0 */
     int64_t solves;           /* calls of spar_aero_solve */
+    int reporting, gone;      /* a report is being made; a callback in it has destroyed the object */
     int reported;             /* there is a report of effects */
     spari_aero_effect effect[SPAR_AERO_ROW_COUNT];
     spari_rotor used; /* in the last solution; rotor_used: it was set then */

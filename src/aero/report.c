@@ -75,6 +75,12 @@ static int try_once(spar_trial *trial, int compare, aero_run *out) {
     return SPAR_OK;
 }
 
+/* A callback of the last run may have destroyed the trial. */
+static int check_trial_lives(const spar_trial *trial) {
+    spar_session *session;
+    return spar_trial_get_session(trial, &session);
+}
+
 /* Restores the effects, whatever fails. Times are the smallest of three runs, with and without in turn. */
 static int try_without(spar_trial *trial, spar_aero *aero, int r, const aero_run *base, spari_aero_effect *out) {
     enum { REPEATS = 3 };
@@ -86,6 +92,7 @@ static int try_without(spar_trial *trial, spar_aero *aero, int r, const aero_run
         int status = try_once(trial, 1, &run);
         aero->rotor.effects = effects;
         if (status != SPAR_OK) {
+            SPARI_TRY(check_trial_lives(trial));
             *out = (spari_aero_effect){.in_force = 1, .fails = 1};
             return SPAR_OK;
         }
@@ -143,7 +150,23 @@ int spar_aero_report_effects(spar_aero *aero, spar_trial *trial) {
     char message[SPARI_MESSAGE_SIZE] = "";
     (void)snprintf(message, sizeof message, "%s", spar_session_message(session));
     int status = check_arguments(session, aero, __func__);
-    SPARI_TRY(spari_aero_named(session, __func__, try_all(session, trial, aero, status, __func__, made)));
+    int alone = aero && !aero->reporting; /* not within a callback of another report */
+    if (alone) {
+        aero->reporting = 1;
+    }
+    status = spari_aero_named(session, __func__, try_all(session, trial, aero, status, __func__, made));
+    if (alone) {
+        aero->reporting = 0;
+    }
+    if (alone && aero->gone) {
+        spar_aero_destroy(&aero);
+        return status != SPAR_OK
+                   ? status
+                   : spari_aero_fail(session, SPAR_ERR_STATE,
+                                     "%s: a callback has destroyed the aero object; destroy it after the call",
+                                     __func__);
+    }
+    SPARI_TRY(status);
     spari_aero_put_message_back(session, message);
     memcpy(aero->effect, made, sizeof made); /* NOLINT(clang-analyzer-core.NonNullParamChecker): checked above */
     aero->reported = 1;

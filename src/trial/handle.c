@@ -60,8 +60,16 @@ void spar_trial_destroy(spar_trial **trial) {
     free_trial(t);
 }
 
+/* A call of several runs, in a library on top of this one, may still have the handle. */
+static int check_lives(const spar_trial *trial, const char *call) {
+    SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", call);
+    SPARI_REQUIRE(trial->session, !trial->gone, SPAR_ERR_STATE,
+                  "%s: a callback has destroyed the trial in its run; destroy it after the call", call);
+    return SPAR_OK;
+}
+
 int spar_trial_get_session(const spar_trial *trial, spar_session **session) {
-    SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", __func__);
+    SPARI_TRY(check_lives(trial, __func__));
     SPARI_REQUIRE(trial->session, session, SPAR_ERR_ARGUMENT, "%s: session is NULL; give the address of a handle",
                   __func__);
     *session = trial->session;
@@ -71,7 +79,7 @@ int spar_trial_get_session(const spar_trial *trial, spar_session **session) {
 /* ---- settings ---- */
 
 static int trial_settable(spar_trial *trial, const char *call) {
-    SPARI_REQUIRE(NULL, trial, SPAR_ERR_ARGUMENT, "%s: the trial is NULL; create it first", call);
+    SPARI_TRY(check_lives(trial, call));
     SPARI_REQUIRE(trial->session, !trial->running, SPAR_ERR_STATE,
                   "%s: the trial is running; change its settings before or after", call);
     return SPAR_OK;
@@ -260,6 +268,7 @@ int spari_trial_enter(spar_trial *t, const char *call, const spari_agreed *argum
                                                     spari_whole("option coupling", t->search.keep_coupling),
                                                     spari_whole("option limit", t->search.limit)};
     assert(count <= SPARI_MOST_ARGUMENTS);
+    status = status == SPAR_OK && !t->running ? check_lives(t, call) : status;
     for (int k = 0; k < count; k++) {
         all[OWN + k] = arguments[k];
     }
@@ -274,9 +283,6 @@ int spari_trial_leave(spar_trial *t, const char *call, int status) {
         spari_put_message_back(t->session, t->message);
     }
     status = spari_named(t->session, call, status);
-    t->running = 0;
-    if (t->gone) {
-        spar_trial_destroy(&t);
-    }
+    t->running = 0; /* one that is gone is freed with its session */
     return status;
 }

@@ -593,13 +593,59 @@ static void test_wing(void **state) {
     spar_session_destroy(&session);
 }
 
+/* A report whose callbacks destroy what it is about: it is refused, and the session goes on. */
+typedef struct ending {
+    scene s;
+    spar_trial *trial;
+    int which, steps; /* 0: the trial, 1: the aero object; calls until then */
+} ending;
+
+static int end_something(spar_session *session, double t, double dt, void *context) {
+    ending *e = context;
+    (void)session, (void)t, (void)dt;
+    if (--e->steps == 0 && e->which == 0) {
+        spar_trial_destroy(&e->trial);
+    } else if (e->steps == 0) {
+        spar_aero_destroy(&e->s.aero);
+    }
+    return 0;
+}
+
+static int solve_ending(spar_session *session, double t, double dt, int iteration, void *context) {
+    ending *e = context;
+    return e->s.aero ? solve_aero(session, t, dt, iteration, &e->s) : 0;
+}
+
+static void test_destroyed_in_report(void **state) {
+    (void)state;
+    for (int k = 0; k < 6; k++) {
+        ending e = {.which = k % 2, .steps = 1 + 10 * (k / 2)}; /* in the first, second and third run of 8 steps */
+        begin(&e.s, 8.0, 9.16);
+        build(&e.s, 0, 0);
+        step(&e.s, 0.01, 0.01);
+        OK(e.s.session, spar_trial_create(e.s.session, &e.trial));
+        OK(e.s.session, spar_trial_set_steps(e.trial, 0.01, 8));
+        OK(e.s.session, spar_trial_set_callbacks(e.trial, end_something, &e, solve_ending, &e));
+        REFUSED(e.s.session, SPAR_ERR_STATE, k < 2 ? "spar_aero_report_effects" : "destroyed the", spar_aero_report_effects(e.s.aero, e.trial));
+        assert_true((e.which ? (void *)e.s.aero : (void *)e.trial) == NULL);
+        OK(e.s.session, spar_step(e.s.session, 0.01, NULL, NULL, NULL));
+        end(&e.s);
+    }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_aerodyn_rigid), cmocka_unit_test(test_aerodyn_beam),
-        cmocka_unit_test(test_reader),        cmocka_unit_test(test_effects),
-        cmocka_unit_test(test_turned),        cmocka_unit_test(test_spread),
-        cmocka_unit_test(test_broken_step),   cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_mapped_anew),   cmocka_unit_test(test_motion_sections_not_mapped),
-        cmocka_unit_test(test_wing),          cmocka_unit_test(test_all_or_none)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_destroyed_in_report),
+                                       cmocka_unit_test(test_aerodyn_rigid),
+                                       cmocka_unit_test(test_aerodyn_beam),
+                                       cmocka_unit_test(test_reader),
+                                       cmocka_unit_test(test_effects),
+                                       cmocka_unit_test(test_turned),
+                                       cmocka_unit_test(test_spread),
+                                       cmocka_unit_test(test_broken_step),
+                                       cmocka_unit_test(test_refused),
+                                       cmocka_unit_test(test_mapped_anew),
+                                       cmocka_unit_test(test_motion_sections_not_mapped),
+                                       cmocka_unit_test(test_wing),
+                                       cmocka_unit_test(test_all_or_none)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
