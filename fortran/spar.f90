@@ -122,6 +122,7 @@ module spar
     private
     type(c_ptr) :: handle = c_null_ptr
     type(log_record), pointer :: log => null()
+    type(progress_record), pointer :: progress => null()
     type(trial_record), pointer :: trials => null()
   contains
     procedure :: step_begin => session_step_begin
@@ -163,6 +164,7 @@ module spar
     procedure :: message => session_message
     procedure :: get_warning => session_get_warning
     procedure :: set_log => session_set_log
+    procedure :: set_progress => session_set_progress
     procedure :: sum_balance => session_sum_balance
     procedure :: sum => session_sum
     procedure :: get_iterations => session_get_iterations
@@ -407,7 +409,8 @@ module spar
       class(*), intent(inout), optional :: context
     end subroutine spar_log
 
-    ! Hears how far a call with many runs of a trial is, see trial%set_progress. stat is 0 on entry; any other value ends the call.
+    ! Hears how far a solution is, see session%set_progress, or a call with many runs of a trial, see trial%set_progress. stat is 0 on
+    ! entry; any other value ends the call.
     subroutine spar_progress(done, expected, context, stat)
       import :: c_double
       real(c_double), intent(in) :: done, expected
@@ -429,6 +432,11 @@ module spar
     class(*), pointer :: context => null()
   end type log_record
 
+  type :: progress_record
+    procedure(spar_progress), pointer, nopass :: progress => null()
+    class(*), pointer :: context => null()
+  end type progress_record
+
   ! What a trial keeps of the host; of its session, which frees it at the latest.
   type :: trial_record
     class(spar_session), pointer :: session => null()
@@ -436,6 +444,7 @@ module spar
     procedure(spar_fluid_solver), pointer, nopass :: solve => null()
     procedure(spar_progress), pointer, nopass :: progress => null()
     class(*), pointer :: before_context => null(), solve_context => null(), progress_context => null()
+    integer :: callbacks = 0 ! in progress
     type(trial_record), pointer :: next => null()
   end type trial_record
 
@@ -504,6 +513,7 @@ contains
 
     call spar_session_destroy(self%handle)
     if (associated(self%log)) deallocate (self%log)
+    if (associated(self%progress)) deallocate (self%progress)
     do while (associated(self%trials))
       record => self%trials
       self%trials => record%next
@@ -644,6 +654,53 @@ contains
       call record%log(int(level), words)
     end if
   end subroutine call_log
+
+  ! progress and context are kept as by set_log; without progress nothing is told.
+  recursive subroutine session_set_progress(self, progress, context, stat, errmsg)
+    class(spar_session), intent(inout) :: self
+    procedure(spar_progress), optional :: progress
+    class(*), pointer, optional :: context
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(progress_record), pointer :: record
+    integer(c_int) :: status
+
+    nullify (record)
+    if (present(progress)) then
+      allocate (record)
+      record%progress => progress
+      if (present(context)) record%context => context
+      status = spar_session_set_progress(self%handle, c_funloc(call_session_progress), c_loc(record))
+    else
+      status = spar_session_set_progress(self%handle, c_null_funptr, c_null_ptr)
+    end if
+    if (status /= SPAR_OK) then
+      if (associated(record)) deallocate (record)
+    else
+      if (associated(self%progress)) deallocate (self%progress)
+      self%progress => record
+    end if
+    call finish(status, self%handle, stat, errmsg)
+  end subroutine session_set_progress
+
+  recursive function call_session_progress(session, done, expected, context) bind(c, name='') result(answer)
+    type(c_ptr), value :: session, context
+    real(c_double), value :: done, expected
+    integer(c_int) :: answer
+    integer :: stat
+    type(progress_record), pointer :: record
+
+    answer = SPAR_ERR_ARGUMENT
+    if (.not. c_associated(session)) return
+    call c_f_pointer(context, record)
+    stat = SPAR_OK
+    if (associated(record%context)) then
+      call record%progress(done, expected, record%context, stat=stat)
+    else
+      call record%progress(done, expected, stat=stat)
+    end if
+    answer = to_c(stat)
+  end function call_session_progress
 
   ! value is as long as what is set.
   recursive subroutine session_get_option(self, key, value, stat, errmsg)
@@ -879,7 +936,8 @@ contains
     call finish(status, session%handle, stat, errmsg)
   end subroutine trial_create
 
-  ! Takes the trial out of its session, which must still be there.
+  ! Takes the trial out of its session, which must still be there. In one of its callbacks the trial ends its run first; what it
+  ! keeps of the host then stays until the session is destroyed.
   recursive subroutine trial_destroy(self)
     class(spar_trial), intent(inout) :: self
     class(spar_session), pointer :: session
@@ -887,6 +945,11 @@ contains
 
     if (.not. c_associated(self%handle)) return
     call spar_trial_destroy(self%handle)
+    self%session = c_null_ptr
+    if (self%record%callbacks > 0) then
+      nullify (self%record)
+      return
+    end if
     session => self%record%session
     if (associated(session%trials, self%record)) then
       session%trials => self%record%next
@@ -898,7 +961,6 @@ contains
       before%next => self%record%next
     end if
     deallocate (self%record)
-    self%session = c_null_ptr
   end subroutine trial_destroy
 
   impure elemental recursive subroutine trial_assign(left, right)
@@ -1004,11 +1066,13 @@ contains
     if (.not. c_associated(session)) return
     call c_f_pointer(context, record)
     stat = SPAR_OK
+    record%callbacks = record%callbacks + 1
     if (associated(record%before_context)) then
       call record%before(record%session, t, dt, record%before_context, stat=stat)
     else
       call record%before(record%session, t, dt, stat=stat)
     end if
+    record%callbacks = record%callbacks - 1
     answer = to_c(stat)
   end function call_trial_before
 
@@ -1024,11 +1088,13 @@ contains
     if (.not. c_associated(session)) return
     call c_f_pointer(context, record)
     stat = SPAR_OK
+    record%callbacks = record%callbacks + 1
     if (associated(record%solve_context)) then
       call record%solve(record%session, t, dt, int(iteration), record%solve_context, stat=stat)
     else
       call record%solve(record%session, t, dt, int(iteration), stat=stat)
     end if
+    record%callbacks = record%callbacks - 1
     answer = to_c(stat)
   end function call_trial_solver
 
@@ -1043,11 +1109,13 @@ contains
     if (.not. c_associated(session)) return
     call c_f_pointer(context, record)
     stat = SPAR_OK
+    record%callbacks = record%callbacks + 1
     if (associated(record%progress_context)) then
       call record%progress(done, expected, record%progress_context, stat=stat)
     else
       call record%progress(done, expected, stat=stat)
     end if
+    record%callbacks = record%callbacks - 1
     answer = to_c(stat)
   end function call_trial_progress
 

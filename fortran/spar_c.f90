@@ -866,6 +866,14 @@ module spar_calls
       integer(c_int) :: status
     end function spar_member_get_iterations
 
+    function spar_session_set_progress(session, progress, context) bind(c) result(status)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: session
+      type(c_funptr), value :: progress
+      type(c_ptr), value :: context
+      integer(c_int) :: status
+    end function spar_session_set_progress
+
     function spar_session_set_predictor(session, order) bind(c) result(status)
       import :: c_int, c_ptr
       type(c_ptr), value :: session

@@ -65,7 +65,8 @@ typedef struct spar_trial spar_trial; /* runs of a session, which is restored af
      session: in, of the trial
      trial: out, handle */
 SPAR_API int spar_trial_create(spar_session *session, spar_trial **trial);
-/* Destroys a trial, and sets the handle to NULL. A trial that runs ends its run first. Local.
+/* Destroys a trial, and sets the handle to NULL. A trial that runs ends its run first; a library that still has the
+   handle gets SPAR_ERR_STATE. Local.
      trial: in, out, NULL: nothing to do */
 SPAR_API void spar_trial_destroy(spar_trial **trial);
 /* Local.
@@ -87,16 +88,13 @@ SPAR_API int spar_trial_get_steps(const spar_trial *trial, double *dt, int64_t *
      solve_context: in, handed to solve, must live as long as the trial uses it */
 SPAR_API int spar_trial_set_callbacks(spar_trial *trial, spar_before_step before, void *before_context,
                                       spar_fluid_solver solve, void *solve_context);
-/* Tells the host how far a call with many runs is, before each run (spar_trial_advise, _report_effects,
-   _solve_eigenvalues, _solve_floquet). Between the runs the session is in its present state. The callback may read the
-   session, and changes nothing. If it returns 0, the call goes on. Otherwise the call ends with SPAR_ERR_USER.
-     session: of the trial
-     done: runs made so far, from 0
-     expected: what done reaches at most; for advice the option limit of the trial
-     context: of spar_trial_set_progress */
-typedef int (*spar_progress)(spar_session *session, double done, double expected, void *context);
-/* Sets the progress callback, on all ranks or on none. If one rank stops, the others return SPAR_ERR_PEER. Local.
-     progress: in, NULL: none (default)
+/* Sets the progress callback of a trial, on all ranks or on none. It is told how many runs a call with many runs has
+   made, before each run (spar_trial_advise, _report_effects, _solve_eigenvalues, _solve_floquet). Between the runs the
+   session is in its present state. The callback may read the session, and changes nothing. If it answers other than 0,
+   the call ends with SPAR_ERR_USER, on other ranks with SPAR_ERR_PEER. A run whose step exceeds its budget (option
+   newton.budget) counts as one that fails. Local.
+     progress: in, as of spar_session_set_progress, but with runs in place of iterations; for advice `expected` is the
+           option limit of the trial. NULL: none (default)
      context: in, handed to progress, must live as long as the trial uses it */
 SPAR_API int spar_trial_set_progress(spar_trial *trial, spar_progress progress, void *context);
 

@@ -45,6 +45,22 @@ SPAR_API int spar_session_get_newton(const spar_session *session, double *atol, 
            largest, NULL: not wanted */
 SPAR_API int spar_member_get_iterations(const spar_member *member, int64_t *iterations, double *left);
 
+/* Callback that is told how far a solution is, and may cancel it. Answer 0 to go on; anything else cancels the call.
+     done: Newton iterations of this member, or of members connected to it, so far in this step or static solution
+     expected: what done reaches at most: the budget (option newton.budget), in a static solution for each of its
+           load_steps
+     context: of spar_session_set_progress */
+typedef int (*spar_progress)(spar_session *session, double done, double expected, void *context);
+/* Sets the progress callback. It is called before each Newton iteration of spar_step_solve and of static solutions, in
+   the calling thread, on the rank that solves the member. It must not call the session. If it cancels, the call answers
+   SPAR_ERR_USER, on other ranks SPAR_ERR_PEER, and all is as before the call; a step that the host has begun can be
+   solved again or rejected. In the runs of a trial it is not called; the trial has its own (spar_trial_set_progress).
+   With a progress callback, threads share the work inside each member, not the members. Local, at any time but in
+   callbacks; ranks may differ.
+     progress: in, NULL: none (default)
+     context: in, handed to progress, must live as long as the session uses it */
+SPAR_API int spar_session_set_progress(spar_session *session, spar_progress progress, void *context);
+
 /* ---- coupling iteration ------------------------------------------------------------------------------------------ */
 
 /* Order of the polynomial that extrapolates the loads to t^{n+1}, (T11). The first steps use lower orders until enough
@@ -61,6 +77,10 @@ SPAR_API int spar_session_get_relaxation(const spar_session *session, double *om
 /* Sets an option by name.
      key: in
      value: in, a number or a word
+   newton.budget          1 to 1000000000, default 100000: most Newton iterations of a member, or of connected members
+                          together, in one step with all its coupling iterations and halvings, and for each of the
+                          load_steps of a static solution; beyond, SPAR_ERR_LIMIT. spar_step_adaptive has a budget
+                          for each of its tries
    coupling.unconverged   error (default) | accept: what spar_step_check does after max_iterations. Choose accept if the
                           host cannot repeat a step, and look at SPAR_REPORT_UNCONVERGED
    coupling.unstable      error (default) | accept: what spar_step_check does if the error of the predicted loads has
@@ -397,6 +417,10 @@ SPAR_API int spar_fluid_get_option(const spar_fluid *fluid, const char *key, int
    spar_fluid_get_positions has it between steps: for a flow that meshes the deformed shape anew, or restarts from a
    deformed mesh. Each node gets the reference position that the present motion moves where it is; from then on it is as
    if that had been given. Stations mean what they mean to spar_fluid_map. Loads stay until the next push.
+
+   Motion nodes with weights have no such position in general. A node that follows a section by a part w stands at
+   X + w (x - X), so that several X may lead there, or none; and fading weights depend on X, which is wanted. The host
+   gives reference positions of such a mesh, and spar_fluid_map: it moves its own mesh from them.
    SPAR_ERR_UNSUPPORTED: motion nodes with weights; SPAR_ERR_MAPPING: as of spar_fluid_map, or a node has no such
    reference position, because the member is folded there. */
 SPAR_API int spar_fluid_map_current(spar_fluid *fluid);

@@ -28,8 +28,8 @@ help(spar.Fluid.push_forces) shows what the header says. This is what differs fr
   is the SPAR_ERR_*. An argument of a wrong type or shape, which C cannot be given, raises TypeError or ValueError.
 - A fluid's solver is a function of (session, t, dt, iteration), what is called before the steps of trials one of
   (session, t, dt), a progress one of (done, expected). They answer 0 or None to go on, any other integer to end the call.
-  What they raise ends the step, or the trial's call, and is raised again. A log is a function of (level, text), which must
-  not call its session. It cannot end a call: what it raises is raised when the call is done.
+  What they raise ends the step, or the trial's call, and is raised again. A log is a function of (level, text). It cannot
+  end a call: what it raises is raised when the call is done. A log and the progress of a session must not call the session.
 - A trial is made by session.trial_create(), and keeps its callbacks.
 - A session is closed by `with`, close(), or at the latest when nothing refers to it; members, joints, fluids and trials
   keep it. What belonged to it is closed with it: further calls raise spar.Error. A session cannot be closed in one of its
@@ -589,22 +589,30 @@ class _Running:
         if function is None:
             made = kind()
         else:
-            made = kind(self.telling(function) if p.type == 'log' else self.calling(p, function))
+            inside = p.type == 'log' or (p.type == 'progress' and self.owner is self.session)
+            made = kind(self.telling(p, function) if inside else self.calling(p, function))
         self.keep.append(made)
         if self.owner.keeps:
             self.callbacks[p.name] = made
         return made
 
-    def telling(self, function):
-        """What C calls as a log, in the middle of a call: what it raises is kept until the call is done."""
-        faults = self.session.use.faults
+    def telling(self, p, function):
+        """What C calls as a log, or as a session's progress, in the middle of a call: what it raises is kept until the call is done."""
+        faults, name = self.session.use.faults, f'{self.call.name}: {p.name}'
 
-        def called(_session, level, text, _context):
+        def log(_session, level, text, _context):
             try:
                 function(level, text.decode(errors='replace'))
             except BaseException as fault:  # pylint: disable=broad-except
                 faults.append(fault)
-        return called
+
+        def progress(_session, done, expected, _context):
+            try:
+                return _answered(name, function(done, expected))
+            except BaseException as fault:  # pylint: disable=broad-except
+                faults.append(fault)
+                return 1  # the call is to end
+        return log if p.type == 'log' else progress
 
     def calling(self, p, function):
         """What C calls. What is raised there ends the call under way, which raises it again."""
@@ -663,7 +671,7 @@ class _Use:
         """Waits until this thread may call; not in a log or a __del__, for whom it waits may be waiting for the call around these."""
         thread = threading.get_ident()
         if self.thread == thread:
-            fault = f'{name}: a call of this session is in progress; a log and a __del__ must not call it'
+            fault = f'{name}: a call of this session is in progress; a log, a progress and a __del__ must not call it'
             raise _failed(CONSTANTS['SPAR_ERR_STATE'], fault)
         if not self.lock.acquire(wait):  # pylint: disable=consider-using-with
             fault = f'{name}: another thread is in a call of this session; a log and a __del__ do not wait for it'
@@ -767,7 +775,7 @@ class Session(_Thing):
         self.use = _Use()
         self.alone = comm is None
         self.members = []  # their handles
-        self.log = {}  # what C calls
+        self.callbacks = {}  # log and progress, which C calls
         made = ctypes.c_void_p()
         if comm is None:
             status = _calls['spar_session_create'].function(ctypes.addressof(made))
@@ -780,10 +788,11 @@ class Session(_Thing):
         self.handle = made.value
 
     def keep_callbacks(self, callbacks):
-        """Keeps a log, as long as C may call it; C uses the others in their call alone."""
-        if 'log' in callbacks:
-            self.use.replaced.append(self.log)
-            self.log = callbacks
+        """Keeps a log and a progress, as long as C may call them; C uses the others in their call alone."""
+        for name in ('log', 'progress'):
+            if name in callbacks:
+                self.use.replaced.append(self.callbacks.get(name))
+                self.callbacks[name] = callbacks[name]
 
     def size(self, word, _given):
         """What no argument says: ranks, and all_nodes, of all members."""

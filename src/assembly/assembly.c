@@ -270,6 +270,9 @@ static const char *iterate_alone(spari_assembly *a, double longest, spari_iterat
 static const char *iterate_newton(void *self, double longest, spari_iterate *it) {
     const newton_step *t = self;
     spari_assembly *a = t->a;
+    if (!spari_budget_allows(a->session, spari_assembly_spent(a), a->session->newton.budget)) {
+        return "ended";
+    }
     if (a->constraints == 0) {
         return iterate_alone(a, longest, it);
     }
@@ -410,24 +413,36 @@ static const char *walk_drives(spari_assembly *a, double s, double dt, const cha
     return wrong;
 }
 
+/* Newton has found no solution. */
+static int fail_newton(const spari_assembly *a, const char *wrong, int iterations) {
+    const spar_session *s = a->session;
+    const spari_spent *spent = spari_assembly_spent(a);
+    const int budget = s->newton.budget;
+    char name[NAME];
+    spari_assembly_name(a, name, sizeof name);
+    SPARI_TRY(spari_budget_cancelled(s, name, spent));
+    SPARI_REQUIRE(
+        s, !spari_budget_is_over(s, spent, budget), SPAR_ERR_LIMIT,
+        "%s: the step from t = %g has used its budget of %d Newton iterations (option newton.budget) in "
+        "coupling iteration %d, with %d parts of the step halved; prescribed motions or loads that jump, or a "
+        "motion that dt does not resolve, need many: smooth the jump, use a smaller dt, or raise the budget",
+        name, s->clock.time, budget, s->state.iteration, a->component[0].member->state.cuts.halved);
+    return spari_fail(s, SPAR_ERR_NUMERIC,
+                      "%s: Newton %s (%d iterations in several attempts, each of %d at most) in the step from t = %g; "
+                      "use a smaller dt, more substeps or a smaller rho_inf, or check the loads",
+                      name, wrong, iterations, s->newton.max, s->clock.time);
+}
+
 /* The states at the end of a substep. */
 static int newton_all(spari_assembly *a, double s, double dt) {
     int iterations = 0;
-    char name[NAME];
     const char *wrong = attempts_of(a, s, dt, &iterations);
     if (wrong && a->constraints > 0 && !a->constrains_rates && !a->component[0].scheme.still) {
         a->constrains_rates = 1;
         wrong = attempts_of(a, s, dt, &iterations);
     }
     wrong = wrong ? walk_drives(a, s, dt, wrong, &iterations) : NULL;
-    if (wrong) {
-        spari_assembly_name(a, name, sizeof name);
-        return spari_fail(a->session, SPAR_ERR_NUMERIC,
-                          "%s: Newton %s (%d iterations in several attempts, each of %d at most) in the step from t = "
-                          "%g; use a smaller dt, more substeps or a smaller rho_inf, or check the loads",
-                          name, wrong, iterations, a->session->newton.max, a->session->clock.time);
-    }
-    return SPAR_OK;
+    return wrong ? fail_newton(a, wrong, iterations) : SPAR_OK;
 }
 
 /* Generalised-alpha with constraints at position level has velocities that are off the constraints by -C h^2 times

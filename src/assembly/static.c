@@ -31,13 +31,15 @@
 enum { ITERATIONS = 60, HALVINGS = 14 };
 
 /* Result of a load step: an equilibrium, or none. LOOSE: a motion is not constrained. UNSTABLE: the equilibrium does
-   not last, or the path to it passes a limit or bifurcation point. LONG: it needs too many load steps. */
-typedef enum outcome { FOUND, FAILED, LOOSE, UNSTABLE, LONG } outcome;
+   not last, or the path to it passes a limit or bifurcation point. LONG: it needs too many load steps. SPENT: the
+   budget of Newton iterations is used up, or the host has cancelled. */
+typedef enum outcome { FOUND, FAILED, LOOSE, UNSTABLE, LONG, SPENT } outcome;
 
 /* An equilibrium to be found. */
 typedef struct equilibrium {
     spari_assembly *a;
     const double *(*fluid)(const spar_member *);
+    int64_t most;       /* Newton iterations of the call */
     int potential;      /* the loads have one, so the stability of an equilibrium is known */
     spari_linear *path; /* the tangent of a member without joints, if its path is watched */
     int on_path;        /* the last point is on the path */
@@ -46,6 +48,11 @@ typedef struct equilibrium {
     double *before;     /* nodal forces that balance the first state without the loads; NULL: not known */
     char motion[240];   /* that is not constrained or unstable */
 } equilibrium;
+
+/* Whether there may be another iteration. */
+static int allows(const equilibrium *t) {
+    return spari_budget_allows(t->a->session, spari_assembly_spent(t->a), t->most);
+}
 
 /* Adds `part` of the forces that balance the first state. */
 static void add_forces_before(const equilibrium *t, double part) {
@@ -179,6 +186,9 @@ static outcome find_downhill(equilibrium *t, double f) {
     double last = 0, last_shift = 0;
     outcome why = FOUND;
     for (int it = 0; it < DOWNHILL && why != FAILED; it++) {
+        if (!allows(t)) {
+            return SPENT;
+        }
         double residual_size, cut, scale = balance_static(t, f, &residual_size);
         if (!isfinite(scale)) {
             return FAILED;
@@ -226,6 +236,9 @@ static outcome find_nearby(equilibrium *t, double f) {
     double last = 0;
     a->shift = 0;
     for (int it = 0; it < ITERATIONS; it++) {
+        if (!allows(t)) {
+            return SPENT;
+        }
         double residual_size, cut, scale = balance_static(t, f, &residual_size);
         if (!isfinite(scale)) {
             return FAILED;
@@ -286,7 +299,7 @@ static outcome find_point(equilibrium *t, double f, int first) {
             spari_system_name_free(a, t->motion, sizeof t->motion);
         }
     }
-    return found == FOUND ? found : why;
+    return found == FOUND || found == SPENT ? found : why;
 }
 
 /* ---- the load steps ---- */
@@ -339,6 +352,9 @@ static double follow_loads(equilibrium *t, int load_steps, outcome *why) {
             done = f;
             continue;
         }
+        if (*why == SPENT) {
+            break;
+        }
         step *= 0.5;
         halvings += *why == LOOSE && t->loose && done == 0 ? HALVINGS : 1;
     }
@@ -362,6 +378,7 @@ static double follow_loads_from_state(equilibrium *t, int load_steps, outcome *w
         (void)begin_equilibrium(t, 0, NULL);
         if (follow_loads(t, load_steps, &other) < 1) {
             memcpy(t->motion, motion, sizeof motion);
+            *why = other == SPENT ? SPENT : *why;
         } else {
             done = 1;
         }
@@ -429,6 +446,15 @@ static int refuse_equilibrium(const equilibrium *t, double done, outcome why) {
     }
     give_up_equilibrium(t->a);
     spari_assembly_name(t->a, name, sizeof name);
+    if (why == SPENT) {
+        SPARI_TRY(spari_budget_cancelled(t->a->session, name, spari_assembly_spent(t->a)));
+        return spari_fail(
+            t->a->session, SPAR_ERR_LIMIT,
+            "%s: the static solution has used its budget of %lld Newton iterations (option newton.budget, "
+            "for each of the load_steps) and found no equilibrium beyond %.6g of the loads; use more "
+            "load_steps or raise the budget; the state is unchanged",
+            name, (long long)t->most, done);
+    }
     return spari_fail(t->a->session, SPAR_ERR_NUMERIC,
                       "%s: no %sequilibrium found beyond %.6g of the loads%s; the state is unchanged", name,
                       why == UNSTABLE ? "stable " : "", done, text);
@@ -438,6 +464,7 @@ static int find_equilibrium_of(equilibrium *t, int load_steps, int onward) {
     spari_assembly *a = t->a;
     outcome why = FAILED;
     double done = 0;
+    t->most = load_steps * (int64_t)a->session->newton.budget;
     t->potential = !a->rotates && has_potential_loads(a, t->fluid);
     if (onward) {
         (void)begin_equilibrium(t, 1, NULL);

@@ -72,6 +72,10 @@ void spari_constraints_add_forces(const spari_assembly *a, spari_component *p);
 static inline spari_assembly spari_assembly_of_one(spari_component *p) {
     return (spari_assembly){.session = p->member->session, .here = 1, .components = 1, .component = p};
 }
+/* What the solver has used of the budget (base/budget.h). */
+static inline spari_spent *spari_assembly_spent(const spari_assembly *a) {
+    return &a->component[0].member->state.spent;
+}
 /* "member 'x'", or the members connected by a joint. */
 void spari_assembly_name(const void *assembly, char *text, int size);
 /* Motions and springs of joints whose nodes all have prescribed motion, at the end of a step dt. */

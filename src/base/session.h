@@ -25,6 +25,9 @@ typedef struct spari_ranks {
 typedef struct spari_callbacks {
     spar_log log;
     void *log_context;
+    spar_progress progress; /* told of Newton's iterations (budget.h); NULL: none */
+    void *progress_context;
+    int cancelled;           /* its answer that has cancelled the present solution; 0: none has */
     int muted;               /* a trial run is in progress, which tells the log nothing */
     const char *in_progress; /* callback in progress: the public call that runs the host's fluid solver, or its function
                                 before a step; or NULL */
@@ -41,6 +44,7 @@ typedef struct spari_newton_settings {
     double atol;
     double rtol;
     int max;
+    int budget; /* iterations of a member, or of connected members, in a step */
 } spari_newton_settings;
 
 /* Settings of the coupling. */
@@ -79,7 +83,7 @@ typedef struct spari_clock {
     int uneven[2]; /* whether an accepted step, and the current one, differ in length from the steps before or rotate
                       too far for generalised-alpha */
     int64_t step;  /* accepted steps */
-    int64_t begun; /* steps ever begun */
+    int64_t begun; /* steps and static solutions ever begun */
     int started;
 } spari_clock;
 

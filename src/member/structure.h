@@ -3,6 +3,7 @@
 #ifndef SPARI_STRUCTURE_H
 #define SPARI_STRUCTURE_H
 
+#include "../base/budget.h"
 #include "../base/session.h"
 #include "../base/thread_pool.h"
 #include "../math/resample.h"
@@ -47,6 +48,7 @@ typedef enum spari_frame_kind {
    convergence. */
 typedef struct spari_cuts {
     int64_t begun; /* session->clock.begun of the step */
+    int halved;    /* how many there are */
     uint32_t given_up[64];
 } spari_cuts;
 
@@ -112,6 +114,8 @@ typedef struct spari_member_state {
     double dissipated;      /* energy dissipated by damping up to t^n */
     double dissipated_step; /* energy dissipated by damping in this step */
     spari_cuts cuts;        /* of this step; for connected members, those of the first one */
+    spari_spent spent;      /* of its solver, likewise */
+    int halvings_told;      /* a warning of many halvings has been given */
 } spari_member_state;
 
 /* Measures of a member's motion, for the step error. */

@@ -1,6 +1,7 @@
 /* Creates and destroys a session, and returns its time. */
 #include "../coupling/coupling.h"
 #include "../exchange/session_private.h"
+#include "callbacks.h"
 #include "settings.h"
 #include "work_shares.h"
 
@@ -101,6 +102,14 @@ int spar_session_set_log(spar_session *session, spar_log log, void *context) {
     SPARI_REQUIRE(NULL, session, SPAR_ERR_ARGUMENT, "%s: the session is NULL; create it first", __func__);
     session->callbacks.log = log;
     session->callbacks.log_context = context;
+    return SPAR_OK;
+}
+
+int spar_session_set_progress(spar_session *session, spar_progress progress, void *context) {
+    SPARI_GUARD_ENVIRONMENT;
+    SPARI_TRY(spari_callback_refuse(session, __func__));
+    session->callbacks.progress = progress;
+    session->callbacks.progress_context = context;
     return SPAR_OK;
 }
 

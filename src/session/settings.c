@@ -61,6 +61,10 @@ static const spari_setting settings[] = {
     REAL(NEWTON, "newton", "atol", newton.atol, 0, DBL_MAX, not_negative, 1e-15, SPARI_AGREED),
     REAL(NEWTON, "newton", "rtol", newton.rtol, 0, DBL_MAX, not_negative, 1e-8, SPARI_AGREED | SPARI_VARIED),
     WHOLE(NEWTON, "newton", "max_iterations", newton.max, 1, INT32_MAX, one_or_more, 50, SPARI_AGREED),
+    /* A hundred times what a step of many coupling iterations takes, and eight times the most of a step in all tests
+       (12 879, tests/stability/random_coupling). */
+    OPTION_WHOLE("newton.budget", newton.budget, 1, 1000000000, "a whole number from 1 to 1000000000", 100000,
+                 SPARI_AGREED),
     WHOLE(PREDICTOR, "predictor", "order", coupling.predictor, 0, 2, "0, 1 or 2", 1, SPARI_AGREED | SPARI_VARIED),
     WHOLE(COUPLING, "coupling", "scheme", coupling.scheme, 0, SPARI_SCHEME_COUNT - 1, "a SPAR_COUPLING_*",
           SPAR_COUPLING_IQN_ILS, SPARI_AGREED | SPARI_OF_COUPLING | SPARI_VARIED),

@@ -193,6 +193,8 @@ static void discard_static(spar_session *s, const spar_member *only, double *sav
 
 static int find_member_equilibrium(spar_member *member, int load_steps) {
     spar_session *s = member->session;
+    s->clock.begun++;
+    spari_budget_begin(s);
     SPARI_TRY(s->clock.started ? SPAR_OK : spari_session_exchange_loads(s, NULL));
     for (spar_member *m = s->members; m && !s->clock.started; m = m->next) {
         if (is_with(member, m)) {
@@ -245,6 +247,8 @@ static int check_session_static(spar_session *s, const char *call, int load_step
 /* Allows fluids to push and pull as in a step. */
 static int begin_static(spar_session *s) {
     static const double last[2] = {1, 1};
+    s->clock.begun++;
+    spari_budget_begin(s);
     for (spar_member *m = s->members; m; m = m->next) {
         copy_loads(m, m->load.pushed, m->load.before);
         copy_loads(m, m->load.pushed, m->load.used);

@@ -211,6 +211,7 @@ int spar_step_solve(spar_session *session) {
     }
     s->state.rough = spari_coupling_is_rough(s);
     s->state.renew = spari_coupling_renews_tangents(s);
+    spari_budget_begin(s);
     status = spari_threads_solve(s);
     status = spari_session_share_motion(s, status);
     if (status != SPAR_OK) { /* t^n is unchanged; discards the failed iterate */
@@ -382,6 +383,9 @@ int spar_step_accept(spar_session *session) {
     memcpy(s->gravity_before, s->gravity, sizeof s->gravity_before);
     s->clock.dt_last[1] = s->clock.dt_last[0];
     s->clock.dt_last[0] = s->clock.dt;
+    for (spar_member *m = s->members; m; m = m->next) {
+        spari_member_tell(m);
+    }
     s->state.phase = SPARI_IDLE;
     return SPAR_OK;
 }

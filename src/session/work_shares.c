@@ -105,7 +105,8 @@ static int64_t list_units(const spar_session *s, spari_unit *unit) {
     return n;
 }
 
-/* With fewer units than threads the elements of each unit are distributed instead (spari_body_sweep). */
+/* With fewer units than threads the elements of each unit are distributed instead (spari_body_sweep); also for a host
+   that hears of each iteration, in its own thread. */
 static int solve_units(spar_session *s) {
     int ready = s->pool && s->own->listed == s->member_count; /* not in a step that came from a file */
     int64_t n = ready ? list_units(s, s->own->unit) : 0;
@@ -113,7 +114,7 @@ static int solve_units(spar_session *s) {
     for (spar_member *m = s->members; m; m = m->next) {
         status = is_unit(m) && is_prescribed(m) ? solve_next(s, m, NULL, status) : status;
     }
-    if (n < 2 || n < spari_thread_pool_threads(s->pool)) {
+    if (n < 2 || n < spari_thread_pool_threads(s->pool) || s->callbacks.progress) {
         return solve_in_turn(s, status);
     }
     spari_thread_pool_run(s->pool, n, solve_item, s);

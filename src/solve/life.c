@@ -175,7 +175,31 @@ void spari_member_accept(spar_member *m) {
     forget_begun(m);
     if (m->row->accept && spari_fidelity_is_here(m)) {
         m->row->accept(m);
+    }
+}
+
+/* So many halvings of a step are more than a jump of loads takes: dt does not resolve the motion. */
+enum { MANY_HALVINGS = 32 };
+
+static void tell_halvings(spar_member *m) {
+    const spari_cuts *cuts = &m->state.cuts;
+    if (cuts->halved < MANY_HALVINGS || cuts->begun != m->session->clock.begun || m->state.halvings_told ||
+        m->session->state.trial) {
+        return;
+    }
+    m->state.halvings_told = 1;
+    spari_warn(m->session,
+               "member '%s'%s: the step to t = %g was halved %d times, because Newton found no solution in longer "
+               "parts, or one that gains energy: dt does not resolve the motion; use a smaller dt, and look for loads "
+               "or prescribed motions that jump, a bent free member that rolls about its axis, and elements with too "
+               "few nodes",
+               m->name, m->assembly ? " and those connected to it" : "", m->session->clock.time, cuts->halved);
+}
+
+void spari_member_tell(spar_member *m) {
+    if (m->row->accept && spari_fidelity_is_here(m)) {
         spari_beam_check_locking(m);
+        tell_halvings(m);
     }
 }
 

@@ -33,6 +33,8 @@ void spari_member_commit_state(spar_member *member);
 /* A step begins, is accepted, or is rejected. */
 void spari_member_begin(spar_member *member);
 void spari_member_accept(spar_member *member);
+/* Warns of what the accepted step has shown, once; in the calling thread. */
+void spari_member_tell(spar_member *member);
 void spari_member_reject(spar_member *member);
 /* Consistent initial accelerations. begin_start: allocates the accelerations that the search begins with. again:
    returns to these, except for motions that the host gives of an external member. end_start: the accelerations found

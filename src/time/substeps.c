@@ -105,6 +105,7 @@ static int run_substep(const spari_stepper *how, void *self, const spari_scheme 
             again = c.rule != SPARI_ALPHA;
             tried = again ? 0 : alpha.h;
             cuts->given_up[node / 32] |= (uint32_t)1 << node % 32;
+            cuts->halved++;
             continue;
         }
         SPARI_TRY(status);

@@ -291,7 +291,8 @@ static int try_row_out(spar_session *s, const char *call, const spari_run *run, 
     }
     spari_trial_settings_free(&plain);
     spari_trial_settings_free(&left_out);
-    if (status == SPAR_ERR_NUMERIC || status == SPAR_ERR_USER || status == SPAR_ERR_STATE ||
+    int over_budget = status == SPAR_ERR_LIMIT && run->progress->stopped == SPAR_OK;
+    if (over_budget || status == SPAR_ERR_NUMERIC || status == SPAR_ERR_USER || status == SPAR_ERR_STATE ||
         status == SPAR_ERR_UNSUPPORTED) { /* the other rows can still be tried */
         char text[SPARI_MESSAGE_SIZE + 100];
         (void)snprintf(text, sizeof text, "%s: without %s the run fails: %s", call, rows[r].name, s->message);

@@ -84,8 +84,9 @@ void spari_plan_tell(const spari_advisor *d, const spari_tried *t) {
 
 /* Statuses that say that the settings are unsuitable, and nothing worse. */
 static int is_unsuitable(int status) {
-    return status == SPAR_ERR_NUMERIC || status == SPAR_ERR_USER || status == SPAR_ERR_STATE ||
-           status == SPAR_ERR_UNSUPPORTED || status == SPAR_ERR_ARGUMENT || status == SPAR_ERR_MAPPING;
+    return status == SPAR_ERR_NUMERIC || status == SPAR_ERR_LIMIT || status == SPAR_ERR_USER ||
+           status == SPAR_ERR_STATE || status == SPAR_ERR_UNSUPPORTED || status == SPAR_ERR_ARGUMENT ||
+           status == SPAR_ERR_MAPPING;
 }
 
 int spari_plan_try(spari_advisor *d, const spari_plan *p, int *index) {

@@ -132,6 +132,7 @@ program test_bindings
   call refused(spar_session_set_newton(none, 0.0_c_double, 0.0_c_double, 0_c_int), 'spar_session_set_newton')
   call refused(spar_session_get_newton(none), 'spar_session_get_newton')
   call refused(spar_member_get_iterations(none), 'spar_member_get_iterations')
+  call refused(spar_session_set_progress(none, c_null_funptr, none), 'spar_session_set_progress')
   call refused(spar_session_set_predictor(none, 0_c_int), 'spar_session_set_predictor')
   call refused(spar_session_get_predictor(none), 'spar_session_get_predictor')
   call refused(spar_session_set_relaxation(none, 0.0_c_double), 'spar_session_set_relaxation')

@@ -260,9 +260,17 @@ contains
     call check(index(session%message(), 'cancelled by the progress callback (9)') > 0, 'what has stopped it')
     call trial%set_progress(hear_nothing)
     call trial%report_effects()
+    ! of a session: at each iteration of Newton
+    heard = hearing(stops_at=1)
+    call session%set_progress(hear, listener)
+    call session%step(dt, stat=stat)
+    call check(stat == SPAR_ERR_USER .and. heard%calls == 1, 'a step is cancelled')
+    call check(index(session%message(), 'cancelled by the progress callback (9) after 0 Newton') > 0, 'what has cancelled it')
+    call session%set_progress(hear_nothing)
+    call session%set_progress()
     call trial%set_progress()
     call trial%report_effects()
-    call check(heard%calls == 2, 'nobody is told')
+    call check(heard%calls == 1, 'nobody is told')
 
     ! back where it was: g t^2 / 2 to the order of the spring
     call session%get_time(t)

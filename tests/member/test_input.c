@@ -260,7 +260,8 @@ static void test_steps(void **state) {
 /* What is set is read: the defaults of spar.h, and all that setters have been given, also options as text. */
 static void test_read_back(void **state) {
     (void)state;
-    static const char *const option[][3] = {{"coupling.unconverged", "error", "accept"},
+    static const char *const option[][3] = {{"newton.budget", "100000", "7"},
+                                            {"coupling.unconverged", "error", "accept"},
                                             {"coupling.unstable", "error", "accept"},
                                             {"coupling.patience", "3", "1000000"},
                                             {"coupling.norm", "motion", "loads"},

@@ -324,6 +324,38 @@ class Edges(unittest.TestCase):
                 trial.run(0)
             self.assertEqual(s.get_time()[1], 0)
 
+    def test_session_progress(self):
+        """Told of each iteration; an answer and a fault end the call, and the step is not made."""
+        told = []
+        with spar.Session() as s:
+            beam = s.beam_create('beam', 1, 4)
+            beam.set_axis([0, 1], [[0, 0, 0], [1, 0, 0]])
+            beam.set_sections([0], [numpy.diag([1e4, 1e4, 1e4, 100, 100, 100])], [numpy.diag([1, 1, 1, 0.02, 0.01, 0.01])])
+            beam.commit()
+            beam.set_load(3, spar.LOAD_DEAD, [0, 0, 30, 0, 0, 0])
+            s.set_progress(lambda done, expected: told.append((done, expected)))
+            gc.collect()
+            s.step(0.1)
+            self.assertEqual(told[0], (0, 100000))
+            self.assertEqual(len(told), beam.get_iterations()[0])
+            before = beam.get_motion()[0]
+            s.set_progress(lambda done, expected: 4 if done else 0)
+            with self.assertRaisesRegex(spar.UserError, r'cancelled by the progress callback \(4\) after 1 Newton'):
+                s.step(0.1)
+            self.assertTrue((beam.get_motion()[0] == before).all())
+
+            def broken(*_):
+                s.get_gravity()
+
+            s.set_progress(broken)
+            with self.assertRaisesRegex(spar.StateError, 'a progress and a __del__ must not call it'):
+                s.step(0.1)
+            s.set_progress(None)
+            s.set_option('newton.budget', '1')
+            with self.assertRaisesRegex(spar.LimitError, 'newton.budget'):
+                s.step(0.1)
+            self.assertTrue((beam.get_motion()[0] == before).all())
+
     def test_progress(self):
         """Told ahead of each run; an answer and a fault end the call."""
         told = []
@@ -697,7 +729,7 @@ class Hostile(unittest.TestCase):
             with self.assertRaisesRegex(spar.ArgumentError, 'this trial is closed'):
                 trial.run(0)
             s.set_log(lambda *_: s.get_gravity())
-            with self.assertRaisesRegex(spar.StateError, 'a log and a __del__ must not call it'):
+            with self.assertRaisesRegex(spar.StateError, 'a log, a progress and a __del__ must not call it'):
                 s.step(-1.0)
             s.set_log(None)
             s.step(0.1)

@@ -219,11 +219,14 @@ static void fluid_settings(scene *w, spar_fluid *f, int before_map) {
 
 /* The settings of the session are others than the defaults. */
 static void change_session(spar_session *s) {
-    static const char *const option[][2] = {
-        {"coupling.unconverged", "accept"}, {"coupling.unstable", "accept"},
-        {"coupling.patience", "7"},         {"coupling.filter", "0.00012345678901234"},
-        {"coupling.columns", "20"},         {"coupling.reuse", "4"},
-        {"coupling.motion_rtol", "1e-9"}};
+    static const char *const option[][2] = {{"newton.budget", "12345"},
+                                            {"coupling.unconverged", "accept"},
+                                            {"coupling.unstable", "accept"},
+                                            {"coupling.patience", "7"},
+                                            {"coupling.filter", "0.00012345678901234"},
+                                            {"coupling.columns", "20"},
+                                            {"coupling.reuse", "4"},
+                                            {"coupling.motion_rtol", "1e-9"}};
     OK(s, spar_session_set_gravity(s, (const double[]){0.1, 0.2, -9.81}));
     OK(s, spar_session_set_integrator(s, 0.8, 2));
     OK(s, spar_session_set_newton(s, 1e-14, 1e-11, 40));

@@ -210,6 +210,8 @@ static void work_is_bounded(void **state) {
     scene_diagonal(K, 0, 0, 0, 0, 1, 0);
     OK(s, spar_joint_set_spring(shaft, K, NULL, NULL));
     OK(s, spar_joint_set_load(shaft, (double[]){0, 0, 0, 0, turn, 0}));
+    REFUSED(s, SPAR_ERR_LIMIT, "budget of 100000 Newton iterations", spar_member_solve_static(wheel, 1));
+    OK(s, spar_session_set_option(s, "newton.budget", "1000000"));
     REFUSED(s, SPAR_ERR_NUMERIC, "of the loads; use more load_steps", spar_member_solve_static(wheel, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "100001 load steps; give 1 to 100000", spar_member_solve_static(wheel, 100001));
     REFUSED(s, SPAR_ERR_ARGUMENT, "0 load steps", spar_session_solve_static(s, 0, NULL, NULL, NULL));

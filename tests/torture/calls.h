@@ -97,6 +97,7 @@
     CALL(spar_session_set_newton) \
     CALL(spar_session_get_newton) \
     CALL(spar_member_get_iterations) \
+    CALL(spar_session_set_progress) \
     CALL(spar_session_set_predictor) \
     CALL(spar_session_get_predictor) \
     CALL(spar_session_set_relaxation) \

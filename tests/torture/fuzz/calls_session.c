@@ -232,13 +232,14 @@ void do_spar_session_set_threads(call *c) {
 }
 
 void do_spar_session_set_option(call *c) {
-    static const char *const keys[] = {
-        "coupling.unconverged", "coupling.columns", "coupling.reuse",    "coupling.filter",   "coupling.motion_atol",
-        "coupling.motion_rtol", "coupling.norm",    "coupling.patience", "coupling.estimate", "coupling.unstable"};
-    static const char *const values[][3] = {{"error", "accept", "accept"}, {"1", "3", "30"},       {"0", "1", "5"},
-                                            {"0", "1e-4", "0.5"},          {"0", "1e-12", "1e-3"}, {"0", "1e-6", "0.1"},
-                                            {"motion", "loads", "loads"},  {"1", "3", "1000000"},  {"off", "on", "on"},
-                                            {"error", "accept", "accept"}};
+    static const char *const keys[] = {"newton.budget",        "coupling.unconverged", "coupling.columns",
+                                       "coupling.reuse",       "coupling.filter",      "coupling.motion_atol",
+                                       "coupling.motion_rtol", "coupling.norm",        "coupling.patience",
+                                       "coupling.estimate",    "coupling.unstable"};
+    static const char *const values[][3] = {{"1", "40", "10000"}, {"error", "accept", "accept"}, {"1", "3", "30"},
+                                            {"0", "1", "5"},      {"0", "1e-4", "0.5"},          {"0", "1e-12", "1e-3"},
+                                            {"0", "1e-6", "0.1"}, {"motion", "loads", "loads"},  {"1", "3", "1000000"},
+                                            {"off", "on", "on"},  {"error", "accept", "accept"}};
     static const char *const strange[] = {"",   "nan",   "inf",    "-1", "1e999",  "1,5",  "0x10",  " 1",   "1 ",
                                           "%s", "10001", "1e-400", "-0", "accept", "keep", "1e300", "10000"};
     live_session *l = arg_session(c);
@@ -317,6 +318,13 @@ void do_spar_session_set_log(call *c) {
     if (c->status == SPAR_OK) {
         l->logs = on;
     }
+}
+
+void do_spar_session_set_progress(call *c) {
+    live_session *l = arg_session(c);
+    int on = chance(c, 70);
+    text(c, on ? ", progress" : ", NULL");
+    RUN(c, spar_session_set_progress(l->s, on ? fuzz_iterations : NULL, l));
 }
 
 /* ---- steps ---- */

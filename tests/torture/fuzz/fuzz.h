@@ -80,6 +80,7 @@ enum {
     CALL(spar_session_get_iterations, 60, FUZZ_PURE)                                                                   \
     CALL(spar_session_get_report, 60, FUZZ_PURE)                                                                       \
     CALL(spar_session_set_log, 40, FUZZ_CHANGES)                                                                       \
+    CALL(spar_session_set_progress, 20, FUZZ_CHANGES)                                                                  \
     CALL(spar_point_create, 25, FUZZ_CHANGES)                                                                          \
     CALL(spar_rigid_create, 25, FUZZ_CHANGES)                                                                          \
     CALL(spar_beam_create, 30, FUZZ_CHANGES)                                                                           \
@@ -456,6 +457,7 @@ int64_t fluid_room(const live_fluid *f, int which);
 
 enum { HOST_PLAIN, HOST_FAILS, HOST_CHAOS, HOST_NOTHING, HOST_MODES };
 host *arg_host(call *c, spar_fluid_solver *solve, spar_before_step *before);
+int fuzz_iterations(spar_session *session, double done, double expected, void *context);
 int fuzz_progress(spar_session *session, double done, double expected, void *context);
 void fuzz_log(const spar_session *session, int level, const char *message, void *context);
 

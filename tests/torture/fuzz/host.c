@@ -111,6 +111,15 @@ int fuzz_progress(spar_session *session, double done, double expected, void *con
     return done > 0 && (int64_t)(8 * done) % 40 == 7 ? 3 : 0;
 }
 
+/* Cancels what needs more than a dozen iterations. */
+int fuzz_iterations(spar_session *session, double done, double expected, void *context) {
+    const live_session *l = context;
+    if (session != l->s || !(done >= 0) || !(expected >= done) || !isfinite(expected)) {
+        fuzz_finding("callback", "progress was given %g of %g", done, expected);
+    }
+    return done > 12 ? -3 : 0;
+}
+
 void fuzz_log(const spar_session *session, int level, const char *message, void *context) {
     world *w = &fuzz_world;
     live_session *l = context;

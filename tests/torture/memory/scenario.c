@@ -256,19 +256,20 @@ static void go(host *h, int steps) {
     }
 }
 
+static int hear_progress(spar_session *session, double done, double expected, void *context) {
+    (void)session, (void)context;
+    return expected < done;
+}
+
 /* ---- acts ---- */
 
 static void settings(spar_session *s) {
     static const double g[3] = {0, 0, -2};
-    static const char *const option[][2] = {{"coupling.unconverged", "accept"},
-                                            {"coupling.unstable", "accept"},
-                                            {"coupling.patience", "100"},
-                                            {"coupling.norm", "motion"},
-                                            {"coupling.estimate", "on"},
-                                            {"coupling.columns", "10"},
-                                            {"coupling.reuse", "2"},
-                                            {"coupling.filter", "1e-5"},
-                                            {"coupling.motion_rtol", "1e-3"}};
+    static const char *const option[][2] = {{"newton.budget", "5000"},       {"coupling.unconverged", "accept"},
+                                            {"coupling.unstable", "accept"}, {"coupling.patience", "100"},
+                                            {"coupling.norm", "motion"},     {"coupling.estimate", "on"},
+                                            {"coupling.columns", "10"},      {"coupling.reuse", "2"},
+                                            {"coupling.filter", "1e-5"},     {"coupling.motion_rtol", "1e-3"}};
     CALL(spar_session_set_gravity, s, g);
     CALL(spar_session_set_integrator, s, 0.8, 1);
     CALL(spar_session_set_newton, s, 1e-10, 1e-9, 30);
@@ -380,6 +381,7 @@ static void act_step(void) {
     spar_session *whole, *s = h.session = begin_session();
     settings(s);
     CALL(spar_session_set_log, s, quiet, NULL);
+    CALL(spar_session_set_progress, s, hear_progress, NULL);
     spar_member *b = h.member[0] = begin_beam(s, "beam", 1, 6, 1);
     CALL(spar_member_set_root, b, SPAR_ROOT_DRIVEN);
     CALL(spar_member_set_effects, b, SPAR_EFFECT_WORK, 0);
@@ -765,11 +767,6 @@ static void describe_trial(host *h) {
         CALL(spar_fluid_map, h->fluid[k]);
         CALL(spar_member_set_load, b, 2, SPAR_LOAD_FOLLOWER, load);
     }
-}
-
-static int hear_progress(spar_session *session, double done, double expected, void *context) {
-    (void)session, (void)context;
-    return expected < done;
 }
 
 /* A trial of the host, with steps and callbacks. */

@@ -780,6 +780,7 @@ static const struct setting {
     {"max_iterations of spar_session_set_coupling", NULL, NULL, NULL},
     {"omega", NULL, NULL, NULL},
     {"drift of spar_session_set_tolerance", NULL, NULL, NULL},
+    {"newton.budget", "newton.budget", "1234", "100000"},
     {"coupling.unconverged", "coupling.unconverged", "accept", "error"},
     {"coupling.unstable", "coupling.unstable", "accept", "error"},
     {"coupling.patience", "coupling.patience", "9", "3"},
