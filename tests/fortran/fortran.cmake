@@ -45,6 +45,9 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CROSSCOMPILING AND NOT
   add_test(NAME fortran_reentrant COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/reentrant" "${CMAKE_Fortran_COMPILER}" "$<TARGET_FILE:spar>"
     "${PROJECT_BINARY_DIR}/tests/reentrant")
   spar_set_test(fortran_reentrant fortran 120)
+  add_test(NAME fortran_fuzz COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/fuzz" "${CMAKE_Fortran_COMPILER}" "$<TARGET_FILE:spar>"
+    "${PROJECT_BINARY_DIR}/tests/fortran_fuzz")
+  spar_set_test(fortran_fuzz fortran 120)
 endif()
 
 # One kind of real in each call.
