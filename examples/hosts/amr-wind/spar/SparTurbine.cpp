@@ -44,17 +44,14 @@ std::size_t distance(std::string_view a, std::string_view b)
     return row[b.size()];
 }
 
-// name: of an entry that nobody has read, with its prefix and, behind a blank, its value
-void refuse(const std::string& entry, const std::string& prefix)
+[[noreturn]] void refuse(const std::string& prefix, const std::string& key)
 {
-    const std::string name = entry.substr(0, entry.find(' '));
-    const std::string key = name.substr(prefix.size() + 1);
     const auto* nearest = *std::min_element(
         own_keys.begin(), own_keys.end(), [&](const char* a, const char* b) {
             return distance(key, a) < distance(key, b);
         });
     amrex::Abort(
-        "SparIface: nobody reads " + name +
+        "SparIface: nobody reads " + prefix + "." + key +
         "; of the turbine's keys the nearest is " + nearest);
 }
 
@@ -155,18 +152,22 @@ void SparTurbine::read_inputs(
     flow_restarts = !flow_file.empty();
 }
 
-// Of the turbine, of its type, and of all actuators together. Keys of a correction that is off are read by nobody.
+// Of the turbine, of its type, and of all actuators together. Nobody reads keys of a correction that is off, nor those of the
+// type that the turbine has itself.
 void SparTurbine::refuse_unread() const
 {
+    const amrex::ParmParse own("Actuator." + tlabel);
     for (const auto& prefix :
          {"Actuator." + tlabel, "Actuator." + type, std::string("Actuator")}) {
         for (const auto& entry : amrex::ParmParse::getUnusedInputs(prefix)) {
-            const std::string key = entry.substr(prefix.size() + 1);
-            const bool of_others =
-                key.find('.') < key.find(' ') ||
-                (!fllc && key.rfind("fllc_", 0) == 0);
-            if (!of_others) {
-                refuse(entry, prefix);
+            const std::string key =
+                entry.substr(prefix.size() + 1, entry.find(' ') - prefix.size() - 1);
+            const bool is_of_another = key.find('.') != std::string::npos;
+            const bool is_off = !fllc && key.rfind("fllc_", 0) == 0;
+            const bool is_replaced =
+                prefix == "Actuator." + type && own.contains(key.c_str());
+            if (!is_of_another && !is_off && !is_replaced) {
+                refuse(prefix, key);
             }
         }
     }

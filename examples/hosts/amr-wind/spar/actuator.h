@@ -70,10 +70,10 @@ double actuator_get_time(const actuator_machine *a);
    another step or time, or another turbine. */
 int actuator_save(actuator_machine *a, const char *path, int step, double time);
 int actuator_load(actuator_machine *a, const char *path, int step, double time);
-/* The turbine's figures, a line per call of write. Columns and units stand in the first line. Begin touches no file: the
-   first call of write opens it, so that a run that ends before has changed nothing. keep = 0: a new file with the figures
-   at begin as its first line; a file at that path is kept aside, as path.1, path.2, ... keep = 1: the lines of the file
-   at that path up to this time stay, and those after it go. */
+/* The turbine's figures, a line per call of write. Columns and units stand in the first line. Begin touches no file:
+   the first call of write opens it, so that a run that ends before has changed nothing. keep = 0: a new file with the
+   figures at begin as its first line; a file at that path is kept aside, as path.1, path.2, ... keep = 1: the lines of
+   the file at that path up to this time stay, and those after it go. */
 int actuator_begin_figures(actuator_machine *a, const char *path, int keep, int step, double time);
 int actuator_write_figures(actuator_machine *a, int step, double time);
 /* Figures by their column's name, e.g. "thrust_N". */

@@ -243,6 +243,7 @@ void check_refusals()
     fresh();
     set("Actuator.T2.pitch", "5"); // another turbine's
     set_turbine("fllc_type", "variable_chord"); // of a correction that is off
+    set("Actuator.TurbineSparLine.density", "1.2"); // which this turbine has itself
     refused("accepted");
     fresh();
     set("ICNS.source_terms", "GravityForcing");

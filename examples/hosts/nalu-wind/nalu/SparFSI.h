@@ -29,8 +29,8 @@ class SparFSI {
     void initialize(double curTime);
     //! Moves the mesh to where the structure is; outside a step only when a restart has been read
     void map_displacements(double curTime, bool updateCurCoor);
-    //! The structure goes to curTime under predicted loads, once a step: the driver of several codes asks in each of its
-    //! nonlinear iterations
+    //! The structure goes to curTime under predicted loads, once a step: the driver of several codes asks in each of
+    //! its nonlinear iterations
     void predict_struct_states(double curTime);
     void predict_struct_timestep(double curTime);
     void advance_struct_timestep(double curTime, double dT);
