@@ -1,6 +1,8 @@
 #include "actuator.h"
 #include "machine.h"
 #include <math.h>
+#include <spar/spar_coupling.h>
+#include <spar/spar_structure.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -308,14 +310,51 @@ static int iterate(actuator_machine *a, double dt) {
     return spar_step_accept(a->session);
 }
 
+/* ---- the balance of power ---- */
+
+/* What the air gives, the angle that the generator has turned through and the torque it brakes with, and what is stored
+   in motion, strain and weight. */
+typedef struct account {
+    double air, angle, torque, stored;
+} account;
+
+static int get_account(actuator_machine *a, account *out) {
+    turbine *t = &a->model;
+    spar_member *const members[] = {t->tower, t->nacelle, t->generator, t->hub, t->blade[0], t->blade[1], t->blade[2]};
+    double speed, twist, energy[SPAR_ENERGY_COUNT], audit[SPAR_AUDIT_COUNT];
+    *out = (account){.torque = turbine_gear * a->control.torque};
+    for (int b = 0; b < TURBINE_BLADES; b++) {
+        TRY(spar_fluid_get_audit(t->air[b], SPAR_AUDIT_COUNT, audit));
+        out->air += audit[SPAR_AUDIT_POWER];
+    }
+    for (size_t i = 0; i < sizeof members / sizeof *members; i++) {
+        TRY(spar_member_get_energy(members[i], SPAR_ENERGY_COUNT, energy));
+        for (int k = 0; k < SPAR_ENERGY_COUNT; k++) {
+            out->stored += energy[k];
+        }
+    }
+    return turbine_get_shaft(t, &out->angle, &speed, &twist);
+}
+
+/* J, of a step: what the air gave, less what the generator took and what is stored since. What is left has gone into
+   damping, or is the error of long steps. */
+static double unbalanced(const account *from, const account *to, double dt) {
+    return 0.5 * (from->air + to->air) * dt - 0.5 * (from->torque + to->torque) * (to->angle - from->angle) -
+           (to->stored - from->stored);
+}
+
 /* One step of spar; after a failure all is as it was. */
 static int try_step(actuator_machine *a, double dt) {
     const turbine_control before = a->control;
+    account from = {0}, to = {0};
     a->message[0] = '\0';
-    int status = steer(a, dt);
+    int status = a->options.whole ? get_account(a, &from) : SPAR_OK;
+    status = status ? status : steer(a, dt);
     status = status ? status : iterate(a, dt);
     if (status == SPAR_OK) {
         a->angle += a->speed * dt;
+        TRY(a->options.whole ? get_account(a, &to) : SPAR_OK);
+        a->unbalanced += unbalanced(&from, &to, dt);
         return SPAR_OK;
     }
     if (!a->message[0]) { /* before the reject has a message of its own */
@@ -333,6 +372,7 @@ int actuator_step(actuator_machine *a, double dt, const float *velocity) {
     a->velocity = velocity;
     a->warning[0] = '\0';
     a->parts = 0;
+    a->unbalanced = 0;
     memset(a->spread, 0, n * sizeof *a->spread);
     while (left > 0) {
         const int status = try_step(a, part == SHORTEST ? dt : dt * part / SHORTEST);
@@ -349,6 +389,7 @@ int actuator_step(actuator_machine *a, double dt, const float *velocity) {
             return status;
         }
     }
+    a->unbalanced /= dt;
     if (a->parts > 1) {
         snprintf(a->warning, sizeof a->warning, "up to t = %g s a step of %g s was taken in %d parts",
                  actuator_get_time(a), dt, a->parts);

@@ -20,6 +20,7 @@ enum {
     TOWER_BASE = TOWER_TOP + 2, /* fore, side */
     ITERATIONS = TOWER_BASE + 2,
     PARTS,
+    UNBALANCED,
     FIGURES
 };
 
@@ -32,7 +33,8 @@ static const char *const columns[FIGURES] = {
     "tip2_flap_m",        "tip2_edge_m",        "tip3_flap_m",       "tip3_edge_m",
     "root1_flap_Nm",      "root1_edge_Nm",      "root2_flap_Nm",     "root2_edge_Nm",
     "root3_flap_Nm",      "root3_edge_Nm",      "tower_top_fore_m",  "tower_top_side_m",
-    "tower_base_fore_Nm", "tower_base_side_Nm", "iterations",        "parts"};
+    "tower_base_fore_Nm", "tower_base_side_Nm", "iterations",        "parts",
+    "unbalanced_power_W"};
 
 /* v in the axes that q turns to. */
 static void turn_back(const double q[4], const double v[3], double out[3]) {
@@ -119,6 +121,7 @@ static int get_figures(actuator_machine *a, double row[FIGURES]) {
     }
     row[ITERATIONS] = a->iterations;
     row[PARTS] = a->parts;
+    row[UNBALANCED] = a->options.whole ? a->unbalanced : NAN;
     return get_tower(a, row + TOWER_TOP, row + TOWER_BASE);
 }
 

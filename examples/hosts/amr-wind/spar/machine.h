@@ -28,6 +28,7 @@ struct actuator_machine {
     double *motion, *reference;        /* [nodes][7], [nodes][3] of a member */
     spar_fluid *point[TURBINE_BLADES]; /* the sections once more, for AMR-Wind's arrays by component */
     int iterations, parts;             /* of the last step */
+    double unbalanced;                 /* W, mean of the last step */
     FILE *figures;                     /* NULL before the first step */
     char figures_path[1024], first_line[1024];
     int figures_keep;
