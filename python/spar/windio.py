@@ -219,15 +219,16 @@ def read(path, stations=None):
                       hub_radius=hub.number('diameter', low=0) / 2, cone=side * hub.number('cone_angle', 0.0, -most, most) * angle,
                       tilt=side * nose.number('uptilt', 0.0, -most, most) * angle, overhang=side * nose.number('overhang', 0.0, 0),
                       shaft_height=nose.number('distance_tt_hub', 0.0), rated_power=assembly.number('rated_power', 0.0, 0))
-    if 'airfoils' in data:
-        machine.sections = read_sections(data, blade, stations)
-    machine.air_density = data.maybe('environment').number('air_density', 1.225, 1e-6)
+    air = data.maybe('environment')
+    machine.air_density = air.number('air_density', 1.225, 1e-6)
     if 'tower' in parts:
         machine.tower, machine.tower_base = read_tower(data)
     _bodies(machine, parts, old)
     _control(machine, data.maybe('control'), old)
+    if 'airfoils' in data:
+        machine.sections = read_sections(data, blade, stations, machine, air.number('air_dyn_viscosity', 1.81e-5, 1e-9) / machine.air_density)
     _compare(machine, data)
-    machine.left_out = _left_out(data)
+    machine.left_out = _left_out(data, machine)
     tell(data.path, machine.left_out)
     return machine
 
@@ -262,17 +263,19 @@ def _compare(machine, data):
                           f'scales the axis to the former. Correct one of them', stacklevel=3)
 
 
-def _left_out(data):
+def _left_out(data, machine):
     """Names what the file has and spar does not take."""
     names = []
     for where, taken in _TAKEN.items():
         part = data.maybe(where) if where else data
         names += [f'{part.name}.{key}'.lstrip('.') + (' (the tower stands on a rigid base)' if key in _FOUNDATIONS else '')
                   for key in part.data if key not in taken]
-    several = [foil.data.get('name') for foil in data.parts('airfoils') if len(foil.data.get('polars') or []) > 1 or
-               len((foil.parts('polars') or [foil])[0].data.get('re_sets') or []) > 1]
-    if several:
-        names.append(f'polars of airfoils beyond their first ({", ".join(str(name) for name in several)})')
+    several = [len(_sets(foil)[0]) for foil in data.parts('airfoils')]
+    if max(several, default=1) > 1:
+        names.append(f'Reynolds numbers of {sum(n > 1 for n in several)} airfoils but those at the rated speed' if machine.rated_speed else
+                     f'polars of {sum(n > 1 for n in several)} airfoils beyond their first (without a rated speed their Reynolds numbers are not known)')
+    names += [f'configuration {one.data.get("configuration")} of airfoil {foil.data.get("name")}' for foil in data.parts('airfoils')
+              for one in _sets(foil)[2]]
     return names
 
 
@@ -489,8 +492,10 @@ def _bodies(machine, parts, old):
 
 # ---- airfoils ----
 
-def read_sections(source, blade, stations=None):
-    """Blade elements: chord, twist, aerodynamic centre and polar of each section."""
+def read_sections(source, blade, stations=None, machine=None, viscosity=1.48e-5):
+    """Blade elements: chord, twist, aerodynamic centre and polar of each section. Of polars for several Reynolds numbers those at the
+    rated speed of the machine are taken, without a machine the first ones.
+    viscosity: m^2/s, kinematic"""
     data = _open(source)
     part = data.part('components', 'blade')
     old = 'outer_shape_bem' in part
@@ -525,8 +530,11 @@ def read_sections(source, blade, stations=None):
     if not known:
         shape.fail('airfoils', 'names none')
     centre = numpy.interp(thickness, [t for t, _ in known], [foil.number('aerodynamic_center', low=-1, high=1) for _, foil in known])
-    polars = {foil.data['name']: _polar(foil) for _, foil in known}
-    return Sections(stations, chord, twist, numpy.column_stack([side, centre * chord - ahead]), [_blend(known, polars, t) for t in thickness])
+    polars = {foil.data['name']: _polars(foil) for _, foil in known}
+    speed = (machine.hub_radius + stations * blade.length()) * machine.rated_speed if machine else 0 * stations
+    return Sections(stations, chord, twist, numpy.column_stack([side, centre * chord - ahead]),
+                    [_blend(known, {name: _at_reynolds(sets, re) for name, sets in polars.items()}, t)
+                     for t, re in zip(thickness, speed * chord / viscosity)])
 
 
 def _blend(known, polars, thickness):
@@ -535,17 +543,47 @@ def _blend(known, polars, thickness):
     i = int(numpy.clip(numpy.searchsorted(all_t, thickness), 1, len(known) - 1)) if len(known) > 1 else 0
     low, high = known[max(i - 1, 0)], known[i]
     part = 0.0 if high[0] == low[0] else float(numpy.clip((thickness - low[0]) / (high[0] - low[0]), 0, 1))
-    first, second = polars[low[1].data['name']], polars[high[1].data['name']]
+    return _mean(polars[low[1].data['name']], polars[high[1].data['name']], part)
+
+
+def _sets(foil):
+    """The sets of an airfoil, one for each Reynolds number, in rad per unit of their angles, and other configurations, which are not read."""
+    polars = foil.parts('polars')
+    if not polars:
+        foil.fail('polars', 'are missing')
+    if 're_sets' in polars[0]:
+        return polars[0].parts('re_sets'), _DEGREE, polars[1:]
+    return polars, 1.0, []
+
+
+def _polars(foil):
+    """Reynolds number and polar of each set of an airfoil, by Reynolds number; the first one if not all have one."""
+    sets, scale, _ = _sets(foil)
+    numbers = [one.number('re', 0.0, 0) for one in sets]
+    if len(sets) > 1 and (min(numbers) <= 0 or len(set(numbers)) < len(numbers)):
+        sets = sets[:1]
+    return sorted(((re, _polar(one, scale)) for re, one in zip(numbers, sets)), key=lambda one: one[0]) if min(numbers) > 0 else \
+        [(0.0, _polar(sets[0], scale))]
+
+
+def _at_reynolds(sets, reynolds):
+    """The polar at a Reynolds number, linear in its logarithm, beyond the ends the nearest; 0: the first one."""
+    numbers = [re for re, _ in sets]
+    if len(sets) == 1 or reynolds <= 0:
+        return sets[0][1]
+    i = int(numpy.clip(numpy.searchsorted(numbers, reynolds), 1, len(sets) - 1))
+    return _mean(sets[i - 1][1], sets[i][1], float(numpy.clip(numpy.log(reynolds / numbers[i - 1]) / numpy.log(numbers[i] / numbers[i - 1]), 0, 1)))
+
+
+def _mean(first, second, part):
+    """A polar between two."""
     alpha = numpy.unique(numpy.round(numpy.concatenate([first[0], second[0]]), 9))
     return [alpha, *((1 - part) * numpy.interp(alpha, first[0], a) + part * numpy.interp(alpha, second[0], b)
                      for a, b in zip(first[1:], second[1:]))]
 
 
-def _polar(foil):
-    """alpha (rad), cl, cd, cm of the first set of an airfoil, periodic."""
-    one, scale = (foil.parts('polars') or [foil])[0], 1.0
-    if 're_sets' in one:
-        one, scale = one.parts('re_sets')[0], _DEGREE
+def _polar(one, scale):
+    """alpha (rad), cl, cd, cm of a set, periodic."""
     curves = []
     for k in 'ldm':
         curve = one.part(f'c_{k}' if f'c_{k}' in one else f'c{k}')

@@ -305,6 +305,26 @@ class Told(unittest.TestCase):
         copy('aerodyn.dat', ('"default"   AirDens', '1.06   AirDens'))
         self.assertEqual(fst().air_density, 1.06)
 
+    def test_reynolds(self):
+        """Polars for two Reynolds numbers, the second with twice the lift: linear in the logarithm at the rated speed, and told."""
+        copy()
+        want = wind2()
+        with open(path('windio2.yaml'), encoding='utf-8') as file:
+            text = file.read()
+        one = text[text.index('          - re: 1.0E6'):text.index('  - name: thick')]
+        cl = re.search(r'cl: {grid: .*?, values: \[(.*?)\]', one).group(1)
+        other = one.replace('re: 1.0E6', 're: 1.0E8').replace(cl, ', '.join(f'{2 * float(x)!r}' for x in cl.split(', ')))
+        with open(path('windio2.yaml'), 'w', encoding='utf-8') as file:
+            file.write(text.replace(one, one + other))
+        found, machine = told(wind2)
+        self.assertRegex(' '.join(found), 'Reynolds numbers of 1 airfoils but those at the rated speed')
+        s, last = machine.sections, want.sections.polars[-1]
+        reynolds = (1.5 + s.eta[-1] * 40) * 16 * numpy.pi / 30 * s.chord[-1] / (1.81e-5 / 1.2)
+        thin = (0.4 - (0.4 - 0.2 * s.eta[-1])) / 0.2  # part of the thin airfoil
+        more = numpy.interp(0.7, last[0], s.polars[-1][1]) - numpy.interp(0.7, last[0], last[1])
+        alone = numpy.interp(0.7, numpy.radians(numpy.linspace(-180, 180, 37)), numpy.sin(2 * numpy.radians(numpy.linspace(-180, 180, 37))))
+        self.assertAlmostEqual(more, thin * alone * numpy.log10(reynolds / 1e6) / 2, delta=1e-8)
+
     def test_columns(self):
         """ElastoDyn's blade with the pitch axis that releases before 5 have: the same."""
         copy()
