@@ -29,7 +29,8 @@ typedef struct blade {
     double *mass;
     int *line; /* [stations] */
     double mu[6];
-    char *file; /* name of the blade file in the primary file */
+    const char *primary; /* path of the primary file */
+    char *file;          /* name of the blade file in it */
 } blade;
 
 /* ---- the files ---- */
@@ -207,7 +208,7 @@ static int check_sections(const spari_reader *r, const blade *b) {
    (spar's axes), twist in radians, eta by arc length. */
 typedef struct axis {
     int64_t n;
-    double *eta, *xyz, *twist;
+    double *eta, *xyz, *twist, length;
 } axis;
 
 enum { AXIS_POINTS = 400, FINE = 16 };
@@ -271,6 +272,7 @@ static int make_axis(const blade *b, axis *a) {
         }
     }
     free(work);
+    a->length = bad ? 0 : a->eta[n - 1];
     if (bad) {
         return 1;
     }
@@ -296,6 +298,11 @@ static int describe_blade(spar_member *m, const spari_reader *r, blade *b) {
     SPARI_TRY(check_sections(r, b));
     spari_beam *fresh = spari_zalloc(1, sizeof *fresh), *old = m->beam;
     int status = fresh && make_axis(b, &a) == 0 ? SPAR_OK : spari_read_no_memory(r);
+    if (status == SPAR_OK && !isfinite(a.length)) {
+        status = spari_fail(r->session, SPAR_ERR_ARGUMENT,
+                            "%s: '%s': %s: the line through the key points has no finite length; give positions in m",
+                            r->call, r->subject, b->primary);
+    }
     if (status == SPAR_OK) {
         fresh->rule = old->rule, fresh->points = old->points;
         m->beam = fresh;
@@ -314,7 +321,7 @@ int spar_beam_read_beamdyn(spar_member *beam, const char *primary_path, const ch
     SPARI_TRY(spari_need_beam(beam, __func__));
     SPARI_REQUIRE(beam->session, primary_path, SPAR_ERR_ARGUMENT, "%s: '%s': primary_path is NULL", __func__,
                   beam->name);
-    blade b = {0};
+    blade b = {.primary = primary_path};
     spari_reader *r = spari_zalloc(1, sizeof *r);
     SPARI_REQUIRE(beam->session, r, SPAR_ERR_MEMORY, "%s: no memory for '%s'", __func__, beam->name);
     r->fail = spari_fail;

@@ -98,6 +98,7 @@ static void test_errors(void **state) {
         {1, "3   kp_total", "4   kp_total", {"line 11", "kp_total"}, SPAR_ERR_IO},
         {1, "1   member_total", "1.5   member_total", {"line 9", "member_total"}, SPAR_ERR_IO},
         {1, "   -29.2893d0", NULL, {"ends at line 1", "key point"}, SPAR_ERR_IO},
+        {1, "-7.61205 ", "-1e300 ", {"finite length", "key points"}, SPAR_ERR_ARGUMENT},
         {1, "BldFile", "NoFile", {"BldFile", "missing"}, SPAR_ERR_IO},
         {0, "0   damp_type", "3   damp_type", {"line 5", "damp_type"}, SPAR_ERR_UNSUPPORTED},
         {0, "0   damp_type", "2   damp_type", {"ends at line 39", "n_modes"}, SPAR_ERR_IO},
