@@ -17,12 +17,14 @@ from ._text import ModelError, Text, leading_numbers, number_of
 from .turbine import Beam, Sections, Turbine, body_mass, read_by, tell, tube
 
 _STEEL = (210e9, 7850.0)  # Pa, kg/m^3: of towers, whose files have bending stiffness and mass alone
-# What spar does not take, by key: its values, or 0 for all numbers but 0
+# What spar does not take, by key, where its value is neither 0 nor False
 _MODULES = {'CompInflow': 'InflowWind', 'CompServo': 'ServoDyn', 'CompSeaSt': 'SeaState', 'CompHydro': 'HydroDyn',
             'CompSub': {1: 'SubDyn', 2: 'ExtPtfm'}, 'CompMooring': {1: 'MAP++', 2: 'FEAMooring', 3: 'MoorDyn', 4: 'OrcaFlex'},
             'CompIce': {1: 'IceFloe', 2: 'IceDyn'}, 'CompSoil': 'SoilDyn'}
 _PARTS = {'PtfmMass': 'mass of the platform', 'PtfmRIner': 'inertia of the platform', 'TeetMod': 'teeter', 'UndSling': 'undersling',
-          'Furling': 'furling', 'TipMass(1)': 'tip brakes', 'NacCMyn': None}
+          'Furling': 'furling', 'TipMass(1)': 'tip brakes'}
+_AIR = {'TwrPotent': 'flow around the tower', 'TwrShadow': 'shadow of the tower', 'TwrAero': 'loads on the tower', 'CavitCheck': 'cavitation',
+        'Buoyancy': 'buoyancy', 'NacelleDrag': 'drag of the nacelle', 'CompAA': 'noise', 'TFinAero': 'tail fin'}
 
 
 class File(Text):
@@ -186,6 +188,14 @@ def _nacelle(file):
     return body_mass(mass, centre, numpy.diag([level] * 3)) + body_mass(file.number('YawBrMass', otherwise=0.0, low=0))
 
 
+def _on(file, names):
+    """Names what is on in a file."""
+    for key, text in names.items():
+        found = file.find(key)
+        if found and number_of(found[1]) != 0 and found[1].lower() not in ('false', '"default"', 'default'):
+            yield f'{text} ({key} {found[1]})'
+
+
 def _alike(file, blades):
     """Names what differs from blade to blade, of which the first is taken."""
     for stem in ('PreCone', 'BldFile'):
@@ -215,15 +225,13 @@ def read_elastodyn(path, blade=None, hanging=False):
         blade = read_elastodyn_blade(file.file('BldFile(1)', 'BldFile1'), tip - hub_radius)
     nacelle, iner = _nacelle(file), file.number('HubIner', low=0)
     hub = body_mass(file.number('HubMass', low=0), [file.number('HubCM'), 0, 0], numpy.diag([iner] * 3))
-    left_out = [f'{text} ({key})' for key, text in _PARTS.items() if text and file.find(key) and number_of(file.text(key)) != 0 and
-                file.text(key).lower() != 'false']
     return Turbine(name=os.path.basename(file.path), blade=blade, blades=blades, hub_radius=hub_radius,
                    cone=-file.number('PreCone(1)', low=-90, high=90) * degrees, tilt=tilt, overhang=over * numpy.cos(tilt),
                    shaft_height=file.number('Twr2Shft') + over * numpy.sin(tilt), hub=hub, nacelle=nacelle,
                    generator_inertia=file.number('GenIner', low=0) * file.number('GBRatio', otherwise=1.0) ** 2,
                    drivetrain=(file.number('DTTorSpr', low=0), file.number('DTTorDmp', low=0)),
                    tower=read_elastodyn_tower(file.file('TwrFile'), abs(top - base)), tower_base=base, hanging=hanging,
-                   left_out=[*left_out, *_alike(file, blades), *blade.left_out])
+                   left_out=[*_on(file, _PARTS), *_alike(file, blades), *blade.left_out])
 
 
 def read_aerodyn(path, blade, blade_path=None, stations=None):
@@ -281,6 +289,7 @@ def read(path, beamdyn=None):
     if file.number('CompAero', otherwise=0, whole=True):
         aero = File(file.file('AeroFile'))
         machine.sections = read_aerodyn(aero.path, machine.blade)
+        machine.left_out += _on(aero, _AIR)
     machine.air_density = _density(file, aero)
     for key, names in _MODULES.items():
         kind = int(file.number(key, otherwise=0, whole=True))

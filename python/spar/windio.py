@@ -510,7 +510,6 @@ def read_sections(source, blade, stations=None, machine=None, viscosity=1.48e-5)
         ahead = shape.at('pitch_axis', at) * chord
         places = shape.part('airfoil_position')
         used = places.get('labels')
-        rthick = places
     else:
         ahead = shape.at('section_offset_y', at)
         used = [one.get('name') for one in shape.parts('airfoils')]

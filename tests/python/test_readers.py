@@ -254,6 +254,7 @@ class Told(unittest.TestCase):
         for name, change, call, said in (
                 ('turbine.fst', ('0   CompSub', '1   CompSub'), fst, r'not taken: SubDyn \(CompSub 1\)'),
                 ('turbine.fst', ('0   CompHydro', '1   CompHydro'), fst, r'HydroDyn \(CompHydro 1\)'),
+                ('aerodyn.dat', ('2   NumAFfiles', '1   TwrShadow - s\n2   NumAFfiles'), fst, r'shadow of the tower \(TwrShadow 1\)'),
                 ('elastodyn.dat', ('-2.5   PreCone(2)', '-3.5   PreCone(2)'), fst, r'PreCone\(2\) -3.5'),
                 ('beamdyn.dat', ('"beamdyn_blade.dat"', 'True UsePitchAct - actuator\n"beamdyn_blade.dat"'), beamdyn, 'pitch actuator'),
                 ('windio2.yaml', ('  tower:', '  monopile: {x: 1}\n  tower:'), wind2, 'components.monopile'),
