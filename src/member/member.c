@@ -28,7 +28,7 @@ const spari_nodal spari_nodal_table[SPARI_NODAL_COUNT] = {
 
 double spari_member_length(const spar_member *m) {
     double length = m->body ? m->body->length : 0;
-    for (int64_t i = 1; i < m->nodes && !m->body; i++) {
+    for (int64_t i = 1; i < m->nodes && !m->body && m->xr; i++) { /* not of a beam that lacks its line */
         double d[3];
         for (int k = 0; k < 3; k++) {
             d[k] = m->xr[3 * i + k] - m->xr[3 * (i - 1) + k];

@@ -85,7 +85,7 @@ static void test_session_settings(void **state) {
     REFUSED(s, SPAR_ERR_ARGUMENT, "scheme", spar_session_set_coupling(s, 9, 0, 0, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "atol is nan", spar_session_set_coupling(s, 1, NAN, 0, 1));
     REFUSED(s, SPAR_ERR_ARGUMENT, "omega", spar_session_set_relaxation(s, 0));
-    REFUSED(s, SPAR_ERR_ARGUMENT, "no option 'colour'; give one of coupling.",
+    REFUSED(s, SPAR_ERR_ARGUMENT, "no option 'colour'; give one of newton.budget, coupling.",
             spar_session_set_option(s, "colour", "red"));
     REFUSED(s, SPAR_ERR_ARGUMENT, "does not accept", spar_session_set_option(s, "coupling.norm", "red"));
     REFUSED(s, SPAR_ERR_ARGUMENT, "NULL", spar_session_set_option(s, NULL, "red"));
