@@ -31,7 +31,8 @@ spari_accelerator *spari_accelerator_create(int64_t n, int period, int split,
              (a->y = spari_zalloc(2 * m * n, sizeof *a->y)) && (a->b = spari_zalloc(2 * k * n, sizeof *a->b)) &&
              (a->axes = spari_zalloc(2 * k * (n / 6 * 4), sizeof *a->axes)) &&
              (a->stretch = spari_zalloc(nk, sizeof *a->stretch)) && (a->lead = spari_zalloc(nk, sizeof *a->lead)) &&
-             (a->last = spari_zalloc(nk, sizeof *a->last)) && (a->basis = spari_zalloc(m * n, sizeof *a->basis)) &&
+             (a->last = spari_zalloc(nk, sizeof *a->last)) && (a->base = spari_zalloc(2 * nk, sizeof *a->base)) &&
+             (a->basis = spari_zalloc(m * n, sizeof *a->basis)) &&
              (a->loads = spari_zalloc((k + 1) * nk, sizeof *a->loads)) &&
              (a->images = spari_zalloc((k + 1) * nk + 1, sizeof *a->images)) &&
              (a->matrix = spari_zalloc(m * m, sizeof *a->matrix)) && (a->alpha = spari_zalloc(m, sizeof *a->alpha)) &&
@@ -57,7 +58,7 @@ void spari_accelerator_free(spari_accelerator **accelerator) {
         return;
     }
     SPARI_FREE(a->x, a->g, a->change, a->response, a->column, a->p, a->y, a->b, a->axes, a->stretch, a->lead, a->last,
-               a->basis, a->loads, a->images, a->matrix, a->alpha, a->slots, a->combinations, a->left);
+               a->base, a->basis, a->loads, a->images, a->matrix, a->alpha, a->slots, a->combinations, a->left);
     free(a);
     *accelerator = NULL;
 }
@@ -280,7 +281,7 @@ int spari_accelerator_next(spari_accelerator *a, const double *x, const double *
     memcpy(a->x, x, (size_t)a->n * sizeof *x);
     memcpy(a->g, g, (size_t)a->n * sizeof *g);
     if (a->imaged && a->scheme->columns) {
-        return spari_fluid_secants_next(a, a->x, a->g, images, next);
+        return spari_fluid_secants_next(a, images, next);
     }
     compute_next(a, a->x, a->g, next);
     return SPAR_OK;

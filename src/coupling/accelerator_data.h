@@ -91,6 +91,7 @@ struct spari_accelerator {
     double *stretch;      /* imaged: [n] weights of motions in sums of squares */
     double *lead, *last;  /* [n] imaged: the change of g before the next one; g at the end of the step before */
     int led, ended;       /* whether they are known */
+    double *base;         /* imaged: [2][n] loads used, and returned, from which the last correction went on */
     double turned;        /* imaged: largest rotation by the last correction, rad */
     double cut, before;   /* imaged: the last correction was limited to this part of it (0: not limited), and the size
                              of its residual in motion */
@@ -159,9 +160,8 @@ int spari_fluid_secants_learn(spari_accelerator *a, const double *dx, const spar
 void spari_fluid_secants_end(spari_accelerator *a, const spari_images *images);
 /* The step is accepted: keeps the columns in the axes, and as functions of the quantity, in which they hold better. */
 void spari_fluid_secants_accept(spari_accelerator *a);
-/* Next loads. Returns the status of images->of. */
-int spari_fluid_secants_next(spari_accelerator *a, const double *x, const double *g, const spari_images *images,
-                             double *next);
+/* Next loads, from a->x and a->g. Returns the status of images->of. */
+int spari_fluid_secants_next(spari_accelerator *a, const spari_images *images, double *next);
 
 /* Fraction of a change of the fluid's loads that recurs in the next; 0: none, or unknown. */
 static inline double spari_rho_of(const spari_accelerator *a) {

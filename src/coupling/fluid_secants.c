@@ -17,13 +17,14 @@
    FIRST_REACH, rad: no correction turns a section by more, until GAIN. It decides how far a linear model of the fluid
      is believed that has not been tried.
    LEAST_REACH, rad: it is not reduced below. Smaller rotations leave a structure linear, and the cause is another.
+   GROWN: an iterate whose residual is larger by this factor than that of the one before it is not gone on from.
    GAIN: a limited correction that reduced the residual as predicted makes room for one that is larger by this factor.
    STALE: a reused tangent whose prediction S dx of a motion is off by more is formed anew in each solution. The loads
      of a heavy fluid are off by the same part after each correction.
    OFF: beyond, S is not the response over the step at all. Substeps differ by 1.5 and more, reused tangents by less
      than 0.3. */
 static const double FADE_SECANTS = 0.95, MOST_RHO = 0.95, LEAST_RHO = 1e-3, FIRST_REACH = 0.03, LEAST_REACH = 1e-3,
-                    GAIN = 10, STALE = 0.03, OFF = 0.5;
+                    GROWN = 10, GAIN = 10, STALE = 0.03, OFF = 0.5;
 
 /* Rotates forces and moments, or displacements and rotations, of each node by its quaternion, or back. */
 static void rotate(const double *axes, int back, int64_t n, double *v) {
@@ -383,9 +384,10 @@ static int minimise(spari_accelerator *a, int rank, double *s) {
 
 /* ---- correction ---- */
 
-/* The part of a correction that is applied. size: of the residual in motion, before it. The reach of one step serves
-   the next, until a correction does not reduce the residual. Then it is a quarter of that correction. */
-static double limit(spari_accelerator *a, double rotation, double size) {
+/* The part of a correction that is applied. size: of the residual in motion, before it; base: of that from which the
+   correction goes on. The reach of one step serves the next, until a correction does not reduce the residual. Then it
+   is a quarter of that correction. */
+static double limit(spari_accelerator *a, double rotation, double size, double base) {
     double *reach = &a->memory.reach, wanted = a->cut > 0 ? 1 - 0.5 * a->cut : 1;
     if (a->iteration == 1) {
         *reach = fmax(*reach, FIRST_REACH);
@@ -396,25 +398,50 @@ static double limit(spari_accelerator *a, double rotation, double size) {
     }
     a->cut = rotation > *reach ? *reach / rotation : 0;
     a->turned = fmin(rotation, *reach);
-    a->before = size;
+    a->before = base;
     return a->cut > 0 ? a->cut : 1;
 }
 
-int spari_fluid_secants_next(spari_accelerator *a, const double *x, const double *g, const spari_images *images,
-                             double *next) {
-    int64_t n = a->n;
+/* s and motion := of the residual next [n], whose image is `image`. Returns the size of the motion. */
+static double weigh(const spari_accelerator *a, const double *image, double *s, double *motion) {
+    for (int64_t i = 0; i < a->n; i++) {
+        motion[i] = image[i];
+        s[i] = a->stretch[i] * motion[i];
+    }
+    return sqrt(spari_sum_products(s, s, a->n));
+}
+
+/* The loads from which the correction goes on: those of this iteration, or, if the residual has grown so far that a
+   linear model of it says nothing, those of the one before. The secants have both. *size := of their residual. */
+static int choose_base(spari_accelerator *a, const spari_images *images, double *next, double *image, double *size) {
+    const int64_t n = a->n;
+    if (a->iteration == 1 || spari_rho_of(a) > 0 || *size <= GROWN * a->before) {
+        memcpy(a->base, a->x, (size_t)n * sizeof *a->x);
+        memcpy(a->base + n, a->g, (size_t)n * sizeof *a->g);
+        return SPAR_OK;
+    }
+    for (int64_t i = 0; i < n; i++) {
+        next[i] = a->base[n + i] - a->base[i];
+    }
+    SPARI_TRY(images->of(images->context, 1, next, image));
+    *size = weigh(a, image, a->response, a->response + n);
+    return SPAR_OK;
+}
+
+int spari_fluid_secants_next(spari_accelerator *a, const spari_images *images, double *next) {
+    const int64_t n = a->n;
     double rho = a->led ? spari_rho_of(a) : 0;
     int rank = span(a, a->fixed ? NULL : images->axes);
-    double *lead = a->loads + rank * n, *s = a->response, *motion = a->response + n;
+    double *lead = a->loads + rank * n, *image = a->images + rank * n, *s = a->response, *motion = a->response + n;
     memset(lead, 0, (size_t)n * sizeof *lead);
     spari_axpy(rho, a->lead, lead, n);
     SPARI_TRY(images->of(images->context, rank + 1, a->loads, a->images));
     for (int64_t i = 0; i < n; i++) {
-        motion[i] = images->now[i] + a->images[rank * n + i];
-        s[i] = a->stretch[i] * motion[i];
-        next[i] = g[i] - x[i] + lead[i];
+        image[i] = images->now[i] + image[i];
+        next[i] = a->g[i] - a->x[i] + lead[i];
     }
-    double size = sqrt(spari_sum_products(s, s, n)), omega = rank > 0 ? 1 : a->omega;
+    double size = weigh(a, image, s, motion), base = size, omega = rank > 0 ? 1 : a->omega;
+    SPARI_TRY(choose_base(a, images, next, image, &base));
     if (!minimise(a, rank, s)) {
         a->used = 0;
     }
@@ -422,9 +449,9 @@ int spari_fluid_secants_next(spari_accelerator *a, const double *x, const double
         spari_axpy(a->alpha[j], a->loads + a->slots[j] * n, next, n);
         spari_axpy(a->alpha[j], a->images + a->slots[j] * n, motion, n);
     }
-    omega *= limit(a, omega * images->rotation(images->context, motion), size);
+    omega *= limit(a, omega * images->rotation(images->context, motion), size, base);
     for (int64_t i = 0; i < n; i++) {
-        next[i] = x[i] + omega * next[i];
+        next[i] = a->base[i] + omega * next[i];
     }
     return SPAR_OK;
 }

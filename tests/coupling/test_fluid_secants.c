@@ -145,7 +145,7 @@ static void scenes(void **state) {
 
 static void thousand_nodes(void **state) {
     (void)state;
-    assert_true(beside_aitken(EVEN, 200, 5, 5) <= 8);
+    assert_true(beside_aitken(EVEN, 200, 5, 5) <= 10);
 }
 
 /* ---- the same bits ---- */

@@ -5,8 +5,9 @@
    period, tolerances 1e-2 to 1e-8.
    Every step of an exact fluid that Aitken ends must end, as near to a run of Aitken with a hundredth of the tolerance
    as the tolerance says, or as that run's own distance, and all in a third of Aitken's evaluations. No step with memory
-   may fail that Aitken ends. Noise of loads that links carry can exceed the tolerance of the motion, so a chain with
-   noise may fail. Prints evaluations a step by class, and the seed of the worst scene of each. */
+   or noise may fail that Aitken ends. The tolerance is five times the noise. The links of a chain carry most of the
+   loads: only the part that inclines them moves it, and the tolerance is of this part, so its noise is as much smaller.
+   Prints by class evaluations a step, and the worst of them and of the distances, with their seeds. */
 #include "scene.h"
 
 #include <stdio.h>
@@ -55,8 +56,9 @@ static world draw_world(unsigned seed) {
     w.drag = draw(&r, 0, 1) < 0.5 ? 0 : draw(&r, 0, 2);
     double kind = draw(&r, 0, 1);
     w.noise = kind > 0.8 ? draw_log(&r, 1e-5, 1e-2) : 0;
+    w.noise *= w.structure == CHAIN ? w.amplitude : 1;
     w.rho = kind > 0.6 && kind < 0.8 ? draw(&r, 0, 0.7) : 0;
-    w.rtol = fmax(w.rtol, 5 * w.noise);
+    w.rtol = fmax(w.rtol, w.structure == CHAIN ? 5 * w.noise / w.amplitude : 5 * w.noise);
     w.random = r;
     return w;
 }
@@ -229,8 +231,8 @@ static outcome run(const world *drawn, int scheme, double rtol) {
 
 typedef struct row {
     int scenes, failed, aitken_failed;
-    double mean, aitken, worst;
-    unsigned seed;
+    double mean, aitken, worst, off; /* worst evaluations a step; worst distance from the oracle over the one allowed */
+    unsigned seed, off_seed;
 } row;
 
 static int tell(unsigned seed, const world *w, const char *what, const outcome *o, const outcome *other) {
@@ -242,28 +244,35 @@ static int tell(unsigned seed, const world *w, const char *what, const outcome *
     return 1;
 }
 
+/* Distance of the tip from that of a run of Aitken with a hundredth of the tolerance, over the one allowed. -1: that
+   run does not end. */
+static double distance(const world *w, const outcome *o, const outcome *aitken) {
+    outcome near = run(w, SPAR_COUPLING_AITKEN, fmax(1e-2 * w->rtol, 1e-10));
+    double off = 0, path = 0, own = 0;
+    for (int k = 0; k < 3; k++) {
+        off += pow(o->tip[k] - near.tip[k], 2);
+        own += pow(aitken->tip[k] - near.tip[k], 2);
+        path += near.tip[k] * near.tip[k];
+    }
+    /* the tolerance is of the motion that all loads cause, which is 1 + ratio times the motion in a heavy fluid */
+    double bound = 1e-7 + 3 * STEPS * (w->rtol * (1 + w->ratio) * fmax(sqrt(path), w->amplitude) + sqrt(own));
+    return near.steps == STEPS ? sqrt(off) / bound : -1;
+}
+
 /* Returns whether the scene fails. */
 static int play(unsigned seed, row *sum) {
     const world w = draw_world(seed);
     const int exact = w.noise == 0 && w.rho == 0;
     outcome o = run(&w, SPAR_COUPLING_IQN_ILS, w.rtol), aitken = run(&w, SPAR_COUPLING_AITKEN, w.rtol);
     int bad = 0;
-    if (o.steps < aitken.steps && w.noise == 0) {
+    if (o.steps < aitken.steps) {
         bad = tell(seed, &w, "fails", &o, &aitken);
     } else if (exact && aitken.steps == STEPS) {
-        outcome near = run(&w, SPAR_COUPLING_AITKEN, fmax(1e-2 * w.rtol, 1e-10));
-        double off = 0, path = 0, own = 0;
-        for (int k = 0; k < 3; k++) {
-            off += pow(o.tip[k] - near.tip[k], 2);
-            own += pow(aitken.tip[k] - near.tip[k], 2);
-            path += near.tip[k] * near.tip[k];
+        double off = distance(&w, &o, &aitken);
+        if (off > sum->off) {
+            sum->off = off, sum->off_seed = seed;
         }
-        /* the tolerance is of the motion that all loads cause, which is 1 + ratio times the motion in a heavy fluid */
-        double bound = 1e-7 + 3 * STEPS * (w.rtol * (1 + w.ratio) * fmax(sqrt(path), w.amplitude) + sqrt(own));
-        if (near.steps == STEPS && sqrt(off) > bound) {
-            print_message("off %.2e of %.2e, Aitken %.2e: ", sqrt(off), sqrt(path), sqrt(own));
-            bad = tell(seed, &w, "another motion", &o, &near);
-        }
+        bad = off > 1 ? tell(seed, &w, "another motion", &o, &aitken) : 0;
     }
     sum->scenes++;
     sum->failed += o.steps < STEPS;
@@ -278,7 +287,20 @@ static int play(unsigned seed, row *sum) {
     return bad;
 }
 
-static int first_seed = 1, scenes = 250;
+static int scenes = 1000;
+
+/* Scenes in which the first correction, made before anything is known of the fluid, multiplies the residual by
+   hundreds: steps end only if the iteration goes on from the loads before it. */
+static void test_bad_starts(void **state) {
+    static const unsigned seeds[] = {8106, 11725, 12754, 18126, 24011, 24443, 27693};
+    row sum = {0};
+    (void)state;
+    for (size_t i = 0; i < sizeof seeds / sizeof *seeds && scenes > 1; i++) {
+        assert_int_equal(play(seeds[i], &sum), 0);
+    }
+}
+
+static int first_seed = 1;
 
 static void test_scenes(void **state) {
     enum { KINDS = 3 };
@@ -295,9 +317,10 @@ static void test_scenes(void **state) {
         const row *r = &sums[k / KINDS][k % KINDS];
         const int both = r->scenes - (r->failed > r->aitken_failed ? r->failed : r->aitken_failed);
         print_message("%-9s %-7s %4d scenes: %5.2f evaluations a step, Aitken %6.2f; %d fail, Aitken %d; worst %.1f "
-                      "(seed %u)\n",
+                      "(seed %u); off by %.2g of what is allowed (seed %u)\n",
                       structure_name[k / KINDS], kind_name[k % KINDS], r->scenes, r->mean / (both > 0 ? both : 1),
-                      r->aitken / (both > 0 ? both : 1), r->failed, r->aitken_failed, r->worst, r->seed);
+                      r->aitken / (both > 0 ? both : 1), r->failed, r->aitken_failed, r->worst, r->seed, r->off,
+                      r->off_seed);
     }
     assert_int_equal(bad, 0);
     for (int k = 0; k < STRUCTURES && scenes >= 250; k++) {
@@ -306,7 +329,7 @@ static void test_scenes(void **state) {
 }
 
 int main(int argc, char **argv) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_scenes)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_bad_starts), cmocka_unit_test(test_scenes)};
     scenes = argc > 1 ? atoi(argv[1]) : scenes;
     first_seed = argc > 2 ? atoi(argv[2]) : first_seed;
     return cmocka_run_group_tests(tests, NULL, NULL);
