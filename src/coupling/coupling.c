@@ -291,12 +291,37 @@ static double grown_lately(const spari_coupling *c) {
     return factor > 1.2 ? factor : 0;
 }
 
-/* Remedies, beginning with those that are not in use. diverges: the changes grow. */
-static const char *cures_of(const spar_session *s, int diverges) {
+/* The smallest residual of the iterations from `from` to before `to`. */
+static double least_residual(const spari_coupling *c, int from, int to) {
+    double least = INFINITY;
+    for (int i = from; i < to; i++) {
+        least = fmin(least, c->residual[i]);
+    }
+    return least;
+}
+
+/* The level at which the residual stays, relative to the loads; 0: it does not stay. The second half of many iterations
+   has not come below the first, nor is it spread over more than two orders. */
+static double flat_level(const spari_coupling *c) {
+    enum { MANY = 20 };
+    const int n = c->iterations, half = n / 2;
+    double least = least_residual(c, half, n), most = 0;
+    for (int i = half; i < n; i++) {
+        most = fmax(most, c->residual[i]);
+    }
+    const int flat = n >= MANY && least > 0.5 * least_residual(c, 0, half) && most < 100 * least;
+    return flat && c->size[n - 1] > 0 ? least / c->size[n - 1] : 0;
+}
+
+/* Remedies, beginning with those that are not in use. diverges: the changes grow; stays: they do not fall. */
+static const char *cures_of(const spar_session *s, int diverges, int stays) {
     int newton = spari_coupling_scheme_of(s->coupling.scheme)->columns;
     if (s->state.static_solution) {
         return newton ? "use a larger tolerance or more iterations, or check the fluid's loads"
                       : "use SPAR_COUPLING_IQN_ILS, a larger tolerance or more iterations";
+    }
+    if (stays && newton) {
+        return "use a larger rtol, more pressure corrections per fluid solution or a smaller dt, or reject the step";
     }
     if (!diverges) {
         return newton ? "use more iterations or a smaller dt, or reject the step"
@@ -328,8 +353,9 @@ static double largest_load(const spar_member *m, const double *load) {
     return most;
 }
 
-/* A larger growth of the loads cannot be a response to the structure's motion. */
-static const double TOO_MUCH = 1e6;
+/* A larger growth of the loads cannot be a response to the structure's motion. A solution that fails after so much
+   growth within a step has the coupling as its cause. */
+static const double TOO_MUCH = 1e6, MUCH_GROWN = 10;
 
 /* Member whose loads in use, or pushed, have grown most since the steps before, and the two values; NULL: none beyond
    the limit. */
@@ -367,7 +393,14 @@ int spari_coupling_solve_failed(spar_session *s, const char *call, int status) {
     SPARI_REQUIRE(s, factor == 0, status,
                   "%s: the coupling diverges: the change of the loads has grown by a factor of %.3g from iteration to "
                   "iteration, to %.3g N in iteration %d; %s (%.400s)",
-                  call, factor, c->residual[c->iterations - 1], s->state.iteration, cures_of(s, 1), why);
+                  call, factor, c->residual[c->iterations - 1], s->state.iteration, cures_of(s, 1, 0), why);
+    const int last = c->iterations - 1;
+    double least = c->iterations == s->state.iteration && last > 0 ? least_residual(c, 0, last) : INFINITY;
+    SPARI_REQUIRE(
+        s, last <= 0 || !(c->residual[last] > MUCH_GROWN * least), status,
+        "%s: the coupling diverges: the change of the loads has grown from %.3g N to %.3g N in iteration %d; %s "
+        "(%.400s)",
+        call, least, c->residual[last], s->state.iteration, cures_of(s, 1, 0), why);
     return status;
 }
 
@@ -425,15 +458,20 @@ static void describe_fluid(const spari_coupling *c, size_t size, char *text) {
                       100 * rho);
     }
     if (rotation > 0) {
-        (void)snprintf(text + n, size - (size_t)n, "; the last correction would rotate a section by %.2g rad",
-                       rotation);
+        n += snprintf(text + n, size - (size_t)n, "; the last correction would rotate a section by %.2g rad", rotation);
+    }
+    if (flat_level(c) > 0) {
+        (void)snprintf(
+            text + n, size - (size_t)n,
+            "; the residual stays at %.1e of the loads: if they scatter from call to call, rtol cannot be below",
+            flat_level(c));
     }
 }
 
 static int not_converged(spar_session *s, const char *call) {
     const spari_coupling *c = s->own->coupling;
     int last = c->iterations - 1;
-    char motion[80] = "", mass[300];
+    char motion[80] = "", mass[400];
     double load[2];
     const spar_member *m = s->state.static_solution ? NULL : member_overwhelmed(s, 1, load);
     SPARI_REQUIRE(s, !m, SPAR_ERR_NUMERIC,
@@ -457,12 +495,13 @@ static int not_converged(spar_session *s, const char *call) {
             s, SPAR_ERR_NUMERIC,
             "%s: the coupling has not converged in %d iterations and diverges: the change of "
             "the loads has grown by a factor of %.3g from iteration to iteration, to %.3g N of %.3g N%s%s; %s",
-            call, s->state.iteration, factor, c->residual[last], c->size[last], motion, mass, cures_of(s, 1));
+            call, s->state.iteration, factor, c->residual[last], c->size[last], motion, mass, cures_of(s, 1, 0));
     }
     return spari_fail(s, SPAR_ERR_NUMERIC,
                       "%s: the coupling has not converged in %d iterations (loads change by %.3g N of %.3g "
                       "N%s%s); %s",
-                      call, s->state.iteration, c->residual[last], c->size[last], motion, mass, cures_of(s, 0));
+                      call, s->state.iteration, c->residual[last], c->size[last], motion, mass,
+                      cures_of(s, 0, flat_level(c) > 0));
 }
 
 static spari_norm_loads weighed(const spar_session *s) {
@@ -685,6 +724,21 @@ static int accept_unconverged(spar_session *s, const char *call) {
 
 /* ---- stability of explicit steps ---- */
 
+/* Whether a node has moved in the step by more than rounding. What happens to a structure at rest says nothing. */
+static int moves_in_step(const spar_session *s) {
+    const double *length = s->own->coupling->length;
+    double d[6];
+    for (const spar_member *m = s->members; m; m = m->next, length++) {
+        for (int64_t i = 0; i < m->nodes; i++) {
+            travel(m->now.q + 7 * i, m->after.q + 7 * i, d);
+            if (spari_norm(d) > NEGLIGIBLE * *length || spari_norm(d + 3) > NEGLIGIBLE) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
 /* Ratio of added mass to mass with which an explicit scheme of this order grows by z per step. */
 static double ratio_of_growth(int order, double z) {
     return order == 0 ? z : order == 1 ? z * z / (2 * z + 1) : z * z * z / (3 * z * z + 3 * z + 1);
@@ -775,7 +829,7 @@ static void accept_explicit(spar_session *s) {
     const spari_growth *g = &c->stability.steps;
     int sure = g->count >= SURE ? now.error > SMALL * now.size : g->count >= AT_LEAST && now.error > LARGE * now.size;
     c->was_explicit = 1;
-    if (sure && g->log_sum > log(2) && !c->warned) {
+    if (sure && g->log_sum > log(2) && !c->warned && moves_in_step(s)) {
         c->warned = 1;
         tell_alternation(s);
     }
@@ -857,7 +911,7 @@ static void watch(spar_session *s) {
     enum { GROWING_STEPS = 4, LONG_UNWARNED = 20 };
     spari_coupling *c = s->own->coupling;
     double whole, defect = work_defect(s, &whole);
-    c->grown = fabs(defect) > fabs(c->defect) && fabs(defect) > 0.9 * whole ? c->grown + 1 : 0;
+    c->grown = moves_in_step(s) && fabs(defect) > fabs(c->defect) && fabs(defect) > 0.9 * whole ? c->grown + 1 : 0;
     c->defect = defect;
     c->report[SPAR_REPORT_WORK_DEFECT] = defect;
     c->steps_unwarned = c->grown == 0 && c->stability.steps.count == 0 ? c->steps_unwarned + 1 : 0;

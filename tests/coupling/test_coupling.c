@@ -483,6 +483,27 @@ static void instability_warning(void **state) {
     }
 }
 
+/* Loads that alternate and grow from step to step, from 1e-22 N on, on a body of 1 kg: it does not move by more than
+   rounding until they are 1e-12 N, and the log is silent. */
+static void rounding_is_no_instability(void **state) {
+    (void)state;
+    const double ratio = 0;
+    for (int large = 0; large < 2; large++) {
+        pistons p;
+        pistons_create(&p, 1, &ratio);
+        warnings = 0;
+        scene_explicit(p.session);
+        OK(p.session, spar_session_set_option(p.session, "coupling.unstable", "accept"));
+        OK(p.session, spar_session_set_log(p.session, count_warnings, NULL));
+        for (int step = 0; step < 12; step++) {
+            p.b[0] = (large ? 1e-2 : 1e-22) * pow(-4, step);
+            OK(p.session, spar_step(p.session, 0.1, pistons_fluid, &p, NULL));
+        }
+        assert_int_equal(warnings > 0, large);
+        pistons_destroy(&p);
+    }
+}
+
 /* ---- the predictor ---- */
 
 /* A load that is a polynomial of the predictor's order is predicted exactly whatever the steps: dt 1 : 3 : 2. */
@@ -846,6 +867,56 @@ static void messages(void **state) {
     }
 }
 
+/* A force that jumps at first and then alternates and grows by a tenth from iteration to iteration, until Newton fails.
+ */
+static int creeping_fluid(spar_session *s, double t, double dt, int iteration, void *context) {
+    const double force[3] = {1, 0, iteration > 0 ? 100 * pow(-1.1, iteration) : 1};
+    (void)s, (void)t, (void)dt;
+    return spar_fluid_push_forces(context, force, NULL);
+}
+
+/* A hundredth of the load differs from call to call. */
+static int scattering_fluid(spar_session *s, double t, double dt, int iteration, void *context) {
+    const double force[3] = {1 + 0.01 * sin(12.9898 * iteration * iteration), 0, 0};
+    (void)s, (void)t, (void)dt;
+    return spar_fluid_push_forces(context, force, NULL);
+}
+
+/* A solution that fails after the loads have grown has the coupling as its cause, which is told first, also if they did
+   not grow by much in the last iterations. Loads that scatter are told of, with their level. */
+static void causes(void **state) {
+    (void)state;
+    const double x[3] = {1, 0, 0}, ratio = 0;
+    double K[36], M[36];
+    scene_diagonal(K, 1e5, 1e4, 1e4, 20, 20, 20);
+    scene_diagonal(M, 0.01, 0.01, 0.01, 1e-5, 5e-6, 5e-6);
+    spar_session *s = scene_session();
+    spar_member *b = scene_beam(s, "flap", 1, 6, 1, K, M);
+    spar_fluid *f = NULL;
+    OK(s, spar_member_set_root(b, SPAR_ROOT_FIXED));
+    OK(s, spar_member_commit(b));
+    OK(s, spar_fluid_create(b, "air", &f));
+    OK(s, spar_fluid_set_force_nodes(f, 1, x));
+    OK(s, spar_fluid_map(f));
+    OK(s, spar_session_set_coupling(s, SPAR_COUPLING_FIXED_POINT, 0, 1e-9, 200));
+    assert_int_equal(spar_step(s, 0.01, creeping_fluid, f, NULL), SPAR_ERR_NUMERIC);
+    const char *message = spar_session_message(s), *cause = strstr(message, "the coupling diverges");
+    print_message("%s\n", message);
+    assert_non_null(cause);
+    assert_true(cause < strstr(message, "Newton does not converge"));
+    spar_session_destroy(&s);
+
+    pistons p;
+    pistons_create(&p, 1, &ratio);
+    OK(p.session, spar_session_set_coupling(p.session, SPAR_COUPLING_IQN_ILS, 0, 1e-6, 40));
+    assert_int_equal(spar_step(p.session, 0.01, scattering_fluid, p.fluid[0], NULL), SPAR_ERR_NUMERIC);
+    message = spar_session_message(p.session);
+    print_message("%s\n", message);
+    assert_non_null(strstr(message, "rtol cannot be below"));
+    assert_non_null(strstr(message, "use a larger rtol"));
+    pistons_destroy(&p);
+}
+
 /* A body that all but rests, as the hub of a rotor does, has accelerations that are nothing but rounding. That is not
    why the coupling of the others fails. */
 static void rest_is_not_rounding(void **state) {
@@ -979,6 +1050,7 @@ int main(void) {
         cmocka_unit_test(motion_test),
         cmocka_unit_test(nan_in_the_third_iteration),
         cmocka_unit_test(instability_warning),
+        cmocka_unit_test(rounding_is_no_instability),
         cmocka_unit_test(predictor_is_exact),
         cmocka_unit_test(predictor_lags),
         cmocka_unit_test(order_may_change),
@@ -988,6 +1060,7 @@ int main(void) {
         cmocka_unit_test(moments_of_parts_come_and_go),
         cmocka_unit_test(settings_are_checked),
         cmocka_unit_test(messages),
+        cmocka_unit_test(causes),
         cmocka_unit_test(rest_is_not_rounding),
         cmocka_unit_test(members_after_a_first_step),
         cmocka_unit_test(room_for_residuals),
