@@ -571,8 +571,8 @@ void check_balance()
         const char* what;
         double dt, uneven, most;
     } runs[] = {{"of the air's power, even steps of 0.1 s do not find again", 0.1, 0, 1e-3},
-                {"steps of 0.1 s, uneven by 1 %", 0.1, 0.01, 5e-3},
-                {"even steps of 0.2 s", 0.2, 0, 2e-2}};
+                {"steps of 0.1 s, uneven by 1 %", 0.1, 0.01, 1e-3},
+                {"even steps of 0.2 s", 0.2, 0, 4e-3}};
     for (const auto& run : runs) {
         const auto [missing, column] = missing_power(run.dt, run.uneven);
         expect(std::fabs(missing) < run.most, run.what, missing);
