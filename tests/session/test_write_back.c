@@ -132,9 +132,17 @@ static void trial_settings(scene *w) {
     } while (0)
 
 static void beam_settings(scene *w, spar_member *b) {
-    double mu[6], alpha;
+    double mu[6], alpha, eta[TABLE], x[3 * TABLE], twist[TABLE], K[36 * TABLE], M[36 * TABLE];
     int rule, points, kind;
-    int64_t modes;
+    int64_t modes, n;
+    OK(w->s, spar_beam_get_axis(b, &n, TABLE, eta, x, twist));
+    assert_true(n >= 2 && n <= TABLE);
+    WRITE(w, spar_beam_set_axis(b, n, eta, x, twist));
+    keep(w, n, eta), keep(w, 3 * n, x), keep(w, n, twist);
+    OK(w->s, spar_beam_get_sections(b, &n, TABLE, eta, K, M));
+    assert_true(n >= 1 && n <= TABLE);
+    WRITE(w, spar_beam_set_sections(b, n, eta, K, M));
+    keep(w, n, eta), keep(w, 36 * n, K), keep(w, 36 * n, M);
     STATIONS(w, b, 36, spar_beam_get_masses, spar_beam_set_masses);
     STATIONS(w, b, 3, spar_beam_get_foundation, spar_beam_set_foundation);
     STATIONS(w, b, 6, spar_beam_get_pretension, spar_beam_set_pretension);
@@ -219,14 +227,11 @@ static void fluid_settings(scene *w, spar_fluid *f, int before_map) {
 
 /* The settings of the session are others than the defaults. */
 static void change_session(spar_session *s) {
-    static const char *const option[][2] = {{"newton.budget", "12345"},
-                                            {"coupling.unconverged", "accept"},
-                                            {"coupling.unstable", "accept"},
-                                            {"coupling.patience", "7"},
-                                            {"coupling.filter", "0.00012345678901234"},
-                                            {"coupling.columns", "20"},
-                                            {"coupling.reuse", "4"},
-                                            {"coupling.motion_rtol", "1e-9"}};
+    static const char *const option[][2] = {
+        {"coupling.unconverged", "accept"}, {"coupling.unstable", "accept"},
+        {"coupling.patience", "7"},         {"coupling.filter", "0.00012345678901234"},
+        {"coupling.columns", "20"},         {"coupling.reuse", "4"},
+        {"coupling.motion_rtol", "1e-9"}};
     OK(s, spar_session_set_gravity(s, (const double[]){0.1, 0.2, -9.81}));
     OK(s, spar_session_set_integrator(s, 0.8, 2));
     OK(s, spar_session_set_newton(s, 1e-14, 1e-11, 40));
@@ -457,7 +462,7 @@ static void test_all_settings_are_tried(void **state) {
     static const char *const tried =
         " session_gravity session_integrator session_newton session_predictor session_coupling session_relaxation "
         "session_reproducible session_threads session_option session_tolerance trial_steps trial_goals trial_motion "
-        "trial_option beam_masses "
+        "trial_option beam_axis beam_sections beam_masses "
         "beam_foundation beam_pretension beam_quadrature beam_damping beam_mass_damping beam_plane member_placement "
         "member_root "
         "member_external member_effects member_fidelity member_added_mass member_owner fluid_motion_weights "
