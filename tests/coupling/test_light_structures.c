@@ -1,7 +1,7 @@
 /* Light structures that bend and turn in an exact fluid without memory: added mass normal to the section, 10 to 1000
    times the mass. The fluid is linear in the accelerations of the section, so nothing but the structure is difficult.
    Every step must end, and the motion must be that of Aitken's relaxation, which has no columns. */
-#include "scene.h"
+#include "support/links.h"
 
 enum { NODES = 8, LINKS = 8 };
 
@@ -39,13 +39,6 @@ static int water(spar_session *s, double t, double dt, int iteration, void *cont
     return status;
 }
 
-static void wet(flow *w, int j, int nodes, const double *x) {
-    OK(w->session, spar_fluid_create(w->member[j], "water", &w->fluid[j]));
-    OK(w->session, spar_fluid_set_motion_nodes(w->fluid[j], nodes, x));
-    OK(w->session, spar_fluid_set_force_nodes(w->fluid[j], nodes, x));
-    OK(w->session, spar_fluid_map(w->fluid[j]));
-}
-
 /* A clamped beam of 1 m and EI = 20 N m^2 in a fluid of 1 kg/m. */
 static void create_flap(flow *w, double ratio) {
     double K[36], M[36], x[3 * NODES] = {0}, mu = 1 / ratio;
@@ -58,34 +51,15 @@ static void create_flap(flow *w, double ratio) {
     for (int i = 0; i < NODES; i++) {
         x[3 * i] = (i + 0.5) / NODES;
     }
-    wet(w, 0, NODES, x);
+    w->fluid[0] = links_wet(w->session, w->member[0], NODES, x);
 }
 
 /* A chain of rigid links on hinges, 1 m in all, inclined by 1 rad and buoyant, on the ground; added mass a hundred
    times the mass. */
 static void create_chain(flow *w, int links) {
-    const double L = 1.0 / links, m = 0.01 * L, half = 0.5, along[3] = {1, 0, 0};
-    const double q[4] = {cos(half), 0, -sin(half), 0}, straight[4] = {1, 0, 0, 0}, c[3] = {L / 2, 0, 0};
-    const double J[3] = {m * L * L / 1200, m * L * L / 12, m * L * L / 12};
+    const double L = 1.0 / links;
     *w = (flow){.session = scene_session(), .links = links, .added = L / 3, .drag = 0.5 / 3, .push = 10 * L / 3};
-    for (int j = 0; j < links; j++) {
-        double M[36], d[3], p[3], x[9];
-        char name[2] = {(char)('a' + j), 0}, joint[2] = {(char)('A' + j), 0};
-        spar_joint *hinge = NULL;
-        spari_rotate(q, along, d);
-        for (int k = 0; k < 9; k++) {
-            p[k % 3] = j * L * d[k % 3];
-            x[k] = p[k % 3] + L * (k / 3 + 0.5) / 3 * d[k % 3];
-        }
-        scene_mass(M, m, c, J);
-        OK(w->session, spar_rigid_create(w->session, name, p, q, M, &w->member[j]));
-        OK(w->session, spar_member_set_root(w->member[j], SPAR_ROOT_FREE));
-        OK(w->session, spar_member_commit(w->member[j]));
-        OK(w->session,
-           spar_joint_create(w->session, joint, w->member[j], 0, j ? w->member[j - 1] : NULL, 0, SPAR_FREE_RY, &hinge));
-        OK(w->session, spar_joint_set_frame(hinge, p, straight));
-        wet(w, j, 3, x);
-    }
+    links_create(w->session, links, 0.01 * L, 1, w->member, w->fluid);
 }
 
 /* Runs and returns evaluations a step; *most of one step; x: the last node. */

@@ -14,8 +14,7 @@
 #include <gsl/gsl_integration.h>
 
 static const double part = 0.1, floor_of = 1e-10;
-static uint64_t seed = 1;
-static int scenes = 12, steps = 600;
+static scene_plan plan = {1, 12, 600};
 
 enum { LOOKS = 50 };
 
@@ -158,16 +157,16 @@ static void run(const motion_scene *c, int strictest, int halves, flight *f) {
     }
     sequence_seed = c->seed;
     let_go.amplitude = 0;
-    for (int k = 0; k < steps && f->status == SPAR_OK; k++) {
+    for (int k = 0; k < plan.steps && f->status == SPAR_OK; k++) {
         const double dt = sequence_step(c->pattern, k, c->dt, c->factor) / halves;
-        w.c = k < steps / 10 ? c : &let_go;
+        w.c = k < plan.steps / 10 ? c : &let_go;
         for (int i = 0; i < halves && f->status == SPAR_OK; i++) {
             f->status = scene_step(&w, dt);
         }
-        if (f->status == SPAR_OK && (k + 1) % (steps / LOOKS) == 0 && k / (steps / LOOKS) < LOOKS) {
-            find(&w, f->at[k / (steps / LOOKS)]);
+        if (f->status == SPAR_OK && (k + 1) % (plan.steps / LOOKS) == 0 && k / (plan.steps / LOOKS) < LOOKS) {
+            find(&w, f->at[k / (plan.steps / LOOKS)]);
         }
-        f->slow = scene_is_slow(&w, steps * halves);
+        f->slow = scene_is_slow(&w, plan.steps * halves);
         if (f->slow) {
             break;
         }
@@ -213,7 +212,7 @@ static int check(const motion_scene *c, int k) {
             "%3d: momentum %.1e (strictest %.1e), angular %.1e (strictest %.1e, scheme %.1e); iterations a step "
             "%.2f, strictest %.2f\n",
             k, usual.drift[0] / size[0], strict.drift[0] / size[0], usual.drift[1] / size[1], strict.drift[1] / size[1],
-            error[1] / size[1], (double)usual.iterations / steps, (double)strict.iterations / steps);
+            error[1] / size[1], (double)usual.iterations / plan.steps, (double)strict.iterations / plan.steps);
         const double own = fmax(error[0] / size[0], error[1] / size[1]),
                      linear = 2 * strict.drift[0] + (part * own + floor_of) * size[0],
                      angular = 2 * strict.drift[1] + part * error[1] + floor_of * size[1];
@@ -240,23 +239,11 @@ static motion_scene draw(uint64_t at) {
 
 static void test_invariants(void **state) {
     (void)state;
-    int failed = 0;
-    if (scenes == 0) {
-        const motion_scene c = draw(seed);
-        failed = check(&c, 0);
-    }
-    for (int k = 0; k < scenes; k++) {
-        const motion_scene c = draw(seed * 1000 + (uint64_t)k);
-        failed += check(&c, k);
-    }
-    print_message("%d scenes of %d steps, %d failed\n", scenes, steps, failed);
-    assert_int_equal(failed, 0);
+    scene_check_all(&plan, 0, draw, check);
 }
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_invariants)};
-    seed = argc > 1 ? strtoull(argv[1], NULL, 10) : seed;
-    scenes = argc > 2 ? atoi(argv[2]) : scenes;
-    steps = argc > 3 ? atoi(argv[3]) : steps;
+    scene_take_arguments(argc, argv, &plan);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

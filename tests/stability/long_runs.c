@@ -13,8 +13,7 @@
 static const double part = 0.1, floor_of = 1e-9, periods = 10;
 enum { FIXED = 3, FIRST_STEPS = 12000, WINDOWS = 40 };
 
-static uint64_t seed = 1;
-static int scenes = 8, steps = 20000;
+static scene_plan plan = {1, 8, 20000};
 
 /* EA 1e5 N, EI 50 N m2, 1 kg/m, 1 m, 9.81 m/s2: 57 and 115 steps a period of 3.516 sqrt(50), in steps of 0.005 s. */
 static motion_scene draw_fixed(int k) {
@@ -111,8 +110,9 @@ static history run(const motion_scene *c, int strictest, int halves, int most, d
 /* Returns 1 if it fails. */
 static int check(const motion_scene *c, int k) {
     static double coarse[FIRST_STEPS], fine[FIRST_STEPS];
-    const int few = (int)fmin(fmin(periods * c->per_period, steps), FIRST_STEPS);
-    const history strict = run(c, 1, 1, few, coarse), half = run(c, 1, 2, few, fine), usual = run(c, 0, 1, steps, NULL);
+    const int few = (int)fmin(fmin(periods * c->per_period, plan.steps), FIRST_STEPS);
+    const history strict = run(c, 1, 1, few, coarse), half = run(c, 1, 2, few, fine),
+                  usual = run(c, 0, 1, plan.steps, NULL);
     double error = 0;
     for (int i = 0; i < strict.steps && i < half.steps; i++) {
         error = fmax(error, 4.0 / 3 * fabs(coarse[i] - fine[i]));
@@ -135,7 +135,7 @@ static int check(const motion_scene *c, int k) {
     if (usual.status == SPAR_OK && usual.gain <= gain && usual.rise <= rise) {
         return 0;
     }
-    const history whole = run(c, 1, 1, steps, NULL);
+    const history whole = run(c, 1, 1, plan.steps, NULL);
     if (usual.status == SPAR_OK && usual.gain <= whole.gain + rise && usual.rise <= rise && whole.gain <= 3 * error) {
         return 0;
     }
@@ -150,23 +150,11 @@ static int check(const motion_scene *c, int k) {
 
 static void test_long_runs(void **state) {
     (void)state;
-    int failed = 0;
-    if (scenes == 0) {
-        const motion_scene c = draw(seed);
-        failed = check(&c, 0);
-    }
-    for (int k = 0; k < scenes; k++) {
-        const motion_scene c = draw(k < FIXED ? (uint64_t)k : seed * 1000 + (uint64_t)k);
-        failed += check(&c, k);
-    }
-    print_message("%d scenes of %d steps, %d failed\n", scenes, steps, failed);
-    assert_int_equal(failed, 0);
+    scene_check_all(&plan, FIXED, draw, check);
 }
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_long_runs)};
-    seed = argc > 1 ? strtoull(argv[1], NULL, 10) : seed;
-    scenes = argc > 2 ? atoi(argv[2]) : scenes;
-    steps = argc > 3 ? atoi(argv[3]) : steps;
+    scene_take_arguments(argc, argv, &plan);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,7 +8,7 @@
    or noise may fail that Aitken ends. The tolerance is five times the noise. The links of a chain carry most of the
    loads: only the part that inclines them moves it, and the tolerance is of this part, so its noise is as much smaller.
    Prints by class evaluations a step, and the worst of them and of the distances, with their seeds. */
-#include "scene.h"
+#include "support/links.h"
 
 #include <stdio.h>
 
@@ -116,13 +116,6 @@ static int solve_fluid(spar_session *s, double t, double dt, int iteration, void
 
 /* ---- the structure ---- */
 
-static void wet(world *w, int j, int nodes, const double *x) {
-    OK(w->session, spar_fluid_create(w->member[j], "water", &w->water[j]));
-    OK(w->session, spar_fluid_set_motion_nodes(w->water[j], nodes, x));
-    OK(w->session, spar_fluid_set_force_nodes(w->water[j], nodes, x));
-    OK(w->session, spar_fluid_map(w->water[j]));
-}
-
 /* 1 m, EI = 20 N m^2, in 1 kg/m of fluid; hinged: by a spring of the same stiffness. */
 static void build_beam(world *w) {
     const double mu = 1 / w->ratio, still[3] = {0, 0, 0}, axes[4] = {1, 0, 0, 0};
@@ -148,35 +141,16 @@ static void build_beam(world *w) {
     w->push = w->amplitude * 8 * 20;
     w->dt = 2 * 3.1416 / 3.516 * sqrt((mu + 1) / 20) / w->steps;
     w->rate = w->structure == ROTATING ? 0.02 / w->dt : 0;
-    wet(w, 0, NODES, x);
+    w->water[0] = links_wet(w->session, w->member[0], NODES, x);
 }
 
 /* Links of 1 m in all, inclined by the amplitude in rad, buoyant, on the ground. */
 static void build_chain(world *w) {
-    const double L = 1.0 / w->links, m = L / w->ratio, tilt = 1.5708 - w->amplitude;
-    const double q[4] = {cos(tilt / 2), 0, -sin(tilt / 2), 0}, straight[4] = {1, 0, 0, 0}, c[3] = {L / 2, 0, 0};
-    const double J[3] = {m * L * L / 1200, m * L * L / 12, m * L * L / 12}, along[3] = {1, 0, 0};
+    const double L = 1.0 / w->links;
     w->added = L;
     w->push = 10 * L;
     w->dt = 2 * 3.1416 * sqrt((1 + 1 / w->ratio) / 15) / w->steps / w->links;
-    for (int j = 0; j < w->links; j++) {
-        double M[36], d[3], p[3], x[9];
-        char name[2] = {(char)('a' + j), 0}, joint[2] = {(char)('A' + j), 0};
-        spar_joint *hinge = NULL;
-        spari_rotate(q, along, d);
-        for (int k = 0; k < 9; k++) {
-            p[k % 3] = j * L * d[k % 3];
-            x[k] = p[k % 3] + L * (k / 3 + 0.5) / 3 * d[k % 3];
-        }
-        scene_mass(M, m, c, J);
-        OK(w->session, spar_rigid_create(w->session, name, p, q, M, &w->member[j]));
-        OK(w->session, spar_member_set_root(w->member[j], SPAR_ROOT_FREE));
-        OK(w->session, spar_member_commit(w->member[j]));
-        OK(w->session,
-           spar_joint_create(w->session, joint, w->member[j], 0, j ? w->member[j - 1] : NULL, 0, SPAR_FREE_RY, &hinge));
-        OK(w->session, spar_joint_set_frame(hinge, p, straight));
-        wet(w, j, 3, x);
-    }
+    links_create(w->session, w->links, L / w->ratio, 1.5708 - w->amplitude, w->member, w->water);
 }
 
 /* ---- runs ---- */

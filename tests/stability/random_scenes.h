@@ -396,4 +396,28 @@ static inline int scene_is_slow(const motion_world *w, int steps) {
     return scene_iterations(w) > (int64_t)SCENE_ITERATIONS * steps;
 }
 
+/* What the command line of a test of long runs says: seed, number of scenes, steps of each. */
+typedef struct scene_plan {
+    uint64_t seed;
+    int scenes, steps;
+} scene_plan;
+
+static inline void scene_take_arguments(int argc, char **argv, scene_plan *p) {
+    p->seed = argc > 1 ? strtoull(argv[1], NULL, 10) : p->seed;
+    p->scenes = argc > 2 ? atoi(argv[2]) : p->scenes;
+    p->steps = argc > 3 ? atoi(argv[3]) : p->steps;
+}
+
+/* Plays the scenes of a plan; 0: the one of its seed. The first `fixed` ones have their own number as seed. */
+static inline void scene_check_all(const scene_plan *p, int fixed, motion_scene (*draw)(uint64_t at),
+                                   int (*check)(const motion_scene *c, int k)) {
+    int failed = 0;
+    for (int k = 0; k < (p->scenes > 0 ? p->scenes : 1); k++) {
+        const motion_scene c = draw(p->scenes == 0 ? p->seed : k < fixed ? (uint64_t)k : p->seed * 1000 + (uint64_t)k);
+        failed += check(&c, k);
+    }
+    print_message("%d scenes of %d steps, %d failed\n", p->scenes, p->steps, failed);
+    assert_int_equal(failed, 0);
+}
+
 #endif
