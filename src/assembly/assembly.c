@@ -167,7 +167,9 @@ static double correction_tolerance(const spar_session *s, const spari_scheme *c,
 
 /* The unbalanced forces that may remain where the largest force of a section or of inertia is `force`, with a
    correction tolerance relative to the motion. Forces follow from second derivatives of positions, so that they have
-   relative errors some hundred times larger. Rounding of positions makes forces of `stiffest` times their last digit.
+   relative errors some hundred times larger: a tenth of that costs 5 % of the iterations, ten times as much lets a
+   coupling take one per cent more (theory.md, (E4)). Rounding of positions makes forces of `stiffest` times their last
+   digit.
  */
 static double force_tolerance(const spari_body *body, double force, double relative) {
     static const double part = 100, rounding = 64 * DBL_EPSILON;

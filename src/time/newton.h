@@ -46,7 +46,9 @@ typedef struct spari_attempt {
 
 /* Two corrections show the contraction of their largest part. Other parts, too small to be seen beside it, may contract
    less: in a strip that is stiff along its line, the first correction closes what that stiffness sees, and little else.
-   A contraction below this limit counts as this limit. */
+   A contraction below this limit counts as this limit. A tenth leaves 17 times as much in the
+   rotor of benchmarks/scenes.c, ten times as large a limit costs it a quarter more iterations
+   (docs/explanation/theory.md, (E4)). */
 #define SPARI_LEAST_RATE 0.02
 
 /* What remains after the last of two corrections with the same tangent, from their sizes (Hairer & Wanner, Solving

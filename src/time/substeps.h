@@ -22,7 +22,8 @@ typedef struct spari_stepper {
 } spari_stepper;
 
 /* Part of the energy that a substep may gain where its motion is hardly resolved; and where Newton has found it only
-   with a new tangent in each iteration, which may lead to another solution. */
+   with a new tangent in each iteration, which may lead to another solution; a tenth and ten times as much: theory.md,
+   (E4). */
 #define SPARI_GAIN 0.1
 #define SPARI_GAIN_FAR 0.01
 
