@@ -308,6 +308,8 @@ static void renew_tangents(void *self) {
 
 static void end_solution(void *self, int iterations, spari_tangents tangents) {
     const newton_step *t = self;
+    /* trial loads of a coupling that are far from converged say nothing of the next solution */
+    tangents = t->a->session->state.rough && tangents == SPARI_TANGENT_EACH ? SPARI_TANGENT_NEW : tangents;
     spari_component *p = t->a->component;
     if (t->a->constraints == 0) {
         p->row->end_solution(p, iterations, tangents);
@@ -357,9 +359,10 @@ static const char *attempts_of(spari_assembly *a, double s, double dt, int *iter
     const spari_component *p = a->component;
     const int joined = a->constraints > 0, most = a->session->newton.max;
     const spari_tangent_reuse *reuse = joined ? &a->reuse : p->solver ? &p->solver->reuse : NULL;
-    const spari_tangents first = reuse && spari_tangent_is_new_in_each(reuse) ? SPARI_TANGENT_EACH
-                                 : tangent_serves(a)                          ? SPARI_TANGENT_REUSED
-                                                                              : SPARI_TANGENT_NEW;
+    const spari_tangents first = reuse && !a->session->state.rough && spari_tangent_is_new_in_each(reuse)
+                                     ? SPARI_TANGENT_EACH
+                                 : tangent_serves(a) ? SPARI_TANGENT_REUSED
+                                                     : SPARI_TANGENT_NEW;
     if (joined) {
         return spari_newton_solve(&tied, &step, first, most, &a->left, iterations);
     }
