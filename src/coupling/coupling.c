@@ -421,7 +421,9 @@ static double rounding_of_accelerations(const spar_session *s) {
 }
 
 /* Error of the correction for added mass, [N], by rounding and by what Newton leaves in the accelerations: loads cannot
-   agree any better, and may be smaller than this. */
+   agree any better, and may be smaller than this. The latter is measured: with a ten-thousandth of the tolerance, steps
+   with a correction of 100 times the loads do not end (tests/member/test_added_mass.c, test_learned_mass_life.c). A
+   thousandth counts nothing beside the tolerance, unless the correction is a thousand times the loads. */
 static const double correction_part = 1e-3; /* of the tolerance */
 
 static double error_of_added_mass(const spar_session *s) {

@@ -415,7 +415,8 @@ static double weigh(const spari_accelerator *a, const double *image, double *s, 
    linear model of it says nothing, those of the one before. The secants have both. *size := of their residual. */
 static int choose_base(spari_accelerator *a, const spari_images *images, double *next, double *image, double *size) {
     const int64_t n = a->n;
-    if (a->iteration == 1 || spari_rho_of(a) > 0 || *size <= GROWN * a->before) {
+    const int far = a->iteration > 1 && a->turned > LEAST_REACH; /* where structure or fluid may be another one */
+    if (!far || spari_rho_of(a) > 0 || *size <= GROWN * a->before) {
         memcpy(a->base, a->x, (size_t)n * sizeof *a->x);
         memcpy(a->base + n, a->g, (size_t)n * sizeof *a->g);
         return SPAR_OK;
