@@ -421,9 +421,10 @@ static double rounding_of_accelerations(const spar_session *s) {
 }
 
 /* Error of the correction for added mass, [N], by rounding and by what Newton leaves in the accelerations: loads cannot
-   agree any better, and may be smaller than this. The latter is measured: with a ten-thousandth of the tolerance, steps
-   with a correction of 100 times the loads do not end (tests/member/test_added_mass.c, test_learned_mass_life.c). A
-   thousandth counts nothing beside the tolerance, unless the correction is a thousand times the loads. */
+   agree any better, and may be smaller than this. The latter is taken as a thousandth of the tolerance, of the
+   correction: nothing beside the tolerance of loads that are not a thousand times smaller. A fluid that pushes nothing
+   has no other load, and without this its steps do not end (tests/member/test_added_mass.c, no_loads_on_a_bent_beam).
+ */
 static const double correction_part = 1e-3; /* of the tolerance */
 
 static double error_of_added_mass(const spar_session *s) {
