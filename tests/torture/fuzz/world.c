@@ -410,6 +410,8 @@ static void end_session(world *w, int session) {
     must(w, "spar_session_set_coupling", spar_session_set_coupling(s, SPAR_COUPLING_EXPLICIT, 1e-9, 1e-6, 5), SPAR_OK,
          s);
     must(w, "spar_session_set_newton", spar_session_set_newton(s, 1e-12, 1e-9, 50), SPAR_OK, s);
+    must(w, "spar_session_set_option", spar_session_set_option(s, "newton.budget", "100000"), SPAR_OK, s);
+    must(w, "spar_session_set_progress", spar_session_set_progress(s, NULL, NULL), SPAR_OK, s);
     int status = spar_step_begin(s, 1e-3);
     if (status == SPAR_ERR_STATE && strstr(spar_session_message(s), "not committed")) {
         return;
