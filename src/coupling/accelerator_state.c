@@ -138,7 +138,7 @@ static void pass_scheme_state(state_passage *t, spari_accelerator *a) {
     pass_reals(t, a->g, a->n);
     pass_reals(t, a->lead, a->led ? a->n : 0);
     pass_reals(t, a->last, a->ended ? a->n : 0);
-    pass_reals(t, a->base, a->imaged ? 2 * a->n : 0);
+    pass_reals(t, a->base, a->imaged && a->scheme->columns ? 2 * a->n : 0); /* other schemes have none */
     pass_whole(t, &a->count, (a->scheme->columns ? 2 * a->set.columns : 0) + 1.0);
     for (int j = 0; j < a->count && !t->bad; j++) {
         pass_column(t, a, j);
