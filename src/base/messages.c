@@ -86,7 +86,8 @@ static void add_cause(const spar_session *session, char *text, size_t size) {
         return;
     }
     (void)snprintf(first, sizeof first, "%s", unread[0] ? unread : thread_unread);
-    (void)snprintf(head, sizeof head, "%.*s", SAME - 1, first);
+    const char *body = strstr(first, ": "); /* two calls may refuse the same */
+    (void)snprintf(head, sizeof head, "%.*s", SAME - 1, body ? body : first);
     if (!first[0]) {
         (void)snprintf(unread, SPARI_CAUSE_SIZE, "%.*s", SPARI_CAUSE_SIZE - 1, text);
         return;

@@ -24,13 +24,6 @@ void do_spar_session_get_time(call *c) {
     RUN(c, spar_session_get_time(session->s, t, step, iteration));
 }
 
-void do_spar_log_stderr(call *c) {
-    live_session *session = arg_session(c);
-    int level = arg_int(c, 0, 3);
-    const char *text = arg_name(c, "x");
-    RUN_VOID(c, spar_log_stderr(session->s, level, text, NULL));
-}
-
 void do_spar_section_from_shape(call *c) {
     int shape = arg_int(c, 0, 3);
     int64_t n = arg_count(c, 0, 4);

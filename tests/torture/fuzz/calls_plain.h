@@ -4,7 +4,6 @@
     CALL(spar_session_get_gravity, 30, FUZZ_PURE) \
     CALL(spar_session_get_coupling, 30, FUZZ_PURE) \
     CALL(spar_session_get_time, 30, FUZZ_PURE) \
-    CALL(spar_log_stderr, 30, FUZZ_TEXT | FUZZ_PURE) \
     CALL(spar_section_from_shape, 30, FUZZ_CHANGES) \
     CALL(spar_section_build, 30, FUZZ_CHANGES) \
     CALL(spar_section_describe, 30, FUZZ_CHANGES) \

@@ -149,7 +149,8 @@ static int fail_and_restore(spar_session *s, int status, const char *message) {
     (void)snprintf(before, sizeof before, "%s", spar_session_message(s));
     int answer = spar_session_fail(s, status, message);
     if (answer == SPAR_OK) {
-        if (strncmp(spar_session_message(s), message, 400) != 0) { /* the middle of a long one goes */
+        size_t n = strlen(message); /* the middle of a long one goes; a failure that was not read may follow */
+        if (strncmp(spar_session_message(s), message, n < 400 ? n : 400) != 0) {
             fuzz_finding("message", "the message is '%.80s', not '%.80s'", spar_session_message(s), message);
         }
         (void)spar_session_fail(s, SPAR_OK, before);
@@ -318,6 +319,16 @@ void do_spar_session_set_log(call *c) {
     if (c->status == SPAR_OK) {
         l->logs = on;
     }
+}
+
+/* Nothing that would be written: standard error is watched. */
+void do_spar_log_stderr(call *c) {
+    live_session *l = arg_session(c);
+    const int written = chance(c, 50);
+    const char *message = written ? NULL : arg_name(c, "x");
+    const int level = written ? SPAR_LOG_ERROR : SPAR_LOG_INFO;
+    text(c, ", %d", level);
+    RUN_VOID(c, spar_log_stderr(l->s, level, message, NULL));
 }
 
 void do_spar_session_set_progress(call *c) {

@@ -80,6 +80,7 @@ enum {
     CALL(spar_session_get_iterations, 60, FUZZ_PURE)                                                                   \
     CALL(spar_session_get_report, 60, FUZZ_PURE)                                                                       \
     CALL(spar_session_set_log, 40, FUZZ_CHANGES)                                                                       \
+    CALL(spar_log_stderr, 5, FUZZ_TEXT | FUZZ_PURE)                                                                    \
     CALL(spar_session_set_progress, 20, FUZZ_CHANGES)                                                                  \
     CALL(spar_point_create, 25, FUZZ_CHANGES)                                                                          \
     CALL(spar_rigid_create, 25, FUZZ_CHANGES)                                                                          \

@@ -198,10 +198,11 @@ static int names(const call *c, const char *message) {
            (trial && (strstr(message, "spar_step") || strstr(message, "spar_trial_run")));
 }
 
-/* So many characters twice in a message: the same said twice. */
+/* So many characters twice in a message: the same said twice. An earlier failure may be of the same member. */
 static int says_twice(const char *text) {
     enum { PIECE = 40 };
-    int64_t n = (int64_t)strlen(text);
+    const char *earlier = strstr(text, "; an earlier failure: ");
+    int64_t n = earlier ? earlier - text : (int64_t)strlen(text);
     for (int64_t i = 0; i + 2 * PIECE <= n; i++) {
         for (int64_t j = i + PIECE; j + PIECE <= n; j++) {
             if (memcmp(text + i, text + j, PIECE) == 0 && memcmp(text + i, text + i + 1, PIECE - 1) != 0) {
@@ -400,6 +401,16 @@ static int is_tied(const world *w, int session) {
     return w->session[session].tied;
 }
 
+/* What a host can do about nodes that are not mapped. */
+static void map_or_release(world *w, int session) {
+    for (int i = 0; i < FLUIDS; i++) {
+        live_fluid *f = w->fluid + i;
+        if (f->f && f->session == session && spar_fluid_map(f->f) != SPAR_OK) {
+            spar_fluid_destroy(&f->f);
+        }
+    }
+}
+
 static void end_session(world *w, int session) {
     live_session *l = w->session + session;
     spar_session *s = l->s;
@@ -413,6 +424,10 @@ static void end_session(world *w, int session) {
     must(w, "spar_session_set_option", spar_session_set_option(s, "newton.budget", "100000"), SPAR_OK, s);
     must(w, "spar_session_set_progress", spar_session_set_progress(s, NULL, NULL), SPAR_OK, s);
     int status = spar_step_begin(s, 1e-3);
+    if (status == SPAR_ERR_STATE && strstr(spar_session_message(s), "not mapped")) {
+        map_or_release(w, session);
+        status = spar_step_begin(s, 1e-3);
+    }
     if (status == SPAR_ERR_STATE && strstr(spar_session_message(s), "not committed")) {
         return;
     }
