@@ -48,6 +48,7 @@ module spar
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_float, c_funloc, c_funptr, &
       c_int, c_int64_t, c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
   use spar_calls, c_status_text => spar_status_text, c_version => spar_version, c_has => spar_has, &
+      c_log_stderr => spar_log_stderr, &
       c_effect_name => spar_effect_name, c_series_add => spar_vtk_series_add, &
       c_section_from_shape => spar_section_from_shape, c_section_build => spar_section_build, &
       c_section_describe => spar_section_describe, c_section_report => spar_section_report, &
@@ -58,7 +59,7 @@ module spar
 
   public :: spar_session, spar_member, spar_joint, spar_fluid, spar_trial
   public :: spar_fluid_solver, spar_before_step, spar_log, spar_progress
-  public :: spar_status_text, spar_version, spar_has, spar_effect_name, spar_vtk_series_add
+  public :: spar_log_to_stderr, spar_status_text, spar_version, spar_has, spar_effect_name, spar_vtk_series_add
   public :: spar_section_from_shape, spar_section_build, spar_section_describe, spar_section_report, spar_section_transform
 
   ! constants of the headers {
@@ -3945,6 +3946,16 @@ contains
   pure recursive integer(c_int64_t) function length_of_version() result(n)
     n = text_length(c_version())
   end function length_of_version
+
+  ! spar_log_stderr, a log for session%set_log: writes errors and warnings to stderr, a line each.
+  recursive subroutine spar_log_to_stderr(level, text, context)
+    integer, intent(in) :: level
+    character(*), intent(in) :: text
+    class(*), intent(inout), optional :: context
+
+    if (present(context)) continue
+    call c_log_stderr(c_null_ptr, to_c(level), c_text(text), c_null_ptr)
+  end subroutine spar_log_to_stderr
 
   ! Whether this build of the library has a feature: 'mpi', ...
   recursive logical function has_feature(feature) result(there)
