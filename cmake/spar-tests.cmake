@@ -82,8 +82,9 @@ function(spar_add_ranks target label timeout)
       WORKING_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
     # Open MPI unloads its parts before it ends: the leak checker cannot tell any more what they left.
     spar_set_test(${target}_np${ranks} ${label} ${timeout} ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0)
-    if(ranks GREATER 1)
-      set_tests_properties(${target}_np${ranks} PROPERTIES PROCESSORS 2)
+    if(ranks GREATER 1) # ranks wait for each other's turns on a busy machine, and spin, so that the limit ends a deadlock
+      math(EXPR patience "30 * ${timeout} * ${SPAR_TEST_TIME_FACTOR}")
+      set_tests_properties(${target}_np${ranks} PROPERTIES PROCESSORS 2 TIMEOUT ${patience})
     endif()
   endforeach()
 endfunction()
