@@ -137,7 +137,7 @@ SPAR_API void spar_session_destroy(spar_session **session);
    Collective. */
 SPAR_API int spar_step_begin(spar_session *session, double dt);
 /* Part 2: solves all members from t^n to t^{n+1} under the current loads. Each call starts again from t^n.
-   SPAR_ERR_NUMERIC: Newton did not converge, or the tangent is singular. Collective. */
+   SPAR_ERR_NUMERIC: Newton did not converge, or singular tangent; SPAR_ERR_LIMIT: option newton.budget. Collective. */
 SPAR_API int spar_step_solve(spar_session *session);
 /* Part 8: gathers the loads of all ranks, computes the residual and the loads of the next iteration.
      done: out, 1: accept the step, 0: solve, push and check again

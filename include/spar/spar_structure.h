@@ -373,8 +373,9 @@ SPAR_API int spar_member_get_work(const spar_member *member, int64_t capacity, d
    it. The result is a stable equilibrium: of dead forces the one that growing loads lead to. Members held by their
    loads alone (a body that hangs on a hinge) descend to a stable equilibrium.
    SPAR_ERR_NUMERIC: none was found, beyond a limit or bifurcation point, or with a motion that nothing constrains; the
-   message names the motion. SPAR_ERR_STATE: nothing constrains the member. SPAR_ERR_UNSUPPORTED: spar does not
-   solve the member; or, in rotation, gravity, dead loads or joints to the ground are not symmetric about the axis. */
+   message names the motion. SPAR_ERR_LIMIT: option newton.budget (spar_session_set_option). SPAR_ERR_STATE: nothing
+   constrains the member. SPAR_ERR_UNSUPPORTED: spar does not solve the member; or, in rotation, gravity, dead loads or
+   joints to the ground are not symmetric about the axis. */
 SPAR_API int spar_member_solve_static(spar_member *member, int load_steps);
 /* Lowest modes about the present state, with the root constrained, in the frame rotating with the root. Geometric and
    centrifugal stiffness and spin softening are included; Coriolis terms and damping are not. Of unsymmetric stiffness
