@@ -213,11 +213,11 @@ def read_elastodyn(path, blade=None, hanging=False):
     file = File(path)
     degrees, blades = numpy.pi / 180, int(file.number('NumBl', otherwise=3, low=1, high=3, whole=True))
     hub_radius = file.number('HubRad', low=0)
-    tip = file.number('TipRad', low=1e-3)
+    tip = file.number('TipRad', low=1e-3, high=1e3)
     if tip <= hub_radius:
         file.fail(f'TipRad is {tip:g}, and HubRad is {hub_radius:g}; the tip lies beyond the hub', file.find('TipRad')[0])
     tilt, over = -file.number('ShftTilt', low=-90, high=90) * degrees, -file.number('OverHang')
-    base, top = file.number('TowerBsHt'), file.number('TowerHt')
+    base, top = (file.number(key, low=-1e3, high=1e3) for key in ('TowerBsHt', 'TowerHt'))
     if (top <= base) != hanging or top == base:
         file.fail(f'TowerHt is {top:g} and TowerBsHt is {base:g}; the tower goes ' + ('down, as MHK is 2' if hanging else
                   'up (one that goes down is read from an .fst file with MHK 2)'), file.find('TowerHt')[0])

@@ -288,6 +288,8 @@ def _line(axis, keys='xyz'):
     along = numpy.concatenate([[0], numpy.cumsum(numpy.linalg.norm(numpy.diff(points, axis=0), axis=1))])
     if len(grid) < 2 or not (numpy.diff(along) > 0).all():
         axis.fail('z', 'has two points at one position')
+    if along[-1] > 1e3:
+        axis.fail('z', f'goes along {along[-1]:g} m; give m')
     return grid, points, along / along[-1]
 
 
@@ -382,6 +384,9 @@ def read_blade(source):
         (grid_k, stiffness), (grid_m, mass) = _stiffness(elastic.part('stiffness_matrix')), _inertia(elastic.part('inertia_matrix'))
         grid, points, eta = _line(blade.part('reference_axis'))
         twist = -blade.part('outer_shape').at('twist', grid, -360, 360) * _DEGREE
+        if 1e-4 < abs(twist).max() < 0.7 * _DEGREE:
+            warnings.warn(f'{elastic.path}: components.blade.outer_shape.twist goes to {abs(twist).max() / _DEGREE:.3g} degrees; version 2 has '
+                          'degrees, and these look like radians', stacklevel=4)
         if 'mu' in elastic.maybe('structural_damping'):
             mu = elastic.part('structural_damping').numbers('mu', low=0)
             if mu.shape != (6,):

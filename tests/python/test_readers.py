@@ -260,6 +260,7 @@ class Told(unittest.TestCase):
                 ('windio2.yaml', ('  tower:', '  monopile: {x: 1}\n  tower:'), wind2, 'components.monopile'),
                 ('windio2.yaml', ('rotor_diameter: 82.921', 'rotor_diameter: 100.0'), wind2, 'rotor_diameter is 100 m, and the axes .* 82.921'),
                 ('windio2.yaml', ('hub_height: 71.8', 'hub_height: 90.0'), wind2, 'hub_height is 90 m, and the axes .* 72.148'),
+                ('windio2.yaml', ('twist: {grid: [0.0, 1.0], values: [10.0', 'twist: {grid: [0.0, 1.0], values: [0.1745'), wind2, 'look like radians'),
                 ('turbine.htc', ('damping_posdef 0 0 0 5e-3', 'damping_aniso_v2 0 0 0 5e-3'), htc, 'damping_aniso_v2 of body blade1'),
                 ('turbine.htc', ('damping_posdef 0 0 0 5e-3', 'damping_posdef 1 0 0 5e-3'), htc, 'mass-proportional part'),
                 ('turbine.htc', ('sec 3 0 0 40', 'sec 3 0 0 50'), htc, 'r goes to 40 m, and body blade1 is 50 m')):
@@ -396,6 +397,9 @@ class Refused(unittest.TestCase):
                 ('windio2.yaml', ('mass: [200.0', 'mass: [-200.0'), wind2, r'inertia_matrix.mass has -200; give numbers from 0'),
                 ('windio2.yaml', ('chord: {grid: [0.0, 1.0], values: [3.0', 'chord: {grid: [0.0, 1.0], values: [-3.0'), wind2, 'chord.values has -3'),
                 ('windio2.yaml', ('chord: {grid: [0.0, 1.0], values: [3.0', 'chord: {grid: [0.0, 1.0], values: [3.0E3'), wind2, 'chord.values has 3000'),
+                ('windio2.yaml', ('z: {grid: [0.0, 1.0], values: [0.0, 40.0]', 'z: {grid: [0.0, 1.0], values: [0.0, 40000.0]'), wind2,
+                 'goes along 40000 m'),
+                ('elastodyn.dat', ('41.5   TipRad', '41500   TipRad'), fst, r'elastodyn.dat, line \d+: TipRad is 41500; give 0.001 to 1000'),
                 ('windio2.yaml', ('K44: [8.0', 'K44: [-8.0'), wind2, 'K44 has -8'),
                 ('windio2.yaml', ('E: 2.1E11', 'E: "2.1E11"'), wind2, 'not an isotropic material'),
                 ('windio2.yaml', ('name: thin, spanwise', 'name: thinner, spanwise'), wind2, "names 'thinner', which is no airfoil"),
