@@ -63,10 +63,12 @@ static int is_corner(const spari_beam *b, int64_t i, const bend *t) {
     return t->angle > plain || (t->angle >= least && t->angle > of_neighbours * explained);
 }
 
-/* Element boundary on which axis point i lies, 0 to elements; or -1. */
+/* Boundary of two elements on which axis point i lies, 1 to elements - 1; or -1. */
 static int64_t boundary_of(const spar_member *member, int64_t i) {
     const double along = member->beam->eta[i] * member->mesh.elements, nearest = round(along);
-    return fabs(along - nearest) <= 1e-9 * member->mesh.elements ? (int64_t)nearest : -1;
+    return fabs(along - nearest) <= 1e-9 * member->mesh.elements && nearest > 0 && nearest < member->mesh.elements
+               ? (int64_t)nearest
+               : -1;
 }
 
 static int check_bend(const spar_member *member, int64_t i, double angle) {
@@ -88,6 +90,7 @@ int spari_axis_pieces(const spar_member *member, spari_pieces *pieces) {
     pieces->count = 1;
     pieces->first = spari_zalloc(b->axis_count + 1, sizeof *pieces->first);
     SPARI_REQUIRE(member->session, pieces->first, SPAR_ERR_MEMORY, "member '%s': no memory for its axis", member->name);
+    int64_t last = 0;
     for (int64_t i = 1; i < b->axis_count - 1; i++) {
         const bend t = bend_at(b, i);
         const int status = check_bend(member, i, t.angle);
@@ -95,7 +98,8 @@ int spari_axis_pieces(const spar_member *member, spari_pieces *pieces) {
             free(pieces->first);
             return status;
         }
-        if (boundary_of(member, i) >= 0 && is_corner(b, i, &t)) {
+        if (boundary_of(member, i) > last && is_corner(b, i, &t)) { /* a piece has an element at least */
+            last = boundary_of(member, i);
             pieces->first[pieces->count++] = i;
         }
     }

@@ -234,12 +234,37 @@ static void what_no_curve_shows_is_refused(void **state) {
     spar_session_destroy(&s);
 }
 
+/* Corners that leave no element between them: beside an end, and two on one element boundary. None writes beyond the
+   nodes (the last node of the beam is where the axis ends, and a session that follows is whole). */
+static void every_piece_has_an_element(void **state) {
+    (void)state;
+    static const double eta[2][4] = {{0, 1e-12, 0.5, 1}, {0, 0.5, 0.5 + 4e-10, 1}},
+                        xyz[2][12] = {{0, 0, 0, 1e-11, 1e-12, 0, 5, 3, 0, 10, 6, 0},
+                                      {0, 0, 0, 5, 0, 0, 5, 4e-9, 0, 5, 5, 0}};
+    for (int k = 0; k < 2; k++) {
+        double K[36], x[3 * 10], q[4 * 10];
+        spar_session *s = scene_session();
+        spar_member *b = NULL;
+        scene_diagonal(K, 1e6, 1e6, 1e6, 1e3, 1e3, 1e3);
+        OK(s, spar_beam_create(s, "b", 2, 5, &b));
+        OK(s, spar_beam_set_axis(b, 4, eta[k], xyz[k], NULL));
+        OK(s, spar_beam_set_sections(b, 1, eta[k], K, NULL));
+        OK(s, spar_member_commit(b));
+        OK(s, spar_member_get_reference(b, x, q));
+        for (int c = 0; c < 3; c++) {
+            NEAR(x[c], 0, 1e-9);
+            NEAR(x[27 + c], xyz[k][9 + c], 1e-9);
+        }
+        spar_session_destroy(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_l_bends_as_two_beams),         cmocka_unit_test(three_legs_bend_as_three_beams),
         cmocka_unit_test(modes_are_those_of_welded_beams), cmocka_unit_test(a_node_at_the_corner_moves_with_it),
         cmocka_unit_test(axes_turn_with_the_corner),       cmocka_unit_test(a_circle_has_no_corner),
-        cmocka_unit_test(what_no_curve_shows_is_refused),
+        cmocka_unit_test(every_piece_has_an_element),      cmocka_unit_test(what_no_curve_shows_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
