@@ -181,7 +181,7 @@ def read_elastodyn_tower(path, height):
 def _nacelle(file):
     """6x6 mass about the tower's top."""
     mass, inertia = file.number('NacMass', low=0), file.number('NacYIner', low=0)
-    centre = [file.number(f'NacCM{k}n') for k in 'xyz']
+    centre = [file.number(f'NacCM{k}n', low=-1e3, high=1e3) for k in 'xyz']
     level = inertia - mass * (centre[0] ** 2 + centre[1] ** 2)  # about the centre of mass
     if level < 0:
         file.fail(f'NacYIner is {inertia:g}, less than that of the nacelle\'s mass at its centre', file.find('NacYIner')[0])
@@ -216,7 +216,7 @@ def read_elastodyn(path, blade=None, hanging=False):
     tip = file.number('TipRad', low=1e-3, high=1e3)
     if tip <= hub_radius:
         file.fail(f'TipRad is {tip:g}, and HubRad is {hub_radius:g}; the tip lies beyond the hub', file.find('TipRad')[0])
-    tilt, over = -file.number('ShftTilt', low=-90, high=90) * degrees, -file.number('OverHang')
+    tilt, over = -file.number('ShftTilt', low=-90, high=90) * degrees, -file.number('OverHang', low=-1e3, high=1e3)
     base, top = (file.number(key, low=-1e3, high=1e3) for key in ('TowerBsHt', 'TowerHt'))
     if (top <= base) != hanging or top == base:
         file.fail(f'TowerHt is {top:g} and TowerBsHt is {base:g}; the tower goes ' + ('down, as MHK is 2' if hanging else
@@ -224,11 +224,11 @@ def read_elastodyn(path, blade=None, hanging=False):
     if blade is None:
         blade = read_elastodyn_blade(file.file('BldFile(1)', 'BldFile1'), tip - hub_radius)
     nacelle, iner = _nacelle(file), file.number('HubIner', low=0)
-    hub = body_mass(file.number('HubMass', low=0), [file.number('HubCM'), 0, 0], numpy.diag([iner] * 3))
+    hub = body_mass(file.number('HubMass', low=0), [file.number('HubCM', low=-1e3, high=1e3), 0, 0], numpy.diag([iner] * 3))
     return Turbine(name=os.path.basename(file.path), blade=blade, blades=blades, hub_radius=hub_radius,
                    cone=-file.number('PreCone(1)', low=-90, high=90) * degrees, tilt=tilt, overhang=over * numpy.cos(tilt),
-                   shaft_height=file.number('Twr2Shft') + over * numpy.sin(tilt), hub=hub, nacelle=nacelle,
-                   generator_inertia=file.number('GenIner', low=0) * file.number('GBRatio', otherwise=1.0) ** 2,
+                   shaft_height=file.number('Twr2Shft', low=-1e3, high=1e3) + over * numpy.sin(tilt), hub=hub, nacelle=nacelle,
+                   generator_inertia=file.number('GenIner', low=0) * file.number('GBRatio', otherwise=1.0, low=1e-4, high=1e4) ** 2,
                    drivetrain=(file.number('DTTorSpr', low=0), file.number('DTTorDmp', low=0)),
                    tower=read_elastodyn_tower(file.file('TwrFile'), abs(top - base)), tower_base=base, hanging=hanging,
                    left_out=[*_on(file, _PARTS), *_alike(file, blades), *blade.left_out])

@@ -492,7 +492,7 @@ def _bodies(machine, parts, old):
     inertia = generator.maybe('elastic_properties').data.get('inertia') or generator.maybe('elastic_properties_mb').data.get('rotor_inertia')
     if inertia:
         about = Part({'inertia': inertia}, generator.name, generator.path).numbers('inertia', low=0)[0]
-        machine.generator_inertia = about * drive.maybe('gearbox').number('gear_ratio', 1.0, 1e-6) ** 2
+        machine.generator_inertia = about * drive.maybe('gearbox').number('gear_ratio', 1.0, 1e-4, 1e4) ** 2
 
 
 # ---- airfoils ----

@@ -400,6 +400,7 @@ class Refused(unittest.TestCase):
                 ('windio2.yaml', ('z: {grid: [0.0, 1.0], values: [0.0, 40.0]', 'z: {grid: [0.0, 1.0], values: [0.0, 40000.0]'), wind2,
                  'goes along 40000 m'),
                 ('elastodyn.dat', ('41.5   TipRad', '41500   TipRad'), fst, r'elastodyn.dat, line \d+: TipRad is 41500; give 0.001 to 1000'),
+                ('elastodyn.dat', ('90   GBRatio', '1e300   GBRatio'), fst, r'elastodyn.dat, line \d+: GBRatio is 1e\+300; give 0.0001 to 10000'),
                 ('windio2.yaml', ('K44: [8.0', 'K44: [-8.0'), wind2, 'K44 has -8'),
                 ('windio2.yaml', ('E: 2.1E11', 'E: "2.1E11"'), wind2, 'not an isotropic material'),
                 ('windio2.yaml', ('name: thin, spanwise', 'name: thinner, spanwise'), wind2, "names 'thinner', which is no airfoil"),
