@@ -18,6 +18,7 @@ spari_accelerator *spari_accelerator_create(int64_t n, int period, int split,
         return NULL;
     }
     a->set = *settings;
+    a->memory.quantity = a->accepted.memory.quantity = SPARI_OWN_STEPS; /* until steps of other lengths tell another */
     a->scheme = spari_coupling_scheme_of(settings->scheme);
     a->n = n;
     a->period = period;

@@ -51,6 +51,7 @@ typedef struct spari_recollection {
     /* decaying sums of what older secants do not predict: in axes of the sections and in fixed ones; as functions of
        each quantity */
     double surprise[2], surprise_of[SPARI_QUANTITIES + 1];
+    int quantity; /* of which the loads are functions: the one that has predicted best (spari_quantity) */
 } spari_recollection;
 
 struct spari_accelerator {
@@ -87,7 +88,6 @@ struct spari_accelerator {
     double *b;            /* imaged: the same */
     double *axes;         /* imaged: [2 set.columns][n / 6][4] of the sections, by slot */
     int fixed;            /* imaged: the columns are kept in fixed axes */
-    int quantity;         /* imaged: loads are functions of it (spari_quantity) */
     double *stretch;      /* imaged: [n] weights of motions in sums of squares */
     double *lead, *last;  /* [n] imaged: the change of g before the next one; g at the end of the step before */
     int led, ended;       /* whether they are known */
@@ -158,7 +158,7 @@ int spari_iqn_ils_next(spari_accelerator *a, const double *x, const double *g, d
 int spari_fluid_secants_learn(spari_accelerator *a, const double *dx, const spari_images *images);
 /* Adds the last secant of a converged step. */
 void spari_fluid_secants_end(spari_accelerator *a, const spari_images *images);
-/* The step is accepted: keeps the columns in the axes, and as functions of the quantity, in which they hold better. */
+/* The step is accepted: keeps the columns in the axes in which they hold better. */
 void spari_fluid_secants_accept(spari_accelerator *a);
 /* Next loads, from a->x and a->g. Returns the status of images->of. */
 int spari_fluid_secants_next(spari_accelerator *a, const spari_images *images, double *next);

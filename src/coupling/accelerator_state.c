@@ -72,6 +72,7 @@ static void pass_memory(state_passage *t, const spari_accelerator *a, spari_reco
     for (int i = 0; i <= SPARI_QUANTITIES; i++) {
         pass_finite(t, m->surprise_of + i);
     }
+    pass_whole(t, &m->quantity, SPARI_QUANTITIES + 1.0);
     t->bad |= t->job == LOAD && !(m->rho >= 0 && m->rho < 1 && m->pairs >= 0 && (a->set.imaged || m->rho == 0));
 }
 
@@ -95,7 +96,6 @@ static void pass_head(state_passage *t, spari_accelerator *a) {
     pass_whole(t, &a->imaged, with_images);
     pass_whole(t, &a->drifts, with_images);
     pass_whole(t, &a->fixed, with_images);
-    pass_whole(t, &a->quantity, SPARI_QUANTITIES + 1.0);
     pass_whole(t, &a->led, with_images);
     pass_whole(t, &a->ended, with_images);
     pass_ratios(t, &a->ratios);

@@ -46,13 +46,18 @@ int spari_column_add(spari_accelerator *a) {
 }
 
 int spari_column_serves(const spari_accelerator *a, int j) {
+    /* Twice as long or half as long secants save evaluations; where a step is halved again and again, those of the long
+       steps slow its iteration down (host_amr_wind_coarse). */
+    static const double MOST = 2.5;
     const spari_column *c = a->column + j;
-    const int own = !a->imaged || a->quantity == SPARI_OWN_STEPS;
-    return c->kind == (int)kind_of(a) && (!own || fabs(c->dt - a->dt) <= 0.1 * a->dt);
+    const int own = !a->imaged || a->memory.quantity == SPARI_OWN_STEPS;
+    return c->kind == (int)kind_of(a) &&
+           (own ? fabs(c->dt - a->dt) <= 0.1 * a->dt : c->dt <= MOST * a->dt && a->dt <= MOST * c->dt);
 }
 
 double spari_column_scale(const spari_accelerator *a, int j) {
-    return a->quantity == SPARI_OWN_STEPS ? 1 : a->column[j].per[a->quantity] / a->per[a->quantity];
+    return a->memory.quantity == SPARI_OWN_STEPS ? 1
+                                                 : a->column[j].per[a->memory.quantity] / a->per[a->memory.quantity];
 }
 
 void spari_columns_accept(spari_accelerator *a) {

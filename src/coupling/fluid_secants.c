@@ -178,37 +178,37 @@ static int has_other_steps(const spari_accelerator *a) {
     return other;
 }
 
+/* The quantity that has predicted best. */
+static void choose_quantity(spari_accelerator *a) {
+    const double *surprise = a->memory.surprise_of;
+    for (int i = 0; i <= SPARI_OWN_STEPS; i++) {
+        a->memory.quantity = surprise[i] < surprise[a->memory.quantity] ? i : a->memory.quantity;
+    }
+}
+
 /* The first secant of a step tells in which axes those of the steps before hold, and as functions of which quantity.
    Without those of other steps, nothing is predicted: the whole of the loads is new. */
 static void compare_hypotheses(spari_accelerator *a) {
     if (a->count < 2 || a->column[1].step == a->step || a->set.columns < 2) {
         return;
     }
-    const int quantity = a->quantity;
+    const int quantity = a->memory.quantity;
     double longest = longest_before(a), axes[2] = {misprediction(a, 0, longest), -1}, of[SPARI_OWN_STEPS + 1];
     axes[1] = axes[0] >= 0 ? misprediction(a, 1, longest) : -1;
     add_surprises(2, axes, a->memory.surprise);
     for (int i = 0; i < SPARI_QUANTITIES && has_other_steps(a); i++) {
-        a->quantity = i;
+        a->memory.quantity = i;
         of[i] = misprediction(a, a->fixed, longest_before(a));
     }
     if (has_other_steps(a)) {
         of[SPARI_OWN_STEPS] = 1;
         add_surprises(SPARI_OWN_STEPS + 1, of, a->memory.surprise_of);
     }
-    a->quantity = quantity;
-}
-
-/* The quantity that has predicted best. */
-static void choose_quantity(spari_accelerator *a) {
-    const double *surprise = a->memory.surprise_of;
-    for (int i = 0; i <= SPARI_OWN_STEPS; i++) {
-        a->quantity = surprise[i] < surprise[a->quantity] ? i : a->quantity;
-    }
+    a->memory.quantity = quantity;
+    choose_quantity(a); /* at once: where a step that fails is halved again and again, none is accepted */
 }
 
 void spari_fluid_secants_accept(spari_accelerator *a) {
-    choose_quantity(a);
     int fixed = a->memory.surprise[1] < a->memory.surprise[0];
     for (int j = 0; j < a->count && fixed != a->fixed; j++) {
         int slot = a->column[j].slot;
