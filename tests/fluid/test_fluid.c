@@ -848,6 +848,7 @@ static void present_nodes_that_cannot_be(void **state) {
     OK(spar_fluid_set_motion_weights(f, 1, &w));
     assert_int_equal(spar_fluid_map_current(f), SPAR_ERR_UNSUPPORTED);
     assert_true(says(&r, "weights"));
+    OK(spar_fluid_map(f));
     OK(spar_step_begin(r.session, 0.1));
     assert_int_equal(spar_fluid_map_current(f), SPAR_ERR_STATE);
     rig_end(&r);

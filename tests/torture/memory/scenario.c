@@ -325,6 +325,7 @@ static void act_describe(void) {
     PLAIN(spar_status_text, 3);
     PLAIN(spar_session_message, s);
     PLAIN(spar_session_get_warning, s, 0);
+    PLAIN(spar_log_stderr, s, SPAR_LOG_INFO, "", NULL);
     PLAIN(spar_effect_name, 3);
     end_session(&s);
 }
