@@ -626,7 +626,8 @@ static void test_destroyed_in_report(void **state) {
         OK(e.s.session, spar_trial_create(e.s.session, &e.trial));
         OK(e.s.session, spar_trial_set_steps(e.trial, 0.01, 8));
         OK(e.s.session, spar_trial_set_callbacks(e.trial, end_something, &e, solve_ending, &e));
-        REFUSED(e.s.session, SPAR_ERR_STATE, k < 2 ? "spar_aero_report_effects" : "destroyed the", spar_aero_report_effects(e.s.aero, e.trial));
+        REFUSED(e.s.session, SPAR_ERR_STATE, k < 2 ? "spar_aero_report_effects" : "destroyed the",
+                spar_aero_report_effects(e.s.aero, e.trial));
         assert_true((e.which ? (void *)e.s.aero : (void *)e.trial) == NULL);
         OK(e.s.session, spar_step(e.s.session, 0.01, NULL, NULL, NULL));
         end(&e.s);
