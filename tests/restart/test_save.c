@@ -605,7 +605,7 @@ static void computed_sections(rounding r, spar_session *s, spar_member *beam) {
     scene_box(box[0], box[1]);
     for (int i = 0; i < STATIONS; i++) {
         double x = (double)i / (STATIONS - 1), size[2] = {exp(-14 * x), exp(-6 * x)};
-        change(r, SECTIONS, 2, size + i % 2);
+        change(r, SECTIONS, 1, size + i % 2);
         eta[i] = x, twist[i] = 0.2 * cos(x);
         xyz[3 * i] = x, xyz[3 * i + 1] = 0.05 * sin(x), xyz[3 * i + 2] = 0;
         for (int k = 0; k < 36; k++) {
