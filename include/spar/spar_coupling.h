@@ -541,7 +541,8 @@ SPAR_API int spar_fluid_pull_states(const spar_fluid *fluid, int64_t width, doub
      states[force_nodes][width]: in, at t^{n+1}, or at t = 0 before the first step */
 SPAR_API int spar_fluid_push_states(spar_fluid *fluid, int64_t width, const double *states);
 /* The calls of each iteration for hosts in single precision. Numbers are converted on the way in and out; all sums
-   are in double precision. spar_fluid_pull_motion:
+   are in double precision. Numbers beyond single precision are refused, SPAR_ERR_NUMERIC; arrays may then be partly
+   written. spar_fluid_pull_motion:
      theta: in, in [0,1]
      x[motion_nodes][3]: out, m, NULL: not wanted
      v[motion_nodes][3]: out, m/s, NULL: not wanted */
