@@ -245,7 +245,7 @@ static void note_change(spari_accelerator *a, const double *x, const double *g) 
    loads would difference flexibilities times the full loads, which may be much larger. */
 static int learn(spari_accelerator *a, const double *x, const double *g, const spari_images *images) {
     note_change(a, x, g);
-    if (!a->imaged) {
+    if (!a->imaged || !images) {
         estimate_ratio(a, NULL, NULL);
     } else if (a->scheme->columns) {
         estimate_ratio(a, images->moved, NULL);

@@ -37,7 +37,7 @@ static int pull_forces(spar_fluid *fluid, double theta, double *d, float *f, con
     int64_t node = layout ? layout->node : 3, component = layout ? layout->component : 1;
     int muted = (fluid->mute & SPARI_MUTE_HISTORY) != 0;
     theta = h && h->known == 0 ? 1 : theta; /* at t^n they are unknown: those pushed in this step stand for them */
-    for (int64_t i = 0; i < 3 * n; i++) {
+    for (int64_t i = 0; h && i < 3 * n; i++) {
         double x = muted ? 0 : (1 - theta) * h->past[0][i] + theta * h->after[i];
         int64_t at = i / 3 * node + i % 3 * component;
         if (d) {

@@ -269,7 +269,8 @@ spari_beyond *spari_beyond_create(const spar_member *m) {
     b->member = m;
     spari_gll(m->mesh.per_element, b->gll, NULL, b->bary);
     spari_gauss(m->mesh.per_element, b->gauss, b->weight);
-    const int undeformed = spari_member_is_undeformed(m), apart = undeformed && spari_norm(m->body->gravity) > 0;
+    const int undeformed = spari_member_is_undeformed(m),
+              apart = undeformed && m->body && spari_norm(m->body->gravity) > 0;
     b->on[!undeformed] = line_forces_of(b, !undeformed, 1, !apart);
     b->on[1] = apart ? line_forces_of(b, 1, 0, -1) : b->on[1];
     if (!b->on[!undeformed] || (apart && !b->on[1])) {

@@ -320,14 +320,16 @@ typedef struct account {
 
 static int get_account(actuator_machine *a, account *out) {
     turbine *t = &a->model;
-    spar_member *const members[] = {t->tower, t->nacelle, t->generator, t->hub, t->blade[0], t->blade[1], t->blade[2]};
+    enum { MEMBERS = 4 + TURBINE_BLADES };
+    spar_member *const members[MEMBERS] = {t->tower,    t->nacelle,  t->generator, t->hub,
+                                           t->blade[0], t->blade[1], t->blade[2]};
     double speed, twist, energy[SPAR_ENERGY_COUNT], audit[SPAR_AUDIT_COUNT];
     *out = (account){.torque = turbine_gear * a->control.torque};
     for (int b = 0; b < TURBINE_BLADES; b++) {
         TRY(spar_fluid_get_audit(t->air[b], SPAR_AUDIT_COUNT, audit));
         out->air += audit[SPAR_AUDIT_POWER];
     }
-    for (size_t i = 0; i < sizeof members / sizeof *members; i++) {
+    for (int i = 0; i < MEMBERS; i++) {
         TRY(spar_member_get_energy(members[i], SPAR_ENERGY_COUNT, energy));
         for (int k = 0; k < SPAR_ENERGY_COUNT; k++) {
             out->stored += energy[k];
