@@ -959,13 +959,18 @@ static double lopsidedness(const spari_component *p, double unbalanced) {
     return fmax(0, most - unbalanced * p->body->unique / length);
 }
 
+/* Rounding of a sum of products, relative to that of their absolute values. */
+static const double rounding = 256 * DBL_EPSILON;
+
 /* The same of a component and its constraints. Before condensation its stiffness is larger: `stiffest` is its force for
-   a strain of 1, so that a motion of 1 between nodes n apart has n times this over the length. */
+   a strain of 1, so that a motion of 1 between nodes n apart has n times this over the length. The rounding that is
+   measured counts once: a matrix of m rows has at most m times its largest element as norm. */
 static double stiffness_of_motion(const spari_assembly *a, const spari_component *p, double unbalanced) {
     const double *x = a->x + p->at, length = spari_member_length(p->member);
-    const double within = p->body->stiffest * p->body->unique / length + lopsidedness(p, unbalanced) / DBL_EPSILON;
+    const int m = 6 * p->condensed->ends;
+    const double within = p->body->stiffest * p->body->unique / length + m * lopsidedness(p, unbalanced) / rounding;
     double sum = 0;
-    for (int i = 0, m = 6 * p->condensed->ends; i < m; i++) {
+    for (int i = 0; i < m; i++) {
         double way = fabs(x[i]) * (i % 6 < 3 ? 1 : length);
         sum += within * way * way;
         for (int j = 0; j < m; j++) {
@@ -982,7 +987,6 @@ static double stiffness_of_motion(const spari_assembly *a, const spari_component
    stiffness k opposes the motion, W is of the size k |x|^2, and rounding errors are of the size eps |x|^T |K| |x|: both
    are energies, so that no unit matters. */
 int spari_system_is_loose(spari_assembly *a, double unbalanced) {
-    static const double rounding = 256 * DBL_EPSILON;
     a->columns = 1;
     memset(a->b, 0, (size_t)spari_blocks_rows(a->system) * sizeof *a->b);
     for (int i = 0; i < a->components; i++) {
