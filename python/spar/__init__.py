@@ -497,7 +497,7 @@ class _Running:
                                       else 0 if p.name == 'capacity' else self.given[p.name] if p.how == 'value' else None
                                       for p in self.call.parameters])
         if status != 0:
-            raise _failed(status, self.message())
+            raise _failed(status, self.message() or _calls['spar_status_text'].function(status).decode())
         return count.value
 
     # ---- from a parameter to C's argument ----
